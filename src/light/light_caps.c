@@ -4,13 +4,14 @@
 #include "light/light_extent.h"
 #include "scene/light/light_kind.h"
 
-/* Points along each side of a part, of which its middle and spread are means. */
+/* Number of points along each side of a part; the part's middle and spread are means over them. */
 enum { POINTS_OF_PART = 8 };
 
-/* A light that looks at most this wide, over its distance, and about as long, is one part. */
+/* A light is one part if its apparent size is at most this fraction of its distance, and it looks about as
+ * long as wide. */
 static const double NARROW = 0.35;
 
-/* Cuts a rect so that its parts look about as long as wide. `length`: how long its edges look. */
+/* Cuts a rect into parts that look about as long as wide. length: how long its edges look. */
 static void cut_rect(const double length[2], int parts[2]) {
   int longer = length[1] > length[0], across = 1 - longer;
   double ratio = length[longer] / fmax(length[across], length[longer] / MOST_CAPS);
@@ -19,7 +20,8 @@ static void cut_rect(const double length[2], int parts[2]) {
   parts[across] = 1;
 }
 
-/* Parts along a and b of the unit square (hl_light_point), for a view from the content's middle. */
+/* Chooses the number of parts along a and b of the unit square (hl_light_point), for a view from the
+ * content's middle. */
 static void choose_parts(const light_source *source, int parts[2]) {
   const light_kind *kind = hl_light_kind(source->light);
   vec3 way = vec3_subtract(source->content, source->position), to = vec3_normalise(way);
@@ -30,7 +32,7 @@ static void choose_parts(const light_source *source, int parts[2]) {
   if (kind->parallelogram) cut_rect(length, parts);
 }
 
-/* Offset of point k of a part from the light's centre. */
+/* The offset of point k of a part from the light's centre. */
 static vec3 point_of_part(const light_source *source, const int parts[2], int part, int k) {
   int i = part % parts[0], j = part / parts[0];
   double a = (i + (k % POINTS_OF_PART + 0.5) / POINTS_OF_PART) / parts[0],
@@ -63,7 +65,7 @@ light_caps hl_light_caps(const light_source *source) {
   caps.count = parts[0] * parts[1];
   for (int i = 0; i < caps.count; i++) caps.cap[i] = cap_of_part(source, parts, i);
   if (!hl_light_kind(source->light)->sphere) return caps;
-  /* a sphere is the disk that faces the point, wherever the point is */
+  /* a sphere counts as the disk that faces the point, wherever the point is */
   double radius = source->light->radius;
   vec3_store(caps.cap[0].middle, source->position);
   for (int i = 0; i < 6; i++) caps.cap[0].spread[i] = i < 3 ? (float)(radius * radius / 2) : 0;

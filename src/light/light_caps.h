@@ -1,10 +1,10 @@
-/* light/light_caps.h - an extended light as a few round caps, as a point among media sees it.
+/* light/light_caps.h - an extended light as a few round caps, as a point within media sees it.
  *
- * Media scatter by the angle to the light, so they need to know how wide it looks. A parallel light looks the
- * same from everywhere: a cap of directions. Other lights are cut into parts; a part looks like the cap of
- * directions that has the same mean (derived: a disk of radius q at distance 1, square to the view, has the
- * mean cosine 2 (h - 1) / q^2, h = sqrt(1 + q^2); a cap of least cosine c has (1 + c) / 2; so c = (3 - h) /
- * (1 + h)). */
+ * Scattering in media depends on the angle to the light, so they need to know how wide it looks. A parallel
+ * light looks the same from everywhere: it is one cap of directions. Other lights are cut into parts. A part
+ * looks like the cap of directions with the same mean (derived: a disk of radius q at distance 1, square to
+ * the view, has the mean cosine 2 (h - 1) / q^2, h = sqrt(1 + q^2); a cap of least cosine c has (1 + c) / 2;
+ * so c = (3 - h) / (1 + h)). */
 #ifndef HL_LIGHT_LIGHT_CAPS_H
 #define HL_LIGHT_LIGHT_CAPS_H
 
@@ -15,12 +15,12 @@ enum { MOST_CAPS = 4 };
 /* A part of a light. */
 typedef struct light_cap {
   float middle[3]; /* frame space */
-  float spread[6]; /* twice the mean of x x' from there: xx, yy, zz, xy, xz, yz. Seen along w, the part counts
-                      as a disk of the squared radius xx + yy + zz - w' spread w */
+  float spread[6]; /* twice the mean of x x', with x from the middle: xx, yy, zz, xy, xz, yz. Seen along w,
+                    * the part counts as a disk of the squared radius xx + yy + zz - w' spread w */
 } light_cap;
 
 typedef struct light_caps {
-  int count; /* 0: the light is parallel, or a point */
+  int count; /* number of parts; 0: the light is parallel, or a point */
   light_cap cap[MOST_CAPS];
 } light_caps;
 

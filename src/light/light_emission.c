@@ -5,10 +5,11 @@
 #include "core/memory.h"
 #include "scene/light/light_kind.h"
 
-/* Samples of the image along either side of a cell. */
+/* Number of samples of the image along each side of a cell. */
 enum { LEAST_SAMPLES = 4, GREATEST_SAMPLES = 32 };
 
-/* Bilinear between the middles of pixels; s to the right and t upwards, each from -1 to 1. */
+/* Adds the colour at a point of the image, bilinear between the middles of pixels. s to the right and t
+ * upwards, each from -1 to 1. */
 static void add_color(const hl_light_emission *emission, double s, double t, double sum[HL_CHANNELS]) {
   const int size[2] = {emission->width, emission->height};
   const double position[2] = {(1 + s) / 2 * size[0] - 0.5, (1 - t) / 2 * size[1] - 0.5};
@@ -28,8 +29,9 @@ static void add_color(const hl_light_emission *emission, double s, double t, dou
   }
 }
 
-/* Mean colour of cell (i, j) of side x side. The offset of a point on a parallel light changes the direction
- * of travel, which is opposite to the direction in which the light is seen: its sign is turned. */
+/* The mean colour of cell (i, j) of side x side cells. The offset of a point on a parallel light changes the
+ * direction of travel. This is opposite to the direction in which the light is seen, so the offset's sign is
+ * reversed. */
 static void mean_of_cell(const light_source *source, const emission_plane *plane, int side, int i, int j,
                          double mean[HL_CHANNELS]) {
   const hl_light_emission *emission = &source->light->emission;
@@ -67,7 +69,7 @@ void hl_light_emission_weights(const light_source *source, int side, float (*wei
       weights[i][c] = mean[c] > 0 ? (float)((double)weights[i][c] / mean[c]) : 1;
 }
 
-/* Weights of all cells, dark ones too, in their order. */
+/* The weights of all cells in their order; dark cells are included. */
 static void weigh_cells(const light_source *source, light_emission *emission) {
   float weights[EMISSION_CELLS][HL_CHANNELS];
   hl_light_emission_weights(source, EMISSION_SIDE, weights, emission->mean);
@@ -100,7 +102,7 @@ static vec3 middle_of_cell(const light_source *source, int i) {
  * outermost cells share taps. */
 static const double GREATEST_SLOPE = 0.5;
 
-/* Leaves dark cells out and bounds the others. */
+/* Leaves dark cells out, and bounds the other cells. */
 static void finish(light_emission *emission) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   int count = 0;
@@ -124,7 +126,7 @@ static void finish(light_emission *emission) {
   }
 }
 
-/* For parallel light the unit is negative: light that travels further along u comes from further back. */
+/* For parallel light the unit is negative: light that travels farther along u comes from farther back. */
 void hl_light_emission_see(const light_source *source, const sheet_light *seen, vec3 normal,
                            light_emission *emission) {
   double unit = fmax(seen->width_u, seen->width_v) * (source->parallel ? -1 : 1);
@@ -184,7 +186,7 @@ void hl_light_emission_taps(const light_emission *emission, double width, const 
   }
   for (int i = 0; i < emission->count; i++) {
     int x = tap[i][0] - first[0], y = tap[i][1] - first[1];
-    x = x < GRID - 1 ? x : GRID - 2; /* beyond GREATEST_SLOPE */
+    x = x < GRID - 1 ? x : GRID - 2; /* for slopes beyond GREATEST_SLOPE */
     y = y < GRID - 1 ? y : GRID - 2;
     for (int corner = 0; corner < 4; corner++) {
       int right = corner & 1, below = corner >> 1;

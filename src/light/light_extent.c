@@ -1,4 +1,4 @@
-/* light/light_extent.c - points on a light; moments of the light as seen from the sheets. */
+/* light/light_extent.c - points on a light, and moments of the light as seen from the sheets. */
 #include "light/light_extent.h"
 
 #include "scene/light/light_kind.h"
@@ -39,7 +39,7 @@ static vec3 first_axis(const light_source *source, vec3 normal) {
 }
 
 /* Projects a point of the light onto the plane, along its ray to the content's middle. Points nearly as low
- * as the content are moved by at most a factor of four; a light beside or below the content's middle is
+ * as the content are moved by at most a factor of four. A light beside or below the content's middle is
  * projected along the sheets' normal. */
 static vec3 seen_on_plane(const light_source *source, vec3 normal, vec3 offset) {
   if (source->parallel) {
@@ -77,7 +77,8 @@ sheet_light hl_light_on_sheets(const light_source *source, vec3 normal) {
   vec3 mean = vec3_scale(sum, 1 / n);
   double u = vec3_dot(mean, seen.u), v = vec3_dot(mean, seen.v);
   c = turn_to_axes((covariance){c.uu / n - u * u, c.uv / n - u * v, c.vv / n - v * v}, &seen.u, &seen.v);
-  /* parallel: the plane that the direction ends on is at height l.h, the widths are those at height 1 */
+  /* parallel: the plane through the end of the direction has the height l.h, and widths are widths at height
+   * 1 */
   double height = source->parallel ? fmax(vec3_dot(source->direction, normal), 0.1) : 1;
   seen.middle = vec3_add(centre, mean);
   seen.width_u = sqrt(12 * fmax(c.uu, 0)) / height;

@@ -5,27 +5,28 @@
 #include "light/light_source.h"
 
 /* Maps a point of the unit square to a point of the light, equal areas to equal areas. Returns the point's
- * offset from the light's centre, or for parallel light from its direction (directions are points at distance
- * 1). A sphere is its disk that faces the content. */
+ * offset from the light's centre or, for parallel light, from the light's direction (directions are points at
+ * distance 1). A sphere counts as its disk that faces the content. */
 vec3 hl_light_point(const light_source *source, double a, double b);
 
-/* The point of sub-light (i, j) of side x side in the unit square, for any light (sublight_points.c): a
- * turned grid, with one point in each cell. Projected onto either side of the square, the points are side^2
+/* The point of sub-light (i, j) of side x side in the unit square, for any light (sublight_points.c). The
+ * points are a turned grid, with one point in each cell. Projected onto a side of the square, they are side^2
  * even steps. */
 void hl_sublight_grid_point(int side, int i, int j, double square[2]);
 
-/* The same for one light: with few sub-lights, the points that give this light's penumbrae the least error.
- * Cells may hold several of these points or none, so they do not suit emission images. */
+/* Finds the point for one light. Where there are few sub-lights, the points give this light's penumbrae the
+ * least error. Cells may hold several of these points or none, so the points do not suit emission images. */
 void hl_sublight_point(const light_source *source, int side, int i, int j, double square[2]);
 
-/* The light as the content's middle sees it on a plane parallel to the sheets: through the light's centre, or
- * for parallel light through the end of its direction. */
+/* The light as the content's middle sees it, on a plane parallel to the sheets. The plane goes through the
+ * light's centre, or for parallel light through the end of its direction. */
 typedef struct sheet_light {
   vec3 middle; /* the projection's middle; frame space; for parallel light its mean direction of travel */
   vec3 u, v;   /* unit vectors in the sheets: the projection's principal axes, u the longer */
   double width_u,
-      width_v; /* of boxes with the same variance; frame units, or per unit of height if parallel */
-  mat3 spread; /* mean of x x' over the light itself, from its centre; along u, v and the sheets' normal */
+      width_v; /* widths of boxes with the same variance; frame units, or per unit of height if parallel */
+  mat3 spread; /* mean of x x' over the light itself, with x from its centre; along u, v and the sheets'
+                * normal */
   bool parallel;
 } sheet_light;
 
@@ -41,7 +42,7 @@ void hl_sheet_light_position(const sheet_light *seen, const light_source *source
  * axis over the height below the light. A light tilted against the sheets looks wider from one side. */
 double hl_sheet_light_squared_width(const sheet_light *light, int axis, double slope);
 
-/* Section 5.2, (1) and (3): the average size of the light's orthogonal projection onto the sheets. */
+/* The average size of the light's orthogonal projection onto the sheets (section 5.2, (1) and (3)). */
 double hl_light_average_size(const light_source *source, vec3 normal);
 
 #endif

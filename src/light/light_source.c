@@ -3,8 +3,8 @@
 
 #include "scene/light/light_kind.h"
 
-/* Square of the size, as a fraction of its distance, up to which a light is a point: no pixel shows its
- * penumbrae. */
+/* The square of a light's size, as a fraction of its distance, up to which the light is a point: no pixel
+ * shows its penumbrae. */
 static const double POINT_LIKE = 1e-12;
 
 static double trace(mat3 m) { return m.row[0].x + m.row[1].y + m.row[2].z; }
@@ -44,10 +44,10 @@ light_source hl_light_in_sector(const light_source *whole, const light_sectors *
 
 /* ---- sectors ---- */
 
-/* Three axes at the angle phi to the eye's direction, and three to its opposite turned by 60 degrees: of an
- * octahedron seen along a face for phi = 54.7 degrees. With 45 degrees every direction lies within 59 degrees
- * of an axis. Wide pictures need axes closer to the eye's direction, so that their corners' rays still cross
- * the sheets. */
+/* Three axes at the angle phi to the eye's direction, and three at this angle to its opposite, turned by 60
+ * degrees. For phi = 54.7 degrees they are the axes of an octahedron seen along a face. With 45 degrees every
+ * direction lies within 59 degrees of an axis. Wide pictures need axes closer to the eye's direction, so that
+ * their corners' rays still cross the sheets. */
 light_sectors hl_light_sectors(vec3 eye_direction, double widest) {
   const double usual = 45 * HL_PI / 180, flattest = 75 * HL_PI / 180, closest = 15 * HL_PI / 180;
   double phi = fmax(fmin(usual, flattest - widest), closest);
@@ -108,9 +108,9 @@ static bool bound_screen(const view *view, const light_source *source, double lo
 }
 
 /* Derived: planes through the light that contain the view's other axis touch the cone of half angle a where
- * their angle phi from the view's normal n has r sin(psi - phi) = +- sin a, r and psi being the length and
- * angle of the cone's axis in the plane of n and this axis. corner, du and dv of the view are n and its axes,
- * unit and perpendicular. */
+ * their angle phi from the view's normal n obeys r sin(psi - phi) = +- sin a. Here r and psi are the length
+ * and angle of the cone's axis in the plane of n and this axis. corner, du and dv of the view are n and its
+ * axes, unit and perpendicular. */
 static bool bound_cone(const view *view, const light_source *source, double low[2], double high[2]) {
   const vec3 axes[2] = {view->du, view->dv};
   vec3 cone = vec3_normalise(vec3_of(source->light->direction));
@@ -141,7 +141,8 @@ void hl_lit_region(const view *view, const light_source *source, double low[2], 
     cut((double[2]){-reach, -reach}, (double[2]){reach, reach}, low, high);
   }
   if (source->shadows != HL_SHADOWS_HARD)
-    return; /* occluders outside the lit region cast penumbrae into it */
+    return; /* occluders outside the lit region cast penumbrae into it, so the bounds stay whole for its cone
+             * and screen */
   if (source->light->texture.pixels != NULL && bound_screen(view, source, lit_low, lit_high))
     cut(lit_low, lit_high, low, high);
   if (hl_light_kind(source->light)->cone && bound_cone(view, source, lit_low, lit_high))

@@ -7,9 +7,9 @@
 #include "scene/light/light_kind.h"
 #include "view/view.h"
 
-/* The light's view through its screen, with the image's pixels. Derived: a sample x
- * lies on the ray through c + s R + t U; with the light at P, x - P = w (c - P + s R + t U), and for parallel
- * light along d, x = c + s R + t U + k d: three linear equations, w or k being the third unknown. */
+/* The light's view through its screen, with the image's pixels. Derived: a sample x lies on the ray through c
+ * + s R + t U. For a light at P, x - P = w (c - P + s R + t U); for parallel light along d, x = c + s R + t U
+ * + k d. These are three linear equations, whose third unknown is w or k. */
 static view view_of_screen(const light_source *source, int width, int height) {
   vec3 corner = vec3_add(vec3_subtract(source->screen_center, source->screen_right), source->screen_up);
   view view = {.perspective = !source->parallel,
@@ -24,8 +24,8 @@ static view view_of_screen(const light_source *source, int width, int height) {
   return view;
 }
 
-/* Length of a screen vector's projection at the content's middle, across the light's ray there; not shrunk
- * where the content lies before the screen. */
+/* The length of a screen vector's projection at the content's middle, across the light's ray there. It does
+ * not shrink where the content lies before the screen. */
 static double length_at_content(const light_source *source, const view *view, vec3 step, vec3 content) {
   vec3 way = source->direction;
   double magnified = 1;
@@ -39,11 +39,11 @@ static double length_at_content(const light_source *source, const view *view, ve
 
 /* ---- convolution along one axis ---- */
 
-/* Weights of neighbouring pixels for each pixel of a result. */
+/* The weights of neighbouring pixels for each pixel of a result. */
 typedef struct axis_weights {
   int count, taps;
-  int *first; /* owned; [count]; the first pixel that is weighted; all lie in the image, outside which it is
-                 dark */
+  int *first;     /* owned; [count]; the first weighted pixel for each result; all weighted pixels lie in the
+                   * image, outside of which it is dark */
   float *weights; /* owned; [count][taps] */
 } axis_weights;
 
@@ -59,13 +59,13 @@ static double disk_below(double x) {
   return 0.5 + (x * sqrt(1 - x * x) + asin(x)) / HL_PI;
 }
 
-/* Along one axis of a convolution: result pixel i is the kernel's mean around start + (i + 1/2) step. */
+/* A convolution along one axis: result pixel i is the kernel's mean around start + (i + 1/2) step. */
 typedef struct axis_plan {
-  int count;                      /* of result pixels */
-  double start, step, half_width; /* pixels of the image that is convolved */
+  int count;                      /* number of result pixels */
+  double start, step, half_width; /* in pixels of the image that is convolved */
 } axis_plan;
 
-/* length: the image's pixels along the axis. */
+/* length: the number of the image's pixels along the axis. */
 static hl_status weigh_axis(hl_context *context, kernel_fraction *below, const axis_plan *plan, int length,
                             axis_weights *axis, hl_error *error) {
   double half_width = plan->half_width;
@@ -92,7 +92,7 @@ static void release_axis(hl_context *context, axis_weights *axis) {
   hl_release(context, axis->weights);
 }
 
-/* One line of pixels of three channels, from_step and to_step floats apart. */
+/* Convolves one line of pixels with three channels. from_step, to_step: floats from pixel to pixel. */
 static void convolve_line(const float *from, size_t from_step, const axis_weights *axis, float *to,
                           size_t to_step) {
   for (int i = 0; i < axis->count; i++) {
@@ -134,7 +134,7 @@ static hl_status convolve(hl_context *context, const texture_image *from, const 
   return cancelled ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing") : HL_OK;
 }
 
-/* One level's two passes: along u and v. */
+/* The two passes of one level: along u and along v. */
 typedef struct level_plan {
   axis_plan axis[2];
 } level_plan;
@@ -152,14 +152,14 @@ static hl_status make_level(hl_context *context, kernel_fraction *below, const t
 
 /* ---- blur by the light's extent ---- */
 
-/* Standard deviations of the blur in pixels of the image, along u and v, at distance 1 behind the screen
- * (near light: at infinite distance): the light's spread, projected onto the screen along the ray to the
- * content's middle. */
+/* The standard deviations of the blur along u and v, in pixels of the image, at distance 1 behind the screen
+ * (for near light at infinite distance). They are the light's spread, projected onto the screen along the ray
+ * to the content's middle. */
 static void spread_on_screen(const light_source *source, const view *view, vec3 content,
                              double deviation[2]) {
   vec3 ray = source->parallel ? source->direction : vec3_normalise(vec3_subtract(content, source->position));
   mat3 inverse, spread = source->spread;
-  if (hl_light_kind(source->light)->sphere) /* the disk that faces the content */
+  if (hl_light_kind(source->light)->sphere) /* a sphere counts as the disk that faces the content */
     spread = hl_light_spread(source->light, vec3_scale(ray, -1));
   deviation[0] = deviation[1] = 0;
   if (source->shadows != HL_SHADOWS_SOFT ||
@@ -178,8 +178,8 @@ static double blur_at(const light_source *source, const view *view, vec3 point) 
   return fabs(1 - 1 / fmax(w, 0.05));
 }
 
-/* Level 0 blurs by 1.4 pixels of the picture, each further level by the root of 2 more. A level's pixels are
- * half as large as its blur, at least 0.7 of the picture's, and larger where the level would exceed the
+/* Level 0 blurs by 1.4 pixels of the picture, and each next level by sqrt(2) times as much. A level's pixels
+ * are half as large as its blur, at least 0.7 of the picture's, and larger where the level would exceed the
  * greatest side. */
 static const double FIRST_BLUR = 1.4, LEVEL_PIXEL = 0.5, LEAST_PIXEL = 0.7;
 enum { GREATEST_LEVEL_SIDE = 8192 };
@@ -195,13 +195,13 @@ static level_plan plan_level(const light_texture *texture, const double deviatio
     double extent = image[axis] + 2 * along->half_width;
     along->step = fmax(fmax(sigma * LEVEL_PIXEL, least), extent / (GREATEST_LEVEL_SIDE - 4));
     along->count = (int)fmin(ceil(extent / along->step + 4),
-                             GREATEST_LEVEL_SIDE); /* two more on either side */
+                             GREATEST_LEVEL_SIDE); /* two more pixels on either side */
     along->start = (image[axis] - along->count * along->step) / 2;
   }
   return plan;
 }
 
-/* averaged: floats of the averaged image, which the texture's memory begins with. */
+/* averaged: number of floats of the averaged image, with which the texture's memory begins. */
 static hl_status make_levels(hl_context *context, const light_source *source, const view *view,
                              const texture_use *use, light_texture *texture, size_t averaged,
                              hl_error *error) {
@@ -209,12 +209,14 @@ static hl_status make_levels(hl_context *context, const light_source *source, co
   level_plan plans[TEXTURE_LEVELS];
   const bool box = hl_light_kind(source->light)->parallelogram;
   kernel_fraction *below = box ? box_below : disk_below;
-  double half_widths = box ? sqrt(3) : 2; /* in standard deviations */
+  double half_widths = box ? sqrt(3) : 2; /* half width in standard deviations */
   spread_on_screen(source, view, use->content, deviation);
   for (int axis = 0; axis < 2; axis++)
     widest = fmax(widest, deviation[axis] * (double)texture->sharpness[axis]);
   for (int i = 0; i < use->point_count; i++) reach = fmax(reach, blur_at(source, view, use->points[i]));
-  if (!(widest * reach > 0.25)) return HL_OK; /* a quarter of the picture's pixel */
+  if (!(widest * reach > 0.25))
+    return HL_OK; /* below a quarter of a pixel of the picture, no blur is
+                   * needed */
   double first = FIRST_BLUR / widest;
   size_t floats = 0;
   while (texture->level_count < TEXTURE_LEVELS) {
@@ -248,7 +250,8 @@ static hl_status make_levels(hl_context *context, const light_source *source, co
 
 /* ---- the screen ---- */
 
-/* The number of pixels that the picture has across the projected image, at most the image's own. */
+/* The number of pixels that the picture has across the projected image, but at most the image's own
+ * number. */
 static int resolution(double length, int count, double pixel, float *sharpness) {
   double wanted = ceil(length / pixel);
   int chosen = wanted < 1 ? 1 : wanted < count ? (int)wanted : count;

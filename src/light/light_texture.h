@@ -5,9 +5,10 @@
  * pixels once a frame.
  *
  * An extended light with soft shadows blurs the image: at the distance t behind the screen it is convolved
- * with the light's shape, scaled by t (parallel light) or by 1 - Zs / Z, the screen at Zs and the sample at Z
- * from a near light (eq. (5), the screen as occluder). Blurred levels of the image, each of twice the
- * variance of the one before, are made once a frame; each sample interpolates between two of them. */
+ * with the light's shape, scaled by t (parallel light) or by 1 - Zs / Z, where the screen lies at Zs and the
+ * sample at Z from a near light (eq. (5) with the screen as occluder). Blurred levels of the image, each of
+ * twice the variance of the one before, are made once a frame; each sample interpolates between two of
+ * them. */
 #ifndef HL_LIGHT_LIGHT_TEXTURE_H
 #define HL_LIGHT_LIGHT_TEXTURE_H
 
@@ -18,7 +19,7 @@
 typedef struct texture_level {
   const float *pixels; /* [height][width][3]; in the light texture's memory */
   int width, height;
-  float scale[2], shift[2]; /* pixels of the image -> of the level */
+  float scale[2], shift[2]; /* maps pixels of the image to pixels of the level */
 } texture_level;
 
 enum { TEXTURE_LEVELS = 24 };
@@ -26,19 +27,20 @@ enum { TEXTURE_LEVELS = 24 };
 typedef struct light_texture {
   const float *pixels; /* [height][width][3], linear RGB; null: the light has no texture */
   int width, height;
-  float map[3][4]; /* frame space -> (w, w u, w v): u, v in pixels from the image's top left corner; w <= 0:
-                      the ray does not pass the screen's plane */
-  float sharpness[2]; /* along u and v: pixels of the picture that one of the image covers, at least 1 */
-  float
-      beyond[4]; /* parallel light: frame space -> distance from the screen along the rays; else w tells it */
+  float map[3][4]; /* maps frame space to (w, w u, w v): u, v in pixels from the image's top left corner. w <=
+                    * 0: the ray does not pass the screen's plane */
+  float sharpness[2]; /* along u and v: number of the picture's pixels that one pixel of the image covers, at
+                       * least 1 */
+  float beyond[4];    /* parallel light: maps frame space to the distance from the screen along the rays; for
+                       * near    light w gives it */
   int parallel;
-  float first; /* 1 / square of the distance (near light: of 1 - Zs / Z) that level 0 is blurred for; level l
-                  is for 2^l times that square, and has 2^l times the variance */
-  float edge[2]; /* along u and v: pixels of the image; width of the box with the blur's variance, at distance
-                    1 */
-  int level_count; /* 0: the light has no extent that matters */
+  float first; /* 1 / square of the distance (near light: of 1 - Zs / Z) for which level 0 is blurred. Level l
+                * is for 2^l times this square, and has 2^l times the variance */
+  float edge[2];   /* along u and v: width, in pixels of the image, of the box with the blur's variance at
+                    * distance 1 */
+  int level_count; /* number of levels; 0: the light's extent does not matter */
   texture_level level[TEXTURE_LEVELS];
-  float *memory; /* owned; the image averaged and its levels; null where neither is needed */
+  float *memory; /* owned; the averaged image and its levels; null where neither is needed */
 } light_texture;
 
 /* The content that a light texture falls on; frame space. */
@@ -47,10 +49,10 @@ typedef struct texture_use {
   int point_count;
   vec3 content; /* the content's middle */
 
-  double pixel; /* the edge of a picture's pixel there */
+  double pixel; /* the edge of a picture's pixel at the content's middle */
 } texture_use;
 
-/* Release with hl_light_texture_release(), after a failure too. */
+/* Makes the texture of a light. Release it with hl_light_texture_release(), after a failure too. */
 hl_status hl_light_texture_create(hl_context *context, const light_source *source, const texture_use *use,
                                   light_texture *texture, hl_error *error);
 void hl_light_texture_release(hl_context *context, light_texture *texture);

@@ -6,8 +6,8 @@
 #include "simd/gathers.h"
 #include "view/rays_lanes.h"
 
-/* Coverage by the screen along one axis: rises from 0 to 1 across each edge, over a width of 1 / sharpness.
- */
+/* The coverage by the screen along one axis. It rises from 0 to 1 across each edge, over a width of 1 /
+ * sharpness. */
 LANES_INLINE lanes within_edges(lanes u, float size, lanes sharpness) {
   lanes half = lanes_set(0.5f);
   return lanes_clamp(lanes_fma(u, sharpness, half), 0, 1) *
@@ -30,7 +30,7 @@ LANES_INLINE texture_taps taps_at(lanes u, int size) {
   return taps;
 }
 
-/* Bilinear in an image of width x height pixels; coordinates beyond its borders are clamped. */
+/* Reads an image of width x height pixels bilinearly. Coordinates beyond its borders are clamped. */
 LANES_INLINE void read_image(const float *pixels, int width, int height, lanes u, lanes v, lanes color[3]) {
   texture_taps x = taps_at(u, width), y = taps_at(v, height);
   lanes_int top = y.first * (int32_t)width, bottom = y.second * (int32_t)width;
@@ -44,7 +44,7 @@ LANES_INLINE void read_image(const float *pixels, int width, int height, lanes u
   }
 }
 
-/* Adds the unblurred image, times weight, with the screen's edges blurred by a box. */
+/* Adds the unblurred image times a weight. A box blurs the screen's edges. */
 LANES_INLINE void sharp_pattern(const light_texture *texture, lanes blur, lanes u, lanes v, lanes weight,
                                 lanes pattern[3]) {
   lanes sharp_u = lanes_set(texture->sharpness[0]), sharp_v = lanes_set(texture->sharpness[1]);
@@ -59,8 +59,9 @@ LANES_INLINE void sharp_pattern(const light_texture *texture, lanes blur, lanes 
 }
 
 /* Interpolates between the two levels whose variances enclose the sample's; the mean's variance is linear in
- * the weights. Below the first level it fades from the image itself, whose screen edges are blurred
- * separately, by the square of the variance, so that the image stays sharp as long as it can. */
+ * the weights. Below the first level it fades between the image itself and this level, whose weight is the
+ * square of the variance, so that the image stays sharp as long as it can. The screen edges of the image
+ * itself are blurred separately. */
 LANES_INLINE void soft_pattern(const light_texture *texture, lanes blur, lanes u, lanes v, lanes ahead,
                                lanes pattern[3]) {
   lanes variance = lanes_min(blur * blur * texture->first, lanes_set(1e30f));
@@ -83,7 +84,7 @@ LANES_INLINE void soft_pattern(const light_texture *texture, lanes blur, lanes u
   }
 }
 
-/* light_color(x) of eq. (2) at samples of frame space. */
+/* light_color(x) of eq. (2), at samples in frame space. */
 LANES_INLINE void texture_pattern(const light_texture *texture, lanes3 position, lanes pattern[3]) {
   lanes projected[3];
   for (int row = 0; row < 3; row++) projected[row] = row_of_point(texture->map[row], position);

@@ -10,7 +10,7 @@
 
 /* ---- the mean over a cap ---- */
 
-/* Places in the integral of mean_over_cap(). */
+/* The number of places at which mean_over_cap() evaluates its integral. */
 enum { RING_COUNT = 32 };
 
 typedef struct ring_places {
@@ -32,11 +32,12 @@ static double s_of(double g, double cosine) {
 static double cosine_of(double g, double s) { return fmin(fmax((1 + g * g - s * s) / (2 * g), -1), 1); }
 
 /* The mean of p over the cap of the least cosine c (below 1) whose middle is at the angle of cosine `towards`
- * from where light goes straight on. Derived: on the ring of directions at an angle t from there p is even;
- * the cap holds the fraction f(t) = acos((c - cos t cos T) / (sin t sin T)) / pi of the ring, T the angle to
- * the middle, or all or nothing of it. With x = 1 / s, p sin t dt is (1 - g^2) / g dx, so that the mean is (1
- * - g^2) / (g (1 - c)) times the integral of f dx. Where f is no constant x = m + h cos(u) takes away the
- * square roots at both ends. */
+ * from where light goes straight on. Derived: p is constant on the ring of directions at an angle t from
+ * straight on. Where T is the angle to the cap's middle, the cap holds the fraction f(t) = acos((c - cos t
+ * cos T) / (sin t sin T)) / pi of the ring, or all or nothing of it. With x = 1 / s, p sin t dt is (1 - g^2)
+ * / g dx. So the mean is (1
+ * - g^2) / (g (1 - c)) times the integral of f dx. Where f is not constant, x = m + h cos(u) removes the
+ *   square roots at both ends. */
 static double mean_over_cap(double g, double c, double towards, const ring_places *rings) {
   double turn = acos(towards), half = acos(c), sine = sin(turn);
   double nearest = fabs(turn - half), farthest = fmin(turn + half, 2 * HL_PI - turn - half);
@@ -48,12 +49,14 @@ static double mean_over_cap(double g, double c, double towards, const ring_place
     sum += rings->sine[i] * acos(fmin(fmax(edge, -1), 1)) / HL_PI;
   }
   sum *= (high - low) / 2 * HL_PI / RING_COUNT;
-  if (turn < half) sum += 1 / (1 - g) - high;        /* rings within the cap */
-  if (turn + half > HL_PI) sum += low - 1 / (1 + g); /* those around its opposite */
+  if (turn < half) sum += 1 / (1 - g) - high; /* rings that lie within the cap */
+  if (turn + half > HL_PI)
+    sum += low - 1 / (1 + g); /* rings around the opposite direction that lie within
+                               * the cap */
   return (1 - g * g) / (g * (1 - c)) * sum;
 }
 
-/* Fills the row of a cap, with numbers `apart` from each other. */
+/* Fills the row of a cap. apart: distance from one number to the next. */
 static void fill_row(double g, double c, const ring_places *rings, float *row, size_t apart) {
   for (int i = 0; i < PHASE_COLUMNS; i++) {
     double s = 1 - g + 2 * g * i / (PHASE_COLUMNS - 1);
@@ -69,7 +72,7 @@ static bool scatters_unevenly(const hl_scene_volume *volume) {
   return volume->anisotropy != 0 && volume->shading != HL_SHADING_FLAT;
 }
 
-/* Whether some light is wide, or wide and not parallel. */
+/* Whether some light is wide; near: whether some light is wide and not parallel. */
 static bool has_wide_light(const hl_scene_description *scene, bool near) {
   bool found = false;
   for (size_t i = 0; i < scene->light_count; i++)
@@ -78,12 +81,12 @@ static bool has_wide_light(const hl_scene_description *scene, bool near) {
   return found;
 }
 
-/* Caps of any size are needed for lights that are wide and near, and for the sky. */
+/* Whether caps of any size are needed: for lights that are wide and near, and for the sky. */
 static bool needs_caps(const hl_scene_description *scene) {
   return scene->sky.type != HL_SKY_NONE || has_wide_light(scene, true);
 }
 
-/* A table is needed for g, and, where light is scattered again, for g^2. */
+/* The number of tables. A table is needed for g and, where light is scattered again, for g^2. */
 static size_t wanted_tables(const hl_scene_description *scene) {
   size_t count = 0;
   if (scene->render.compositing != HL_COMPOSITING_LIGHT ||
@@ -94,7 +97,7 @@ static size_t wanted_tables(const hl_scene_description *scene) {
   return count;
 }
 
-/* Numbers of one table: rows of parallel lights, then caps. */
+/* The number of floats of one table: rows of parallel lights, then caps. */
 static size_t table_size(const hl_scene_description *scene) {
   return PHASE_COLUMNS * (scene->light_count + (needs_caps(scene) ? 2 * PHASE_CAPS : 0));
 }
@@ -145,7 +148,8 @@ typedef struct phase_job {
   ring_places rings;
 } phase_job;
 
-/* A row of caps stands beside the next one in its own row, and before the last one in that. */
+/* Fills the rows of caps. Each row is stored twice: as its own row, beside the next one, and in the row
+ * before, beside that row. */
 static void fill_caps(const phase_job *job, const phase_table *table, size_t row) {
   double g = table->g, part = (double)row / (PHASE_CAPS - 1), s = (1 - g) * pow((1 + g) / (1 - g), part);
   float(*to)[2] = table->caps[row];
@@ -156,7 +160,7 @@ static void fill_caps(const phase_job *job, const phase_table *table, size_t row
   }
 }
 
-/* One row of one table. */
+/* Fills one row of one table. */
 static void fill_row_of_table(void *data, size_t index, int worker) {
   (void)worker;
   const phase_job *job = data;

@@ -3,11 +3,11 @@
 
 #include "scene/light/light_kind.h"
 
-/* Sets of points chosen so that every half-plane holds, as nearly as possible, the fraction of the points
- * that it covers of the light's area; found by scripts/light_points, which says how. Points of disks are
- * given in the unit square, before its map to the disk. With sixteen points on a disk, penumbrae of straight
- * edges have a root mean square error of 0.0326 of the light, 0.028 to 0.036 depending on the edge's
- * direction; with the turned grid it is 0.0362. */
+/* Sets of points. They are chosen so that each half-plane holds, as nearly as possible, the same fraction of
+ * the points as of the light's area. scripts/light_points finds them, and says how. Points of disks are given
+ * in the unit square, before its map to the disk. With sixteen points on a disk, penumbrae of straight edges
+ * have a root mean square error of 0.0326 of the light, 0.028 to 0.036 depending on the edge's direction;
+ * with the turned grid it is 0.0362. */
 enum { SEARCHED_SIDES = 3, MOST_SEARCHED = 16 };
 typedef double square_points[MOST_SEARCHED][2];
 
@@ -74,7 +74,7 @@ void hl_sublight_grid_point(int side, int i, int j, double square[2]) {
   square[1] = (j + 1 - (i + 0.5) / side) / side;
 }
 
-/* Polygons have no one shape. */
+/* Polygons have no common shape, so they use the turned grid. */
 void hl_sublight_point(const light_source *source, int side, int i, int j, double square[2]) {
   const light_kind *kind = hl_light_kind(source->light);
   if (side < 2 || side >= 2 + SEARCHED_SIDES || kind->outline) {
