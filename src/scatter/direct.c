@@ -1,9 +1,8 @@
 /* scatter/direct.c - the lights' unscattered light at the nodes.
  *
- * Towards each of a few points of a light the nodes' extinction is summed in steps as long as their distance.
- * A node holds the mean over its box: what reaches the box's lit side, times (1 - exp(-t)) / t for the
- * optical depth t of the box.
- */
+ * The nodes' extinction is summed towards each of a few points of a light, in steps as long as the nodes'
+ * distance. A node holds the mean over its box: the light that reaches the box's lit side, times (1 -
+ * exp(-t)) / t for the optical depth t of the box. */
 #include <math.h>
 #include <string.h>
 
@@ -12,8 +11,8 @@
 
 enum { SOFT_SIDE = 3 /* points along each side of a soft light's square */ };
 
-/* exp(-x) for x >= 0, the same on every machine: 2^n (1 + a + ... + a^6 / 6!), a the rest times ln 2; a <=
- * 0.35, so that the error is below 1e-7 (derived: the remainder of the series). */
+/* exp(-x) for x >= 0, the same on every machine: 2^n (1 + a + ... + a^6 / 6!), where a is the rest times ln
+ * 2. It is at most 0.35, so the error is below 1e-7 (derived: the remainder of the series). */
 static float falling(float x) {
   if (!(x < 80)) return 0;
   float y = -x * 1.44269504f, whole = floorf(y + 0.5f), a = (y - whole) * 0.693147181f;
@@ -34,8 +33,8 @@ typedef struct direct_job {
   int side; /* points along each side of the light's square */
 } direct_job;
 
-/* Sums the extinction at a position in the grid, in units of its spacing, into sums[channels]; false outside.
- */
+/* Adds the extinction at a position in the grid, in units of its spacing, to sums[channels]; false outside
+ * the grid. */
 static bool add_extinction(const direct_job *job, const float at[3], float weight, float *sums) {
   const int32_t *count = job->nodes->count;
   size_t low[3];
@@ -59,8 +58,8 @@ static bool add_extinction(const direct_job *job, const float at[3], float weigh
   return true;
 }
 
-/* The fraction of light from a direction (unit, towards the light, as far as `distance`) that is at a node.
- */
+/* The fraction of light from a direction that is left at a node. The direction is a unit vector towards the
+ * light, which is `distance` away. */
 static void find_passing(const direct_job *job, const int32_t at[3], size_t node, vec3 towards,
                          double distance, float passing[3]) {
   const double way[3] = {towards.x, towards.y, towards.z};
@@ -79,7 +78,7 @@ static void find_passing(const direct_job *job, const int32_t at[3], size_t node
   for (int c = job->arrays->channels; c < 3; c++) passing[c] = passing[0];
 }
 
-/* A spot light's brightness by direction, as light_source.h says. */
+/* A spot light's brightness by direction, as in light_source.h. */
 static float within_cone(const light_cone *cone, vec3 towards) {
   if (!(cone->scale > 0)) return 1;
   double cosine = -(cone->axis[0] * towards.x + cone->axis[1] * towards.y + cone->axis[2] * towards.z);
@@ -87,14 +86,14 @@ static float within_cone(const light_cone *cone, vec3 towards) {
   return (float)(x * x * (3 - 2 * x));
 }
 
-/* What a mesh takes of the light on its way. */
+/* Takes a mesh's part of the light on its way. */
 static void meet_mesh(void *data, const surface_hit *hit) {
   float *passing = data;
   const double *color = hit->mesh->scene->attenuation_color;
   for (int c = 0; c < 3; c++) passing[c] *= (float)(1 - hit->opacity * color[c]);
 }
 
-/* Adds one point of the light, with its share of the light. */
+/* Adds one point of the light, which has a share of the light. */
 static void add_point(const direct_job *job, const int32_t at[3], size_t node, const double square[2]) {
   const light_source *source = job->source;
   vec3 offset = job->side > 1 ? hl_light_point(source, square[0], square[1]) : (vec3){0, 0, 0};
@@ -122,7 +121,7 @@ static void add_point(const direct_job *job, const int32_t at[3], size_t node, c
         strength * passing[c] * (float)(source->light->color[c] * source->light->intensity);
 }
 
-/* One row of nodes; those that scatter nothing need no light. */
+/* Lights one row of nodes. Nodes that scatter nothing need no light. */
 static void light_row(void *data, size_t row, int worker) {
   (void)worker;
   const direct_job *job = data;

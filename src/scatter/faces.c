@@ -1,17 +1,19 @@
-/* scatter/faces.c - the light of nodes beside matter, such that samples between nodes are lit as matter is.
+/* scatter/faces.c - changes the light of nodes beside matter, so that samples between nodes are lit as the
+ * matter is.
  *
- * Samples are lit by what lies between nodes, linear in the distance. Between nodes of the extinctions e and
- * f, each half of the way, light is linear in the optical depth: on a line that crosses the face between
- * them, from u to v, it is u + (v - u) e / (e + f) in the middle. A linear way meets that where the node of
- * less matter, f, has v + (v - u) (e - f) / (e + f) (derived). Lines along the face are another case: beside
- * matter they hold the light of the sky, or none, within it what is scattered there. They stand for all
- * directions that are nearly along the face. Of these, at the face, one half brings v and the other u, and
- * soon behind it all bring u: v counts a quarter there, for which the node of less matter has v + (u - v) / 2
- * (e - f) / (e + f).
+ * Samples are lit by the light of nodes, interpolated linearly in the distance. Between nodes with the
+ * extinctions e and f, each of which covers half of the way, light is linear in the optical depth. On a line
+ * that crosses the face between them, where light goes from u to v, it is u + (v - u) e / (e + f) in the
+ * middle. Linear interpolation gives this value if the node of less matter, f, has v + (v - u) (e - f) / (e +
+ * f) (derived). Lines along the face are another case. Beside the matter they hold the light of the sky, or
+ * none; within the matter they hold the light that is scattered there. They stand for all directions that are
+ * nearly along the face. At the face, one half of these directions brings v and the other half u, and soon
+ * behind the face all of them bring u. So v counts a quarter there, for which the node of less matter must
+ * have v + (u - v) / 2 (e - f) / (e + f).
  *
- * So an empty node beside matter, whose light is that at its face, continues the light of the matter beyond
- * it, and light that is even stays even. Of several neighbours the mean counts, weighted by how much more
- * matter they have. */
+ * An empty node beside matter has the light at the matter's face. So it continues the light of the matter,
+ * and light that is even stays even. Where a node has several such neighbours, the mean counts, weighted by
+ * how much more matter they have. */
 #include "scatter/parts.h"
 
 typedef struct faces {
@@ -23,7 +25,7 @@ typedef struct face_sums {
   float change, weight;
 } face_sums;
 
-/* between: what meshes let through between the node and its neighbour along an axis. */
+/* between: the fraction that meshes let through between the node and its neighbour along an axis. */
 static void add_face(const faces *of, int axis, size_t node, size_t next, float between, face_sums *sums) {
   const float own = of->extinction[node], other = of->extinction[next];
   if (!(other > own)) return;

@@ -1,4 +1,4 @@
-/* scatter/field.c - a field from volumes and lights, kept while they stay the same. */
+/* scatter/field.c - makes a field from volumes and lights, and keeps it while they stay the same. */
 #include "scatter/scatter.h"
 
 #include <math.h>
@@ -25,7 +25,7 @@ void hl_scatter_release(hl_context *context, scatter_field *field) {
   *field = (scatter_field){0};
 }
 
-/* True if some matter scatters some directions more than others. */
+/* True if some matter scatters more light in some directions than in others. */
 static bool is_uneven(const hl_scene_description *scene) {
   bool uneven = false;
   for (size_t v = 0; v < scene->volume_count; v++)
@@ -51,7 +51,7 @@ static void add_box(const grid *grid, double low[3], double high[3]) {
   }
 }
 
-/* False where there is no matter. */
+/* Places the nodes. False where there is no matter. */
 static bool place_nodes(const scatter_scene *scene, scatter_nodes *nodes) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, longest = 0;
   for (size_t v = 0; v < scene->scene->volume_count; v++)
@@ -71,7 +71,7 @@ static bool place_nodes(const scatter_scene *scene, scatter_nodes *nodes) {
 
 /* ---- memory ---- */
 
-/* What the arrays depend on. */
+/* The sizes and kinds of a field's arrays. */
 typedef struct scatter_parts {
   size_t nodes;
   bool with_flux, with_sky, with_walls;
@@ -171,22 +171,22 @@ static void write_key(const void *data, hl_key *key) {
 
 /* ---- the whole ---- */
 
-/* One channel's arrays. */
+/* The arrays of one channel. */
 typedef struct channel {
   const float *extinction, *scattering, *own, *direct;
   const scatter_inflow *inflow; /* null: no sky */
   float *light, *flux;
 } channel;
 
-/* The fraction of the light met that is scattered: of all matter. */
+/* The albedo of all matter together: the fraction of the light met that is scattered. */
 static float mean_albedo(const channel *of, size_t count) {
   double met = 0, kept = 0;
   for (size_t n = 0; n < count; n++) met += of->own[n], kept += of->extinction[n] - of->scattering[n];
   return met > 0 ? (float)(1 - kept / met) : 0;
 }
 
-/* Takes (1 - w) of the sky's unscattered light off; similarity keeps what is absorbed, so that the albedo w
- * is 1 - (extinction - scattering) / own. Empty nodes, beside matter, have the albedo of all. */
+/* Takes (1 - w) of the sky's unscattered light off. Similarity keeps the absorbed light, so the albedo w is 1
+ * - (extinction - scattering) / own. Empty nodes beside matter have the albedo of all matter. */
 static void leave_sky(const channel *of, const scatter_work *work, size_t count) {
   float elsewhere = mean_albedo(of, count);
   for (size_t n = 0; n < count; n++) {
@@ -198,7 +198,7 @@ static void leave_sky(const channel *of, const scatter_work *work, size_t count)
   }
 }
 
-/* begun: the lines are prepared for this extinction. */
+/* Solves one channel. begun: the lines are prepared for this extinction already. */
 static void solve_channel(const scatter_scene *scene, const scatter_nodes *nodes, const channel *of,
                           bool begun, scatter_work *work) {
   const bool two = of->inflow != NULL && of->own != of->extinction;

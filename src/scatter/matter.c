@@ -42,8 +42,8 @@ static float value_between(const grid *grid, const double p[3]) {
   return value;
 }
 
-/* The gradient's length at a point of index space, stored units per frame unit; differences are of values a
- * voxel apart. */
+/* The gradient's length at a point of index space, in stored units per frame unit. Differences are taken over
+ * the distance of a voxel. */
 static double gradient_at(const scatter_volume *volume, const double p[3]) {
   vec3 gradient = {0, 0, 0};
   for (int a = 0; a < 3; a++) {
@@ -56,7 +56,7 @@ static double gradient_at(const scatter_volume *volume, const double p[3]) {
   return vec3_length(gradient);
 }
 
-/* What gradient opacity multiplies extinction by. */
+/* The factor by which gradient opacity multiplies extinction. */
 static float gradient_factor(const classifier *classifier, double length) {
   double x = fmin(length * (double)classifier->steepness_scale, STEEPNESS_ENTRIES);
   size_t low = (size_t)x;
@@ -64,7 +64,8 @@ static float gradient_factor(const classifier *classifier, double length) {
          (float)(x - (double)low) * (classifier->steepness[low + 1] - classifier->steepness[low]);
 }
 
-/* The extinction of a volume at a point of frame space and the colour there; 0 where nothing is visible. */
+/* The extinction of a volume at a point of frame space, and the colour there. The extinction is 0 where
+ * nothing is visible. */
 static float extinction_at(const scatter_volume *volume, vec3 point, float color[3]) {
   const classifier *classifier = volume->classifier;
   vec3 index = affine3_apply(volume->grid->frame_to_index, point);
@@ -95,12 +96,12 @@ static float extinction_at(const scatter_volume *volume, vec3 point, float color
   return found * hl_mask_factor(&classifier->mask, at);
 }
 
-/* Of the medium that scatters evenly, and of the medium as it is. */
+/* Sums for the medium that scatters evenly, and for the real medium. */
 typedef struct matter {
   float extinction[3], scattering[3], own[3];
 } matter;
 
-/* Adds a volume's matter at a point, times weight; similarity as scatter.h says. */
+/* Adds a volume's matter at a point, times a weight, as the similarity in scatter.h says. */
 static void add_volume(const scatter_volume *volume, vec3 point, float weight, matter *sum) {
   const hl_scene_volume *scene = volume->scene;
   float color[3], found = extinction_at(volume, point, color);
@@ -114,7 +115,7 @@ static void add_volume(const scatter_volume *volume, vec3 point, float weight, m
   }
 }
 
-/* How many samples along an edge of a node's box find a volume's voxels. */
+/* The number of samples along an edge of a node's box with which a volume's voxels are found. */
 static int samples_of(const scatter_volume *volume, float spacing) {
   double voxel = mat3_shortest_column(volume->grid->index_to_frame.linear);
   return (int)fmin(fmax(ceil(spacing / voxel), 1), MOST_SAMPLES);

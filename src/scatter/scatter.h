@@ -2,16 +2,17 @@
  *
  * The grid does not depend on the camera. It is found once for volumes and lights that stay the same:
  *
+ *
  *     matter.c      extinction and scattering at the grid's nodes, from the volumes
  *     direct.c      the lights' unscattered light at the nodes
  *     sky.c         the sky's light that enters the grid
- *     walls.c       what meshes take of it
+ *     walls.c       the light that meshes absorb
  *     transport.c   how scattered light spreads
- *     field.c       the whole, and the key by which a result is kept
+ *     field.c       the whole field, and the key by which a result is kept
  *
- * A medium with anisotropy g and albedo w is taken for one that scatters evenly, with the extinction s (1 - w
- * g) and the scattering s w (1 - g) (similarity; van de Hulst, "Multiple light scattering", 1980): where
- * light was scattered often both spread it alike. */
+ * A medium with the extinction s, anisotropy g and albedo w is replaced by a medium that scatters evenly,
+ * with the extinction s (1 - w g) and the scattering s w (1 - g) (similarity; van de Hulst, "Multiple light
+ * scattering", 1980). Both spread light alike after it was scattered many times. */
 #ifndef HL_SCATTER_SCATTER_H
 #define HL_SCATTER_SCATTER_H
 
@@ -24,23 +25,23 @@
 #include "light/light_source.h"
 #include "surface/surfaces.h"
 
-/* A volume of the scene, made ready. */
+/* A volume of the scene, ready for this room. */
 typedef struct scatter_volume {
   const hl_scene_volume *scene; /* in frame space */
-  uint64_t plane_mark;          /* of the content of its function of two numbers */
+  uint64_t plane_mark;          /* identifies the content of the volume's function of two numbers */
   const grid *grid;
   const classifier *classifier;
 } scatter_volume;
 
-/* What a field is found from. Everything is borrowed. */
+/* The input from which a field is made. Everything is borrowed. */
 typedef struct scatter_scene {
   hl_context *context;
   hl_pool *pool;
   const hl_scene_description *scene; /* in frame space */
-  const double *sun_parts;           /* [scene->light_count]; of suns of the sky (light_source.of_sky) */
+  const double *sun_parts;           /* [scene->light_count]; light_source.of_sky, for suns of the sky */
   const scatter_volume *volumes;     /* [scene->volume_count] */
-  uint64_t sky_mark;                 /* of the pixels of the sky's image */
-  const surfaces *surfaces;          /* of the scene's meshes, which take light away; null: none */
+  uint64_t sky_mark;                 /* identifies the pixels of the sky's image */
+  const surfaces *surfaces;          /* the scene's meshes, which take light away; null: none */
 } scatter_scene;
 
 /* Where the nodes are, in frame space: node (x, y, z) at origin + spacing * (x, y, z). */
@@ -51,22 +52,23 @@ typedef struct scatter_nodes {
 
 typedef struct scatter_field {
   scatter_nodes nodes;
-  float *light; /* owned; [channels][count z][count y][count x]: the mean over all directions of light that
-                   was scattered, and of what samples leave out of the sky's (parts.h), in the units of a
-                   light's color; null: none */
-  float *flux;  /* in the block of light; [channels][3][count z][count y][count x]: the mean of that light
-                   times its direction of  travel; null where all matter scatters evenly */
-  int channels; /* 1: the same for red, green and blue; or 3 */
-  hl_key key;   /* of what it was found from */
+  /* owned; [channels][count z][count y][count x]: the mean over all directions of scattered light, and of the
+   * part of the sky's light that samples leave out (parts.h), in the units of a light's color; null: there is
+   * no field. */
+  float *light;
+  float *flux;  /* in the block of light; [channels][3][count z][count y][count x]: the mean of this light
+                 * times its direction of travel; null where all matter scatters evenly */
+  int channels; /* 1: red, green and blue are the same; or 3 */
+  hl_key key;   /* the key of the field's input */
 } scatter_field;
 
 /* True if some volume asks for multiple scattering and can show it. */
 bool hl_scatter_wanted(const hl_scene_description *scene);
 
-/* Counts what hl_scatter_update() takes where it has to find the field anew. */
+/* Counts the memory that hl_scatter_update() takes where it has to make the field anew. */
 void hl_scatter_count(const scatter_scene *scene, hl_layout *layout);
 
-/* Brings the field up to date; does nothing where all that it depends on stayed the same. */
+/* Brings the field up to date. Does nothing where its input has stayed the same. */
 hl_status hl_scatter_update(const scatter_scene *scene, scatter_field *field, hl_error *error);
 void hl_scatter_release(hl_context *context, scatter_field *field);
 

@@ -43,8 +43,9 @@ LANES_INLINE lanes between_nodes(const scatter_nodes *nodes, const node_cell *ce
   return lanes_fma(side[1] - side[0], cell->fraction[2], side[0]);
 }
 
-/* The light that a medium with anisotropy g scatters on in a direction (unit, towards the eye): the mean over
- * all directions, and 3 g times the flux in this one (derived: the phase function's first two moments). */
+/* The light that a medium with anisotropy g scatters on in a direction (unit vector towards the eye): the
+ * mean over all directions, plus 3 g times the flux in this direction (derived: the phase function's first
+ * two moments). */
 LANES_INLINE void scattered_light(const scatter_field *field, const lanes position[3],
                                   const lanes direction[3], float g, lanes light[3]) {
   const scatter_nodes *nodes = &field->nodes;

@@ -5,18 +5,20 @@
 
 #include "scatter/parts.h"
 
-/* Samples of the sky, in bands of equal height: an image's pixels, up to a limit. */
+/* The sky is sampled in BANDS bands of equal height. A higher image has a band for each of its rows, up to
+ * MOST_BANDS. */
 enum { BANDS = 64, MOST_BANDS = 512 };
 
 enum { DIRECTIONS = 2 * SCATTER_LINES };
 
-/* What the sky sends from about each direction that light travels in: lines along, then against their way. */
+/* The light of the sky for each direction in which light travels: for all lines along their direction, then
+ * for all lines against it. */
 typedef struct sky_sums {
   vec3 directions[DIRECTIONS];
   double sums[DIRECTIONS][3], samples[DIRECTIONS];
 } sky_sums;
 
-/* Light that comes from `from` travels the other way. */
+/* Light that comes from `from` travels in the opposite direction. */
 static int nearest_direction(const sky_sums *sums, vec3 from) {
   int nearest = 0;
   double greatest = -INFINITY;

@@ -1,18 +1,21 @@
 /* scatter/transport.c - how scattered light spreads from node to node.
  *
  * Along a line through the nodes let u be the mean of the light that travels either way. With even scattering
- * and the optical depth t it obeys u'' = u - S, S being what is scattered into either way (Feautrier, "Sur la
- * resolution numerique de l'equation de transfert", 1964). Between nodes i and i + 1, d apart in optical
- * depth, with t_i that of a node's own box,
+ * and the optical depth t it obeys u'' = u - S, where S is the light scattered into either way (Feautrier,
+ * "Sur la resolution numerique de l'equation de transfert", 1964). Where nodes i and i + 1 have the optical
+ * distance d_{i+1/2}, and t_i is the optical depth of a node's own box,
+ *
  *
  *     t_i (u_i - S_i) = (u_{i+1} - u_i) / d_{i+1/2} - (u_i - u_{i-1}) / d_{i-1/2}
  *
- * and the light I enters at the ends, none but a sky's. Elimination from one end on, in a form without
- * differences and without division by d, which empty space may make 0 (derived; after Rybicki and Hummer, "An
- * accelerated lambda iteration method for multilevel radiative transfer", 1991, appendix A):
+ * and the light I enters at the ends, which is only a sky's light. The elimination starts at one end. Its
+ * form has no differences and no division by d, which is 0 in empty space (derived; after Rybicki and Hummer,
+ * "An accelerated lambda iteration method for multilevel radiative transfer", 1991, appendix A):
+ *
  *
  *     f_i = t_i + f_{i-1} g_{i-1},  y_i = t_i S_i + y_{i-1} g_{i-1},  g_i = 1 / (1 + f_i d_{i+1/2}),  f = 1
- * and y = I before the first, u_i = (u_{i+1} + y_i d_{i+1/2}) g_i,  at the last node u = (y + I) / (1 + f)
+ *     and y = I before the first, u_i = (u_{i+1} + y_i d_{i+1/2}) g_i,  at the last node u = (y + I) / (1 +
+ *     f)
  *
  * The mean over all directions is the weighted sum over the 13 lines between a node and its 26 neighbours, by
  * the weights of the cubature of degree 7 of Lebedev ("Values of the nodes and weights of ninth to
@@ -20,30 +23,29 @@
  * 1975). The scheme keeps all energy, and where many mean free paths lie between nodes it becomes the
  * diffusion equation.
  *
- * From node i to the next the light that travels onwards exceeds the mean of both ways by v_{i+1/2} = y_i -
- * f_i u_i (derived: the first of these equations for (u_i - u_{i+1}) / d). The sum of v times the line's
- * direction is the light's flux.
+ * From node i to the next one, the light that travels onwards exceeds the mean of both ways by v_{i+1/2} =
+ * y_i - f_i u_i (derived: the first of these equations for (u_i - u_{i+1}) / d). The sum of v times the
+ * line's direction is the light's flux.
  *
- * What is scattered depends on the light itself. With G the sum above as a function of the energy that nodes
- * send out, D the scattering and b the light that was not scattered, u = G D (u + b). G is symmetric, so
- * conjugate gradients (Hestenes and Stiefel, 1952) solve (1 - sqrt(D) G sqrt(D)) v = sqrt(D) G D b for v =
- * sqrt(D) u.
- */
+ * The scattered light depends on the light itself. Let G be the sum above as a function of the energy that
+ * nodes send out, D the scattering, and b the light that was not scattered. Then u = G D (u + b). G is
+ * symmetric, so conjugate gradients (Hestenes and Stiefel, 1952) solve (1 - sqrt(D) G sqrt(D)) v = sqrt(D) G
+ * D b for v = sqrt(D) u. */
 #include <math.h>
 #include <string.h>
 
 #include "scatter/parts.h"
 
-/* Steps of conjugate gradients, and the fraction of the first residual at which they end. */
+/* The most steps of conjugate gradients, and the fraction of the first residual at which they end. */
 enum { MOST_STEPS = 60 };
 static const double ENOUGH = 2e-3;
 
-/* From a node to the next one of a line. */
+/* The step from a node to the next node of a line. */
 static const int ways[SCATTER_LINES][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},  {1, 1, 0},  {-1, 1, 0},
                                            {1, 0, 1},  {-1, 0, 1}, {0, 1, 1},  {0, -1, 1}, {1, 1, 1},
                                            {-1, 1, 1}, {1, -1, 1}, {-1, -1, 1}};
 
-/* A line's weight, both ways: 2 x 1/21, 4/105, 9/280. */
+/* The weight of a line for both ways: 2 x 1/21, 4/105, 9/280. */
 static float weight_of(int line) { return line < 3 ? 2.0f / 21 : line < 9 ? 8.0f / 105 : 18.0f / 280; }
 
 /* The distance of neighbouring nodes on a line, in units of the spacing. */
@@ -61,7 +63,7 @@ typedef struct lines_job {
   const scatter_nodes *nodes;
   const float *extinction;
   const scatter_inflow *inflow; /* null: none */
-  const float *sent; /* [nodes]; energy that a node sends out in all directions, per unit of length */
+  const float *sent; /* [nodes]; the energy that a node sends out in all directions, per unit of length */
   scatter_work *work;
   float *mean; /* [nodes] */
 } lines_job;
@@ -73,12 +75,12 @@ static const scatter_walls *walls_of(const lines_job *job) {
 
 /* A row of nodes along x on the lines of one direction. */
 typedef struct line_row {
-  size_t at;         /* the row's first node */
-  size_t step;       /* from a node to the next one of the line */
-  int32_t low, high; /* nodes of the row that have a next one: from low to high - 1 */
+  size_t at;         /* number of the row's first node */
+  size_t step;       /* step from a node to the next node of the line */
+  int32_t low, high; /* the nodes of the row that have a next node: from low to high - 1 */
 } line_row;
 
-/* The rows of a line in order; index: from 0 on. */
+/* The rows of a line, in order. index: from 0 on. */
 static line_row row_of(const scatter_nodes *nodes, int line, size_t index) {
   const int *way = ways[line];
   const int32_t *count = nodes->count;
@@ -92,14 +94,14 @@ static line_row row_of(const scatter_nodes *nodes, int line, size_t index) {
   return row;
 }
 
-/* g of all nodes of a line; of last nodes 1 / (1 + f). */
+/* Finds g for all nodes of a line; for last nodes 1 / (1 + f). */
 static void begin_line(void *data, size_t line, int worker) {
   (void)worker;
   const lines_job *job = data;
   const int32_t *count = job->nodes->count;
   size_t rows = (size_t)count[1] * (size_t)count[2];
   float length = length_of((int)line) * job->nodes->spacing, *pass = job->work->pass[line],
-        *before = job->work->along[line]; /* f_{i-1} g_{i-1} */
+        *before = job->work->along[line]; /* f_{i-1} g_{i-1} of each node */
   const float *e = job->extinction;
   const scatter_walls *walls = walls_of(job);
   for (size_t n = 0; n < rows * (size_t)count[0]; n++) before[n] = 1;
@@ -127,8 +129,9 @@ static float entering_last(const lines_job *job, int line) {
   return job->inflow != NULL ? job->inflow->against[line] : 0;
 }
 
-/* y before anything came along: what each node sends out, and the light that enters, at every node: those
- * that have one before them take it back. With meshes it is at first nodes alone. */
+/* Sets y before anything has come along a line: the energy that each node sends out, plus the light that
+ * enters, at every node. Nodes with a node before them take this light back. With meshes the light is added
+ * only at first nodes. */
 static void begin_sums(const lines_job *job, int line, float *sums) {
   const scatter_walls *walls = walls_of(job);
   float length = length_of(line) * job->nodes->spacing, entered = entering(job, line);
@@ -139,7 +142,7 @@ static void begin_sums(const lines_job *job, int line, float *sums) {
     for (size_t n = 0; n < nodes; n++) sums[n] = length * job->sent[n] + entered;
 }
 
-/* What a node with one before it takes back. */
+/* The light that a node with a node before it takes back. */
 static float taken_back(const lines_job *job, int line) {
   return walls_of(job) != NULL ? 0 : entering(job, line);
 }
@@ -151,7 +154,7 @@ static void go_forward(const lines_job *job, int line, const line_row *row) {
   for (int32_t x = row->low; x < row->high; x++) to[x] += from[x] * pass[x] - entered;
 }
 
-/* u along a row, from y. */
+/* Finds u along a row, from y. */
 static void go_back(const lines_job *job, int line, const line_row *row) {
   float half = 0.5f * length_of(line) * job->nodes->spacing;
   const float *pass = job->work->pass[line] + row->at, *e = job->extinction + row->at, *ahead = e + row->step;
@@ -192,7 +195,7 @@ static void solve_line(void *data, size_t line, int worker) {
   }
 }
 
-/* The work of flux_line(): v at the nodes, the mean of both neighbouring links'. */
+/* Does the work of flux_line(): finds v at the nodes, as the mean over the links on both sides. */
 static void flux_line(void *data, size_t line, int worker) {
   (void)worker;
   const lines_job *job = data;
@@ -205,7 +208,7 @@ static void flux_line(void *data, size_t line, int worker) {
   float entered = taken_back(job, (int)line);
   begin_sums(job, (int)line, sent);
   for (size_t n = 0; n < nodes; n++) before[n] = 1;
-  /* along holds u; sent becomes y, before f */
+  /* along holds u; sent becomes y, later f */
   for (size_t r = 0; r < rows; r++) {
     line_row row = row_of(job->nodes, (int)line, r);
     for (int32_t x = 0; x < count[0]; x++) {
@@ -216,7 +219,7 @@ static void flux_line(void *data, size_t line, int worker) {
       before[at + row.step] = before[at] * pass[at];
     }
   }
-  /* the link after a node: y - f u; before a node it is t (u - S) more (the first equation) */
+  /* the link after a node has y - f u; the link before it has t (u - S) more (the first equation) */
   for (size_t n = 0; n < nodes; n++) {
     float after = sent[n] - before[n] * along[n];
     if (walls != NULL) sent[n] = after + 0.5f * (walls->at_node[line][n] * along[n] - length * job->sent[n]);
@@ -224,7 +227,7 @@ static void flux_line(void *data, size_t line, int worker) {
   }
 }
 
-/* The flux, one slice of nodes: [3][nodes] from job->mean on. */
+/* Sums the flux of one slice of nodes: [3][nodes] from job->mean on. */
 static void sum_flux(void *data, size_t z, int worker) {
   (void)worker;
   const lines_job *job = data;
@@ -242,7 +245,7 @@ static void sum_flux(void *data, size_t z, int worker) {
   }
 }
 
-/* The mean over the lines, one slice of nodes. */
+/* Finds the mean over the lines, for one slice of nodes. */
 static void sum_slice(void *data, size_t z, int worker) {
   (void)worker;
   const lines_job *job = data;
@@ -276,7 +279,7 @@ static double dot(const float *a, const float *b, size_t count) {
   return sum;
 }
 
-/* product = (1 - sqrt(D) G sqrt(D)) v; scratch: [nodes]. */
+/* Finds product = (1 - sqrt(D) G sqrt(D)) v. scratch: [nodes]. */
 static void apply(hl_pool *pool, lines_job *job, const float *root, const float *v, float *scratch,
                   float *product) {
   size_t count = hl_scatter_node_count(job->nodes);
@@ -285,7 +288,7 @@ static void apply(hl_pool *pool, lines_job *job, const float *root, const float 
   for (size_t n = 0; n < count; n++) product[n] = v[n] - root[n] * product[n];
 }
 
-/* Conjugate gradients from v = 0. rest: the right side, afterwards the residual. */
+/* Solves by conjugate gradients, starting at v = 0. rest: the right side; afterwards the residual. */
 static void solve_symmetric(hl_pool *pool, lines_job *job, const float *root, float *rest, float *v) {
   size_t count = hl_scatter_node_count(job->nodes);
   float *way = job->work->vectors[1], *product = job->work->vectors[2], *scratch = job->work->vectors[3];
@@ -329,7 +332,7 @@ void hl_scatter_solve(hl_pool *pool, const scatter_nodes *nodes, const float *ex
   lines_job job = {.nodes = nodes, .extinction = extinction, .work = work};
   for (size_t n = 0; n < count; n++) root[n] = sqrtf(scattering[n]), sent[n] = scattering[n] * direct[n];
   job.inflow = inflow;
-  spread(pool, &job, sent, rest); /* u without more scattering, and what enters: G D b + E */
+  spread(pool, &job, sent, rest); /* u without further scattering, plus the light that enters: G D b + E */
   job.inflow = NULL;
   for (size_t n = 0; n < count; n++) right[n] = root[n] * rest[n];
   solve_symmetric(pool, &job, root, right, light);

@@ -1,30 +1,31 @@
 /* scatter/walls.c - meshes on the lines of the grid.
  *
- * A few rays beside each line meet meshes; the mean of what they let through is what meshes let through
- * between two nodes. Beyond the ends of the line they spread over the part of the sky that it stands for. In
- * a channel of extinction this becomes depths (derived). A wall lets the fraction T of light through and
- * sends none back. With t = (1 - T) / (1 + T), the mean u of both ways and the excess v of the way onwards on
- * its sides obey
+ * A few rays beside each line meet meshes. The mean fraction of light that they get through counts as the
+ * fraction that meshes let through between two nodes. Beyond the ends of the line the rays spread over the
+ * part of the sky for which the line stands. In a channel of extinction, the fractions become depths
+ * (derived). A wall lets the fraction T of light through and sends none back. With t = (1 - T) / (1 + T), the
+ * mean u of both ways, and the excess v of the light that travels onwards, obey on its two sides
+ *
  *
  *     v_1 = t u_1 + (u_1 - u_2) / d,  v_2 = (u_1 - u_2) / d - t u_2,  d = 2 t / (1 - t^2)
  *
- * that is, the nodes on both sides take the depth t more, and the depth d lies between them. Where matter of
- * the depth r lies between each node and the wall, even light on both sides (u_1 = u_2) meets 1 / t + r in
- * place of 1 / t, opposite light (u_1 = -u_2) t + r in place of t. So
+ * This means that the nodes on both sides get the depth t more, and the depth d lies between them. Where
+ * matter of the depth r lies between each node and the wall, even light on both sides (u_1 = u_2) meets 1 / t
+ * + r instead of 1 / t, and opposite light (u_1 = -u_2) meets t + r instead of t. So
  *
- *     t' = t / (1 + r t),  d' = 2 (t + r) (1 + r t) / (1 - t^2)
- */
+ *
+ *     t' = t / (1 + r t),  d' = 2 (t + r) (1 + r t) / (1 - t^2) */
 #include <math.h>
 
 #include "scatter/parts.h"
 
-enum { RAYS = 2 /* through a node's box, along each side */ };
+enum { RAYS = 2 /* number of rays through a node's box, along each side */ };
 
 /* The sky's directions nearest to a line are about a square with sides of this angle: sqrt(4 pi / 26), in
- * radians. The rays leave the grid in as many directions of it. */
+ * radians. The rays leave the grid in different directions within this square. */
 static const double CELL_OF_SKY = 0.695;
 
-/* At least this fraction passes, so that depths are finite. */
+/* At least this fraction passes a wall, so that depths are finite. */
 static const float LEAST_PASSING = 1.0f / 16384;
 
 typedef struct wall_job {
@@ -33,12 +34,13 @@ typedef struct wall_job {
   const scatter_walls *walls;
 } wall_job;
 
-/* What lets light through along one ray: before its first node, between its nodes, and after its last one. */
+/* The fractions that pass along one ray: before its first node, between its nodes, and after its last
+ * node. */
 typedef struct wall_ray {
-  vec3 origin, step; /* of the first node; from node to node */
-  vec3 tilt;         /* what its ways to the sky are turned by, in parts of their length */
+  vec3 origin, step; /* position of the first node, and step from node to node */
+  vec3 tilt;         /* the vector that turns the ray's ways to the sky, as a part of their length */
   double passing[SCATTER_MOST_NODES + 1];
-  int count; /* nodes */
+  int count; /* number of nodes */
 } wall_ray;
 
 static double passing_of(const surface_hit *hit) {
@@ -76,7 +78,7 @@ static void place_ray(const scatter_nodes *nodes, int line, const int32_t from[3
   ray->tilt = vec3_scale(vec3_of(part), CELL_OF_SKY);
 }
 
-/* What passes between an end of the ray and the sky. */
+/* The fraction that passes between an end of the ray and the sky. */
 static double passing_beyond(const surface_tree *tree, const wall_ray *ray, double at, double sign) {
   vec3 way = vec3_add(vec3_scale(vec3_normalise(ray->step), sign), ray->tilt);
   double passing = 1;
@@ -94,7 +96,7 @@ static void follow_ray(const surface_tree *tree, wall_ray *ray) {
   ray->passing[ray->count] = passing_beyond(tree, ray, last, 1);
 }
 
-/* One line from its first node on. */
+/* Fills one line, from its first node on. */
 static void fill_line(const wall_job *job, int line, const int32_t from[3]) {
   const int32_t *count = job->nodes->count;
   const int *way = hl_scatter_step(line);
@@ -112,7 +114,7 @@ static void fill_line(const wall_job *job, int line, const int32_t from[3]) {
   }
 }
 
-/* The lines of one direction that begin in one slice of nodes. */
+/* Fills the lines of one direction that begin in one slice of nodes. */
 static void fill_lines(void *data, size_t index, int worker) {
   (void)worker;
   const wall_job *job = data;
