@@ -1,5 +1,5 @@
-/* surface/cluster_order.c - see cluster_order.h. Sorts by Morton codes (Morton 1966) of the primitives' first
- * corners, or centres; those of one code keep their order. */
+/* surface/cluster_order.c - see cluster_order.h. Sorts by Morton codes (Morton 1966) of the first corners of
+ * triangles and the centres of spheres. Primitives with the same code keep their order. */
 #include "surface/cluster_order.h"
 
 #include <string.h>
@@ -31,7 +31,8 @@ static uint32_t spread(uint32_t bits) {
 static uint32_t code_of(const ordering *ordering, const float *place) {
   uint32_t code = 0;
   for (int axis = 0; axis < 3; axis++) {
-    float at = (place[axis] - ordering->low[axis]) * ordering->scale; /* not a number: 0 */
+    /* A place that is not a number counts as 0. */
+    float at = (place[axis] - ordering->low[axis]) * ordering->scale;
     uint32_t cell = at > 0 ? at < DIGIT - 1 ? (uint32_t)at : DIGIT - 1 : 0;
     code |= spread(cell) << axis;
   }
@@ -46,7 +47,7 @@ static void code_task(void *data, size_t task, int worker) {
     ordering->codes[i] = code_of(ordering, place_of(ordering->all, ordering->first + (uint32_t)i));
 }
 
-/* A cube around the places. */
+/* Finds a cube around the places. */
 static void find_cube(ordering *ordering) {
   float high[3], size = 0;
   for (int axis = 0; axis < 3; axis++) ordering->low[axis] = INFINITY, high[axis] = -INFINITY;

@@ -11,13 +11,13 @@ enum { SAMPLES = 16 };
 /* One edge: value + x * across + y * down is at least 0 inside; pixels from the tile's corner. */
 typedef struct edge {
   int64_t value, across, down;
-  int64_t offset[SAMPLES]; /* of each sample in its pixel */
-  int64_t least, greatest; /* of the offsets */
+  int64_t offset[SAMPLES]; /* the edge function at each sample of a pixel, from the pixel's corner */
+  int64_t least, greatest; /* the least and the greatest offset */
 } edge;
 
-/* From a to b; the inside lies to its left where y points down and x to the right... of the sign that the
- * caller gives. Samples on the edge belong to the triangle on one side of it only: an edge of the other
- * direction gets 1 less. */
+/* Sets the edge from a to b. Inside is to its left where y points down and x to the right, or to its right,
+ * as the caller's order of corners says. A sample on an edge belongs to the triangle on one side only: the
+ * edge in the opposite direction gets 1 less. */
 static void set_edge(edge *e, int64_t ax, int64_t ay, int64_t bx, int64_t by) {
   int64_t dx = bx - ax, dy = by - ay;
   bool owns = dy > 0 || (dy == 0 && dx < 0);
@@ -59,7 +59,7 @@ static int clamp_pixel(int64_t subpixels) {
 
 /* ---- triangles and polygons ---- */
 
-/* A triangle's corners, 1/256 pixels from the tile's corner. */
+/* Covers the samples of a triangle. x, y: its corners, in 1/256 pixels from the tile's corner. */
 static bool cover_triangle(const int64_t x[3], const int64_t y[3], const pixel_span *span,
                            uint16_t covered[TILE_PIXELS]) {
   int64_t area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
@@ -79,7 +79,7 @@ static bool cover_triangle(const int64_t x[3], const int64_t y[3], const pixel_s
   return any != 0;
 }
 
-/* The tile's pixels within a polygon's bounds; false: there are none. */
+/* Finds the tile's pixels within a polygon's bounds; false: there are none. */
 static bool find_span(const seen_polygon *polygon, int64_t left, int64_t top, pixel_span *span) {
   int64_t x0 = INT64_MAX, y0 = INT64_MAX, x1 = INT64_MIN, y1 = INT64_MIN;
   for (int i = 0; i < polygon->count; i++) {

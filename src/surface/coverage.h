@@ -1,4 +1,4 @@
-/* surface/coverage.h - which of the sixteen samples of each pixel of a tile a polygon covers.
+/* surface/coverage.h - finds which samples a polygon covers, of the sixteen samples of each pixel of a tile.
  *
  * Coordinates are whole numbers of 1/256 pixels: a sample on an edge that two triangles share belongs to
  * exactly one of them, on every machine. */
@@ -13,8 +13,8 @@ typedef struct pixel_span {
 } pixel_span;
 
 /* covered: [TILE rows][TILE columns]; one bit for each sample; set within *span, outside which nothing is
- * covered. Returns whether any sample is covered. The polygon is convex; its corners may go either way round.
- */
+ * covered. Returns whether any sample is covered. The polygon must be convex; its corners may go round it in
+ * either direction. */
 bool hl_cover_tile(const seen_polygon *polygon, int tile_x, int tile_y, pixel_span *span,
                    uint16_t covered[TILE_PIXELS]);
 

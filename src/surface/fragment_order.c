@@ -8,7 +8,7 @@
 
 uint32_t hl_ordered_bits(float height, bool falling) {
   uint32_t bits;
-  height += 0.0f; /* no minus zero */
+  height += 0.0f; /* turns minus zero into zero */
   memcpy(&bits, &height, sizeof bits);
   bits ^= bits >> 31 ? 0xffffffffu : 0x80000000u;
   return falling ? ~bits : bits;
@@ -23,7 +23,7 @@ static void merge(const order_key *from, size_t middle, size_t count, order_key 
   }
 }
 
-/* Runs of so many keys are sorted by insertion. */
+/* Runs of this many keys are sorted by insertion. */
 enum { SHORT_RUN = 16 };
 
 static void sort_short_run(order_key *list, size_t count) {
@@ -52,19 +52,20 @@ void hl_sort_keys(order_key *list, order_key *spare, size_t count) {
   if (from != list) memcpy(list, from, count * sizeof *list);
 }
 
-/* Whether surfaces that lie at two heights, so far apart, may cross within their reaches. */
+/* Whether two surfaces may cross within their reaches. apart: the distance of their heights. */
 static bool may_meet(const fragment_order *order, float apart, uint8_t reach, uint8_t other) {
   return fabs((double)apart) <= hl_reach_of(reach, order->spacing) + hl_reach_of(other, order->spacing);
 }
 
-/* Copies a pixel's fragments in the order of their keys, without those of which opaque ones before them cover
- * all samples, however their surfaces slope. most: the greatest reach of any. Returns how many are left. */
+/* Copies a pixel's fragments in the order of their keys. Leaves out fragments of which opaque fragments
+ * before them cover all samples, whatever the slopes of their surfaces are. most: the greatest reach of any
+ * fragment. Returns the number of fragments that are left. */
 static size_t copy_uncovered(const fragment *list, const order_key *keys, size_t count, uint8_t most,
                              const fragment_order *order, fragment *to) {
   size_t kept = 0;
   uint32_t covered = 0;
-  float last = 0;    /* the height of the last opaque one */
-  uint8_t reach = 0; /* the greatest of the opaque ones */
+  float last = 0;    /* the height of the last opaque fragment */
+  uint8_t reach = 0; /* the greatest reach of the opaque fragments */
   for (size_t i = 0; i < count; i++) {
     const fragment *f = &list[keys[i].index];
     if (covered == 0xffff && !may_meet(order, f->height - last, most, reach)) break;
@@ -92,7 +93,8 @@ size_t hl_sort_by_pixel(const fragment *list, size_t count, const fragment_order
   for (size_t i = 0; i < count; i++)
     keys[places[list[i].pixel]++] = (order_key){
         (uint64_t)hl_ordered_bits(list[i].height, order->falling) << 32 | list[i].primitive, (uint32_t)i};
-  for (size_t p = 0, first = 0; p < TILE_PIXELS; first = places[p++]) { /* a place is now its pixel's end */
+  /* places[p] now is the end of pixel p's fragments. */
+  for (size_t p = 0, first = 0; p < TILE_PIXELS; first = places[p++]) {
     size_t own = places[p] - first;
     hl_sort_keys(keys + first, keys + count, own);
     if (!order->slabs && !order->apart) {
@@ -104,7 +106,7 @@ size_t hl_sort_by_pixel(const fragment *list, size_t count, const fragment_order
   return kept;
 }
 
-/* Turns round the fragments of each pixel of a slab. */
+/* Reverses the order of the fragments of each pixel of a slab. */
 static void turn_round(fragment *list, size_t count) {
   for (size_t i = 0, end; i < count; i = end) {
     for (end = i + 1; end < count && list[end].pixel == list[i].pixel && list[end].slab == list[i].slab;)
@@ -134,8 +136,9 @@ static int count_samples(uint32_t samples) {
   return count;
 }
 
-/* The opacities of the opaque fragments that a pixel's begin with: fractions of the samples that those before
- * them leave. Returns how many they are; *open: the samples that they leave. */
+/* Finds the opacities of the opaque fragments with which a pixel's fragments begin. An opacity is a fraction
+ * of the samples that the fragments before leave open. Returns the number of these fragments. *open: the
+ * samples that they leave open. */
 static size_t resolve_opaque(fragment *list, size_t count, const float *least, uint32_t *open) {
   size_t i = 0;
   *open = 0xffff;
@@ -172,22 +175,23 @@ static void resolve_pixel(fragment *list, size_t count, const float *least) {
   }
 }
 
-/* The same for a light's view whose buffer is also used for rays of other directions. A pixel that opaque
- * surfaces cover in a slab, or in a slab and the one before it, is opaque there, even where surfaces before
- * it have taken all light of the view's own ray: the other rays pass these by. Otherwise light would come
- * through a surface where two of its triangles share a pixel and lie in neighbouring slabs: each takes its
- * part of the light there, one after the other, and a part of both is left. Fragments of one slab become one;
- * returns how many are left. */
+/* Does the same for a light's view whose buffer is also used for rays of other directions. A pixel that
+ * opaque surfaces cover in a slab, or in a slab and the slab before it, is opaque there. This holds even
+ * where surfaces before it have taken all light of the view's own ray, because the other rays pass beside
+ * these surfaces. Otherwise light would come through a surface where two of its triangles share a pixel and
+ * lie in neighbouring slabs: each triangle would take its part of the light, one after the other, and some
+ * light would be left. The fragments of one slab become one fragment. Returns the number of fragments that
+ * are left. */
 static size_t resolve_slabs(fragment *list, size_t count, const float *least) {
   size_t kept = 0;
-  uint32_t before = 0, covered = 0; /* samples, in the slab before and in this one */
+  uint32_t before = 0, covered = 0; /* covered samples, in the slab before and in this slab */
   for (size_t i = 0; i < count; i++) {
     if (i == 0 || list[i].slab != list[i - 1].slab) {
       before = i > 0 && list[i].slab == list[i - 1].slab + 1 ? covered : 0;
       covered = 0;
     }
     if (hl_is_opaque(&list[i], least)) covered |= list[i].samples;
-    /* of a light's fragments the primitive is not asked for any more */
+    /* the primitive of a light's fragment is not needed any more */
     list[i].primitive = covered != 0 && (before | covered) == 0xffff;
   }
   resolve_pixel(list, count, least);
@@ -200,9 +204,9 @@ static size_t resolve_slabs(fragment *list, size_t count, const float *least) {
   return kept;
 }
 
-/* Makes one fragment of neighbouring triangles of a coloured pane, which cover different samples of a pixel:
- * each colour then loses what it loses to the pane, however the triangles share the pixel. Returns how many
- * fragments are left. */
+/* Makes one fragment of neighbouring triangles of a coloured pane that cover different samples of a pixel. So
+ * each colour loses the same light to the pane, however the triangles share the pixel. Returns the number of
+ * fragments that are left. */
 static size_t join_panes(fragment *list, size_t count, const float *least) {
   size_t kept = 0;
   for (size_t i = 0; i < count; i++) {
@@ -219,8 +223,8 @@ static size_t join_panes(fragment *list, size_t count, const float *least) {
   return kept;
 }
 
-/* Each fragment takes its part of the pixel; neighbouring triangles of a mesh, which cover different samples,
- * are one. Returns how many fragments are left. */
+/* Lets each fragment take its part of the pixel. Neighbouring triangles of a mesh that cover different
+ * samples become one fragment. Returns the number of fragments that are left. */
 static size_t resolve_apart(fragment *list, size_t count) {
   size_t kept = 0;
   for (size_t i = 0; i < count; i++) {

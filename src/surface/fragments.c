@@ -1,4 +1,4 @@
-/* surface/fragments.c - the fragments of a view: those of its tiles, made by several threads. */
+/* surface/fragments.c - makes the fragments of a view, tile by tile, with several threads. */
 #include "surface/fragments.h"
 
 #include <string.h>
@@ -50,7 +50,8 @@ static hl_status rasterise(fragment_work *work, fragments *made, hl_error *error
   return status;
 }
 
-/* Whether a view's rays come from outside of a mesh: where they begin at a point, from outside of its box. */
+/* Whether a view's rays come from outside of a mesh. Where they begin at a point, this point must lie outside
+ * of the mesh's box. */
 static bool is_outside(const view *view, const hl_scene_mesh *mesh) {
   return !view->perspective || hl_surface_is_outside(mesh, view->origin, 0);
 }
@@ -68,7 +69,7 @@ static bool has_dark_backs(const fragments_source *source, const surface_mesh *m
          is_outside(source->view, mesh->scene);
 }
 
-/* What of a mesh a view's fragments are made of. */
+/* Which primitives of a mesh a view's fragments are made of. */
 static binned wanted_of(const fragments_source *source, const surface_mesh *mesh) {
   bool shades = mesh->scene->casts_shadow,
        seen_here = source->unseen ? shades && !mesh->scene->visible
@@ -76,7 +77,7 @@ static binned wanted_of(const fragments_source *source, const surface_mesh *mesh
   return !seen_here ? BINNED_NOTHING : has_hidden_backs(source, mesh) ? BINNED_FRONTS : BINNED_ALL;
 }
 
-/* Finds what is known of each mesh. */
+/* Finds the properties of each mesh. */
 static void describe_meshes(const fragments_source *source, float *least, bool *dark_backs) {
   for (size_t m = 0; m < source->surfaces->mesh_count; m++) {
     const surface_mesh *mesh = &source->surfaces->meshes[m];
@@ -107,7 +108,7 @@ static hl_status make_tiles(fragment_work *work, fragments *made, hl_error *erro
   return status;
 }
 
-/* Sorts the primitives into tiles and makes these; work->seen is set. */
+/* Sorts the primitives into tiles, and makes the tiles' fragments. work->seen must be set. */
 static hl_status bin_and_make(fragment_work *work, fragments *made, hl_error *error) {
   const fragments_source *source = work->source;
   const surfaces *all = source->surfaces;

@@ -9,8 +9,8 @@
 #include "surface/clusters.h"
 #include "surface/late/surface_seams.h"
 
-/* Adds to each corner's normal the triangle's cross product, whose length is twice its area: large faces
- * count more. */
+/* Adds to each corner's normal the triangle's cross product. Its length is twice the triangle's area, so
+ * large faces count more. */
 static void add_face_normals(surfaces *made, const surface_mesh *mesh) {
   for (uint32_t t = mesh->first_triangle; t < mesh->first_triangle + mesh->triangle_count; t++) {
     const uint32_t *corner = made->triangles[t];
@@ -31,7 +31,7 @@ static void place_spheres(surfaces *made, const surface_mesh *mesh) {
   }
 }
 
-/* A mesh that is being placed, by tasks of so many vertices or triangles. */
+/* A mesh that is being placed. A task places A_TASK vertices or triangles. */
 enum { A_TASK = 1 << 15 };
 typedef struct placing {
   surfaces *made;
@@ -74,7 +74,7 @@ static void make_units(void *data, size_t task, int worker) {
   for (size_t v = task * A_TASK; v < task_end(task, placing->mesh->mesh->description.vertex_count); v++) {
     float *normal = placing->made->normals[placing->mesh->first_vertex + v];
     vec3 unit = vec3_normalise(hl_surface_vector(normal));
-    if (!(vec3_length(unit) < 2)) unit = (vec3){0, 0, 0}; /* not a number */
+    if (!(vec3_length(unit) < 2)) unit = (vec3){0, 0, 0}; /* the normal is not a number */
     vec3_store(normal, unit);
   }
 }
@@ -93,13 +93,15 @@ static void place_mesh(hl_pool *pool, surfaces *made, const surface_mesh *mesh) 
   place_edge_normals(made, mesh);
   hl_pool_run(pool, task_count(d->vertex_count), place_vertices, &placing);
   hl_pool_run(pool, task_count(d->triangle_count), place_triangles, &placing);
-  if (d->normals == NULL) add_face_normals(made, mesh); /* one order of each vertex's sum */
+  if (d->normals == NULL)
+    add_face_normals(made, mesh); /* this is no task, so that each vertex's sum has one
+                                   * order */
   hl_pool_run(pool, task_count(d->vertex_count), make_units, &placing);
 }
 
 /* ---- memory ---- */
 
-/* Counts the primitives, and describes the meshes where there is room for them. */
+/* Counts the primitives. Describes the meshes where there is memory for their descriptions. */
 static hl_status count_primitives(const hl_scene_description *scene, surfaces *made, hl_error *error) {
   uint64_t vertices = 0, triangles = 0, spheres = 0, edge_normals = 0;
   for (size_t m = 0; m < scene->mesh_count; m++) {
@@ -193,7 +195,7 @@ bool hl_surfaces_current(const surfaces *kept, const hl_scene_description *scene
   return true;
 }
 
-/* Finds the scene's cuts, and which meshes they may remove parts of. */
+/* Finds the scene's cuts, and the meshes of which they may remove parts. */
 static hl_status update_cuts(hl_context *context, const hl_scene_description *scene, surfaces *kept,
                              hl_error *error) {
   hl_release(context, kept->cuts);

@@ -1,12 +1,12 @@
-/* surface/sample_rows.h - where the sixteen samples of a pixel lie.
+/* surface/sample_rows.h - the places of the sixteen samples of a pixel.
  *
- * Sample i lies at ((i + 1/2) / 16, (SAMPLE_ROWS[i] + 1/2) / 16). No two share a row or a column. */
+ * Sample i lies at ((i + 1/2) / 16, (SAMPLE_ROWS[i] + 1/2) / 16). No two samples share a row or a column. */
 #ifndef HL_SURFACE_SAMPLE_ROWS_H
 #define HL_SURFACE_SAMPLE_ROWS_H
 
 static const unsigned char SAMPLE_ROWS[16] = {3, 10, 1, 8, 15, 6, 13, 4, 11, 2, 9, 0, 7, 14, 5, 12};
 
-/* The samples of whose rows bit b is set: word b of 16 bits. */
+/* Word b of 16 bits holds the samples in whose row number bit b is set. */
 #define SAMPLE_ROW_BITS 0xa55af0f033335555u
 
 #endif

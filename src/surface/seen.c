@@ -3,11 +3,11 @@
 
 /* Pixels around the view within which triangles are kept whole. */
 static const double FRAME_AROUND = 4096;
-/* The least distance in front of a perspective view's eye, as a fraction of the distance of the plane at
- * which rays are one long. */
+/* The least distance in front of a perspective view's eye, as a fraction of the distance at which rays have
+ * length 1. */
 static const double NEAREST = 1e-4;
 
-/* (w, w u, w v) of a corner. */
+/* A corner as (w, w u, w v). */
 typedef struct corner {
   double w, u, v;
 } corner;
@@ -17,8 +17,8 @@ static corner corner_in_view(const view *view, vec3 point) {
   return (corner){view->perspective ? p.x : 1, p.y, p.z};
 }
 
-/* How far a corner lies inside the frame's side: 0 the eye, 1 and 2 left and right, 3 and 4 above and below.
- */
+/* The distance of a corner from a side of the frame, above 0 inside. Side 0 is the eye, 1 and 2 are left and
+ * right, 3 and 4 above and below. */
 static double inside(const view *view, int side, corner c) {
   switch (side) {
     case 0: return c.w - NEAREST;
@@ -42,7 +42,7 @@ bool hl_see_vertex(const seen_surfaces *seen, uint32_t vertex, int32_t at[2]) {
   return true;
 }
 
-/* Cuts a polygon by one side; returns how many corners are left. */
+/* Cuts a polygon by one side. Returns the number of corners that are left. */
 static int clip(const view *view, int side, const corner *from, int count, corner *to) {
   int kept = 0;
   for (int i = 0; i < count; i++) {
@@ -98,9 +98,9 @@ bool hl_faces_view(const seen_surfaces *seen, uint32_t triangle) {
 
 /* ---- spheres ---- */
 
-/* The least and greatest u of points of a sphere, where w u = a and w > 0 are linear functions of the point,
- * with gradients ga and gw, and have the values a and w at the centre. Derived: the plane a - w u = 0 touches
- * the sphere where (a - w u)^2 = r^2 |ga - u gw|^2, a quadratic equation for u. */
+/* Finds the least and greatest u of points of a sphere. w u and w > 0 are linear functions of the point, with
+ * the gradients ga and gw and the values a and w at the sphere's centre. Derived: the plane a - w u = 0
+ * touches the sphere where (a - w u)^2 = r^2 |ga - u gw|^2, a quadratic equation for u. */
 static void find_extent(double a, double w, vec3 ga, vec3 gw, double radius, double *least,
                         double *greatest) {
   double rr = radius * radius, p = w * w - rr * vec3_dot(gw, gw), q = a * w - rr * vec3_dot(ga, gw),
@@ -140,7 +140,7 @@ seen_box hl_see_box(const view *view, const float low[3], const float high[3], s
   for (int side = 0; side < 5; side++)
     if (outside[side] == 8) return BOX_UNSEEN;
   if (!whole) return BOX_CUT;
-  const double rounded = 4.0 / SUBPIXELS; /* corners of triangles are */
+  const double rounded = 4.0 / SUBPIXELS; /* as corners of triangles are rounded */
   bounds->u0 -= rounded, bounds->v0 -= rounded;
   bounds->u1 += rounded, bounds->v1 += rounded;
   return bounds->u1 >= 0 && bounds->v1 >= 0 && bounds->u0 < view->width && bounds->v0 < view->height

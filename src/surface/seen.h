@@ -1,7 +1,7 @@
 /* surface/seen.h - triangles and spheres as one view sees them.
  *
- * A triangle that crosses the view's eye is cut there, and one that reaches far outside the view is cut to a
- * frame around it, so that whole numbers hold all pixel coordinates. */
+ * A triangle that crosses the plane of the view's eye is cut there. A triangle that reaches far outside the
+ * view is cut to a frame around the view. So whole numbers hold all pixel coordinates. */
 #ifndef HL_SURFACE_SEEN_H
 #define HL_SURFACE_SEEN_H
 
@@ -10,24 +10,25 @@
 
 enum { SUBPIXELS = 256, CLIPPED_CORNERS = 8 };
 
-/* A triangle in a view: a polygon of three corners, or more where it was cut. */
+/* A triangle in a view. It is a polygon of three corners, or more where it was cut. */
 typedef struct seen_polygon {
-  int count;                                      /* 0: nothing is seen */
+  int count;                                      /* number of corners; 0: nothing is seen */
   int32_t x[CLIPPED_CORNERS], y[CLIPPED_CORNERS]; /* 1/256 pixels */
 } seen_polygon;
 
-/* A view and what it sees; borrowed. */
+/* A view and the surfaces that it sees; borrowed. */
 typedef struct seen_surfaces {
   const view *view;
   const surfaces *all;
 } seen_surfaces;
 
-/* Where the view sees a vertex: 1/256 pixels. False where the frame or the eye may cut triangles of it. */
+/* Finds where the view sees a vertex, in 1/256 pixels. False where the frame or the eye may cut triangles of
+ * the vertex. */
 bool hl_see_vertex(const seen_surfaces *seen, uint32_t vertex, int32_t at[2]);
 
 void hl_see_triangle(const seen_surfaces *seen, uint32_t triangle, seen_polygon *polygon);
 
-/* Twice the area of the first three corners of a polygon: below 0 where it faces the view. */
+/* Twice the area of the first three corners of a polygon. It is below 0 where the polygon faces the view. */
 static inline int64_t hl_polygon_area(const int32_t *x, const int32_t *y) {
   return (int64_t)(x[1] - x[0]) * (y[2] - y[0]) - (int64_t)(x[2] - x[0]) * (y[1] - y[0]);
 }
@@ -35,16 +36,16 @@ static inline int64_t hl_polygon_area(const int32_t *x, const int32_t *y) {
 /* Whether a triangle faces the view, or is seen from its edge. */
 bool hl_faces_view(const seen_surfaces *seen, uint32_t triangle);
 
-/* A rectangle around all that a view sees of a sphere, or a box; continuous pixels. False: nothing is seen.
- */
+/* A rectangle, in continuous pixels, around everything that a view sees of a sphere or of a box. The
+ * functions return false where nothing is seen. */
 typedef struct seen_bounds {
   double u0, v0, u1, v1;
 } seen_bounds;
 
 bool hl_see_sphere(const view *view, const float sphere[4], seen_bounds *bounds);
 
-/* What a view sees of a box of frame space: nothing; or all of it within *bounds, and no triangle within it
- * is cut; or neither is known. */
+/* How a view sees a box of frame space. BOX_UNSEEN: nothing in it is seen. BOX_WHOLE: everything in it is
+ * seen within *bounds, and no triangle in it is cut. BOX_CUT: neither is known. */
 typedef enum seen_box { BOX_UNSEEN, BOX_WHOLE, BOX_CUT } seen_box;
 seen_box hl_see_box(const view *view, const float low[3], const float high[3], seen_bounds *bounds);
 

@@ -1,5 +1,6 @@
-/* surface/small_spheres_lanes.h - opaque spheres of few pixels, seen from outside, eight at a time: the sums
- * of seen.c, sphere_coverage.c, surface_plane.c and tile_fragments.c in their order, in doubles. */
+/* surface/small_spheres_lanes.h - opaque spheres of few pixels, seen from outside, eight at a time. The sums
+ * of seen.c, sphere_coverage.c, surface_plane.c and tile_fragments.c are made in the same order, in
+ * doubles. */
 #ifndef HL_SURFACE_SMALL_SPHERES_LANES_H
 #define HL_SURFACE_SMALL_SPHERES_LANES_H
 
@@ -22,7 +23,7 @@ LANES_INLINE doubles3 less(doubles3 a, doubles3 b) { return (doubles3){a.x - b.x
 LANES_INLINE eight_doubles choose(eight_longs mask, eight_doubles a, eight_doubles b) {
   return (eight_doubles)(((eight_longs)a & mask) | ((eight_longs)b & ~mask));
 }
-/* As fmax() and fmin(): the number where one of both is none. */
+/* As fmax() and fmin(): where one argument is not a number, the result is the other. */
 LANES_INLINE eight_doubles at_least(eight_doubles a, double least) {
   return choose(a > least, a, (eight_doubles){0} + least);
 }
@@ -50,7 +51,7 @@ LANES_INLINE uint32_t bits_of(eight_longs mask) {
   return bits;
 }
 
-/* The whole number at or below; of numbers that fit into 32 bits. */
+/* The whole number at or below a number that fits into 32 bits. */
 LANES_INLINE eight_doubles floors(eight_doubles x) {
   eight_doubles whole = __builtin_convertvector(__builtin_convertvector(x, eight_ints), eight_doubles);
   return choose(whole > x, whole - 1.0, whole);
@@ -85,7 +86,7 @@ LANES_INLINE eight_doubles discriminants(const eight_rays *rays, eight_doubles u
   return along * along - dots(b, b) * (dots(a, a) - rays->radius * rays->radius);
 }
 
-/* The pixels of the tile that spheres touch, and which spheres are small and seen from outside. */
+/* The pixels of the tile that spheres touch; and which spheres are small and seen from outside. */
 typedef struct eight_boxes {
   eight_doubles x0, y0, x1, y1;
   eight_longs small, seen;
@@ -142,10 +143,11 @@ LANES_INLINE eight_longs cover_pixels(const eight_doubles c[6], eight_doubles u,
   return bits;
 }
 
-/* Planes that touch the spheres where rays enter them: what depends on the pixel is linear. */
+/* Planes that touch the spheres where rays enter them. The members that depend on the pixel are linear
+ * functions of it. */
 typedef struct eight_planes {
   eight_doubles rise[3], way[3];
-  vec3 above, climb; /* of all */
+  vec3 above, climb; /* the same for all spheres */
 } eight_planes;
 
 LANES_INLINE void set_planes(const small_view *small, doubles3 normal, doubles3 point, eight_planes *planes) {
@@ -188,7 +190,7 @@ LANES_INLINE void store_eight_floats(float *to, eight_doubles x) {
 }
 LANES_INLINE void store_eight(int32_t *to, eight_ints v) { memcpy(to, &v, sizeof v); }
 
-/* Heights, delays and slabs of the fragments of pixels k, of which samples are covered. */
+/* Finds heights, delays and slabs of the fragments of pixels k, some of whose samples are covered. */
 LANES_INLINE eight_longs place_fragments(const small_view *small, const eight_rays *rays, doubles3 centre,
                                          eight_doubles u, eight_doubles v, int at, int k,
                                          small_cover *cover) {

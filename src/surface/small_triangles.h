@@ -1,9 +1,9 @@
-/* surface/small_triangles.h - sixteen triangles of few pixels at a time: what they cover, and at which
- * height.
+/* surface/small_triangles.h - sixteen triangles of few pixels at a time: the samples that they cover, and
+ * their heights there.
  *
  * A triangle is small where its box touches at most four by four pixels of a view and its height changes by
- * at most four distances of sheets: between its corners the height is then as good as linear in the pixel, in
- * perspective views too. Other triangles are left to coverage.h and surface_plane.h. */
+ * at most four distances of sheets. The height between its corners is then nearly linear in the pixel, in
+ * perspective views too. coverage.h and surface_plane.h serve other triangles. */
 #ifndef HL_SURFACE_SMALL_TRIANGLES_H
 #define HL_SURFACE_SMALL_TRIANGLES_H
 
@@ -15,31 +15,32 @@
 
 enum { SMALL_TRIANGLES = 16, SMALL_SIDE = 4, SMALL_PIXELS = SMALL_SIDE * SMALL_SIDE };
 
-/* A view, and how the fragments of one mesh enter it. Vectors in frame space. */
+/* A view, and how the fragments of one mesh enter it. Vectors are in frame space. */
 typedef struct small_view {
-  float normal[3], first; /* of the sheets: a point's height is normal.X - first */
+  float normal[3], first; /* the sheets' normal; a point's height is normal.X - first */
   float spacing, last_slab;
-  int32_t columns, rows; /* of the tile, within the view */
-  int of_light;          /* else the members below are not used */
+  int32_t columns, rows; /* size of the tile, within the view */
+  int of_light;          /* else the next members, down to rise, are not used */
   int perspective;       /* the rays come from `from`; else they go along it */
   float from[3], du[3], dv[3];
   float depth[3];    /* perspective: a point's distance in lengths of its ray is depth.(X - from) */
   float delay, rise; /* as in fragments_source */
-  double inverse[3][3], origin[3]; /* of clusters: w, w u and w v are the products with point - origin; w is 1
-                                   where the view is not a perspective one */
-  int32_t left, top;               /* of clusters: the tile's corner; 1/256 pixels */
-  const view *view;                /* of spheres; borrowed */
-  const sheet_stack *sheets;       /* of spheres; borrowed */
+  double inverse[3][3], origin[3]; /* for clusters: w, w u and w v are the products with point - origin; w is
+                                    * 1 where the view is not a perspective one */
+  int32_t left, top;               /* for clusters: the tile's corner; 1/256 pixels */
+  const view *view;                /* for spheres; borrowed */
+  const sheet_stack *sheets;       /* for spheres; borrowed */
   int fronts;                      /* only triangles that face the view are covered */
-  int dark_backs;                  /* as in fragment_work: where the rays leave the mesh there is no delay */
+  int dark_backs;                  /* as in fragment_work: there is no delay where the rays leave the mesh */
 } small_view;
 
 typedef struct small_triangles {
-  _Alignas(64) int32_t x[3][SMALL_TRIANGLES], y[3][SMALL_TRIANGLES]; /* corners; 1/256 pixels
- from the tile's */
-  float height[3][SMALL_TRIANGLES];                                  /* of the corners: normal.X - first */
-  float normal[3][SMALL_TRIANGLES]; /* of a light's view: hl_corner_product() */
-  float corner[3][SMALL_TRIANGLES]; /* of a light's perspective view: the first corner; frame space */
+  /* corners; 1/256 pixels from the tile's corner. */
+  _Alignas(64) int32_t x[3][SMALL_TRIANGLES], y[3][SMALL_TRIANGLES];
+  float height[3][SMALL_TRIANGLES]; /* heights of the corners: normal.X -
+                                     * first */
+  float normal[3][SMALL_TRIANGLES]; /* for a light's view: hl_corner_product() */
+  float corner[3][SMALL_TRIANGLES]; /* for a light's perspective view: the first corner; frame space */
 } small_triangles;
 
 /* The cross product of a triangle's sides; frame space. */
@@ -55,16 +56,16 @@ static inline void hl_corner_product(const float *const corner[3], float normal[
   }
 }
 
-/* Of a cluster's triangles, one column each. */
+/* Numbers of a cluster of triangles; each triangle has a column. */
 enum { CLUSTER_TRIANGLES = 64, CLUSTER_VERTICES = 3 * CLUSTER_TRIANGLES };
 typedef struct cluster_shape {
   const float *positions;                      /* [3][vertices]; axis by axis; frame space */
-  size_t vertices;                             /* a multiple of 16; those that fill up repeat others */
+  size_t vertices;                             /* a multiple of 16; vertices that fill it up repeat others */
   const uint8_t (*corners)[CLUSTER_TRIANGLES]; /* [3]; numbers of vertices */
   const float (*normals)[CLUSTER_TRIANGLES];   /* [3]; hl_corner_product() */
 } cluster_shape;
 
-/* Where a view sees the vertices of a cluster, of which no triangle is cut. */
+/* Where a view sees the vertices of a cluster in which no triangle is cut. */
 typedef struct seen_cluster {
   _Alignas(64) int32_t x[CLUSTER_VERTICES], y[CLUSTER_VERTICES]; /* 1/256 pixels */
   float height[CLUSTER_VERTICES];                                /* as in small_triangles */
@@ -72,28 +73,32 @@ typedef struct seen_cluster {
 
 /* Pixel k of a triangle is k % SMALL_SIDE columns and k / SMALL_SIDE rows from the first pixel of its box. */
 typedef struct small_cover {
-  uint32_t large;                 /* the triangles that are not small and touch the tile, one bit each */
-  uint32_t covered[SMALL_PIXELS]; /* the triangles that cover samples of it, one bit each; for others the rest
-                                     is not set */
-  _Alignas(64) int32_t pixel[SMALL_PIXELS][SMALL_TRIANGLES]; /* its number in the tile, block after block */
-  uint16_t samples[SMALL_PIXELS][SMALL_TRIANGLES];           /* covered, one bit each */
-  int32_t reach[SMALL_PIXELS][SMALL_TRIANGLES];              /* of the eye's view: of the fragments */
-  float height[SMALL_PIXELS][SMALL_TRIANGLES]; /* in the middle of the samples; above the first sheet */
-  float start[SMALL_PIXELS][SMALL_TRIANGLES];  /* of a light's view: the delayed height */
-  int32_t slab[SMALL_PIXELS][SMALL_TRIANGLES]; /* of the height */
+  uint32_t large;                 /* the triangles that touch the tile and are not small, one bit each */
+  uint32_t covered[SMALL_PIXELS]; /* for each pixel, the triangles that cover some of its samples, one bit
+                                   * each; the members below are set only for these */
+  /* Number of the pixel in the tile, block after block. */
+  _Alignas(64) int32_t pixel[SMALL_PIXELS][SMALL_TRIANGLES];
+  uint16_t samples[SMALL_PIXELS][SMALL_TRIANGLES]; /* covered samples, one bit each */
+  int32_t reach[SMALL_PIXELS][SMALL_TRIANGLES];    /* for the eye's view: reaches of the
+                                                    * fragments */
+  float height[SMALL_PIXELS][SMALL_TRIANGLES]; /* height in the middle of the covered samples, above the first
+                                                * sheet */
+  float start[SMALL_PIXELS][SMALL_TRIANGLES];  /* for a light's view: the delayed height */
+  int32_t slab[SMALL_PIXELS][SMALL_TRIANGLES]; /* slab of the height */
   int32_t first_slab[SMALL_PIXELS][SMALL_TRIANGLES],
-      last_slab[SMALL_PIXELS][SMALL_TRIANGLES]; /* of a light's
-                                                   view: filled */
+      last_slab[SMALL_PIXELS][SMALL_TRIANGLES]; /* for a light's view: the last slab that the fragment
+                                                 * fills */
 } small_cover;
 
-/* Returns which triangles are small, one bit each; the others are not covered. */
+/* Finds which samples small triangles cover. Returns the small triangles, one bit each; other triangles are
+ * not covered. */
 typedef uint32_t cover_small_function(const small_view *view, const small_triangles *triangles,
                                       small_cover *cover);
 
 typedef void see_cluster_function(const small_view *view, const cluster_shape *shape, seen_cluster *seen);
 
-/* The same as cover_small_function() for triangles `first` to first + 15 of a cluster; of them those in
- * `wanted`, one bit each. */
+/* Does the same for triangles `first` to first + 15 of a cluster, of which those in `wanted` are covered, one
+ * bit each. */
 typedef uint32_t cover_cluster_function(const small_view *view, const cluster_shape *shape,
                                         const seen_cluster *seen, int first, uint32_t wanted,
                                         small_cover *cover);
@@ -103,8 +108,8 @@ typedef struct small_spheres {
   _Alignas(64) float centre[3][SMALL_TRIANGLES], radius[SMALL_TRIANGLES]; /* frame space */
 } small_spheres;
 
-/* The same for sixteen spheres: those are small whose boxes touch at most four by four pixels of the tile,
- * and that the view sees from outside. Not for lights' views whose fragments fill several slabs. */
+/* Does the same for sixteen spheres. A sphere is small if its box touches at most four by four pixels of the
+ * tile and the view sees it from outside. Not for lights' views whose fragments fill several slabs. */
 typedef uint32_t cover_spheres_function(const small_view *view, const small_spheres *spheres,
                                         small_cover *cover);
 

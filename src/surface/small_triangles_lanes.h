@@ -1,7 +1,7 @@
 /* surface/small_triangles_lanes.h - sixteen small triangles, one in each lane (small_triangles.h).
  *
- * Coordinates of corners and samples are whole numbers below 1024, counted from a triangle's first pixel: the
- * edge functions of coverage.c are exact in floats. */
+ * Coordinates of corners and samples are whole numbers below 1024, counted from a triangle's first pixel. So
+ * the edge functions of coverage.c are exact in floats. */
 #ifndef HL_SURFACE_SMALL_TRIANGLES_LANES_H
 #define HL_SURFACE_SMALL_TRIANGLES_LANES_H
 
@@ -11,21 +11,21 @@
 #include "surface/sample_rows.h"
 #include "surface/small_triangles.h"
 
-/* 1/256 pixels from one sample to the next column or row. */
+/* SMALL_STEP: 1/256 pixels from one sample to the next column or row. */
 enum { SMALL_SUBPIXELS = 256, SMALL_STEP = SMALL_SUBPIXELS / 16, SMALL_TILE = 16 };
 /* As in seen.c. */
 static const double SMALL_NEAREST = 1e-4;
-/* Distances of sheets by which a small triangle's height changes at most. */
+/* The most by which a small triangle's height changes, in distances of sheets. */
 static const float SMALL_RISE = 4;
 
-/* Corners from the first pixel, 1/256 pixels. Edges: value + x down - y across is above 0 inside. */
+/* Corners in 1/256 pixels from the first pixel. An edge's value + x down - y across is above 0 inside. */
 typedef struct small_shape {
   lanes x[3], y[3];
   lanes across[3], down[3], value[3];
-  lanes area; /* twice, with its sign */
+  lanes area; /* twice the area, with its sign */
 } small_shape;
 
-/* Heights of points of a triangle: at its first corner, and by 1/256 pixels. */
+/* Heights of points of a triangle: the height at its first corner, and its change per 1/256 pixels. */
 typedef struct small_heights {
   lanes corner, by_x, by_y, lowest, highest;
 } small_heights;
@@ -37,7 +37,8 @@ LANES_INLINE lanes_int load_ints(const int32_t *p) {
 }
 LANES_INLINE void store_ints(int32_t *p, lanes_int v) { memcpy(p, &v, sizeof v); }
 
-/* Corners in pixels: the first pixel, the number of those after it, and whether these are few. */
+/* Brings corners to pixels: finds the first pixel, the number of pixels after it, and whether these are
+ * few. */
 LANES_INLINE lanes_int find_first_pixel(const int32_t at[3][SMALL_TRIANGLES], lanes_int *first,
                                         lanes_int *more) {
   lanes_int a = load_ints(at[0]), b = load_ints(at[1]), c = load_ints(at[2]);
@@ -49,8 +50,8 @@ LANES_INLINE lanes_int find_first_pixel(const int32_t at[3][SMALL_TRIANGLES], la
   return *more < SMALL_SIDE;
 }
 
-/* Edges as in coverage.c: samples on an edge belong to the triangle on one side of it. The half that tells
- * which keeps values away from 0. */
+/* Sets the edges as in coverage.c. A sample on an edge belongs to the triangle on one side of it. A half is
+ * added or subtracted to tell these sides apart, which keeps values away from 0. */
 LANES_INLINE void set_shape(const small_triangles *t, lanes_int column, lanes_int row, small_shape *shape) {
   for (int i = 0; i < 3; i++) {
     shape->x[i] = lanes_from_int(load_ints(t->x[i]) - (column << 8));
@@ -86,9 +87,9 @@ LANES_INLINE void find_heights(const small_triangles *t, const small_shape *shap
   heights->highest = lanes_max(lanes_max(height[0], height[1]), height[2]);
 }
 
-/* How much the height of the triangle's plane changes from pixel to pixel; *leaving: where the rays leave by
- * its front. Derived: along the ray A + s B a step D aside in the picture moves the point of the plane with
- * normal n by s D - B s (n.D) / (n.B), and its height by s (h.D - (h.B) (n.D) / (n.B)). */
+/* The change of the height of the triangle's plane from pixel to pixel. *leaving: whether the rays leave by
+ * its front. Derived: along the ray A + s B, a step D aside in the picture moves the point of the plane with
+ * normal n by s D - B s (n.D) / (n.B). It moves the height by s (h.D - (h.B) (n.D) / (n.B)). */
 LANES_INLINE lanes find_slope(const small_view *view, const small_triangles *t, lanes_int *leaving) {
   lanes normal[3], way[3], depth = lanes_set(1.0f);
   for (int axis = 0; axis < 3; axis++) {
@@ -107,7 +108,8 @@ LANES_INLINE lanes find_slope(const small_view *view, const small_triangles *t, 
     slope = slope + lanes_abs((rise - product3(d, normal) * ratio) * depth);
   }
   *leaving = facing > 0.0f;
-  return lanes_min(slope, lanes_set(STEEPEST_SLOPE)); /* not a number: the steepest */
+  return lanes_min(slope, lanes_set(STEEPEST_SLOPE)); /* a slope that is not a number counts as the
+                                                       * steepest */
 }
 
 /* The slab that ends at or above a height. */
@@ -116,7 +118,8 @@ LANES_INLINE lanes_int slab_at(const small_view *view, lanes height) {
   return lanes_floor(sheet * -1.0f) * -1;
 }
 
-/* The covered samples of a pixel that begins at (x, y): their bits, number, and sums of columns and rows. */
+/* The covered samples of a pixel that begins at (x, y): their bits, their number, and the sums of their
+ * columns and rows. */
 typedef struct small_samples {
   lanes_int bits, count, columns, rows;
 } small_samples;
@@ -143,9 +146,10 @@ LANES_INLINE void cover_samples(const small_shape *shape, int x, int y, small_sa
   }
 }
 
-/* The number of samples, and the sums of their columns and rows, of each lane's bits. Derived: fields of
- * neighbouring samples are brought together, each with its number and its sum of columns from its own first;
- * column c has the row 3 - c + 8 (c odd) + 16 (c in SECOND_TURN), which is (3 + 7 c) modulo 16. */
+/* Finds the number of samples in each lane's bits, and the sums of their columns and rows. Derived: fields of
+ * neighbouring samples are joined. Each field has its number of samples and their sum of columns, counted
+ * from its own first column. Column c has the row 3 - c + 8 (c odd) + 16 (c in SECOND_TURN), which is (3 + 7
+ * c) modulo 16. */
 LANES_INLINE void count_samples(lanes_int bits, small_samples *samples) {
   enum { PAIRS = 0x5555, FOURS = 0x3333, EIGHTS = 0x0f0f, SECOND_TURN = 0xf550 };
   lanes_int odd = (bits >> 1) & PAIRS, turn = bits & SECOND_TURN;
@@ -164,8 +168,8 @@ LANES_INLINE void count_samples(lanes_int bits, small_samples *samples) {
   *samples = (small_samples){bits, count, sum, 3 * count - sum + 8 * ((rows + (rows >> 8)) & 255)};
 }
 
-/* The first sample column, or row, of which the middle is at or after the least coordinate, and how many
- * there are up to the greatest; 1/256 pixels. */
+/* The first column, or row, of samples whose middle lies at or after the least coordinate; *count: the number
+ * of columns up to the greatest coordinate. Coordinates are in 1/256 pixels. */
 LANES_INLINE lanes_int sample_range(const lanes at[3], lanes_int *count) {
   lanes least = lanes_min(lanes_min(at[0], at[1]), at[2]),
         greatest = lanes_max(lanes_max(at[0], at[1]), at[2]);
@@ -183,9 +187,9 @@ LANES_INLINE int greatest_of(lanes_int x, lanes_int of) {
 
 typedef uint32_t small_words __attribute__((vector_size(64)));
 
-/* Covers triangles that are at most a pixel high and two wide: of each column of samples the one sample is
- * tried that lies within the triangle's rows. bits: of each of two rows of pixels those of two pixels, 16
- * bits each. Returns whether the triangles in `of` are so small. */
+/* Covers triangles that are at most a pixel high and two pixels wide. In each column of samples only the one
+ * sample is tried that lies within the triangle's rows. bits: for each of two rows of pixels, the samples of
+ * two pixels, 16 bits each. Returns whether the triangles in `of` are so small. */
 LANES_INLINE int cover_columns(const small_shape *shape, lanes_int of, lanes_int bits[2]) {
   lanes_int columns, rows, column = sample_range(shape->x, &columns), row = sample_range(shape->y, &rows);
   if (lanes_bits(of & ((rows > 16) | (column + columns > 32) | (row + rows > 32))) != 0) return 0;
@@ -195,8 +199,8 @@ LANES_INLINE int cover_columns(const small_shape *shape, lanes_int of, lanes_int
     at[i] = shape->value[i] + shape->down[i] * x;
     step[i] = shape->down[i] * (float)SMALL_STEP;
   }
-  lanes_int ahead = column * 7 + 3 - row; /* the sample's row, from the first one, but for turns of 16 */
-  small_words bit = (small_words)(1 << (column & 31)); /* of columns after the last, 0 */
+  lanes_int ahead = column * 7 + 3 - row; /* the sample's row, counted from the first one, modulo 16 */
+  small_words bit = (small_words)(1 << (column & 31)); /* 0 for columns after the last one */
   bits[0] = bits[1] = lanes_set_int(0);
   for (int n = greatest_of(columns, of); n > 0; n--) {
     lanes_int own = row + (ahead & 15);
@@ -234,7 +238,7 @@ LANES_INLINE lanes_int find_reach(const small_view *view, const small_heights *h
 
 LANES_INLINE lanes_int within(lanes_int at, int32_t count) { return (at >= 0) & (at < count); }
 
-/* Of a pixel of a tile of 16x16, block of 4x4 after block. */
+/* The number of a pixel in a tile of 16x16 pixels, counted by blocks of 4x4. */
 LANES_INLINE lanes_int number_in_tile(lanes_int column, lanes_int row) {
   return ((row & 12) << 4) | ((column & 12) << 2) | ((row & 3) << 2) | (column & 3);
 }
@@ -316,7 +320,7 @@ LANES_INLINE eight_doubles load_doubles(const float *p) {
   return __builtin_convertvector(v, eight_doubles);
 }
 
-/* The next whole number of 1/256 pixels, halves up. Numbers fit into 32 bits. */
+/* Stores the nearest whole numbers of 1/256 pixels; halves go up. They must fit into 32 bits. */
 LANES_INLINE void store_subpixels(int32_t *to, eight_doubles pixels) {
   eight_doubles at = pixels * (double)SMALL_SUBPIXELS + 0.5;
   eight_ints whole = __builtin_convertvector(at, eight_ints);
@@ -325,7 +329,7 @@ LANES_INLINE void store_subpixels(int32_t *to, eight_doubles pixels) {
   memcpy(to, &whole, sizeof whole);
 }
 
-/* Vertices `at` to at + 7, with the sums of seen.c in their order. */
+/* Sees vertices `at` to at + 7, with the sums of seen.c in the same order. */
 LANES_INLINE void see_eight(const small_view *view, const cluster_shape *shape, size_t at,
                             seen_cluster *seen) {
   eight_doubles p[3], c[3];

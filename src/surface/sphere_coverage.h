@@ -8,7 +8,7 @@
 bool hl_cover_sphere(const view *view, const float sphere[4], const seen_bounds *bounds, int tile_x,
                      int tile_y, pixel_span *span, uint16_t covered[TILE_PIXELS]);
 
-/* The ray A + s B of a pixel, from the sphere's centre; both are linear in the pixel. */
+/* The ray A + s B of a pixel, counted from the sphere's centre. Both vectors are linear in the pixel. */
 typedef struct sphere_rays {
   vec3 start, start_u, start_v, way, way_u, way_v, centre;
   double radius;
@@ -17,8 +17,9 @@ typedef struct sphere_rays {
 
 sphere_rays hl_sphere_rays(const view *view, const float sphere[4]);
 
-/* Where the ray of continuous pixel (u, v) enters and leaves a sphere; a ray that misses it: the point
- * nearest to the ray, twice. False where the point lies behind a perspective view's eye. */
+/* Finds where the ray of the continuous pixel (u, v) enters and leaves a sphere. For a ray that misses the
+ * sphere both are its point nearest to the ray. False where the point lies behind a perspective view's
+ * eye. */
 bool hl_meet_sphere(const sphere_rays *rays, double u, double v, bool leaving, vec3 *point);
 
 #endif

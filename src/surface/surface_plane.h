@@ -6,13 +6,14 @@
 #include "surface/surfaces.h"
 #include "view/view.h"
 
-/* Linear functions of the pixel: for pixel (0, 0), and by u and v. Derived: the ray A + s B meets the plane
- * n.X = d at s = (d - n.A) / (n.B), at the height h.A + s h.B. In a perspective view A is the eye and B
- * depends on the pixel, else the other way round. */
+/* Linear functions of the pixel: the value at pixel (0, 0), and the changes by u and by v. Derived: the ray A
+ * + s B meets the plane n.X = d at s = (d - n.A) / (n.B), at the height h.A + s h.B. In a perspective view A
+ * is the eye and B depends on the pixel; in a parallel view A depends on the pixel and B is constant. */
 typedef struct surface_plane {
   double rise[3], way[3], above[3], climb[3]; /* d - n.A, n.B, h.A, h.B */
-  double lowest, highest;                     /* of the surface; above the first sheet */
-  bool leaving; /* the light's rays leave a surface here whose inside they do not light */
+  double lowest, highest;                     /* the least and greatest height of the surface, above the first
+                                               * sheet */
+  bool leaving; /* here the light's rays leave a surface whose inside they do not light */
 } surface_plane;
 
 /* A function of surface_plane at a pixel. */
@@ -23,7 +24,7 @@ static inline double hl_plane_linear(const double f[3], double u, double v) {
 void hl_plane_of_triangle(const view *view, const sheet_stack *sheets, const surfaces *all, uint32_t triangle,
                           surface_plane *plane);
 
-/* The slab that a height above the first sheet lies in: before sheet k. */
+/* The slab in which a height above the first sheet lies, as the number k of the sheet at its end. */
 static inline int32_t hl_slab_of(const sheet_stack *sheets, double height) {
   return (int32_t)fmin(fmax(ceil(height / sheets->spacing), 1), sheets->count - 1);
 }
@@ -32,12 +33,12 @@ static inline int32_t hl_slab_of(const sheet_stack *sheets, double height) {
 void hl_plane_of_sphere(const view *view, const sheet_stack *sheets, const float sphere[4], vec3 point,
                         surface_plane *plane);
 
-/* The same in two steps: what depends on the view alone, and the rest. */
+/* Makes a plane in two steps: first the part that depends only on the view, then the rest. */
 void hl_plane_begin(const view *view, const sheet_stack *sheets, surface_plane *plane);
 void hl_plane_touch_sphere(const view *view, const sheet_stack *sheets, const float sphere[4], vec3 point,
                            surface_plane *plane);
 
-/* Above the first sheet. */
+/* The plane's height above the first sheet. */
 double hl_plane_height(const surface_plane *plane, double u, double v);
 
 /* How much the height changes from pixel to pixel. */

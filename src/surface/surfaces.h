@@ -1,7 +1,7 @@
 /* surface/surfaces.h - the triangles and spheres of all meshes of a scene, in frame space.
  *
- * In: the scene's meshes. Out: what fragments.c rasterises and the sweep shades. They are kept between frames
- * as long as the same meshes stand in the same places. */
+ * In: the scene's meshes. Out: the surfaces that fragments.c rasterises and the sweep shades. They are kept
+ * between frames as long as the same meshes stand in the same places. */
 #ifndef HL_SURFACE_SURFACES_H
 #define HL_SURFACE_SURFACES_H
 
@@ -14,27 +14,28 @@
 #include "scene/geometry/cut.h"
 
 typedef struct surface_mesh {
-  const hl_scene_mesh *scene;      /* in frame space; borrowed, of the frame */
-  hl_mesh *mesh;                   /* retained: its arrays are borrowed */
-  affine3 placement;               /* of the mesh in frame space */
+  const hl_scene_mesh *scene;      /* in frame space; borrowed from the frame */
+  hl_mesh *mesh;                   /* retained, because its arrays are borrowed */
+  affine3 placement;               /* maps the mesh to frame space */
   const float (*colors)[4];        /* borrowed; [vertices of the mesh]; null: none */
   const float (*face_colors)[4];   /* borrowed; [triangle_count]; null: none */
   const float (*sphere_colors)[4]; /* borrowed; [sphere_count]; null: none */
-  const uint32_t (*edges)[3];      /* borrowed; [triangle_count]; as of hl_mesh */
-  size_t first_vertex;             /* in positions and normals */
+  const uint32_t (*edges)[3];      /* borrowed; [triangle_count]; as in hl_mesh */
+  size_t first_vertex;             /* the number of the mesh's first vertex in positions and normals */
   size_t first_edge_normal;
   uint32_t first_triangle, triangle_count;
-  uint32_t first_sphere, sphere_count; /* in spheres */
-  bool is_cut;                         /* the cuts may remove some of it */
+  uint32_t first_sphere, sphere_count; /* the mesh's spheres in `spheres` */
+  bool is_cut;                         /* the cuts may remove a part of the mesh */
 } surface_mesh;
 
 typedef struct surface_cluster surface_cluster; /* clusters.h */
 typedef struct surface_seam surface_seam;       /* late/surface_seams.h */
 
-/* A primitive is a triangle or a sphere: numbers below triangle_count are triangles, those after it spheres.
- */
+/* A primitive is a triangle or a sphere. Numbers below triangle_count are triangles; higher numbers are
+ * spheres. */
 typedef struct surfaces {
-  surface_mesh *meshes;      /* owned with the next five; [mesh_count]; their primitives follow each other */
+  surface_mesh *meshes;      /* owned with the next five; [mesh_count]; the primitives of a mesh follow the
+                              * primitives of the mesh before */
   float (*positions)[3];     /* [vertex_count]; frame space */
   float (*normals)[3];       /* [vertex_count]; unit, or 0 where a vertex has none; frame space */
   float (*edge_normals)[3];  /* [edge_normal_count]; unit; frame space */
@@ -43,16 +44,17 @@ typedef struct surfaces {
   surface_cluster *clusters; /* owned with the next three; [cluster_count] */
   uint32_t *order;           /* [triangle_count + sphere_count]; the primitives in the order of clusters */
   uint8_t (*cluster_corners)[3][64]; /* [clusters of triangles]; numbers of the cluster's vertices */
-  float (*cluster_normals)[3][64];   /* the same; not unit; axis by axis; frame space */
-  float *cluster_positions;          /* owned; of each cluster of triangles [3][vertices]; frame space */
+  float (*cluster_normals)[3][64];   /* [clusters of triangles]; hl_corner_product() of each triangle, axis by
+                                      * axis; frame space */
+  float *cluster_positions;          /* owned; for each cluster of triangles [3][vertices]; frame space */
   surface_seam *seams;               /* owned; [seam_count]; null: none */
-  cut_shape *cuts;                   /* owned; [cut_count]; the scene's, of frame space */
+  cut_shape *cuts;                   /* owned; [cut_count]; the scene's cuts, in frame space */
   size_t cut_count, cluster_count, seam_count;
   size_t mesh_count, vertex_count, edge_normal_count;
   uint32_t triangle_count, sphere_count;
 } surfaces;
 
-/* Adds what the light that surfaces take depends on. all: null for none. */
+/* Adds to a key everything on which the light that surfaces take depends. all: null for no surfaces. */
 void hl_surfaces_key_add(hl_key *key, const surfaces *all);
 
 /* The number of primitives. */
@@ -65,22 +67,22 @@ static inline bool hl_surface_left(const surfaces *all, const surface_mesh *mesh
   return !mesh->is_cut || hl_cuts_leave(all->cuts, all->cut_count, point);
 }
 
-/* The corners of a box around a mesh; frame space. A flat mesh gets a box of thickness `least`. */
+/* The corners of a box around a mesh; frame space. A flat mesh gets a box with the thickness `least`. */
 void hl_surface_corners(const hl_scene_mesh *mesh, double least, vec3 corners[8]);
 
-/* Whether a mesh has an inside, and an opacity of 1 but for that of its own colours. */
+/* Whether a mesh has an inside, and the opacity 1 apart from its own colours. */
 bool hl_surface_is_closed(const surface_mesh *mesh);
 
-/* Whether no light passes what cuts leave of a mesh. */
+/* Whether no light passes the part of a mesh that cuts leave. */
 bool hl_surface_takes_all(const surface_mesh *mesh);
 
-/* Whether no light passes a mesh, of which no cuts remove anything. */
+/* Whether no light passes a mesh of which no cut removes a part. */
 bool hl_surface_is_opaque(const surface_mesh *mesh);
 
-/* Whether a ball lies outside of a mesh's box, by a hundredth of its edges at least; frame space. */
+/* Whether a ball lies outside of a mesh's box, by at least a hundredth of the box's edges; frame space. */
 bool hl_surface_is_outside(const hl_scene_mesh *mesh, vec3 centre, double radius);
 
-/* A position of surfaces->positions or ->normals. */
+/* A position from surfaces->positions, or a normal from surfaces->normals. */
 static inline vec3 hl_surface_vector(const float v[3]) { return (vec3){v[0], v[1], v[2]}; }
 
 /* A triangle's unit normal; 0 where it has no area. */
