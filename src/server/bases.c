@@ -1,9 +1,8 @@
-/* server/bases.c - scenes that are told by how they differ from one that the page has sent whole.
+/* server/bases.c - scenes that a page sends as differences from a scene that it has sent as a whole.
  *
- * While something moves, a page sends many scenes that differ in little. The server keeps the newest scene
- * that a page has sent whole, its base, by its frame's number. A difference is what link.js makes: {"to":
- * VALUE},
- * {"gone": 1}, or {"in": {KEY: DIFFERENCE}} of an object or an array. */
+ * While something moves, a page sends many scenes that hardly differ. The server keeps a page's base: the
+ * newest scene that the page has sent as a whole, and the number of its frame. link.js makes the differences.
+ * A difference is {"to": VALUE}, {"gone": 1}, or {"in": {KEY: DIFFERENCE}} of an object or an array. */
 #define _GNU_SOURCE
 #include <jansson.h>
 #include <stdlib.h>
@@ -32,7 +31,7 @@ void base_keep(server *s, server_page *page, const frame_request *request) {
 
 static json_t *changed(json_t *from, json_t *part);
 
-/* Changes an element in place; false: there is none, or the difference is malformed. */
+/* Changes an element in place. False: there is no such element, or the difference is malformed. */
 static bool change_element(json_t *whole, const char *key, json_t *part) {
   if (json_is_array(whole)) {
     char *end;
@@ -44,8 +43,8 @@ static bool change_element(json_t *whole, const char *key, json_t *part) {
   return json_object_set_new(whole, key, changed(json_object_get(whole, key), part)) == 0;
 }
 
-/* Returns a reference of the caller's own; null: the difference is malformed. `from` may change, or be null.
- */
+/* The changed value, as a reference that the caller owns; null: the difference is malformed. `from` may be
+ * changed, or be null. */
 static json_t *changed(json_t *from, json_t *part) {
   json_t *to = json_object_get(part, "to"), *in = json_object_get(part, "in"), *inner;
   const char *key;

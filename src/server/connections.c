@@ -1,10 +1,11 @@
 /* server/connections.c - the connections that are open, and how long each may take.
  *
- * A connection is a stranger until it has sent a request with the token. Strangers are let in, as browsers
- * are strangers first, but of all that wait for a request only MOST_WAITING stay: a new one takes the place
- * of the stranger that has waited for longest. Nobody is let in for a moment then, so that a browser's
- * request, which comes with its connection, is read before the connection is the oldest. Heads and bodies of
- * requests have deadlines. A connection ends by shutdown(), which its own thread of libmicrohttpd notices. */
+ * A connection is a stranger until it has sent a request with the token. Strangers are let in, because a
+ * browser is a stranger at first. But only MOST_WAITING connections may wait for a request: beyond that, a
+ * new connection takes the place of the stranger that has waited for longest. Then no connection is let in
+ * for a moment, so that a browser's request, which comes with its connection, is read before this connection
+ * is the oldest. Heads and bodies of requests have deadlines. A connection ends by shutdown(), which its own
+ * thread of libmicrohttpd notices. */
 #define _GNU_SOURCE
 #include "connections.h"
 
@@ -12,7 +13,7 @@
 #include <sys/socket.h>
 #include <time.h>
 
-/* What a connection does. */
+/* The state of a connection. */
 enum {
   CONNECTION_FREE,
   CONNECTION_STRANGER,
@@ -40,7 +41,8 @@ static void end(connection_place *c) {
   shutdown(c->socket, SHUT_RDWR);
 }
 
-/* The one of those that wait that ends for another: strangers first, then the one that waits for longest. */
+/* The waiting connection that shall end for another one: a stranger if there is one, and among strangers, or
+ * else among all, the one that has waited for longest. */
 static connection_place *least_missed(connection_table *table) {
   connection_place *best = NULL;
   for (int n = 0; n < MOST_CONNECTIONS; n++) {
@@ -54,7 +56,7 @@ static connection_place *least_missed(connection_table *table) {
   return best;
 }
 
-/* Takes a place for a new connection; null: there is none. *crowded: another one had to end for it. */
+/* Takes a place for a new connection; null: there is none. *crowded: another connection had to end for it. */
 static connection_place *let_in(connection_table *table, int socket, bool *crowded) {
   connection_place *taken = NULL;
   int waiting = 0;
@@ -94,10 +96,12 @@ void connection_changed(void *user_data, struct MHD_Connection *connection, void
     *place = NULL;
   }
   pthread_mutex_unlock(&table->lock);
-  if (crowded) nanosleep(&moment, NULL); /* this is the thread that lets connections in */
+  if (crowded)
+    nanosleep(&moment, NULL); /* the sleep keeps out others, because this thread lets connections
+                               * in */
 }
 
-/* Changes a connection's state, unless it ends. */
+/* Changes a connection's state, unless the connection is ending. */
 static void enter(connection_table *table, struct MHD_Connection *connection, int state) {
   const union MHD_ConnectionInfo *info = MHD_get_connection_info(connection,
                                                                  MHD_CONNECTION_INFO_SOCKET_CONTEXT);

@@ -10,27 +10,29 @@
 #include <microhttpd.h>
 
 enum {
-  MOST_CONNECTIONS = 256,          /* at once */
-  MOST_WAITING = 128,              /* of them: that wait for a request */
-  IDLE_SECONDS = 20,               /* that a request may take to come, and a connection may be silent */
-  LEAST_BYTES_PER_SECOND = 1 << 14 /* of a body, beyond IDLE_SECONDS */
+  MOST_CONNECTIONS = 256,          /* the most connections at once */
+  MOST_WAITING = 128,              /* the most connections that wait for a request */
+  IDLE_SECONDS = 20,               /* seconds that a request may take to come, and that a connection may be
+                                    * silent */
+  LEAST_BYTES_PER_SECOND = 1 << 14 /* least speed of a body after IDLE_SECONDS */
 };
 
 /* A connection of a browser, or of anybody else on this machine. */
 typedef struct connection_place {
   int socket;
   int state;         /* connections.c; 0: the place is free */
-  double since;      /* in this state, by server_seconds() */
-  uint64_t received; /* bytes of the body */
+  double since;      /* time at which the state began, by server_seconds() */
+  uint64_t received; /* number of bytes of the body that have come */
 } connection_place;
 
 typedef struct connection_table {
   pthread_mutex_t lock;
-  connection_place places[MOST_CONNECTIONS]; /* under `lock` */
-  unsigned long long turned_away;            /* connections that ended for others; under `lock` */
+  connection_place places[MOST_CONNECTIONS]; /* guarded by `lock` */
+  unsigned long long turned_away;            /* number of connections that ended for others; guarded by
+                                              * `lock` */
 } connection_table;
 
-/* Seconds since some time in the past. */
+/* Seconds since a fixed time in the past. */
 double server_seconds(void);
 
 bool connections_begin(connection_table *table);
@@ -41,8 +43,8 @@ void connections_end(connection_table *table);
 void connection_changed(void *user_data, struct MHD_Connection *connection, void **place,
                         enum MHD_ConnectionNotificationCode code);
 
-/* The connection has shown the token, and goes on to the body of its request; all of it is there; the request
- * has ended. */
+/* connection_sends(): the connection has shown the token, and the body of its request follows.
+ * connection_is_answered(): all of the body is there. connection_is_idle(): the request has ended. */
 void connection_sends(connection_table *table, struct MHD_Connection *connection);
 void connection_is_answered(connection_table *table, struct MHD_Connection *connection);
 void connection_is_idle(connection_table *table, struct MHD_Connection *connection);
@@ -54,10 +56,11 @@ int connection_socket(struct MHD_Connection *connection);
 /* Ends connections that are beyond their deadline. Call it some times a second. */
 void connections_expire(connection_table *table);
 
-/* open, waiting: those that are, now; turned_away: all that have ended in favour of others. */
+/* Counts connections. open, waiting: the connections that are open, or wait, now. turned_away: all
+ * connections that have ended for others. */
 void connections_count(connection_table *table, int *open, int *waiting, unsigned long long *turned_away);
 
-/* Whoever is at the other end has closed the connection. */
+/* Whether the other end has closed the connection. */
 bool peer_is_gone(int socket);
 
 #endif

@@ -1,5 +1,5 @@
-/* server/films.c - films that a page asks for: every frame rendered as `halflight animate` does, and joined
- * by ffmpeg's program, or put into a zip archive. */
+/* server/films.c - films that a page asks for. Each frame is rendered as `halflight animate` does. ffmpeg's
+ * program joins the frames, or they are put into a zip archive. */
 #define _GNU_SOURCE
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,10 +14,10 @@
 
 enum { MOST_FILM_BYTES = 1 << 30 };
 
-/* Where frames go: a film, or an archive of pictures. */
+/* The output of frames: a film, or an archive of pictures. */
 typedef struct film_output {
   bool zipped;
-  movie *movie; /* null: it has ended */
+  movie *movie; /* null: the film has ended */
   picture_zip zip;
 } film_output;
 
@@ -57,7 +57,7 @@ static hl_status output_end(film_output *out, hl_status status, hl_error *error)
   return status;
 }
 
-/* One frame as a PNG, into the film. */
+/* Adds one frame to the film, or as a PNG to the archive. */
 static hl_status add_frame(server *s, server_page *page, const hl_scene *scene, film_output *out,
                            hl_error *error) {
   hl_context *context = s->options.context;
@@ -99,7 +99,7 @@ static hl_status add_frames(server *s, server_page *page, const film *f, film_ou
   return status;
 }
 
-/* The film's bytes, from a file that is removed. */
+/* Takes the film's bytes from its file, and removes the file. */
 static hl_status take_file(const char *path, server_answer *answer, hl_error *error) {
   struct stat about;
   FILE *file = fopen(path, "rbe");
@@ -116,7 +116,7 @@ static hl_status take_file(const char *path, server_answer *answer, hl_error *er
   return HL_ERROR_MEMORY;
 }
 
-/* Destroy the film with film_destroy(). */
+/* Begins a film. Destroy it with film_destroy(). */
 static hl_status begin_film(const server *s, const hl_scene *scene, const film_request *request, film **f,
                             hl_error *error) {
   film_options options = {.context = s->sealed,

@@ -1,5 +1,5 @@
-/* server/folder.c - the files that a page may open: those below the folder that the viewer was started in,
- * and those that are dropped on it. */
+/* server/folder.c - the files that a page may open: files below the folder in which the viewer was started,
+ * and files that are dropped on the page. */
 #define _GNU_SOURCE
 #include <dirent.h>
 #include <limits.h>
@@ -17,8 +17,9 @@
 
 enum { MOST_ENTRIES = 2000 };
 
-/* Whether a name ends with one of these endings, which blanks separate, after at least one other character.
- * *length: the name's, then without the ending. */
+/* Whether a name ends with one of some endings, after at least one other character. Blanks separate the
+ * endings.
+ * *length: the name's length; afterwards its length without the ending. */
 static bool ends_with_one(const char *name, size_t *length, const char *endings) {
   while (*(endings += strspn(endings, " ")) != '\0') {
     size_t end = strcspn(endings, " ");
@@ -31,8 +32,8 @@ static bool ends_with_one(const char *name, size_t *length, const char *endings)
   return false;
 }
 
-/* Whether a name ends as files do that one of the formats reads. get: hl_volume_get_format() or one like it.
- */
+/* Whether a name ends like the files that one of the formats reads. get: hl_volume_get_format() or a function
+ * like it. */
 static bool ends_as_read(const char *name, size_t *length, hl_status (*get)(size_t, hl_file_format *)) {
   hl_file_format format = {.struct_size = sizeof format};
   for (size_t f = 0; get(f, &format) == HL_OK; f++)
@@ -54,7 +55,8 @@ static bool is_folder(const char *path) {
   return stat(path, &about) == 0 && S_ISDIR(about.st_mode);
 }
 
-/* The absolute path of what lies below the server's folder; false: it does not, by any link. */
+/* The absolute path of a file or folder below the server's folder. False: it does not lie there when links
+ * are followed. */
 static bool folder_resolve(const server *s, const char *inside, char path[PATH_BYTES]) {
   char asked[PATH_BYTES];
   const char *folder = s->options.folder;
@@ -75,14 +77,14 @@ bool folder_find(const server *s, const char *inside, char path[PATH_BYTES], ser
     return hl_context_confine(s->below, below, &file->confined, NULL) == HL_OK;
   }
   if (!folder_can_open(inside)) return false;
-  char *slash = strrchr(path, '/'); /* of the file's name */
+  char *slash = strrchr(path, '/'); /* the last slash, before the file's name */
   *slash = '\0';
   file->name = slash + 1;
   file->folder = slash > path ? path : "/";
   return hl_context_confine(s->below, slash > below ? below : "", &file->confined, NULL) == HL_OK;
 }
 
-/* What the list shows: 'd' a folder, 'f' a file that can be opened, 0 nothing. */
+/* How the list shows an entry: 'd' as a folder, 'f' as a file that can be opened, 0 not at all. */
 static char kind_of(const server *s, const char *at, const char *name, off_t *bytes) {
   char inside[PATH_BYTES], path[PATH_BYTES];
   struct stat about;

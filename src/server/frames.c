@@ -1,10 +1,10 @@
-/* server/frames.c - pages and their frames: which page renders, which frames are outdated.
+/* server/frames.c - pages and their frames: which page renders, and which frames are outdated.
  *
- * Each page has a renderer of its own, which keeps what does not change from frame to frame. A page's other
- * pictures, small ones and those that it saves, go by lanes, pages of the name NAME-LANE: a lane's renderer
- * ends when no more of its pictures are asked for. A frame makes all frames of its page with lower numbers
- * outdated: one that is being rendered stops at its next check for cancellation, and those that wait are not
- * begun. */
+ * Each page has a renderer of its own, which keeps everything that does not change from frame to frame. A
+ * page's other pictures, which are small or are saved, are made by lanes. A lane is a page with the name
+ * NAME-LANE; its renderer ends when no more of its pictures are asked for. A frame makes all frames of its
+ * page with lower numbers outdated. An outdated frame that is being rendered stops at its next check for
+ * cancellation; outdated frames that wait are not begun. */
 #define _GNU_SOURCE
 #include <limits.h>
 #include <stdio.h>
@@ -17,11 +17,11 @@
 /* The frame that this thread works on. */
 static _Thread_local struct {
   server *server;
-  int socket;        /* of whoever asked for it */
-  server_page *page; /* null: none */
+  int socket;        /* socket of the client that has asked for the frame */
+  server_page *page; /* null: there is no page */
   unsigned long long number;
-  const server_opened *opened; /* for which a preview is made; null: none */
-  bool opening;                /* a file */
+  const server_opened *opened; /* the scene for which a preview is made; null: none is made */
+  bool opening;                /* a file is being opened */
 } current;
 
 void work_begin(server *s, int socket) {
@@ -85,7 +85,7 @@ void pages_end(server *s) {
 
 /* ---- pages ---- */
 
-/* The page of this name, or else the idle page that is replaced by it; null: all pages are busy. */
+/* The page with this name, or the idle page whose place it takes; null: all pages are busy. */
 static server_page *find_page(server *s, const char *name) {
   server_page *best = NULL;
   for (int p = 0; p < MOST_PAGES; p++) {
@@ -102,12 +102,12 @@ static void release_page(server *s, server_page *page) {
   forget_renderers(page);
   base_forget(page);
   page->name[0] = '\0';
-  page->last_use = 0; /* the next new page takes this place, not that of an idle one */
+  page->last_use = 0; /* 0, so that the next new page takes this place, and not the place of an idle page */
   page->leaving = false;
   atomic_store(&page->newest, 0);
 }
 
-/* The page of this name, in use until leave_page(); null: all pages are busy. */
+/* The page with this name, in use until leave_page(); null: all pages are busy. */
 static server_page *enter_page(server *s, const char *name, unsigned long long number) {
   pthread_mutex_lock(&s->pages_lock);
   server_page *page = find_page(s, name);
@@ -186,8 +186,8 @@ int page_progress(server *s, const char *name, int *others) {
   return part;
 }
 
-/* Makes room in memory: of all pages that no request holds the renderers end. They are made anew with the
- * next frame. */
+/* Frees memory: ends the renderers of all pages that no request holds. They are made anew with the next
+ * frame. */
 static void spare_memory(server *s) {
   pthread_mutex_lock(&s->pages_lock);
   for (int p = 0; p < MOST_PAGES; p++)
@@ -205,7 +205,7 @@ void refuse_line(server_answer *answer, unsigned status, const char *line) {
   snprintf(answer->problem, sizeof answer->problem, "%s", line);
 }
 
-/* Status 410 where what a page has opened is open no longer: the page opens it again. */
+/* Refuses with status 410 where the scene that a page has opened is closed; the page then opens it again. */
 static bool refuse_closed(server *s, long long number, server_answer *answer) {
   server_opened *opened = opened_enter(s, number);
   if (opened != NULL) opened_leave(s, opened);
@@ -213,15 +213,15 @@ static bool refuse_closed(server *s, long long number, server_answer *answer) {
   return opened == NULL;
 }
 
-/* Status 204: nobody waits for this frame any more. */
+/* Answers with the error. Status 204: nobody waits for this frame any more. */
 static void fail_frame(server_answer *answer, hl_status status, const hl_error *error) {
   if (status == HL_ERROR_CANCELLED) answer->status = 204;
   else if (status == HL_ERROR_MEMORY || status == HL_ERROR_INTERNAL) refuse_line(answer, 500, error->message);
   else refuse_line(answer, 400, error->message);
 }
 
-/* The scene that is rendered while something moves, which may be the scene itself. Waits for the coarser
- * volumes, which are made sooner than a frame of a large volume. */
+/* The scene that is rendered while something moves; it may be the scene itself. Waits for the coarser
+ * volumes, which are made faster than a frame of a large volume. */
 static hl_status make_quick(server *s, long long number, hl_scene *scene, hl_scene **quick, hl_error *error) {
   const struct timespec moment = {.tv_nsec = 2000000};
   server_opened *opened = opened_enter(s, number);
@@ -272,7 +272,8 @@ void answer_scene(server *s, const frame_request *request, const composed_choice
   answer->length = strlen(answer->text);
 }
 
-/* The page's renderer for a scene of coarser volumes. Where all places are taken, the first one is. */
+/* The page's renderer for a scene of coarser volumes. Where all places are taken, it takes the first
+ * place. */
 static hl_renderer **quick_renderer_of(server_page *page, const hl_scene *scene) {
   const hl_volume *volume = hl_scene_describe(scene)->volumes[0].volume;
   quick_renderer *found = NULL;
@@ -284,7 +285,7 @@ static hl_renderer **quick_renderer_of(server_page *page, const hl_scene *scene)
   return &found->renderer;
 }
 
-/* renderer: the page's, for what moves or for what rests. */
+/* Renders a frame. renderer: the page's renderer, for moving or for resting scenes. */
 static hl_status render(server *s, server_page *page, hl_renderer **renderer, const hl_scene *scene,
                         const frame_request *request, server_answer *answer, hl_error *error) {
   const hl_scene_description *d = hl_scene_describe(scene);
@@ -309,7 +310,7 @@ static hl_status render(server *s, server_page *page, hl_renderer **renderer, co
   return status;
 }
 
-/* Reads the scene and renders it; the page's frames are rendered one after the other. */
+/* Reads the scene and renders it. The frames of a page are rendered one after the other. */
 static hl_status make_frame(server *s, server_page *page, const frame_request *request,
                             const film_request *film, server_answer *answer, hl_error *error) {
   hl_scene *scene = NULL, *quick = NULL;
@@ -330,7 +331,8 @@ static hl_status make_frame(server *s, server_page *page, const frame_request *r
   return status;
 }
 
-/* The request with its scene whole; false: refused. *text is the caller's (free()), or null. */
+/* Completes a request so that its scene is whole; false: the request is refused. *text: owned by the caller
+ * (free()), or null. */
 static bool complete_request(server *s, server_page *page, frame_request *request, char **text,
                              server_answer *answer) {
   *text = NULL;
@@ -344,7 +346,7 @@ static bool complete_request(server *s, server_page *page, frame_request *reques
   return *text != NULL;
 }
 
-/* The frame of a page that is entered. */
+/* Answers with the frame of a page that was entered. */
 static void answer_page(server *s, server_page *page, const frame_request *request, const film_request *film,
                         server_answer *answer) {
   hl_error error = {0};
@@ -353,7 +355,8 @@ static void answer_page(server *s, server_page *page, const frame_request *reque
   current.number = request->number;
   atomic_store(&page->frame_part, 0);
   hl_status status = make_frame(s, page, request, film, answer, &error);
-  if (status == HL_ERROR_MEMORY) { /* once more, with what idle pages held, and what this one held before */
+  /* Try once more, with the memory that idle pages held, and the memory that this page held before. */
+  if (status == HL_ERROR_MEMORY) {
     spare_memory(s);
     forget_renderers(page);
     status = make_frame(s, page, request, film, answer, &error);
@@ -399,7 +402,7 @@ bool film_progress(server *s, const char *name, int *done, int *frames) {
   return found;
 }
 
-/* Answers with the start.json of a scene that is open from now on, or with the error. Releases the scene. */
+/* Opens a scene, and answers with its start.json or with the error. Releases the scene. */
 static void answer_opened(server *s, hl_scene *scene, const char *title, hl_status status, hl_error *error,
                           server_answer *answer) {
   if (status == HL_OK) {

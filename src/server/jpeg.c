@@ -1,4 +1,4 @@
-/* server/jpeg.c - pictures as JPEG, for frames that are seen for a moment only. */
+/* server/jpeg.c - pictures as JPEG, for frames that are seen only for a moment. */
 #include <setjmp.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,7 +7,7 @@
 
 #include "parts.h"
 
-/* libjpeg's own handler would end the program. */
+/* The error handler that replaces libjpeg's own, which would end the program. */
 typedef struct failing {
   struct jpeg_error_mgr manager;
   jmp_buf back;

@@ -1,7 +1,7 @@
-/* server/module.h - the viewer as a module: what `halflight view` asks of it.
+/* server/module.h - the viewer as a module: its functions that `halflight view` calls.
  *
  * The server's libraries (libmicrohttpd, and with it GnuTLS) make a thousand allocations before main(). So
- * the server is no part of the program: `halflight view` alone loads it. */
+ * the server is no part of the program, and only `halflight view` loads it. */
 #ifndef HL_SERVER_MODULE_H
 #define HL_SERVER_MODULE_H
 

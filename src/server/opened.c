@@ -1,8 +1,7 @@
-/* server/opened.c - scenes that are open: the program's input, and those that pages have opened since.
+/* server/opened.c - scenes that are open: the program's input, and scenes that pages have opened since.
  *
- * A frame's scene may name the volumes of one of them. The one that was used longest ago makes room for
- * another, if no request holds it.
- */
+ * A frame's scene may name the volumes of one open scene. The scene that was used longest ago makes room for
+ * another, if no request holds it. */
 #define _GNU_SOURCE
 #include <pthread.h>
 #include <stdio.h>
@@ -78,7 +77,8 @@ static void *prepare(void *user_data) {
   return NULL;
 }
 
-/* Without a thread or memory for it, frames are of the volumes as they are. */
+/* Begins to make the preview of an open scene. Where there is no thread or no memory for it, frames show the
+ * volumes as they are. */
 static void begin_preview(server *s, server_opened *opened) {
   pthread_t thread;
   preparation *about = malloc(sizeof *about);
@@ -100,7 +100,7 @@ static void wait_for_previews(server *s) {
   while (atomic_load(&s->preparing) > 0) nanosleep(&moment, NULL);
 }
 
-/* The place for another scene; null: requests hold all of them. */
+/* The place for another scene; null: requests hold all places. */
 static server_opened *make_room(server *s) {
   server_opened *best = NULL;
   for (int o = 0; o < MOST_OPENED; o++) {

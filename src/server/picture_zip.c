@@ -1,7 +1,7 @@
 /* server/picture_zip.c - writes a zip archive of stored pictures.
  *
- * Source: PKWARE, APPNOTE.TXT, 4.3: each file behind a header of its own, then the list of files, then its
- * end. Numbers are little-endian. */
+ * The format is that of PKWARE, APPNOTE.TXT, 4.3: each file follows a header of its own; then come the list
+ * of files, and the end of the list. Numbers are little-endian. */
 #include "picture_zip.h"
 
 #include <stdlib.h>
@@ -13,7 +13,7 @@ enum {
   LOCAL_HEADER = 0x04034b50,
   LIST_ENTRY = 0x02014b50,
   LIST_END = 0x06054b50,
-  VERSION = 10, /* 1.0: stored files need no more */
+  VERSION = 10, /* version 1.0: stored files need no more */
   DATE = 0x21,  /* 1 January 1980, where the format's calendar begins */
   NAME_BYTES = 32,
   BYTES_MOST = 1 << 30
@@ -27,15 +27,15 @@ static void name_of(const picture_zip *zip, size_t index, char name[NAME_BYTES])
   snprintf(name, NAME_BYTES, "frame-%0*zu.png", zip->digits, index);
 }
 
-/* What a file's header and its entry in the list have in common. */
+/* Writes the fields that a file's header and its entry in the list have in common. */
 static void put_facts(picture_zip *zip, size_t index) {
   const picture_zip_entry *entry = &zip->entries[index];
   char name[NAME_BYTES];
   name_of(zip, index, name);
   put(zip, VERSION, 2);
   put(zip, 0, 2); /* flags */
-  put(zip, 0, 2); /* stored */
-  put(zip, 0, 2); /* midnight */
+  put(zip, 0, 2); /* method: stored */
+  put(zip, 0, 2); /* time: midnight */
   put(zip, DATE, 2);
   put(zip, entry->checksum, 4);
   put(zip, entry->length, 4);
@@ -77,12 +77,12 @@ static void put_list(picture_zip *zip) {
   long begin = ftell(zip->file);
   for (size_t n = 0; n < zip->count; n++) {
     put(zip, LIST_ENTRY, 4);
-    put(zip, VERSION, 2); /* of the program that wrote it */
+    put(zip, VERSION, 2); /* version of the program that wrote the archive */
     put_facts(zip, n);
     put(zip, 0, 2); /* no comment */
-    put(zip, 0, 2); /* on the first disk */
-    put(zip, 0, 2); /* no text */
-    put(zip, 0, 4); /* no attributes */
+    put(zip, 0, 2); /* number of the first disk */
+    put(zip, 0, 2); /* attributes: no text */
+    put(zip, 0, 4); /* no further attributes */
     put(zip, zip->entries[n].at, 4);
     put_name(zip, n);
   }

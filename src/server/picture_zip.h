@@ -1,5 +1,5 @@
-/* server/picture_zip.h - numbered pictures in a zip archive, stored as they are: a film where ffmpeg is
- * absent. */
+/* server/picture_zip.h - an archive of numbered pictures, stored without compression. It replaces a film
+ * where ffmpeg is absent. */
 #ifndef HL_SERVER_PICTURE_ZIP_H
 #define HL_SERVER_PICTURE_ZIP_H
 
@@ -8,7 +8,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-enum { PICTURE_ZIP_MOST = 65535 }; /* pictures, the most of a zip archive without extensions */
+enum { PICTURE_ZIP_MOST = 65535 }; /* the most pictures of a zip archive without extensions */
 
 typedef struct picture_zip_entry {
   uint32_t at, length, checksum;
@@ -18,13 +18,13 @@ typedef struct picture_zip {
   FILE *file;                 /* owned */
   picture_zip_entry *entries; /* owned; [count] */
   size_t count, capacity;
-  int digits; /* of the numbers in the names */
+  int digits; /* number of digits in the names */
   bool failed;
 } picture_zip;
 
-/* Begins an archive of so many pictures, at most PICTURE_ZIP_MOST. */
+/* Begins an archive of `pictures` pictures, at most PICTURE_ZIP_MOST. */
 bool picture_zip_begin(picture_zip *zip, const char *path, int pictures);
-/* Adds the next picture, the bytes of a PNG; false where the file cannot be written or grows beyond 1 GiB. */
+/* Adds the next picture, the bytes of a PNG. False where the file cannot be written or would exceed 1 GiB. */
 bool picture_zip_add(picture_zip *zip, const unsigned char *png, size_t length);
 /* Writes the list and closes the file; releases the memory in any case. */
 bool picture_zip_end(picture_zip *zip);

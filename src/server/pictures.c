@@ -1,4 +1,4 @@
-/* server/pictures.c - rendered images as the files that a page asks for, with what is drawn over them. */
+/* server/pictures.c - rendered images as the files that a page asks for, with their overlays. */
 #define _GNU_SOURCE
 #include <stdlib.h>
 #include <string.h>
@@ -27,8 +27,8 @@ static hl_status write_jpeg(const hl_image *image, const hl_image_write_options 
 
 static bool has_overlay(const frame_request *request) { return request->scale_bar || request->legend; }
 
-/* The page of a figure that the picture fills, with what the request wants over it. In a perspective picture
- * the bar holds at the depth of the camera's target. */
+/* Makes the page of a figure that the picture fills, with the overlays that the request wants. In a
+ * perspective picture the scale bar is right at the depth of the camera's target. */
 static void make_figure(const hl_image *image, const hl_scene *scene, const frame_request *request,
                         hl_figure *figure, hl_figure_panel *panel) {
   hl_figure_defaults(figure);
@@ -58,7 +58,7 @@ hl_status check_overlay(const server *s, const hl_scene *scene, const frame_requ
   return status;
 }
 
-/* The same bytes as `halflight render` writes of the scene. */
+/* Writes the same bytes as `halflight render` writes for the scene. */
 static hl_status write_exact(const server *s, const hl_scene *scene, const hl_image *image,
                              hl_image_write_options *options, const frame_request *request,
                              server_answer *answer, hl_error *error) {

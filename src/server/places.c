@@ -1,5 +1,4 @@
-/* server/places.c - what lies where: requests for planes of voxels, and for how deep what a pixel shows lies.
- */
+/* server/places.c - answers about places: planes of voxels, and the depth of what a pixel shows. */
 #define _GNU_SOURCE
 #include <math.h>
 #include <stdio.h>
@@ -26,7 +25,7 @@ void answer_slice(server *s, const slice_request *request, server_answer *answer
   opened_leave(s, opened);
 }
 
-/* Reads "1,2.5,-3" of a query; absent: the numbers stay. False: it is anything else. */
+/* Reads "1,2.5,-3" from a query. Where it is absent, the numbers stay. False: it is anything else. */
 bool read_triple(const char *text, double numbers[3]) {
   if (text == NULL) return true;
   char copy[128];

@@ -1,5 +1,5 @@
-/* server/requests.c - requests: checked, collected, answered. libmicrohttpd gives each connection a thread.
- */
+/* server/requests.c - requests are checked, collected and answered. libmicrohttpd gives each connection a
+ * thread. */
 #define _GNU_SOURCE
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,18 +11,17 @@
 
 /* A request whose body is still arriving. */
 typedef struct request {
-  bool refused; /* it was refused before its body was read */
+  bool refused; /* the request was refused before its body was read */
   const char *path;
   char *body; /* owned; [length] */
   size_t length, capacity;
   bool uploads;
-  server_upload upload; /* of a file that arrives in the body */
+  server_upload upload; /* the file that arrives in the body */
 } request;
 
 static const char plain[] = "text/plain; charset=utf-8";
 
-/* Adds the headers of every answer: nothing is cached or shared, and the page runs nothing but its own files.
- */
+/* The headers of every answer: nothing is cached or shared, and the page runs only its own files. */
 static const char *const headers[][2] = {
     {"Content-Security-Policy",
      "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src "
@@ -98,14 +97,14 @@ static enum MHD_Result find_zero(void *found, enum MHD_ValueKind kind, const cha
   return zero ? MHD_NO : MHD_YES;
 }
 
-/* Whether the query holds a zero byte, which would cut a name short. */
+/* Whether the query holds a zero byte, which would cut a name off. */
 static bool has_zero(struct MHD_Connection *connection) {
   bool found = false;
   MHD_get_connection_values_n(connection, MHD_GET_ARGUMENT_KIND, find_zero, &found);
   return found;
 }
 
-/* A file that is dropped: its name, and room for it. */
+/* Checks the upload of a file that was dropped: its name, and whether there is room for it. */
 static unsigned check_upload(const server *s, struct MHD_Connection *connection, request *r,
                              const char **line) {
   const char *name = query(connection, "name");
@@ -120,7 +119,7 @@ static unsigned check_upload(const server *s, struct MHD_Connection *connection,
   return length != NULL && strtoull(length, NULL, 10) > r->upload.room ? 413 : 0;
 }
 
-/* The HTTP status of a refused request, with its error line; 0: the request is allowed. */
+/* The HTTP status of a refused request, and its error line; 0: the request is allowed. */
 static unsigned check(const server *s, struct MHD_Connection *connection, const char *method, const char *url,
                       request *r, const char **line) {
   const char *host = header(connection, "Host"), *length = header(connection, "Content-Length");
@@ -168,7 +167,7 @@ static void answer_problem(server_answer *answer, unsigned status, const char *l
   snprintf(answer->problem, sizeof answer->problem, "%s", line);
 }
 
-/* Owns text, which is null for lack of memory. */
+/* Takes ownership of the text. A null text stands for a lack of memory. */
 static void answer_json(server_answer *answer, char *text) {
   if (text == NULL) {
     answer_problem(answer, 500, "out of memory\n");
@@ -264,7 +263,7 @@ static void answer_get(server *s, struct MHD_Connection *connection, const char 
   else answer_asset(s, path, answer);
 }
 
-/* A whole number of the query, from low to high; `standard` if it is absent, -1 if it is anything else. */
+/* A whole number from the query, from low to high; `standard` if it is absent, -1 if it is anything else. */
 static long long query_number(struct MHD_Connection *connection, const char *name, long long low,
                               long long high, long long standard) {
   const char *text = query(connection, name);
@@ -312,7 +311,7 @@ static bool names_page(const frame_request *wanted) {
   return is_page_name(wanted->page) && wanted->number > 0 && wanted->number <= MOST_NUMBER;
 }
 
-/* What is drawn over pictures is drawn with 8 bits per channel. */
+/* Overlays are drawn with 8 bits per channel. */
 static bool overlay_fits(const frame_request *wanted) {
   bool plain = wanted->scale_bar == 0 && wanted->legend == 0;
   return plain || (wanted->scale_bar >= 0 && wanted->legend >= 0 && strcmp(wanted->format, "png") == 0 &&
@@ -334,7 +333,7 @@ static void post_frame(server *s, struct MHD_Connection *connection, const reque
                    "&legend=0|1, &unit=TEXT)\n");
 }
 
-/* How deep lies what the middle of a small picture of the scene shows. */
+/* Answers with the depth of the place that the middle of a small picture of the scene shows. */
 static void post_depth(server *s, struct MHD_Connection *connection, const request *r,
                        server_answer *answer) {
   frame_request wanted = read_query(connection, r);
@@ -343,8 +342,8 @@ static void post_depth(server *s, struct MHD_Connection *connection, const reque
   else answer_problem(answer, 400, "a depth needs ?page=NAME&number=N (&opened=N)\n");
 }
 
-/* The place of the query's text in a list that ends with null; `standard` if it is absent, -1 if it is none.
- */
+/* The index of the query's text in a list that ends with null; `standard` if the text is absent, -1 if the
+ * list does not hold it. */
 static int query_choice(struct MHD_Connection *connection, const char *name, const char *const *choices,
                         int standard) {
   const char *text = query(connection, name);
@@ -354,7 +353,7 @@ static int query_choice(struct MHD_Connection *connection, const char *name, con
   return -1;
 }
 
-/* False: the query is no plane, or too large a one. */
+/* False: the query describes no plane, or too large a plane. */
 static bool read_slice(struct MHD_Connection *connection, slice_request *wanted) {
   static const char *const blends[] = {"maximum", "minimum", "mean", NULL};
   static const char *const sources[] = {"voxels", "mask", NULL}, *const ways[] = {"nearest", "linear", NULL};
@@ -403,7 +402,8 @@ static bool has_too_many_keys(struct MHD_Connection *connection) {
   return query(connection, name) != NULL;
 }
 
-/* Numbers that are none, and frames of a film with too many keys, are -1. */
+/* Reads a film's parameters. A number that cannot be read becomes -1, and so do the frames of a film with too
+ * many keys. */
 static film_request read_film(struct MHD_Connection *connection, const char *format) {
   film_request film = {.format = format};
   for (char name[8]; film.key_count < MOST_FILM_KEYS; film.key_count++) {
@@ -418,7 +418,7 @@ static film_request read_film(struct MHD_Connection *connection, const char *for
   return film;
 }
 
-/* The scene as it is, or at a frame of its film. */
+/* Answers with the scene, or with the scene at a frame of its film. */
 static void post_scene(server *s, struct MHD_Connection *connection, const request *r,
                        server_answer *answer) {
   frame_request wanted = read_query(connection, r);
@@ -454,7 +454,7 @@ static void post_cancel(server *s, struct MHD_Connection *connection, const requ
   else answer_problem(answer, 400, "?page=NAME&number=N is missing\n");
 }
 
-/* A page was closed, or shows another file: what is open for it ends. */
+/* A page was closed, or shows another file: ends everything that is open for it. */
 static void post_leave(server *s, struct MHD_Connection *connection, server_answer *answer) {
   const char *page = query(connection, "page");
   long long opened = query_number(connection, "opened", 0, MOST_NUMBER, 0);
@@ -477,7 +477,7 @@ static void post_open(server *s, struct MHD_Connection *connection, server_answe
   }
 }
 
-/* The folder of a dropped file holds nothing else. */
+/* Opens a dropped file. Its folder holds nothing else. */
 static void open_upload(server *s, const server_upload *upload, const char *name, server_answer *answer) {
   server_file file = {.name = name};
   if (hl_context_confine(s->options.context, upload->folder, &file.confined, NULL) == HL_OK)
@@ -493,7 +493,7 @@ static void post_upload(server *s, struct MHD_Connection *connection, request *r
   upload_end(&r->upload);
 }
 
-/* What a page has opened is added to its scene. */
+/* Adds the scene that a page has opened to the page's scene. */
 static void post_join(server *s, struct MHD_Connection *connection, const request *r, server_answer *answer) {
   frame_request wanted = read_query(connection, r);
   long long with = query_number(connection, "with", 1, MOST_NUMBER, 0);
@@ -557,7 +557,8 @@ static enum MHD_Result on_request(void *user_data, struct MHD_Connection *connec
     bool taken = !r->refused && (r->uploads ? upload_add(&r->upload, upload, *upload_size)
                                             : collect(r, upload, *upload_size));
     *upload_size = 0;
-    return taken ? MHD_YES : MHD_NO; /* a body larger than its header announced: the connection ends */
+    return taken ? MHD_YES : MHD_NO; /* where the body is larger than its header announced, the connection
+                                      * ends */
   }
   r->path = path_after_token(url, s->token);
   if (r->refused || r->path == NULL) return MHD_NO;

@@ -50,7 +50,8 @@ static bool make_token(char token[TOKEN_DIGITS + 1]) {
   return true;
 }
 
-/* The C library keeps freed memory for the thread that had it: of many threads, much. */
+/* Gives memory back to the system. The C library keeps freed memory for the thread that had it, which is much
+ * with many threads. */
 static void give_back_memory(server *s) {
   if (!atomic_exchange(&s->released, false)) return;
 #ifdef __GLIBC__
@@ -81,7 +82,7 @@ static bool serve(server *s, int listening, char *problem, size_t size) {
   s->options.ready(s->options.user_data, url);
   atomic_store(&s->announced, true);
   wait_for_stop(s);
-  MHD_stop_daemon(daemon); /* frames that are being rendered stop, as they are outdated now */
+  MHD_stop_daemon(daemon); /* frames that are being rendered are outdated by now, and stop */
   return true;
 }
 
@@ -100,7 +101,7 @@ bool server_run(const server_options *options, char *problem, size_t problem_siz
     good = first != NULL;
     if (good) opened_leave(s, first);
     s->next_opened = (long long)time(
-        NULL); /* a page that has outlived another viewer asks for none of these */
+        NULL); /* a page that has outlived another viewer asks for none of these files */
   }
   if (!good) snprintf(problem, problem_size, "out of memory for the viewer");
   if (good) listening = listen_on(options->port, problem, problem_size);
