@@ -1,4 +1,5 @@
-// Boxes of volumes: of their voxels' cells in their file's world, clipped or not, and their corners in the scene's.
+// Boxes of volumes: the boxes of their voxels' cells in the world of their files, clipped or not, and the
+// boxes' corners in the scene's world.
 
 import { add, rotate, normalize, scale, subtract } from "./vector.js";
 
@@ -21,14 +22,15 @@ export function placed(point, transform = {}) {
   return add(rotate(scaled, normalize(axis), (angle * Math.PI) / 180), transform.translate ?? [0, 0, 0]);
 }
 
-// The other way: a point of the scene in the volume's file.
+// The opposite: a point of the scene in the volume's file.
 export function unplaced(point, transform = {}) {
   const factor = transform.scale ?? 1, { axis = [0, 0, 1], angle_deg: angle = 0 } = transform.rotate ?? {};
   const turned = rotate(subtract(point, transform.translate ?? [0, 0, 0]), normalize(axis), (-angle * Math.PI) / 180);
   return turned.map((x, k) => x / (Array.isArray(factor) ? factor[k] : factor));
 }
 
-// The eight corners; bit k of the number of a corner says whether it has the least or the greatest of axis k.
+// The eight corners. Bit k of a corner's number says whether it has the least or the greatest coordinate of
+// axis k.
 export const corners = ({ min, max }) =>
   Array.from({ length: 8 }, (_, n) => [0, 1, 2].map((k) => ((n >> k) & 1 ? max[k] : min[k])));
 

@@ -1,9 +1,9 @@
 // The camera of a scene: how it turns, pans, zooms and rolls, and where it puts points of the world on the
-// screen. Every function takes the camera of the scene's JSON; those that move it return a new one.
+// screen. Every function takes the camera of the scene's JSON. A function that moves it returns a new camera.
 
 import { add, cross, dot, length, normalize, rotate, scale, subtract } from "./vector.js";
 
-const LARGEST_STEP = 1.5; // of one zoom, as a factor of the distance
+const LARGEST_STEP = 1.5; // greatest change of the distance by one zoom, as a factor
 
 // Unit axes: right, up, and towards the viewer.
 export function axes(camera) {
@@ -22,7 +22,8 @@ export function worldHeight(camera) {
   return 2 * distance(camera) * Math.tan((camera.fovy_deg * Math.PI) / 360);
 }
 
-// VTK's trackball: the eye goes about the target, right and up as angles; up is carried along.
+// VTK's trackball: the eye goes about the target by two angles, right and up; the camera's up is carried
+// along.
 export function turn(camera, azimuth, elevation) {
   const { right, up } = axes(camera);
   const arm = subtract(camera.position, camera.target);
@@ -35,15 +36,16 @@ export function roll(camera, angle) {
   return { ...camera, up: normalize(rotate(up, towards, angle)) };
 }
 
-// By fractions of the picture's height; what is seen moves right and up with positive ones.
+// Pans by fractions of the picture's height. With positive numbers the picture moves right and up.
 export function pan(camera, right, up) {
   const frame = axes(camera), height = worldHeight(camera);
   const move = add(scale(frame.right, -right * height), scale(frame.up, -up * height));
   return { ...camera, position: add(camera.position, move), target: add(camera.target, move) };
 }
 
-// factor > 1 comes nearer. The point of the target's plane under the cursor stays there: `cursor` is [right, up]
-// from the middle, in fractions of the picture's height. An eye that is as near to the target as `nearest` goes on, and takes the target along.
+// Zooms; with factor > 1 the eye comes nearer. The point of the target's plane under the cursor stays there:
+// `cursor` is [right, up] from the middle, in fractions of the picture's height. An eye that is as near to
+// the target as `nearest` goes on, and takes the target along.
 export function zoom(camera, factor, cursor = [0, 0], nearest = 0) {
   const step = Math.min(Math.max(factor, 1 / LARGEST_STEP), LARGEST_STEP);
   const part = 1 - 1 / step;
@@ -54,7 +56,8 @@ export function zoom(camera, factor, cursor = [0, 0], nearest = 0) {
   return { ...moved, position, ...(step > 1 && length(arm) / step < nearest ? { target: add(moved.target, ahead) } : {}) };
 }
 
-// Looks along the world's axis, from its positive or negative end, at the same target from the same distance.
+// Looks along an axis of the world, from its positive or negative end, at the same target and from the same
+// distance.
 export function lookAlong(camera, axis, sign) {
   const towards = [0, 0, 0];
   towards[axis] = sign;
@@ -62,8 +65,8 @@ export function lookAlong(camera, axis, sign) {
   return { ...camera, position: add(camera.target, scale(towards, distance(camera))), up };
 }
 
-// The camera for a picture of another shape, { width, height }: what fits into the largest square in the middle of one
-// fits into that of the other.
+// The camera for a picture of another shape, { width, height }. Everything in the largest square in the
+// middle of the old picture is in the same square of the new one.
 export function reshaped(camera, from, to) {
   const share = ({ width, height }) => Math.min(1, width / height);
   const factor = share(from) / share(to);
@@ -72,14 +75,14 @@ export function reshaped(camera, from, to) {
   return { ...camera, position: add(camera.target, scale(subtract(camera.position, camera.target), factor)) };
 }
 
-// A camera at `eye` that looks in a direction, and shows this part of the height.
+// A camera at `eye` that looks in a direction and shows this height.
 export function along(camera, eye, direction, part) {
   const moved = { ...camera, position: eye, target: add(eye, scale(direction, distance(camera))) };
   if (camera.type === "orthographic") return { ...moved, height: camera.height * part };
   return { ...moved, fovy_deg: (360 / Math.PI) * Math.atan(Math.tan((camera.fovy_deg * Math.PI) / 360) * part) };
 }
 
-// The other projection, with the same height at the target.
+// The other kind of projection, with the same height at the target.
 export function withType(camera, type) {
   const { position, target, up } = camera, height = worldHeight(camera);
   if (type === camera.type) return camera;

@@ -96,7 +96,7 @@ export function comparison({ store, channel, failed, find, report }) {
   store.listen(() => {
     if (asked === null || store.scene === asked) return;
     asked = null;
-    canvas.hidden = true; // it is of another view, until the picture has come to rest
+    canvas.hidden = true; // the canvas shows another view until the picture has come to rest
   });
   const choice = select({
     label: "Compare", choices: [["", "nothing"], ...CHOICES.map((name) => [name, NAMES[name]])], get: () => what,

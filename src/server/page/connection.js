@@ -1,14 +1,16 @@
-// The banner that says that the viewer does not answer, until it does: it is asked again and again, and at once by Retry.
+// The banner that says that the viewer does not answer. It stays until the viewer answers: the viewer is
+// asked again and again, and at once by Retry.
 
 import { button, make } from "./controls.js";
 
-// The viewer does not answer, or no longer to this page. A channel's requests fail with it.
+// The viewer does not answer, or it no longer knows this page. The requests of a channel fail with this
+// error.
 export class Lost extends Error {}
 
 const ASK_EVERY = 2000; // milliseconds
 
-// place: where the banner goes; onBack() is called when the viewer answers again. Returns failed(error), which takes any
-// error of a request, and end().
+// place: the element for the banner. onBack() is called when the viewer answers again. Returns failed(error),
+// which takes any error of a request, and end().
 export function watchConnection(place, channel, report, onBack) {
   const text = make("span"), retry = button("Retry", () => ask(), { class: "primary" });
   const banner = make("div", { class: "banner", role: "alert", hidden: true }, text, retry);

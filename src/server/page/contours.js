@@ -1,5 +1,6 @@
-// Isolines of a plane of values: marching squares (Lorensen and Cline 1987, in two dimensions), with the ends of each
-// piece where the value is reached on a cell's side by linear interpolation. Cells with a corner without a value have none.
+// Isolines of a plane of values: marching squares (Lorensen and Cline 1987, in two dimensions), where each
+// piece ends on the sides of a cell, at the places that have the value by linear interpolation. A cell in
+// which a corner has no value has no piece.
 
 // values: [height][width]. Returns pieces [x0, y0, x1, y1, ...] in columns and rows.
 export function contourPieces(values, width, height, level) {
@@ -20,7 +21,7 @@ export function contourPieces(values, width, height, level) {
       side(c, d, x + 1, y + 1, -1, 0);
       side(d, a, x, y + 1, 0, -1);
       if (ends.length === 4) pieces.push(...ends);
-      // A saddle: the mean in the middle says which corners belong together.
+      // At a saddle, the mean value in the middle says which corners belong together.
       else if ((a + b + c + d) / 4 >= level === a >= level) pieces.push(ends[0], ends[1], ends[2], ends[3], ends[4], ends[5], ends[6], ends[7]);
       else pieces.push(ends[6], ends[7], ends[0], ends[1], ends[2], ends[3], ends[4], ends[5]);
     }

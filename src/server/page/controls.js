@@ -1,6 +1,6 @@
 // The small pieces that panels are made of: rows of a label and a control, which follow the scene.
 
-// An element with attributes; those that begin with "on" are listeners. Children are elements or texts.
+// An element with attributes. Attributes that begin with "on" are listeners. Children are elements or texts.
 export function make(tag, attributes = {}, ...children) {
   const element = tag.startsWith("svg:") ? document.createElementNS("http://www.w3.org/2000/svg", tag.slice(4))
                                          : document.createElement(tag);
@@ -13,7 +13,7 @@ export function make(tag, attributes = {}, ...children) {
   return element;
 }
 
-// Whether the keyboard is with the element, in a notebook's shadow tree too.
+// Whether the element has the keyboard's focus, also in a notebook's shadow tree.
 export const isActive = (element) => element.getRootNode().activeElement === element;
 
 let identifiers = 0;
@@ -22,7 +22,7 @@ const newId = () => `control-${++identifiers}`;
 // label: an element, or "" for a row without a name.
 export const row = (label, ...controls) => make("div", { class: "row" }, label || make("span"), ...controls);
 
-// Numbers as people read them: three or four digits that matter.
+// Numbers for people: with three or four significant digits.
 export function shortNumber(value) {
   if (value === 0) return "0";
   const size = Math.abs(value);
@@ -30,14 +30,16 @@ export function shortNumber(value) {
   return String(+value.toPrecision(size >= 1000 ? 5 : 3));
 }
 
-// A button that adds a key of numbers of the scene to the film, seen while the panel of films is open (film_panel.js listens).
+// A button that adds a key for numbers of the scene to the film. It is seen while the panel of films is open
+// (film_panel.js listens).
 export const keyButton = (label, path) => make("button", {
   type: "button", class: "key-here", title: "Key of the film: this number at the chosen frame", "aria-label": `Add a key of ${label}`,
   onclick: (event) => event.currentTarget.dispatchEvent(new CustomEvent("halflight-key", { bubbles: true, detail: [path()].flat() })),
 }, "◆");
 
-// A slider with its number beside it. get() gives the value, set(value) takes it; exponential: the slider moves in
-// equal factors. path(): the path of the number in the scene, or a list of several, for keys of films. Returns { element, update }.
+// A slider with its number beside it. get() returns the value, and set(value) changes it. exponential: the
+// slider moves in equal factors. path(): for keys of films, the path of the number in the scene, or a list of
+// paths. Returns { element, update }.
 export function slider({ label, low, high, step = "any", unit = "", exponential = false, get, set, title, path }) {
   const toSlider = exponential ? Math.log : (x) => x, fromSlider = exponential ? Math.exp : (x) => x;
   const id = newId();
@@ -66,7 +68,7 @@ export function slider({ label, low, high, step = "any", unit = "", exponential 
   return { element: row(name, range, make("span", { class: "measure" }, number, make("span", { class: "unit" }, unit), ...(path ? [keyButton(label, path)] : []))), update };
 }
 
-// One of some choices, as buttons side by side: [[value, text], ...].
+// A choice of one among several, as buttons side by side: [[value, text], ...].
 export function segments({ label, choices, get, set }) {
   const name = newId();
   const inputs = choices.map(([value, text]) => {
@@ -78,7 +80,7 @@ export function segments({ label, choices, get, set }) {
   return { element: row(make("span", { class: "name" }, label), group), update };
 }
 
-// A drop-down list: [[value, text], ...], or { group, choices } in their place for a group of them with a name.
+// A drop-down list: [[value, text], ...]. An entry { group, choices } is a named group of choices.
 export function select({ label, choices, get, set, title }) {
   const id = newId(), option = ([value, text]) => make("option", { value }, text);
   const input = make("select", { id, title, onchange: () => set(input.value) },
@@ -104,7 +106,8 @@ export function button(text, action, attributes = {}) {
   return make("button", { type: "button", onclick: action, ...attributes }, text);
 }
 
-// Numbered things of which one is chosen, and buttons that add and remove one. count(), chosen(): how many, and which.
+// A row of numbered things, one of which is chosen, with buttons that add and remove one. count(): their
+// number; chosen(): the index of the chosen one.
 export function tabs({ label, noun, count, chosen, choose, add, remove }) {
   const list = make("span", { role: "tablist", "aria-label": label });
   const more = button("+", add, { title: `Add: ${noun}`, "aria-label": `Add: ${noun}` });
@@ -121,7 +124,7 @@ export function tabs({ label, noun, count, chosen, choose, add, remove }) {
   return { element: make("div", { class: "tabs" }, list, more, less), update };
 }
 
-// A part of the side bar that folds. Returns { element, body }.
+// A part of the side bar that can be folded. Returns { element, body }.
 export function section(title, open = true) {
   const body = make("div", { class: "section-body" });
   const element = make("details", { class: "section", open }, make("summary", {}, title), body);

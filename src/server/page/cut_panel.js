@@ -1,5 +1,6 @@
-// The panels of a volume's cuts and of the scene's, which cut all volumes: planes, boxes and spheres, each with its numbers and
-// a switch. A cut that is switched off is not in the scene; the panel remembers it.
+// The panels of the cuts of a volume, and of the cuts of the scene, which cut all volumes. Cuts are planes,
+// boxes and spheres; each has its numbers and a switch. A cut that is switched off is not in the scene, but
+// the panel remembers it.
 
 import { corners, middle, placed, unplaced, worldBox } from "./boxes.js";
 import { button, isActive, make, row, section, segments, select, shortNumber, tabs, toggle } from "./controls.js";
@@ -7,7 +8,7 @@ import { add, subtract } from "./vector.js";
 
 const PARTS = { plane: [["point", "Point"], ["normal", "Direction"]], box: [["min", "Least"], ["max", "Greatest"]], sphere: [["center", "Centre"], ["radius", "Radius"]] };
 
-// A new cut takes a part of the box that is seen from the front, above.
+// A new cut takes away the upper front part of the box.
 function newCut(type, box) {
   const at = middle(box), sides = box.max.map((end, k) => end - box.min[k]);
   if (type === "plane") return { type, point: at, normal: [1, 0, 0] };
@@ -48,11 +49,11 @@ function numbers({ label, noun, count, get, set }) {
 // is open, the chosen cut has handles in the picture.
 function panelOf({ title, noun, viewer: { overlay, report, slices }, owner, cuts: cutsNow, take: takeCuts, box, transform, others }) {
   const { element, body } = section(title, false);
-  let list = [], chosen = 0, parts = []; // list: { cut, on }, of the owner `of`
+  let list = [], chosen = 0, parts = []; // list: { cut, on } for each cut of the owner `of`
   let of = -1;
 
   const shown = (entries) => entries.filter((entry) => entry.on).map((entry) => entry.cut);
-  // The list follows what the scene says: another volume, undone changes.
+  // The list follows the scene when another volume is chosen or changes are undone.
   function follow() {
     const cuts = cutsNow();
     if (of === owner() && JSON.stringify(shown(list)) === JSON.stringify(cuts)) return false;
@@ -137,8 +138,8 @@ function panelOf({ title, noun, viewer: { overlay, report, slices }, owner, cuts
   return { element, update, updateView, rebuild: build };
 }
 
-// The switch of everything that is cut away: the cuts and clip boxes of all volumes and the scene's cuts. It says what the
-// program has cut by itself, below the picture too, where one click brings it back.
+// The switch for everything that is cut away: the cuts and clip boxes of all volumes, and the scene's cuts.
+// It also says, below the picture, what the program has cut away by itself; one click brings this back.
 export function cutSwitch(viewer) {
   const { store, start, find } = viewer;
   const cutsOf = ({ volumes, cuts }) => ({ volumes: volumes.map(({ cuts: own, clip }) => ({ cuts: own, clip })), cuts });
@@ -148,7 +149,7 @@ export function cutSwitch(viewer) {
     volumes: scene.volumes.map(({ cuts: __, clip: ___, ...volume }, n) => ({ ...volume, ...(volumes[n]?.cuts ? { cuts: volumes[n].cuts } : {}), ...(volumes[n]?.clip ? { clip: volumes[n].clip } : {}) })),
   });
   const chosen = start.volumes.reduce((count, about, n) => count + (about?.chosen_cuts ? start.scene.volumes[n].cuts.length : 0), 0);
-  let away = null; // what the switch has taken off
+  let away = null; // the cuts that the switch has taken off
   function set(on) {
     if (on && away !== null) store.change("all cuts", (scene) => withCuts(scene, away));
     else if (!on) {

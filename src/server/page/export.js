@@ -1,18 +1,18 @@
-// Out of the viewer: the picture, the scene, the command that renders it.
+// Ways out of the viewer: the picture, the scene, and the command that renders it.
 
 import { reshaped } from "./camera.js";
 import { button, isActive, make, row, section, select } from "./controls.js";
 
-// A title without the endings of a file's name: those of a packing and of a format.
+// A title without the endings of a file name: the ending of a packing and the ending of a format.
 export const stem = (title) => title.replace(/(?<=.)\.(gz|bz2|xz|zst)$/i, "").replace(/(?<=.)\.[a-z][a-z0-9]*$/i, "") || "picture";
 
-// Shell words in single quotes where they need any.
+// Words for a shell, in single quotes where they need quotes.
 export const quoted = (word) => (/^[\w./+:=-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
 
-// A file of the title, which no program takes for an option.
+// A file named after the title; no program takes the name for an option.
 export const fileWord = (title, ending) => quoted(`${stem(title)}${ending}`.replace(/^-/, "./-"));
 
-// The scene file's text: what `halflight render` takes.
+// The text of the scene file, which `halflight render` takes.
 export const sceneText = (scene) => JSON.stringify(scene, null, 2) + "\n";
 
 // A command that needs nothing beside it but the scene's volumes: the scene is its standard input.
@@ -37,7 +37,7 @@ export function download(blob, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
-// Returns the function that puts a text into the clipboard, or where that is not allowed into a file.
+// Returns a function that puts a text into the clipboard or, where this is not allowed, into a file.
 export function copier(report, title) {
   return async (text, what) => {
     try {
@@ -61,7 +61,7 @@ export function exportPanel({ store, start, channel, report, failed, copy }) {
     label: "Format", choices: [["png", "PNG"], ["png16", "PNG, 16 bits"], ["exr", "EXR, linear float"]],
     get: () => format, set: (value) => { format = value; update(); },
   });
-  // Sides by what the picture is for: multiples of what is seen, or a width in print.
+  // The picture's sides by its purpose: multiples of the shown size, or a width in print.
   const sizes = select({
     label: "For", choices: [["", "these pixels"], ["1", "as seen"], ["2", "twice as seen"], ["4", "four times as seen"], ["8.5cm", "8.5 cm at 300 dpi"], ["17cm", "17 cm at 300 dpi"]],
     get: () => "", set: (choice) => {
@@ -83,7 +83,7 @@ export function exportPanel({ store, start, channel, report, failed, copy }) {
   const bar = box("Scale bar", "scale-bar"), legend = box("Legend", "legend"), unknown = make("p", { class: "facts", id: "no-unit" });
   const same = make("p", { class: "facts" });
   bar.input.setAttribute("aria-describedby", "no-unit");
-  const drawsOver = () => channel.drawsOver === true && format === "png"; // they are drawn with 8 bits
+  const drawsOver = () => channel.drawsOver === true && format === "png"; // overlays are drawn with 8 bits
   // Whether the file of a visible volume does not tell the unit of its lengths.
   const isUnitless = () => start.volumes.some((volume, v) => volume?.unit === null && store.scene.volumes[v]?.visible !== false);
   const given = () => (isUnitless() ? String(store.page.unit ?? "") : "");
@@ -96,7 +96,8 @@ export function exportPanel({ store, start, channel, report, failed, copy }) {
     const scene = structuredClone(store.scene), image = scene.image, seen = { width: image.width, height: image.height };
     image.width = Math.round(+width.value) || image.width;
     image.height = Math.round(+height.value) || image.height;
-    scene.camera = reshaped(scene.camera, seen, image); // what is seen is in the picture, whatever its shape
+    // The seen part is in the picture, whatever the picture's shape is.
+    scene.camera = reshaped(scene.camera, seen, image);
     if (transparent.checked) [image.background_transparent, image.background_sky] = [true, false];
     save.disabled = true;
     report(`rendering ${image.width} × ${image.height} …`);

@@ -1,12 +1,13 @@
-// The panel of films: a turn, and keys of the camera and of numbers of the scene, which the timeline shows. The film is
-// what `halflight animate` makes; "Pictures" are numbered PNGs in a zip archive, which need no ffmpeg.
+// The panel of films. A film has a turn, and keys for the camera and for numbers of the scene, which the
+// timeline shows. `halflight animate` makes the same film. "Pictures" are numbered PNGs in a zip archive,
+// which need no ffmpeg.
 
 import { button, make, row, section, select, toggle } from "./controls.js";
 import { download, fileWord, quoted, sceneText, stem } from "./export.js";
 import { CAMERA, keyTexts, withKey } from "./timeline.js";
 import { timelineStrip } from "./timeline_strip.js";
 
-const ASK_EVERY = 300; // milliseconds, for how far the film is
+const ASK_EVERY = 300; // milliseconds between questions for the film's progress
 
 // The paths of all numbers of a scene, as keys name them.
 export function numberPaths(value, path = "") {
@@ -25,8 +26,8 @@ function timeLeft(seconds) {
   return seconds < 90 ? `${Math.ceil(seconds)} s` : `${Math.ceil(seconds / 60)} min`;
 }
 
-// The film that is being put together: its tracks and length, the frame that the page shows, and the scene without what
-// that frame does to it.
+// The film that a person makes: its tracks and length, the frame that the page shows, and the scene without
+// the changes of this frame.
 class Film {
   tracks = [];
   frames = 120;
@@ -38,7 +39,7 @@ class Film {
   scene;
   changed = () => {};
   #viewer;
-  #edits = 0; // changes by a person; a window of another size is none
+  #edits = 0; // number of changes by a person; a new window size is none
   #asking = false;
   #again = false;
 
@@ -48,7 +49,7 @@ class Film {
     viewer.store.listen((scene, name) => this.#follow(scene, name));
   }
 
-  // A turn goes out from the camera that a person has chosen, not from where the turn has taken it.
+  // A turn starts from the camera that a person has chosen, not from the place where the turn has taken it.
   #follow(scene, name) {
     if (name === "time") return;
     if (name !== "size") {
@@ -70,7 +71,7 @@ class Film {
     this.changed();
   }
 
-  // Shows a frame; of those that are asked for meanwhile the last one.
+  // Shows a frame. Of frames that are asked for meanwhile, only the last one is shown.
   async show(frame) {
     this.set({ frame });
     this.#again = true;
@@ -102,7 +103,7 @@ class Film {
   }
 }
 
-// The buttons that make the film, its progress and an end.
+// The buttons that make the film, its progress, and a button that ends it.
 function maker(film, { start, channel }) {
   const bar = make("progress", { max: 1, value: 0, hidden: true, "aria-label": "The film" }), told = make("p", { class: "facts", role: "status" });
   const go = button("make film", run, { class: "primary" }), stop = button("stop", () => channel.stopFilm(), { hidden: true });

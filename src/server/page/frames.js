@@ -1,30 +1,31 @@
-// Frames: which picture is asked for next, and how good it is.
-//
-// While something moves, quick pictures follow each other, each asked for when the last one has come. Their size is what
-// fits into a frame's time, down to LEAST_PIXELS; where that takes too long their sheets are wider, and their volumes
-// coarser: the channel takes volumes whose voxels are about as long as the sheets are apart, so that thin surfaces stay whole.
-// At rest a picture of full size follows, as fine as fits into half a second; then the exact one, which is what
-// `halflight render` makes of the same scene.
+// Frames: chooses the next picture, and its quality. While something moves, quick pictures follow each other;
+// each is asked for when the last one has come. Their size fits into the time of a frame, but is at least
+// LEAST_PIXELS. Where such a picture takes too long, its sheets are wider and its volumes coarser. The
+// channel then takes volumes whose voxels are about as long as the sheets are apart, so that thin surfaces
+// stay whole. At rest a picture of full size follows, as fine as fits into half a second. Then the exact
+// picture follows, which is the one that `halflight render` makes of the same scene.
 
 import { worldHeight } from "./camera.js";
 import { length } from "./vector.js";
 
-const BUDGET = 1000 / 20; // milliseconds of a frame while something moves
-const REST_AFTER = 120; // milliseconds without a change
-const SETTLED_WITHIN = 350; // milliseconds for the first picture of full size, so that it is there half a second after
-const LEAST_PIXELS = 480 * 320; // of a picture while something moves, where the full one has more
-const WIDEST = 8; // voxels between sheets while something moves, at most: the coarsest volumes have voxels of this length
-const SOON_PREPARED = 128 ** 3; // voxels that are prepared in a few tenths of a second
-const SHADOW_PIXELS = 0.5; // of a moving picture's longer side, along that of a shadow buffer
-const ADAPTION = 0.6; // how much of an error in time one frame corrects, as an exponent
+const BUDGET = 1000 / 20; // milliseconds for a frame while something moves
+const REST_AFTER = 120; // milliseconds without a change, after which the scene is at rest
+// Milliseconds for the first picture of full size, so that it is there half a second after the last change.
+const SETTLED_WITHIN = 350;
+const LEAST_PIXELS = 480 * 320; // least size of a picture while something moves, if the full picture has more
+// The most voxels between sheets while something moves: the coarsest volumes have voxels of this length.
+const WIDEST = 8;
+const SOON_PREPARED = 128 ** 3; // number of voxels that are prepared in a few tenths of a second
+const SHADOW_PIXELS = 0.5; // the longer side of a shadow buffer, as a part of a moving picture's longer side
+const ADAPTION = 0.6; // exponent: the part of an error in time that one frame corrects
 
-// How far the sheets of the first picture are apart, so that the volumes of this picture are soon prepared.
+// The distance of the first picture's sheets, such that the volumes of this picture are soon prepared.
 function firstSpacing(volumes) {
   const voxels = volumes.reduce((sum, { dimensions: [i, j, k] }) => sum + i * j * k, 0);
   return Math.min(Math.max(Math.cbrt(voxels / SOON_PREPARED), 1.5), WIDEST);
 }
 
-// Sides that are multiples of 16 render without a copy.
+// Pictures whose sides are multiples of 16 are rendered without a copy.
 const rounded = (side) => Math.max(16, Math.round(side / 16) * 16);
 
 export class Frames {
@@ -37,9 +38,9 @@ export class Frames {
   #ended = false;
   #generation = 0;
   #timer = 0;
-  #work; // pixels, for sheets a voxel apart, that take as long as the budget
+  #work; // number of pixels, with sheets a voxel apart, that take as long as the budget
   #voxels;
-  #scene = null; // what the newest picture is, or will be, of
+  #scene = null; // the scene that the newest picture shows, or will show
   #animation = null; // { change, began, milliseconds }
   statistics = { previews: 0, cancelled: 0, finals: 0, stage: "start" };
 
@@ -51,10 +52,11 @@ export class Frames {
     this.#channel = channel;
     this.#canvas = canvas;
     this.#report = report;
-    store.listen((scene) => { if (scene !== this.#scene) this.move(); }); // marks and layouts change no picture
+    // Marks and layouts change no picture.
+    store.listen((scene) => { if (scene !== this.#scene) this.move(); });
   }
 
-  // No more frames are asked for.
+  // Asks for no more frames.
   end() {
     this.#ended = true;
     this.#changed = false;
@@ -63,7 +65,7 @@ export class Frames {
     clearTimeout(this.#timer);
   }
 
-  // Something has changed.
+  // Tells that something has changed.
   move() {
     if (this.#ended) return;
     this.#scene = this.#store.scene;
@@ -71,20 +73,20 @@ export class Frames {
     this.#changed = true;
     this.#generation++;
     clearTimeout(this.#timer);
-    this.#tell("moving", this.#scene, performance.now(), null); // the picture is no longer of this scene
+    this.#tell("moving", this.#scene, performance.now(), null); // the picture no longer shows this scene
     if (this.statistics.stage === "refining") this.statistics.cancelled++;
     this.statistics.stage = "moving";
     if (!this.#busy) this.#preview();
   }
 
-  // Shows change(scene, part) in place of the scene, for a part from 0 to 1 that grows for this long, or until something
-  // changes.
+  // Shows change(scene, part) instead of the scene. The part grows from 0 to 1 in this time, or until
+  // something changes.
   animate(change, milliseconds) {
     this.move();
     this.#animation = { change, began: performance.now(), milliseconds };
   }
 
-  // A frame of the animation; the scene itself where there is none, or no more.
+  // A frame of the animation; the scene itself where there is no animation, or where it has ended.
   #animated(scene) {
     if (this.#animation === null) return scene;
     const { change, began, milliseconds } = this.#animation, part = (performance.now() - began) / milliseconds;
@@ -97,7 +99,7 @@ export class Frames {
     return { width, height, pixels: width * height };
   }
 
-  // The scene in a picture of about so many pixels with sheets this far apart, at least.
+  // The scene in a picture of about this many pixels, with sheets at least this far apart.
   #scaled(pixels, spacing) {
     const scene = this.#store.scene, full = this.#full();
     const factor = Math.min(1, Math.sqrt(pixels / full.pixels));
@@ -134,13 +136,13 @@ export class Frames {
     this.#timer = setTimeout(() => this.#refine(this.#generation), REST_AFTER);
   }
 
-  // How much work fits into the budget, by how long the last picture took.
+  // Adapts the work that fits into the budget to the time that the last picture took.
   #learn(milliseconds) {
     const factor = Math.min(Math.max(BUDGET / milliseconds, 0.25), 2) ** ADAPTION, full = this.#full().pixels;
     this.#work = Math.min(Math.max(this.#work * factor, Math.min(LEAST_PIXELS, full) / WIDEST), full);
   }
 
-  // How many voxels a pixel of a picture of this many pixels is long, at the target.
+  // The length of a pixel at the target, in voxels, in a picture of this many pixels.
   #voxelsInPixel(pixels) {
     const { camera, volumes, image } = this.#store.scene;
     const scale = volumes.map(({ transform }) => [transform?.scale ?? 1].flat().map(Math.abs));
@@ -148,8 +150,9 @@ export class Frames {
     return worldHeight(camera) / voxel / Math.sqrt((pixels * image.height) / image.width);
   }
 
-  // Pixels before sheets: a picture gets smaller first, and then its sheets wider. Sheets are no closer than pixels: the
-  // renderer averages several samples where voxels are smaller than pixels, and coarser volumes have done that already.
+  // A picture first gets smaller, and then its sheets get wider. Sheets are no closer than pixels: where
+  // voxels are smaller than pixels, the renderer averages several samples, and coarser volumes are averaged
+  // already.
   #affordable() {
     const full = this.#full().pixels, pixels = Math.min(Math.max(this.#work, LEAST_PIXELS), full);
     const scene = this.#scaled(pixels, Math.min(Math.max(pixels / this.#work, this.#voxelsInPixel(pixels), 1), WIDEST));

@@ -1,5 +1,6 @@
-// The drawing of a transfer function over the volume's histogram, and the pointer on it: points are dragged,
-// a click on the line or above the bars adds one, a double click or Delete removes it. Below are the colours.
+// The drawing of a transfer function over the volume's histogram, which the pointer changes: points are
+// dragged, a click on the line or above the bars adds one, a double click or Delete removes it. Below are the
+// colours.
 
 import { hexOf } from "./color.js";
 import { make, shortNumber } from "./controls.js";
@@ -7,7 +8,7 @@ import { blankContext, drawBars, drawValueAxis } from "./histogram.js";
 import { addPoint, addStop, colorAt, movePoint, moveStop, opacityAt, removePoint, removeStop } from "./transfer_function.js";
 
 const HEIGHT = 180, STRIP = 16, GAP = 20, MARGIN = 9; // pixels
-const GRIP = 10; // pixels within which a point is grabbed
+const GRIP = 10; // pixels from a point within which it is grabbed
 
 export class FunctionCanvas {
   element;
@@ -16,13 +17,13 @@ export class FunctionCanvas {
   #set;
   #histogram;
   #range;
-  #shown; // the values from the left edge to the right
+  #shown; // the values at the left and the right edge
   #selected = { kind: "point", index: 0 };
   onSelect = () => {};
 
-  // get() gives the transfer function, or undefined while labels or isosurfaces have taken its place, which another key may do in the
-  // middle of a drag; set(tf, name) takes a changed one. histogram: counts of equal bins over
-  // range.
+  // get() returns the transfer function. It is undefined while labels or isosurfaces replace it, which a key
+  // may bring about in the middle of a drag. set(tf, name) takes a changed function. histogram: counts of
+  // equal bins over range.
   constructor({ get, set, histogram, range }) {
     this.#get = get;
     this.#set = set;
@@ -41,7 +42,7 @@ export class FunctionCanvas {
     new ResizeObserver(() => this.draw()).observe(this.element);
   }
 
-  // The chosen point or colour: the last one where a function with fewer has come.
+  // The index of the chosen point or colour. Where a function with fewer points has come, it is the last one.
   get selected() {
     const { kind, index } = this.#selected, tf = this.#get(), rows = (kind === "point" ? tf?.opacity : tf?.color) ?? [];
     return { kind, index: Math.max(0, Math.min(index, rows.length - 1)) };
@@ -69,7 +70,7 @@ export class FunctionCanvas {
     return [event.clientX - box.left, event.clientY - box.top];
   }
 
-  // What is under the pointer: { kind, index }, or null.
+  // The point or colour under the pointer: { kind, index }, or null.
   #find(event) {
     const [x, y] = this.#place(event), tf = this.#get();
     if (y > HEIGHT - STRIP - MARGIN - GAP / 2) {
@@ -244,7 +245,7 @@ export class FunctionCanvas {
     context.beginPath();
     context.roundRect(MARGIN, top, this.#width, STRIP, 3);
     context.fill();
-    if (tf.color.length > 24) return; // a colormap's rows are too many to be handled one by one
+    if (tf.color.length > 24) return; // a colormap has too many rows to handle each of them
     tf.color.forEach(([value, ...color], index) => {
       const x = this.#x(value), chosen = this.selected.kind === "stop" && this.selected.index === index;
       if (x < 0 || x > this.#width + 2 * MARGIN) return;

@@ -1,4 +1,5 @@
-// The panel of a volume's transfer function: the drawing, the chosen point's numbers, colormaps and presets.
+// The panel of a volume's transfer function: the drawing, the numbers of the chosen point, colormaps and
+// presets.
 
 import { hexOf, linearOf } from "./color.js";
 import { button, color, isActive, make, row, section, select, slider } from "./controls.js";
@@ -44,7 +45,7 @@ function chosenPoint(canvas, get, set, range) {
   return { element: make("div", { class: "row chosen" }, make("label", { class: "inline" }, "value ", value), opacityLabel, shadeLabel), update };
 }
 
-// A function of one value has no range: its colours go over the volume's.
+// A function of one value has no range of its own: a colormap's colours go over the volume's range.
 const spread = ([low, high], range) => (high > low ? [low, high] : range);
 
 // Two numbers between which colours and opacities lie.
@@ -66,7 +67,8 @@ function rangeRow(get, set) {
   return { element: row(make("span", { class: "name" }, "Range"), make("span", { class: "pair" }, inputs[0], "to", inputs[1])), update };
 }
 
-// Presets for what the program takes the volume for come first. Values of a scan that reach below those of fat are Hounsfield units.
+// Presets for the kind of volume that the program has found come first. Values of a scan that reach below the
+// values of fat are Hounsfield units.
 const SUITED = { "scanned brain": /^mr-/, "smoke or cloud": /^smoke/, field: /^electron/ };
 const LEAST_OF_MR = -500;
 
@@ -83,11 +85,13 @@ export function functionPanel({ store, start, current, channel, failed }) {
   const get = () => volume().transfer_function;
   const set = (tf, name = "") =>
     store.changeVolume(current.volume, `function ${name}`, (changed) => ({ ...changed, transfer_function: tf }));
-  const named = new Map(); // by the text of a function: the preset that it is
-  const before = new Map(); // by volume: the function of the value alone that *by gradient* has replaced
+  const named = new Map(); // the preset that has a function, by the function's text
+  // For each volume: the function of the value alone that *by gradient* has replaced.
+  const before = new Map();
   let parts = [], ofTwo = false;
 
-  // A preset's points are the program's own: the scene with the preset is sent, and comes back with them.
+  // The points of a preset are the program's own: the scene with the preset is sent, and comes back with its
+  // points.
   async function applyPreset(name) {
     const volumes = store.scene.volumes.map((v, n) => {
       if (n !== current.volume) return v;

@@ -1,4 +1,5 @@
-// Small pictures of what is open with each of some choices, made while the picture rests; a click takes one.
+// Small pictures of the open scene with each of some choices. They are made while the picture rests; a click
+// takes one.
 
 import { reshaped } from "./camera.js";
 import { make } from "./controls.js";
@@ -6,13 +7,14 @@ import { make } from "./controls.js";
 const SIDES = { width: 112, height: 80 }; // pixels
 const STEP = 2; // voxels between sheets
 
-// The small pictures of all galleries are made in turn, by one lane of the channel: the viewer has one renderer for them, which ends with
-// the last one. Returns a function of a scene, which asks as a channel's fetchFrame() does.
+// The small pictures of all galleries are made in turn, by one lane of the channel. The viewer has one
+// renderer for them, which ends with the last picture. Returns a function of a scene, which asks for a
+// picture as a channel's fetchFrame() does.
 export function smallPictures(channel) {
   let last = Promise.resolve();
   return (scene) => {
     const picture = last.then(() => channel.fetchFrame(scene, { quality: 85, moving: true, lane: "-small" }));
-    last = picture.catch(() => {}); // whoever asked for it is told
+    last = picture.catch(() => {}); // the caller that has asked for the picture is told
     return picture;
   };
 }
@@ -27,7 +29,7 @@ export function gallery({ label, names, viewer: { store, smallPicture, failed, f
     return make("button", { type: "button", class: "choice", "aria-pressed": "false", onclick: () => choose(name) }, canvas, make("span", {}, name));
   });
   const element = make("div", { class: "gallery", role: "group", "aria-label": label }, ...buttons);
-  let busy = false, drawn = 0; // number of the pictures that are there
+  let busy = false, drawn = 0; // drawn: number of the pictures that are there
 
   async function choose(name) {
     try {
@@ -61,7 +63,7 @@ export function gallery({ label, names, viewer: { store, smallPicture, failed, f
     try {
       while (drawn < names.length && isResting()) if (await draw(names[drawn])) drawn++;
     } catch {
-      drawn = names.length; // the names do without pictures
+      drawn = names.length; // the names are enough without pictures
     }
     busy = false;
     delete element.dataset.busy;

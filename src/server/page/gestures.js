@@ -1,5 +1,5 @@
-// Where a gesture begins and ends: from the first pointer or key that goes down to the last that comes up. What changes
-// between is one step of the history.
+// Where a gesture begins and ends. It lasts from the first pointer or key that goes down to the last one that
+// comes up. Everything that changes in between is one step of the history.
 
 // root: the viewer's element.
 export function followGestures(root, store, signal) {
@@ -15,7 +15,8 @@ export function followGestures(root, store, signal) {
     if (down.size === 0) store.beginGesture();
     down.add(key);
   };
-  // What listeners of the event's target do belongs to the gesture: it ends after them, or when the next one begins.
+  // Changes by listeners of the event's target belong to the gesture: it ends after them, or when the next
+  // gesture begins.
   const endSoon = (key) => {
     if (!down.has(key)) return;
     ending.add(key);
@@ -26,7 +27,7 @@ export function followGestures(root, store, signal) {
   listen(root, ["click"], () => { begin("click"); endSoon("click"); });
   listen(root, ["keydown"], (event) => begin(`key ${event.code || event.key}`));
   listen(window, ["keyup"], (event) => endSoon(`key ${event.code || event.key}`));
-  // A field is left, or a picker of colours closed.
+  // A field is left, or a colour picker is closed.
   listen(root, ["change"], () => { begin("change"); endSoon("change"); });
   listen(window, ["blur"], () => { down.clear(); ending.clear(); store.endGesture(); });
 }

@@ -1,9 +1,10 @@
-// A volume's histogram: bars whose heights are logarithms, so that rare values are seen beside common ones, and the values below them.
+// A volume's histogram: bars whose heights are logarithms, so that rare values are seen beside common ones;
+// and the axis of values below them.
 
 import { shortNumber } from "./controls.js";
 
-// counts: of equal bins over range; x(value): where a value lies; left, right: of the plot; base: the bars' lower end;
-// height: of the tallest.
+// counts: of equal bins over range. x(value): the place of a value. left, right: of the plot. base: the bars'
+// lower end. height: of the tallest bar.
 export function drawBars(context, { counts, range, x, left, right, base, height }) {
   const most = Math.log1p(Math.max(...counts)), step = (range[1] - range[0]) / counts.length;
   context.beginPath();
@@ -16,10 +17,11 @@ export function drawBars(context, { counts, range, x, left, right, base, height 
   context.fill();
 }
 
-const TICK_ROOM = 46; // pixels from tick to tick, at least
+const TICK_ROOM = 46; // least number of pixels from tick to tick
 const TICK_LINE = 3;
 
-// The axis of values under a plot: ticks at round numbers of its range, with what they are. y: of the plot's lower end.
+// The axis of values under a plot: ticks at round numbers of its range, and the name of the values. y: of the
+// plot's lower end.
 export function drawValueAxis(context, { range: [low, high], x, left, right, y, color }) {
   const least = ((high - low) * TICK_ROOM) / (right - left), power = 10 ** Math.floor(Math.log10(least));
   const step = [1, 2, 5, 10].map((n) => n * power).find((size) => size >= least * 0.9999999);
@@ -37,7 +39,7 @@ export function drawValueAxis(context, { range: [low, high], x, left, right, y, 
   }
 }
 
-// A canvas made as large as it is shown, emptied; null: it is not shown.
+// A canvas, emptied and as large as it is shown; null: it is not shown.
 export function blankContext(canvas, width, height) {
   const density = devicePixelRatio || 1;
   if (width === 0) return null;

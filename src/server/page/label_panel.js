@@ -1,10 +1,10 @@
-// The panel of a label map's labels, or of those of a volume's mask: an eye, a colour, a name and an opacity each. The
-// volume is the chosen one, or else the first that has labels.
+// The panel of the labels of a label map, or of a volume's mask. Each label has an eye, a colour, a name and
+// an opacity. The volume is the chosen one, or else the first volume that has labels.
 
 import { hexOf, linearOf } from "./color.js";
 import { button, isActive, make, row, section, slider } from "./controls.js";
 
-const MANY = 12; // labels, above which they can be searched
+const MANY = 12; // number of labels above which they can be searched
 
 const nameOf = (label) => label.name ?? `label ${label.value}`;
 
@@ -24,7 +24,7 @@ function labelRow({ get, change, alone }) {
   let drawn = null;
   function update() {
     const label = get();
-    if (label === drawn) return; // of hundreds of rows one changes
+    if (label === drawn) return; // of hundreds of rows only one changes
     drawn = label;
     eye.setAttribute("aria-pressed", String(label.visible !== false));
     shade.value = hexOf(label.color);
@@ -51,7 +51,7 @@ export function labelPanel({ store, current, report }) {
     else store.changeVolume(index(), `labels ${name}`, (v) => ({ ...v, labels: v.labels.map(change) }));
   }
 
-  // A mask's label has the volume's own colour until it is given one.
+  // A label of a mask has the volume's own colour until it is given one.
   function change(number, name, part) {
     const tinted = mask() && part.color ? { ...part, tint: 1 } : part;
     const changed = labels().map((label, n) => (n === number ? { ...label, ...tinted } : label));

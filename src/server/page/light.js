@@ -28,12 +28,12 @@ function toWorld(vector, camera) {
   return add(add(scale(right, vector[0]), scale(up, vector[1])), scale(towards, vector[2]));
 }
 
-// From the target to the light in the light's own axes; not of unit length.
+// The vector from the target to the light in the light's own axes; it need not have unit length.
 function arm(light, camera) {
   return light.type === "directional" ? scale(light.direction, -1) : subtract(center(light), pivot(light, camera));
 }
 
-// The unit direction from the target to the light: right, up, towards the viewer.
+// The unit direction from the target to the light: components to the right, up, and towards the viewer.
 export function directionOf(light, camera) {
   const towards = normalize(arm(light, camera));
   return isInCamera(light) ? towards : toCamera(towards, camera);
@@ -51,14 +51,15 @@ export function withDirection(light, camera, direction) {
   return moved;
 }
 
-// A direction as directionOf() gives it, turned to the right and up by so many steps of some degrees.
+// A direction as from directionOf(), turned to the right and up by a number of steps of some degrees.
 export function steppedDirection([right, up, towards], dx, dy, degrees) {
   const azimuth = Math.atan2(right, towards) + dx * degrees * radians;
   const elevation = Math.min(Math.max(Math.asin(Math.min(Math.max(up, -1), 1)) + dy * degrees * radians, -1.55), 1.55);
   return [Math.cos(elevation) * Math.sin(azimuth), Math.sin(elevation), Math.cos(elevation) * Math.cos(azimuth)];
 }
 
-// The scene with the first of its lights that cast shadows on the way to where it stands, from behind the left; part: from 0 to 1.
+// The scene with its first light that casts shadows on its way to its place, from behind the left; part: from
+// 0 to 1.
 export function sweptLight(scene, part) {
   const index = scene.lights.findIndex((light) => light.shadows !== "off");
   if (index < 0) return scene;
@@ -74,7 +75,7 @@ function reach(light) {
   return light.radius ?? 0;
 }
 
-// Degrees across, from the target.
+// The light's width in degrees, seen from the target.
 export function sizeOf(light, camera) {
   if (light.type === "directional") return light.angular_diameter_deg ?? 0;
   return (2 * Math.atan2(reach(light), length(arm(light, camera)))) / radians;
@@ -92,7 +93,7 @@ export function withSize(light, camera, degrees) {
   return { ...light, vertices: light.vertices.map((v) => add(middle, scale(subtract(v, middle), factor))) };
 }
 
-// The light in the other axes, where it stands and as it shines now.
+// The light in the other axes; it keeps its present place and brightness.
 export function withOtherFrame(light, camera) {
   const was = isInCamera(light), turn = (v) => (was ? toWorld(v, camera) : toCamera(v, camera));
   const point = (p) => (was ? add(camera.target, turn(p)) : turn(subtract(p, camera.target)));

@@ -5,10 +5,11 @@ import { color, keyButton, make, row, section, segments, select, slider, tabs, t
 import { gallery } from "./gallery.js";
 import { LARGEST_SIZE, newLight, sizeOf, withOtherFrame, withSize } from "./light.js";
 
-// Where a light's colour has been made so that its brightest part is 1: its strength is the intensity.
+// Sets a light's colour so that its brightest channel is 1; the light's strength is then its intensity.
 const shown = (light) => light.color.map((c) => c / Math.max(...light.color, 1e-9));
 
-// The rigs: lights and a sky by name. They begin from the light that the viewer began with, so that one after the other is as bright.
+// The rigs: lights and a sky by name. Each begins from the light that the viewer began with, so that all are
+// equally bright.
 function rigsOf(viewer) {
   const { store, start, channel, atRest } = viewer, { lights, sky, ambient } = start.scene;
   const told = (scene) => JSON.stringify([scene.lights, scene.sky]);

@@ -1,11 +1,12 @@
-// What a person has done as a short text, for the end of an address: how the scene, the marks and the layout differ from what
-// the viewer began with. It names no files: it fits any viewer of the same file.
+// A person's changes as a short text, for the end of an address: the differences of the scene, the marks and
+// the layout from their state when the viewer began. The text names no files, so it fits any viewer of the
+// same file.
 
 import { reshaped } from "./camera.js";
 import { isMark } from "./marks.js";
 
 const MARK = "#view=";
-const MOST_BYTES = 1 << 20; // of the text that a link unfolds to
+const MOST_BYTES = 1 << 20; // the most bytes of the text to which a link unfolds
 
 // A difference: { to: value }, { gone: 1 }, or { in: { key: difference } } of an object or an array of the same length; undefined: none, whatever the order of keys.
 export function difference(from, to) {
@@ -49,7 +50,7 @@ async function unpacked(word) {
   }
 }
 
-// In the size of the picture that the viewer began with, so that a link does not tell how large a window is.
+// The scene with the picture's size at the beginning, so that a link does not tell how large a window is.
 function comparable(store, start) {
   const { scene, marks, page: { bookmarks: _, ...page } } = store, { width, height } = start.scene.image;
   return { scene: { ...scene, camera: reshaped(scene.camera, scene.image, { width, height }), image: { ...scene.image, width, height } }, marks, page };
@@ -63,7 +64,7 @@ export async function linkOf(store, start) {
 
 export const isLink = (text) => text.includes(MARK);
 
-// Shows what a link tells, as one step. Throws where it is no link, or does not fit what is open.
+// Shows the state in a link, as one step. Throws where the text is no link, or does not fit the open scene.
 export async function follow(text, { store, start, channel }) {
   let told;
   try {

@@ -1,4 +1,4 @@
-// The panel of looks: what the program makes of the volume by name, each with a small picture.
+// The panel of looks: the program's looks for the volume by name, each with a small picture.
 
 import { section } from "./controls.js";
 import { gallery } from "./gallery.js";
@@ -6,10 +6,10 @@ import { difference } from "./link.js";
 
 const PROJECTION = "mip"; // the look that is no surface and no medium: its greys are a preset
 
-// The scene that a maximum projection can show: it has neither isosurfaces nor meshes.
+// The scene that a maximum projection can show: without isosurfaces and meshes.
 const projected = ({ meshes: _, ...scene }) => ({ ...scene, volumes: scene.volumes.map(({ iso: __, ...volume }) => ({ ...volume, transfer_function: { preset: PROJECTION } })) });
 
-// What a look says of a scene.
+// A text about a look of a scene.
 const seen = ({ camera: _, lights: __, sky: ___, ambient: ____, image: _____, ...rest }) => rest;
 
 export function lookPanel(viewer) {

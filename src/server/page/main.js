@@ -1,4 +1,4 @@
-// The page: a viewer over the whole window, of what the server has open, as this tab has left it.
+// The page: a viewer over the whole window that shows the server's open scene, as this tab has left it.
 
 import { HttpChannel } from "./http_channel.js";
 import { isLink } from "./link.js";
@@ -7,7 +7,8 @@ import { mount } from "./viewer.js";
 
 let channel = null, shown = { source: null, keeping: null };
 
-// Shows what is open, in place of what was. source: the path by which it was opened; kept: a session to go on with.
+// Shows the open scene, and replaces the viewer before. source: the path by which it was opened; kept: a
+// session to go on with.
 function show(start, source = null, kept = null) {
   globalThis.halflight?.end();
   shown.keeping?.abort();
@@ -22,7 +23,8 @@ function show(start, source = null, kept = null) {
   return viewer;
 }
 
-// Shows what a link at the end of the address tells, and takes it out of there: a reload goes on with what was done since.
+// Shows the state in a link at the end of the address, and removes it from there: a reload then goes on with
+// the changes since.
 function followAddress() {
   const { hash } = location;
   if (!isLink(hash)) return;
@@ -30,7 +32,8 @@ function followAddress() {
   globalThis.halflight.followLink(hash);
 }
 
-// Opens the file that a session is of, and goes on with it; false: it is not in the viewer's folder, or is another one.
+// Opens the file of a session, and goes on with the session. False: the file is not in the viewer's folder,
+// or is another file.
 async function reopen(session) {
   const opened = session.source === null ? null : await channel.open(session.source);
   if (opened === null || filesOf(opened.scene) !== filesOf(session.scene)) return false;
@@ -38,7 +41,8 @@ async function reopen(session) {
   return true;
 }
 
-// The file that the tab had open, with what was done; what the viewer began with where there is none.
+// Opens the file that the tab had open, with the changes; where there is none, the scene that the viewer
+// began with.
 async function begin() {
   const kept = keptSession(), first = new HttpChannel();
   if (kept?.source) {
@@ -55,7 +59,8 @@ async function begin() {
 
 addEventListener("hashchange", followAddress);
 addEventListener("pagehide", () => channel?.leave());
-addEventListener("pageshow", (event) => { if (event.persisted) location.reload(); }); // what it had is given back
+// The server has given back what the page had.
+addEventListener("pageshow", (event) => { if (event.persisted) location.reload(); });
 
 try {
   await begin();

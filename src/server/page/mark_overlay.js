@@ -1,4 +1,4 @@
-// Marks drawn over the picture and over slices, and the handles of their points.
+// The marks that are drawn over the picture and over slices, and the handles of their points.
 
 import { axes, projector, worldHeight } from "./camera.js";
 import { make } from "./controls.js";
@@ -7,7 +7,7 @@ import { PictureHandles } from "./picture_handles.js";
 import { add, scale } from "./vector.js";
 
 const HEAD = 9; // pixels of an arrow's head
-const KEY_REACH = 0.25; // of the height of what is shown, of which a key moves a fiftieth
+const KEY_REACH = 0.25; // fraction of the height of the shown area; a key moves a point by a fiftieth of it
 
 // The head of an arrow that points to [x, y].
 function head([fromX, fromY], [x, y]) {
@@ -15,7 +15,7 @@ function head([fromX, fromY], [x, y]) {
   return `M${x} ${y}L${x - dx - dy / 2} ${y - dy + dx / 2}M${x} ${y}L${x - dx + dy / 2} ${y - dy - dx / 2}`;
 }
 
-// The elements of a mark whose points are on the screen at `places`.
+// The elements of a mark, whose points lie on the screen at `places`.
 function drawn(mark, places, caption, className) {
   const path = places.map(([x, y], n) => `${n > 0 ? "L" : "M"}${x} ${y}`).join("") + (mark.kind === "arrow" && places.length === 2 ? head(...places) : "");
   const at = mark.kind === "ruler" && places.length === 2 ? [(places[0][0] + places[1][0]) / 2, (places[0][1] + places[1][1]) / 2]
@@ -27,7 +27,7 @@ function drawn(mark, places, caption, className) {
 export class Marks {
   #viewer;
   #picture;
-  #planes = new Map(); // by slice view: its handles
+  #planes = new Map(); // for each slice view: its handles
 
   constructor(viewer) {
     this.#viewer = viewer;
@@ -40,7 +40,7 @@ export class Marks {
     return { shapes, handles };
   }
 
-  // The marks, and the one that is being made.
+  // The marks, and the mark that is being made.
   get #all() {
     const { store, marking } = this.#viewer;
     return [...store.marks, ...(marking?.unfinished ? [marking.unfinished] : [])];
@@ -58,7 +58,7 @@ export class Marks {
     handles.draw(points, project, points[0]?.at ?? [0, 0, 0], width, height);
   }
 
-  // ways: the two directions of the screen in the scene, as long as KEY_REACH says.
+  // ways: the two directions of the screen in the scene, with the length of KEY_REACH.
   #handle(m, n, mark, point, ways) {
     const { store } = this.#viewer;
     return {
@@ -78,7 +78,7 @@ export class Marks {
     this.#draw(this.#picture, projector(store.scene.camera, width, height), [scale(right, reach), scale(up, reach)], width, height, () => "");
   }
 
-  // Marks of the plane, and fainter ones that only pass through it.
+  // The marks in the plane, and fainter the marks that only pass through it.
   drawPlane(view) {
     if (!this.#planes.has(view)) this.#planes.set(view, this.#makeLayer(view.marks));
     const { clientWidth: width, clientHeight: height } = view.area, project = (point) => view.project(point);

@@ -1,5 +1,5 @@
-// The panel of measuring: the tools, and the list of what has been measured and written. While a tool is chosen, clicks in the
-// picture and in slices are its points.
+// The panel of measuring: the tools, and the list of all marks. While a tool is chosen, clicks in the picture
+// and in slices set its points.
 
 import { button, isActive, make, section } from "./controls.js";
 import { captionOf, KINDS, measured } from "./marks.js";
@@ -8,7 +8,7 @@ import { length, subtract } from "./vector.js";
 export function markPanel(viewer) {
   const { store, root, slices } = viewer, { element, body } = section("Measure", false);
   let kind = null, points = [];
-  element.hidden = !viewer.channel.depth && !slices.available; // no click tells a place
+  element.hidden = !viewer.channel.depth && !slices.available; // without depths, no click tells a place
 
   const tools = Object.entries(KINDS).map(([name, { name: text }]) => button(text, () => choose(kind === name ? null : name), { "aria-pressed": "false", "data-kind": name }));
   const hint = make("p", { class: "facts", role: "status" }), list = make("ul", { class: "files marks", "aria-label": "Marks" });
@@ -20,17 +20,18 @@ export function markPanel(viewer) {
     store.setPage({});
   }
 
-  // Whether the point was taken.
+  // Adds a point; returns whether it was taken.
   function addPoint(point) {
     if (kind === null) return false;
-    if (points.length > 0 && length(subtract(point, points.at(-1))) === 0) return true; // the second click of two
+    // The second click of two.
+    if (points.length > 0 && length(subtract(point, points.at(-1))) === 0) return true;
     points = [...points, point];
     if (points.length === KINDS[kind].most) finish();
     else store.setPage({});
     return true;
   }
 
-  // A line that has points enough is done, and so is the tool.
+  // Ends a line that has enough points, and ends the tool.
   function finish() {
     if (kind === null) return;
     const made = points.length >= KINDS[kind].least ? { kind, points, text: kind === "text" ? "Text" : "" } : null;
@@ -42,7 +43,7 @@ export function markPanel(viewer) {
     if (wasText) list.querySelector("li:last-child input").select();
   }
 
-  // What other files ask of the tool.
+  // The functions of the tool for other files.
   viewer.marking = {
     addPoint, finish, cancel: () => choose(null), get isMaking() { return kind !== null; },
     get unfinished() { return points.length > 0 ? { kind, points, text: "" } : null; },

@@ -1,11 +1,12 @@
-// Marks that stand in the scene: rulers, angles, lines of several pieces, arrows and texts. A mark is { kind, points, text }:
-// points of the scene's world, [[x, y, z], ...], and what is written at it. What it measures follows from its points.
+// Marks that stand in the scene: rulers, angles, lines of several pieces, arrows and texts. A mark is { kind,
+// points, text }: points of the scene's world, [[x, y, z], ...], and a text. Its measure follows from its
+// points.
 
 import { unplaced } from "./boxes.js";
 import { shortNumber } from "./controls.js";
 import { dot, length, subtract } from "./vector.js";
 
-// By kind: its name, and how many points it has, at least and at most.
+// For each kind: its name, and the least and greatest number of its points.
 export const KINDS = {
   ruler: { name: "Ruler", least: 2, most: 2 }, angle: { name: "Angle", least: 3, most: 3 }, line: { name: "Line", least: 2, most: 500 },
   arrow: { name: "Arrow", least: 2, most: 2 }, text: { name: "Text", least: 1, most: 1 },
@@ -13,7 +14,7 @@ export const KINDS = {
 
 export const UNITS = { metre: "m", millimetre: "mm", micrometre: "µm", angstrom: "Å" };
 
-// Lengths are those of the first volume's file: { unit, length(a, b), angle }.
+// The measures of lengths come from the first volume's file: { unit, length(a, b), angle }.
 function measures({ store, start }) {
   const own = (point) => unplaced(point, store.scene.volumes[0]?.transform), unit = UNITS[start.volumes[0]?.unit] ?? store.page.unit;
   return { unit: unit ? ` ${unit}` : "", own };
@@ -33,7 +34,7 @@ export function measured(mark, viewer) {
   return points.slice(1).reduce((sum, point, n) => sum + length(subtract(point, points[n])), 0);
 }
 
-// What is written at a mark.
+// The text that is written at a mark.
 export function captionOf(mark, viewer) {
   const number = measured(mark, viewer), { unit } = measures(viewer);
   const said = number === null ? "" : mark.kind === "angle" ? `${number.toFixed(1)}°` : `${shortNumber(number)}${unit}`;

@@ -1,11 +1,11 @@
-// The panel of the scene's meshes: an eye, a colour, the file's name and an opacity each.
+// The panel of the scene's meshes. Each mesh has an eye, a colour, its file's name and an opacity.
 
 import { hexOf, linearOf } from "./color.js";
 import { button, isActive, make, section } from "./controls.js";
 
 const nameOf = (mesh, number) => mesh.file?.split("/").pop() ?? `mesh ${number + 1}`;
 
-// One mesh's row. get() gives the mesh; change(name, part) changes it.
+// The row of one mesh. get() returns the mesh; change(name, part) changes it.
 function meshRow({ name, get, change }) {
   const eye = button("", () => change("eye", { visible: get().visible === false }), { class: "eye", "aria-label": `Show ${name}` });
   const shade = make("input", { type: "color", "aria-label": `Colour of ${name}`, oninput: () => change("color", { color: linearOf(shade.value) }) });

@@ -1,13 +1,13 @@
-// The panel that opens another volume: a list of the folder that the viewer was started in, and files that are dropped
-// anywhere on the viewer. Only where the channel can open files: not in notebooks.
+// The panel that opens another file: a list of the folder in which the viewer was started, and files that are
+// dropped anywhere on the viewer. It is there only where the channel can open files, so not in notebooks.
 
 import { button, make, section, toggle } from "./controls.js";
 
-const ASK_EVERY = 250; // milliseconds, for how far a file is read
+const ASK_EVERY = 250; // milliseconds between questions for the progress of reading a file
 
 const size = (bytes) => (bytes < 1 << 20 ? `${Math.ceil(bytes / 1024)} KiB` : `${Math.round(bytes / (1 << 20))} MiB`);
 
-// What a page opens both files by, when it is loaded again; null where one of them was dropped.
+// The source by which a page opens both files when it is loaded again; null where one of them was dropped.
 function sourceOfBoth({ source, start }, added) {
   const own = source ?? (start.opened === 0 ? "" : null);
   return own === null || added === null ? null : [own, added].flat();
@@ -39,8 +39,8 @@ export function openPanel(viewer) {
     }
   }
 
-  // Reads a file while the bar tells how far it is; then the viewer shows it.
-  // path: in the viewer's folder; null: the file was dropped. Resolves to the viewer of it, or to null.
+  // Reads a file while the bar shows the progress; then the viewer shows the file. path: in the viewer's
+  // folder; null: the file was dropped. Resolves to the file's viewer, or to null.
   async function load(open, name, path = null, added = adds) {
     element.open = true;
     bar.hidden = false;
@@ -65,7 +65,7 @@ export function openPanel(viewer) {
   }
 
   viewer.upload = (file, added = adds) => load(() => channel.upload(file), file.name, null, added);
-  // Of several files the others are added to the first one.
+  // Where there are several files, the others are added to the first one.
   async function drop([first, ...others]) {
     if (others.length === 0 && first?.name.endsWith(".json") && viewer.openSession) return viewer.openSession(first);
     let shown = first ? await viewer.upload(first) : null;

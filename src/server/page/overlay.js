@@ -1,4 +1,4 @@
-// What is drawn over the picture: orientation marker, scale bar, clip box, cuts, and the lights' handles.
+// The drawings over the picture: orientation marker, scale bar, clip box, cuts, and the handles of lights.
 
 import { axes, projector, worldHeight } from "./camera.js";
 import { corners, edges, placed, worldBox } from "./boxes.js";
@@ -11,15 +11,16 @@ import { UNITS } from "./marks.js";
 import { SkyRing } from "./sky_ring.js";
 
 const MARKER = { size: 34, left: 64, bottom: 64 }; // pixels
-const BAR_WIDTH = 140; // pixels, at most
-const SPHERE_OF_HEIGHT = 0.42; // radius of the sphere on which lights are moved, of the picture's shorter side
-const RING_PER_DEGREE = 1.6; // pixels of a handle's ring for each degree of the light's size
+const BAR_WIDTH = 140; // the most pixels
+// Radius of the sphere on which lights are moved, as a part of the picture's shorter side.
+const SPHERE_OF_HEIGHT = 0.42;
+const RING_PER_DEGREE = 1.6; // a handle's ring has this radius in pixels for each degree of the light's size
 const RING_LEAST = 15;
 const KEY_STEP = 3; // degrees
 
 const AXIS_NAMES = { RAS: ["R", "A", "S"], LPS: ["L", "P", "S"], LAS: ["L", "A", "S"] };
 
-// A length that is short to say, 1, 2 or 5 times a power of ten, and at most `most`.
+// A length with a short number, 1, 2 or 5 times a power of ten, that is at most `most`.
 export function roundLength(most) {
   const power = 10 ** Math.floor(Math.log10(most));
   return [5, 2, 1].map((n) => n * power).find((x) => x <= most * 1.0000001);
@@ -82,7 +83,7 @@ export class Overlay {
     this.draw();
   }
 
-  // The handles of a cut, as long as its source shows one (cut_handles.js).
+  // The handles of a cut, as long as its source shows a cut (cut_handles.js).
   addCut(source) {
     const handles = new CutHandles(source);
     this.#cuts.push(handles);
@@ -92,7 +93,7 @@ export class Overlay {
   draw() {
     this.#width = this.#svg.clientWidth;
     this.#height = this.#svg.clientHeight;
-    if (this.#height === 0) return; // not laid out yet
+    if (this.#height === 0) return; // the picture is not laid out yet
     this.#drawMarker();
     this.#drawBar();
     this.#drawBox();
@@ -167,7 +168,7 @@ export class Overlay {
     const [right, up, towards] = directionOf(light, camera), size = sizeOf(light, camera);
     const [ring, dot] = handle.children;
     handle.setAttribute("transform", `translate(${sphere.x + right * sphere.radius} ${sphere.y - up * sphere.radius})`);
-    // A light that fills in, from where the eye is, would be in the way of the hand that turns.
+    // The handle of a fill light from the eye would be in the way of the hand that turns the picture.
     handle.toggleAttribute("hidden", light.shadows === "off" && l !== this.chosenLight);
     handle.setAttribute("class", `light${towards < 0 ? " behind" : ""}${l === this.chosenLight ? " chosen" : ""}`);
     handle.setAttribute("aria-valuetext",
@@ -195,7 +196,8 @@ export class Overlay {
     this.draw();
   }
 
-  // Drags the dot over the sphere, beyond whose rim the light goes behind; or the ring, which is the light's size.
+  // Drags the dot over the sphere; beyond its rim the light goes behind. Or drags the ring, which is the
+  // light's size.
   #grab(event, l, what) {
     event.stopPropagation();
     event.preventDefault();

@@ -1,6 +1,7 @@
-// The drawing of a transfer function of two numbers: its boxes and polygons over a histogram of value and gradient, and the
-// pointer on it. Shapes are dragged, and their edges, vertices and apexes; a click beside them adds a box, a double click on a
-// polygon's side adds a vertex; elsewhere it removes the vertex or the shape, as Delete does.
+// The drawing of a transfer function of two numbers: its boxes and polygons over a histogram of value and
+// gradient, which the pointer changes. Shapes, and their edges, vertices and apexes, are dragged. A click
+// beside them adds a box. A double click on a polygon's side adds a vertex; elsewhere it removes the vertex
+// or the shape, as Delete does.
 
 import { hexOf } from "./color.js";
 import { make, shortNumber } from "./controls.js";
@@ -8,7 +9,7 @@ import { blankContext } from "./histogram.js";
 import { apexOf, isPolygon, moved, partAt, withVertex, withoutVertex } from "./plane_shapes.js";
 
 const HEIGHT = 190, MARGIN = 9; // pixels
-const GRIP = 7; // pixels within which an edge is grabbed
+const GRIP = 7; // pixels from an edge within which it is grabbed
 const AXES = ["value", "second"];
 
 export class PlaneCanvas {
@@ -18,12 +19,12 @@ export class PlaneCanvas {
   #set;
   #range; // [from, to] of both axes
   #histogram;
-  selected = 0; // of the shapes: boxes, then polygons
-  vertex = 0; // of a polygon
+  selected = 0; // index of the chosen shape: boxes, then polygons
+  vertex = 0; // index of the chosen vertex of a polygon
   onSelect = () => {};
 
-  // get() gives the transfer function; set(tf, name) takes a changed one. range: [[from, to], [from, to]] of value and
-  // second number. histogram: { columns, rows, counts } over range, or null.
+  // get() returns the transfer function; set(tf, name) takes a changed one. range: [[from, to], [from, to]]
+  // of value and second number. histogram: { columns, rows, counts } over range, or null.
   constructor({ get, set, range, histogram }) {
     this.#get = get;
     this.#set = set;
@@ -67,7 +68,7 @@ export class PlaneCanvas {
     return Object.fromEntries(AXES.map((key, axis) => [key, shape[key].map((number) => this.#pixel(axis, number))]));
   }
 
-  // What is under the pointer: the shape's index and its part (partAt); or null.
+  // The shape under the pointer: its index and its part (partAt); or null.
   #find(event) {
     const at = this.#place(event), shapes = this.shapes;
     for (let index = shapes.length - 1; index >= 0; index--) {

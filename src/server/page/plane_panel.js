@@ -1,5 +1,5 @@
-// What the panel of a transfer function shows where that takes two numbers: the drawing of its boxes and polygons,
-// and the chosen one's colour, opacity and edge.
+// The panel of a transfer function that takes two numbers: the drawing of its boxes and polygons, and the
+// colour, opacity and edge of the chosen shape.
 
 import { hexOf, linearOf } from "./color.js";
 import { button, color, make, slider } from "./controls.js";
@@ -9,13 +9,13 @@ import { rangeOf } from "./transfer_function.js";
 
 const GRADIENT = "gradient";
 
-// The greatest gradient of the drawing, per unit of the world: scenes may scale volumes.
+// The greatest gradient in the drawing, per unit of the world; scenes may scale volumes.
 function gradientsOf(volume, about) {
   const scale = volume.transform?.scale ?? 1, mean = Array.isArray(scale) ? Math.cbrt(scale[0] * scale[1] * scale[2]) : scale;
   return [0, (about.plane?.gradient ?? (about.range[1] - about.range[0]) / 4) / mean];
 }
 
-// A function of value and gradient that shows about what one of the value alone does.
+// A function of value and gradient that shows about the same as a function of the value alone.
 export function byGradient(tf, volume, about) {
   const [low, high] = rangeOf(tf), greatest = tf.opacity.reduce((a, b) => (b[1] > a[1] ? b : a), [0, 0.5]);
   const middle = tf.color[Math.floor(tf.color.length / 2)] ?? [0, 0.8, 0.8, 0.8];
@@ -28,7 +28,7 @@ export function byGradient(tf, volume, about) {
   };
 }
 
-// { element, parts }: the rows, and what follows the scene.
+// Returns { element, parts }: the rows, and the parts that follow the scene.
 export function planePanel({ store, start, current, get, set }) {
   const volume = store.scene.volumes[current.volume], about = start.volumes[current.volume], second = get().second;
   const other = store.scene.volumes.findIndex((v) => v.name !== undefined && v.name === second.volume);
@@ -37,7 +37,7 @@ export function planePanel({ store, start, current, get, set }) {
     get, set, range: [about.range, seconds], histogram: second === GRADIENT ? (about.plane ?? null) : null,
   });
   const chosen = () => canvas.shapes[canvas.selected] ?? { color: [1, 1, 1], opacity: 0, value: [0, 1], second: [0, 1] };
-  // Of a polygon the falloff, of a box the part of it that is edge.
+  // The softness of a shape: the falloff of a polygon, or the part of a box that is edge.
   const soft = () => (isPolygon(chosen()) ? (chosen().falloff ?? 1) / 2 : (chosen().edge?.[0] ?? 0) / (chosen().value[1] - chosen().value[0]));
   const softened = (part) => (isPolygon(chosen()) ? { falloff: 2 * part } : { edge: ["value", "second"].map((key) => part * (chosen()[key][1] - chosen()[key][0])) });
   const parts = [

@@ -1,5 +1,6 @@
-// Boxes and polygons of a transfer function of two numbers: what of them is at a place, and how a hand changes them. Places
-// and shapes are here in the canvas's pixels or in the function's numbers alike: [x, y].
+// Boxes and polygons of a transfer function of two numbers: which part of a shape lies at a place, and how a
+// hand changes shapes. Places and shapes are [x, y], either in the canvas's pixels or in the function's
+// numbers.
 
 const AXES = ["value", "second"];
 export const isPolygon = (shape) => shape.vertices !== undefined;
@@ -8,7 +9,7 @@ export const apexOf = ({ vertices, apex }) => apex ?? [0, 1].map((axis) => verti
 const cross = (a, b, c) => (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]);
 
-// Whether straight lines lead from the apex to all of the border, within the polygon.
+// Whether straight lines within the polygon lead from the apex to all of the border.
 export function apexSees(polygon) {
   const apex = apexOf(polygon), turns = polygon.vertices.map((vertex, n, all) => cross(apex, vertex, all[(n + 1) % all.length]));
   return turns.every((turn) => turn > 0) || turns.every((turn) => turn < 0);
@@ -23,7 +24,7 @@ function isInside(vertices, at) {
   return inside;
 }
 
-// The side of a polygon, by its first vertex, that is within reach; -1: none.
+// The side of a polygon that is within reach, given by its first vertex; -1: none.
 function sideAt(vertices, at, reach) {
   return vertices.findIndex((a, n) => {
     const b = vertices[(n + 1) % vertices.length], length = distance(a, b) || 1;
@@ -32,8 +33,8 @@ function sideAt(vertices, at, reach) {
   });
 }
 
-// What of a shape is at a place: { ends } of a box: for each axis which end is grabbed (0, 1; null: neither); of a polygon
-// { vertex }, { apex }, { side } or {} for its inside; null: nothing.
+// The part of a shape at a place. For a box it is { ends }: for each axis, the end that is grabbed (0, 1;
+// null: neither). For a polygon it is { vertex }, { apex }, { side }, or {} for its inside. Null: no part.
 export function partAt(shape, at, reach) {
   if (!isPolygon(shape)) {
     const pairs = AXES.map((key) => shape[key]);
@@ -50,7 +51,8 @@ export function partAt(shape, at, reach) {
   return isInside(shape.vertices, at) ? {} : null;
 }
 
-// A shape's keys after its part was moved by `by`. The ends of a box keep `least` apart, a polygon's apex keeps seeing its border.
+// The keys of a shape after its part was moved by `by`. The ends of a box stay at least `least` apart, and
+// the apex of a polygon keeps seeing the border.
 export function moved(shape, part, by, least) {
   const shifted = (place) => place.map((number, axis) => number + by[axis]);
   if (isPolygon(shape)) {
@@ -67,8 +69,9 @@ export function moved(shape, part, by, least) {
   }));
 }
 
-// A polygon's vertices with one more after vertex n, at a place or in the middle of the side; without vertex n, where it has
-// more than three and the apex goes on seeing the border. Null: neither.
+// A polygon's vertices with one more vertex after vertex n, at a place or in the middle of the side. Or
+// without vertex n, where the polygon has more than three vertices and the apex still sees the border. Null:
+// neither.
 export function withVertex({ vertices }, n, at) {
   const next = vertices[(n + 1) % vertices.length];
   return [...vertices.slice(0, n + 1), at ?? vertices[n].map((number, axis) => (number + next[axis]) / 2), ...vertices.slice(n + 1)];

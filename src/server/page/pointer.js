@@ -4,14 +4,14 @@
 
 import { pan, roll, turn, zoom } from "./camera.js";
 
-const TURN_OF_HEIGHT = Math.PI; // radians that a drag over the picture's height turns
-const WHEEL_FACTOR = 1.0015; // of zooming, for each pixel of the wheel
+const TURN_OF_HEIGHT = Math.PI; // radians by which a drag over the picture's height turns
+const WHEEL_FACTOR = 1.0015; // factor of zooming for each pixel of the wheel
 const PINCH_SPEED = 6;
 
 export class Pointer {
   #area;
   #store;
-  #points = new Map(); // of the pointers that are down, by their numbers: [x, y]
+  #points = new Map(); // the pointers that are down, by their numbers: [x, y]
   #action = null;
 
   #nearest;
@@ -35,7 +35,7 @@ export class Pointer {
     return event.ctrlKey || event.metaKey ? "roll" : "turn";
   }
 
-  // From the middle, right and up, in fractions of the height.
+  // A place from the middle, to the right and up, in fractions of the height.
   #fromMiddle(x, y) {
     const box = this.#area.getBoundingClientRect();
     return [(x - box.left - box.width / 2) / box.height, (box.top + box.height / 2 - y) / box.height];
@@ -89,7 +89,8 @@ export class Pointer {
     event.preventDefault();
     const pixels = event.deltaMode === 1 ? 30 * event.deltaY : event.deltaY;
     const cursor = this.#fromMiddle(event.clientX, event.clientY);
-    const speed = event.ctrlKey ? PINCH_SPEED : 1; // a trackpad's pinch comes as a wheel with ctrl, in small steps
+    // A trackpad's pinch comes as a wheel with ctrl, in small steps.
+    const speed = event.ctrlKey ? PINCH_SPEED : 1;
     this.#store.setCamera(zoom(this.#store.scene.camera, WHEEL_FACTOR ** (-pixels * speed), cursor, this.#nearest));
   }
 }

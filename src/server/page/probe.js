@@ -1,12 +1,13 @@
-// The probe: what of the volumes lies under the cursor. At rest three small pictures are asked for, as floats: of the data values in
-// place of colours, and of white matter without highlights, with and without shadows. Meshes are left out, but for their shadows; so is the sky. A pixel of the first, divided by its opacity, is the
-// mean value of what is seen there, weighted by how much each sample is seen; the ratio of the others is the part of
-// the lights that arrives there.
+// The probe: reads the volumes under the cursor. At rest it asks for three small pictures, as floats: one
+// shows data values as colours, two show white matter without highlights, with and without shadows. The sky
+// and the meshes are left out, but meshes still cast shadows. A pixel of the first picture, divided by its
+// opacity, is the mean of the values that are seen there, weighted by how much each sample is seen. The ratio
+// of the other two pictures is the part of the lights that arrives there.
 
 import { make, shortNumber } from "./controls.js";
 import { isPlane } from "./transfer_function.js";
 
-const PIXELS = 90000; // of a small picture
+const PIXELS = 90000; // number of pixels of a small picture
 
 // The floats of a .npy file of the program: { width, height, rgba }, top row first.
 export function readNpy(bytes) {
@@ -59,7 +60,7 @@ export class Probe {
   #box;
   #on = false;
   #maps = null; // { value, lit, unlit } of the scene at rest
-  #asked = null; // the scene that they are asked for
+  #asked = null; // the scene for which they are asked
   #cursor = null; // [x, y] in fractions of the picture
 
   // area: the picture's element, over which the readout is shown.
@@ -79,7 +80,7 @@ export class Probe {
     if (on) this.rest();
   }
 
-  // The picture has come to rest.
+  // The picture has come to rest: asks for the small pictures.
   async rest() {
     const { store, start, channel } = this.#viewer, scene = store.scene;
     if (!this.#on || this.#maps !== null || this.#asked === scene) return;
@@ -108,7 +109,7 @@ export class Probe {
     const opacity = value.rgba[at + 3];
     if (!(opacity > 0.002)) return { opacity, value: null, light: null };
     const { store, start, current } = this.#viewer, [low, high] = start.volumes[current.volume].range;
-    // the boxes of a function of two numbers have one colour for all their values, which tells none
+    // all values in a box of a function of two numbers have one colour, so the colour tells no value
     const known = !isPlane(store.scene.volumes[current.volume]);
     return {
       opacity, value: known ? low + (value.rgba[at] / opacity) * (high - low) : NaN,

@@ -9,7 +9,7 @@ import { placed, unplaced } from "./boxes.js";
 import { axes } from "./camera.js";
 import { add, cross, dot, length, scale, subtract } from "./vector.js";
 
-const LARGEST = 1024; // samples along a side of an oblique plane
+const LARGEST = 1024; // the most samples along a side of an oblique plane
 const MOST_LAYERS = 1023;
 const OPPOSITE = { L: "R", R: "L", A: "P", P: "A", S: "I", I: "S" };
 
@@ -21,7 +21,7 @@ export const PLANES = ["axial", "coronal", "sagittal"];
 
 export const isAnatomical = (grid) => ["RAS", "LPS", "LAS"].includes(grid?.space);
 
-// How people call a plane of this volume.
+// The name of a plane of this volume for people.
 export function planeTitle(name, grid) {
   if (name === "oblique") return "Oblique";
   return isAnatomical(grid) ? name[0].toUpperCase() + name.slice(1) : { axial: "xy", coronal: "xz", sagittal: "yz" }[name];
@@ -29,11 +29,12 @@ export function planeTitle(name, grid) {
 
 // ---- places ----
 
-// A grid is { dimensions, origin, axes, space } as in start.json; transform: of its volume in the scene.
+// A grid is { dimensions, origin, axes, space } as in start.json. transform: places the grid's volume in the
+// scene.
 export const pointAt = (grid, transform, index) =>
   placed(grid.axes.reduce((point, step, a) => add(point, scale(step, index[a])), grid.origin), transform);
 
-// The indices, whole or not, of a point of the scene.
+// The indices of a point of the scene, which need not be whole.
 export function indexAt(grid, transform, point) {
   const from = subtract(unplaced(point, transform), grid.origin), [a, b, c] = grid.axes, volume = dot(a, cross(b, c));
   return [dot(from, cross(b, c)) / volume, dot(from, cross(c, a)) / volume, dot(from, cross(a, b)) / volume];
@@ -52,7 +53,7 @@ export function anatomical(grid, point) {
 
 // ---- planes along the grid's axes ----
 
-// For each world axis the grid's axis that runs along it most.
+// For each axis of the world, the axis of the grid that runs most nearly along it.
 function axisOfWorld(grid) {
   const left = new Set([0, 1, 2]), found = [];
   const pairs = [0, 1, 2].flatMap((a) => [0, 1, 2].map((w) => ({ a, w, share: Math.abs(grid.axes[a][w]) / length(grid.axes[a]) })));
@@ -72,7 +73,7 @@ function directionOf(grid, name) {
 const step = (grid, transform, along) => length(subtract(placed(along, transform), placed([0, 0, 0], transform)));
 const unit = (axis, sign = 1) => [0, 1, 2].map((a) => (a === axis ? sign : 0));
 
-// As many layers as fill a thickness, an odd number, so that their middle is the plane itself.
+// The number of layers that fill a thickness. It is odd, so that the middle layer is the plane itself.
 function layersOf(thickness, pitch) {
   const layers = Math.min(Math.max(Math.round(thickness / pitch), 1), MOST_LAYERS);
   return layers % 2 === 1 ? layers : layers + 1;
@@ -114,8 +115,8 @@ function obliquePlane({ grid, transform, cursor, thickness, camera }) {
   };
 }
 
-// name: one of PLANES, or "oblique". cursor: a point of the scene that it goes through; thickness: a length of the scene;
-// camera: that the oblique one is parallel to.
+// name: one of PLANES, or "oblique". cursor: a point of the scene through which the plane goes. thickness: a
+// length of the scene. camera: the oblique plane is parallel to its picture.
 export const planeOf = (name, about) => (name === "oblique" ? obliquePlane(about) : gridPlane(name, about));
 
 // The same samples in the indices of another grid.
@@ -131,7 +132,7 @@ export function sampleAt(plane, { grid, transform }, point) {
   return [dot(from, cross(b, c)) / volume, dot(from, cross(c, a)) / volume, dot(from, cross(a, b)) / volume - (plane.depth - 1) / 2];
 }
 
-// The point of the scene at a column and a row of the middle layer, or `layers` before or behind it.
+// The point of the scene at a column and a row, in the middle layer or `layers` layers before or behind it.
 export function samplePoint(plane, { grid, transform }, column, row, layers = 0) {
   const middle = (plane.depth - 1) / 2 + layers;
   const index = [0, 1, 2].map((k) => plane.origin[k] + column * plane.across[k] + row * plane.down[k] + middle * plane.through[k]);

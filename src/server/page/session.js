@@ -1,19 +1,21 @@
-// The whole state of a page as one object, kept in the tab while it is open and saved as a file: the scene, the marks, the
-// layout, the crosshair, bookmarks, and the history. It holds what a person has done, and names the volumes, but not their voxels.
+// The whole state of a page as one object, kept in the tab while it is open and saved as a file: the scene,
+// the marks, the layout, the crosshair, bookmarks, and the history. It holds a person's changes and the names
+// of the volumes, but not their voxels.
 
 import { isMark } from "./marks.js";
 
 const KEY = "halflight-session", VERSION = 1;
 const KEEP_AFTER = 300; // milliseconds without a change
 
-// source: what the viewer's own list has opened: a path, or several in a list; null for what the viewer began with.
+// source: the path, or the list of paths, that the viewer's own list has opened; null for the scene that the
+// viewer began with.
 export const sessionOf = (store, { title }, source) =>
   ({ halflight_session: VERSION, title, source, scene: store.scene, marks: store.marks, page: store.page });
 
 // A path, or a list of paths that are opened together.
 const isSource = (source) => [source].flat().every((path) => typeof path === "string");
 
-// A session, checked for what the page relies on; null: the object is none.
+// A session; the parts on which the page relies are checked. Null: the object is no session.
 export function readSession(object) {
   if (object === null || typeof object !== "object" || object.halflight_session !== VERSION || typeof object.scene?.camera !== "object") return null;
   const { source = null, title = "", scene, page = {} } = object, marks = Array.isArray(object.marks) ? object.marks.filter(isMark) : [];
@@ -26,7 +28,7 @@ export const filesOf = (scene) => JSON.stringify([
   (scene.volumes ?? []).map(({ file, shapes, array, component, series, time, channel, level, mask }) => [file, shapes, array, component, series, time, channel, level, mask?.file]),
   (scene.meshes ?? []).map(({ file }) => file ?? "")]);
 
-// Keeps the session in the tab; once more without its history where there is no room for all.
+// Keeps the session in the tab. Where there is no room for all of it, it is kept without its history.
 function keep(store, start, source) {
   const session = sessionOf(store, start, source);
   for (const kept of [{ ...session, history: store.history }, session])
@@ -34,7 +36,7 @@ function keep(store, start, source) {
       sessionStorage.setItem(KEY, JSON.stringify(kept));
       return;
     } catch {
-      // no room, or a browser that keeps nothing
+      // there is no room, or the browser keeps nothing
     }
 }
 
@@ -49,7 +51,7 @@ export function keepSession(store, start, source, signal) {
   signal.addEventListener("abort", () => clearTimeout(timer));
 }
 
-// What the tab has kept: a session with its history; null: nothing.
+// The session that the tab has kept, with its history; null: there is none.
 export function keptSession() {
   try {
     const object = JSON.parse(sessionStorage.getItem(KEY)), session = readSession(object);
@@ -63,7 +65,7 @@ export function forgetSession() {
   try {
     sessionStorage.removeItem(KEY);
   } catch {
-    // there is none
+    // there is no session
   }
 }
 

@@ -1,4 +1,4 @@
-// The panel of what is kept: bookmarks of views, and the session as a file.
+// The panel of things to keep: bookmarks of views, and the session as a file.
 
 import { reshaped } from "./camera.js";
 import { button, isActive, make, row, section } from "./controls.js";

@@ -1,4 +1,4 @@
-// Keys, and the sheet that lists them together with what the mouse does.
+// Keys, and the sheet that lists them together with the uses of the mouse.
 
 import { lookAlong, roll, turn, zoom } from "./camera.js";
 import { make } from "./controls.js";
@@ -12,12 +12,13 @@ const MOUSE = [
 
 const TEXTS = "textarea, input:is([type=text], [type=number], [type=search])";
 const TYPING = `${TEXTS}, select, dialog`;
-// Controls that take some keys for themselves, and leave the others to the viewer.
+// Controls that take some keys for themselves and leave other keys to the viewer.
 const MOVED = "input, [role=slider], canvas.function, [role=radiogroup]";
 const OF_CONTROLS = /^(Arrow.*|Page.*|Home|End|Insert|Delete|Backspace|Enter|Tab| |[+-])$/;
 
-// keyboard: { target, signal }, the element or document whose keys are meant, until the signal says so; area: the picture's; actions: what keys other than those of
-// the camera do, by name; nearest: how near the eye comes to its target.
+// keyboard: { target, signal }, the element or document whose keys are used, until the signal ends this.
+// area: the picture's element. actions: functions, by name, for keys that do not move the camera. nearest:
+// the least distance of the eye from its target.
 export function installShortcuts(store, keyboard, area, actions, nearest) {
   const move = (change) => () => store.setCamera(change(store.scene.camera));
   const keys = [
@@ -61,7 +62,7 @@ export function installShortcuts(store, keyboard, area, actions, nearest) {
   keyboard.target.addEventListener("keydown", (event) => {
     const typing = event.target.closest?.(TYPING);
     if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z") {
-      if (typing?.matches(TEXTS)) return; // the field's own undo
+      if (typing?.matches(TEXTS)) return; // the field has an undo of its own
       if (event.shiftKey) store.redo();
       else store.undo();
       event.preventDefault();

@@ -2,16 +2,16 @@
 
 import { cross, dot, normalize, rotate, scale, subtract } from "./vector.js";
 
-const ALONG_X = 0.99; // the cosine from which on up is too near to x to measure from there
+const ALONG_X = 0.99; // the cosine from which on `up` is too near to x to measure angles from there
 
-// What a sky of a kind begins with, beside what all kinds have.
+// The settings with which a sky of a kind begins, beside the settings of all kinds.
 export const COLORS = {
   uniform: { color: [1, 1, 1] },
   gradient: { zenith: [0.8, 0.9, 1], horizon: [1, 1, 1], ground: [0.3, 0.27, 0.24] },
 };
-export const STRENGTH = 0.5; // of a sky that is added: beside lights, all of it would be too bright
+export const STRENGTH = 0.5; // strength of a sky that is added: beside lights, a full sky would be too bright
 
-// Whether it matters where up is.
+// Whether the sky depends on the direction of up.
 export const hasUp = (sky) => sky !== undefined && (sky.type !== "uniform" || sky.hemisphere === true);
 
 // Unit axes: up, and on the horizon towards the image's middle column and a quarter to the right of it.

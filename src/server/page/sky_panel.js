@@ -11,7 +11,7 @@ export function skyPanel({ store, start, overlay }) {
   const { element, body } = section("Sky", false);
   const sky = () => store.scene.sky;
   const change = (name, part) => store.change(`sky ${name}`, (scene) => ({ ...scene, sky: { ...scene.sky, ...part } }));
-  const kept = { ...COLORS }; // the keys that one kind alone has, so that they come back with it
+  const kept = { ...COLORS }; // keys that only one kind has are kept, so that they come back with this kind
   if (start.scene.sky?.type === "image") kept.image = { file: start.scene.sky.file, rotation_deg: 0 };
 
   function ofKind(before, type) {

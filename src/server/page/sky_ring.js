@@ -7,13 +7,14 @@ import { directionOf, steppedDirection, withDirection } from "./light.js";
 import { hasUp, skyAxes } from "./sky.js";
 import { add, dot, scale } from "./vector.js";
 
-const STEPS = 120; // of the ring
+const STEPS = 120; // number of pieces of the ring
 const KEY_STEP = 3; // degrees
-const FAR_SIDE = 0.02; // by which a place of the ring counts as farther from the pointer for each radian away from the handle
+// A place of the ring counts as farther from the pointer by this, for each radian away from the handle.
+const FAR_SIDE = 0.02;
 
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
-// The zenith as a light that shines from there: it is moved as lights are.
+// The zenith as a light that shines from there, so that it is moved as lights are moved.
 const asLight = (sky) => ({ type: "directional", direction: scale(skyAxes(sky).up, -1) });
 
 export class SkyRing {
@@ -57,7 +58,7 @@ export class SkyRing {
     this.#zenith.setAttribute("aria-valuetext", `towards ${up.map((x) => x.toFixed(2)).join(", ")}`);
   }
 
-  // Where a direction lies in the picture; towards: above 0 on the viewer's side.
+  // The place of a direction in the picture; towards: above 0 on the viewer's side.
   #seen(direction) {
     const frame = axes(this.#store.scene.camera), { x, y, radius } = this.#sphere;
     return { x: x + radius * dot(direction, frame.right), y: y - radius * dot(direction, frame.up), towards: dot(direction, frame.towards) };
@@ -84,7 +85,8 @@ export class SkyRing {
     this.#change("up", { up: scale(withDirection(asLight(this.#sky), this.#store.scene.camera, direction).direction, -1) });
   }
 
-  // To the place of the ring that is nearest to the pointer; where it looks like a line, on the side that it is on.
+  // Goes to the place of the ring that is nearest to the pointer. Where the ring looks like a line, it stays
+  // on its side.
   #turnTo(right, up) {
     const { right: quarter, middle } = skyAxes(this.#sky), frame = axes(this.#store.scene.camera);
     let best = 0, least = Infinity;

@@ -1,4 +1,4 @@
-// The panel of slices: layout, the crosshair's numbers, window and level, thickness, and what is drawn over them.
+// The panel of slices: layout, the crosshair's numbers, window and level, thickness, and overlays.
 
 import { unplaced } from "./boxes.js";
 import { button, isActive, make, row, section, segments, select, shortNumber, slider, toggle } from "./controls.js";
@@ -7,7 +7,7 @@ import { LAYOUTS } from "./slices.js";
 
 const BLENDS = [["maximum", "Maximum"], ["mean", "Mean"], ["minimum", "Minimum"]];
 
-// All digits of a value, and no more: as few as read back as the same float, or the same double where it is no float.
+// A value with just enough digits to read back as the same float, or as the same double where it is no float.
 function exact(value) {
   if (Number.isNaN(value)) return "no value";
   const same = (other) => other === value || (Math.fround(value) === value && Math.fround(other) === value);

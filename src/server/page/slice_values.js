@@ -1,13 +1,14 @@
-// What slices are made of: the values of planes, asked for one after the other so that the newest wins, and their pictures.
+// The values of the planes that slices show. They are asked for one after the other, so that the newest wins;
+// then they become pictures.
 
 import { hexOf } from "./color.js";
 import { contourPieces } from "./contours.js";
 import { planeIn } from "./sections.js";
 
-const LABEL_STRENGTH = 0.45; // of a label's colour over the greys
+const LABEL_STRENGTH = 0.45; // strength of a label's colour over the greys
 
-// Values between which the greys lie where nobody has chosen: all but the rarest, of which the commonest value, mostly air
-// around things, does not count.
+// The range of values for the greys where nobody has chosen one: all but the rarest values. The commonest
+// value does not count; it is mostly air around things.
 export function automaticWindow({ histogram, range: [low, high] }) {
   const commonest = histogram.indexOf(Math.max(...histogram)), counts = histogram.map((count, bin) => (bin === commonest ? 0 : count));
   const total = counts.reduce((sum, count) => sum + count, 0), width = (high - low) / counts.length;
@@ -19,7 +20,7 @@ export function automaticWindow({ histogram, range: [low, high] }) {
   return [low + reached(0.005) * width, low + (reached(0.995) + 1) * width];
 }
 
-// The volume of the scene that slices are cut out of: the chosen one, or the first that is no label map.
+// The volume of the scene that slices cut: the chosen one, or the first that is no label map.
 export function sourceVolume({ store, start, current }) {
   const { volumes } = store.scene, isGrey = (v) => start.volumes[v] && !volumes[v].labels;
   if (start.volumes.length === 0) return -1;
@@ -28,7 +29,8 @@ export function sourceVolume({ store, start, current }) {
   return found >= 0 ? found : current.volume;
 }
 
-// Where labels come from: the source itself, its mask, and label maps beside it: { volume, of, grid, transform, labels }.
+// The sources of labels: the source itself, its mask, and label maps beside it: { volume, of, grid,
+// transform, labels }.
 export function labelSources({ store, start }, source) {
   return store.scene.volumes.flatMap((volume, v) => {
     const about = start.volumes[v];
@@ -47,7 +49,7 @@ export class SliceValues {
   #onFail;
   #wanted = null;
   #busy = false;
-  #known = new Map(); // by the text of a request: its answer; of the newest plane alone
+  #known = new Map(); // for each text of a request: its answer; for the newest plane only
   shown = null; // { plane, values, labels: [{ values, labels }] }
 
   constructor(channel, onLoad, onFail) {
@@ -64,7 +66,7 @@ export class SliceValues {
     if (!this.#busy) this.#load();
   }
 
-  // Everything is asked for again.
+  // Asks for everything again.
   forget() {
     this.#known.clear();
     this.shown = null;
@@ -90,8 +92,8 @@ export class SliceValues {
   }
 }
 
-// Puts greys and labels into a canvas of one pixel a sample. maps: labelSources(), in the order of labels; those that are null
-// are not drawn; isAlone: the values are labels themselves.
+// Puts greys and labels into a canvas with one pixel for each sample. maps: labelSources(), in the order of
+// labels; null ones are not drawn. isAlone: the values themselves are labels.
 export function paint(canvas, { plane, values, labels }, [low, high], maps, isAlone) {
   const { width, height } = plane, image = new ImageData(width, height), { data } = image, span = high > low ? high - low : 1;
   for (let n = 0; n < width * height; n++) {

@@ -7,10 +7,10 @@ import { planeTitle, sampleAt, samplePoint } from "./sections.js";
 import { isolines, paint } from "./slice_values.js";
 import { subtract } from "./vector.js";
 
-const WHEEL_FACTOR = 1.0015; // of zooming, for each pixel of the wheel
+const WHEEL_FACTOR = 1.0015; // factor of zooming for each pixel of the wheel
 const WHEEL_STEP = 40; // pixels of the wheel for each plane
 const LEAST_ZOOM = 0.2, MOST_ZOOM = 60;
-const SMOOTH_UP_TO = 3; // pixels of the screen that a voxel may have, and is not drawn as a square
+const SMOOTH_UP_TO = 3; // up to this many pixels of the screen, a voxel is not drawn as a square
 
 export class SliceView {
   #slices;
@@ -20,15 +20,15 @@ export class SliceView {
   #title = make("figcaption");
   #greys = document.createElement("canvas");
   #lines = [];
-  #drawn = null; // what the greys are of
+  #drawn = null; // the values and settings from which the greys are drawn
   #zoom = 1;
   #pan = [0, 0]; // pixels
-  #points = new Map(); // of the pointers that are down: [x, y]
+  #points = new Map(); // the pointers that are down: [x, y]
   #action = null;
   #wheeled = 0;
   marks = make("svg:g");
 
-  // slices: slices.js; name: of the plane.
+  // slices: slices.js; name: the plane's name.
   constructor(slices, name) {
     this.#slices = slices;
     this.#name = name;
@@ -63,7 +63,8 @@ export class SliceView {
 
   get #plane() { return this.#slices.shown(this.#name)?.plane ?? null; }
 
-  // Pixels of the screen for a sample, across and down, and where the middle of sample 0, 0 is.
+  // The number of pixels of the screen for a sample, across and down, and the place of the middle of sample
+  // 0, 0.
   #fit() {
     const { width, height, pitch } = this.#plane, wide = this.area.clientWidth, tall = this.area.clientHeight;
     const scale = this.#zoom * Math.min(wide / (width * pitch[0]), tall / (height * pitch[1])), x = scale * pitch[0], y = scale * pitch[1];
@@ -76,20 +77,20 @@ export class SliceView {
     return samplePoint(this.#plane, this.#slices.source, (x - fit.left) / fit.x, (y - fit.top) / fit.y);
   }
 
-  // [x, y, layers] of a point of the scene, layers being how far it lies from the plane; null: nothing is shown yet.
+  // [x, y, layers] for a point of the scene; layers: its distance from the plane. Null: nothing is shown yet.
   project(point) {
     if (this.#plane === null || this.#slices.source === null) return null;
     const [column, row, layers] = sampleAt(this.#plane, this.#slices.source, point), fit = this.#fit();
     return [fit.left + column * fit.x, fit.top + row * fit.y, layers];
   }
 
-  // The directions across and up on the screen, in the scene, as long as the plane's sides.
+  // The directions across and up on the screen, in the scene, with the lengths of the plane's sides.
   directions() {
     const plane = this.#plane, at = (column, row) => samplePoint(plane, this.#slices.source, column, row);
     return [subtract(at(plane.width, 0), at(0, 0)), subtract(at(0, 0), at(0, plane.height))];
   }
 
-  // Layers from the plane, within which a mark lies in it.
+  // The number of layers from the plane within which a mark lies in it.
   get halfDepth() { return this.#plane.depth / 2 + 1e-6; }
 
   #place(event) {
@@ -156,7 +157,8 @@ export class SliceView {
     else if (event.button === 1 || event.shiftKey) this.#action = "pan";
     else this.#action = "cursor";
     if (this.#action !== "cursor" || this.#points.size > 1) return;
-    if (this.#slices.addPoint(this.pointAt(this.#place(event)))) this.#action = "none"; // a mark's
+    // The click is a point of a mark.
+    if (this.#slices.addPoint(this.pointAt(this.#place(event)))) this.#action = "none";
     else this.#slices.moveTo(this.pointAt(this.#place(event)));
   }
 

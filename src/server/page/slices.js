@@ -1,8 +1,7 @@
-// The planes beside the picture: their layout, the crosshair that links them, their window and level, and what they show.
-//
-// What a person has chosen is in store.page: layout, plane (beside the picture), cursor (a point of the scene), windows (by
-// volume: [low, high]), thickness (a length of the scene), blend, showLabels, showIsolines, oblique (a camera that the oblique
-// plane keeps; null: it follows the picture's).
+// The planes beside the picture: their layout, the crosshair that links them, their window and level, and
+// what they show. A person's choices are in store.page: layout, plane (beside the picture), cursor (a point
+// of the scene), windows (by volume: [low, high]), thickness (a length of the scene), blend, showLabels,
+// showIsolines, oblique (a camera that the oblique plane keeps; null: it follows the picture's).
 
 import { middle, placed, worldBox } from "./boxes.js";
 import { projector } from "./camera.js";
@@ -14,22 +13,23 @@ import { SliceValues, automaticWindow, labelSources, sourceVolume } from "./slic
 import { SliceView } from "./slice_view.js";
 
 export const LAYOUTS = [["picture", "Picture"], ["beside", "One slice"], ["four", "Four-up"]];
-const STILL = 4; // pixels that a click may move
+const STILL = 4; // pixels that the pointer may move during a click
 const ARM = 16; // pixels of the crosshair in the picture
 
 export class Slices {
   #viewer;
   #place;
   #views;
-  #values = new Map(); // by plane: SliceValues
+  #values = new Map(); // for each plane: its SliceValues
   #marks;
-  #cross = make("svg:path", { class: "crosshair in-picture", "aria-hidden": "true" }); // where the crosshair is in the picture
-  #reading = null; // the place that readouts are asked for
+  // The crosshair in the picture.
+  #cross = make("svg:path", { class: "crosshair in-picture", "aria-hidden": "true" });
+  #reading = null; // the place whose readouts are asked for
   #readout = null;
   #onReadout = () => {};
   #pickNumber = 0;
 
-  // place: the element around the picture, to which the planes are added; picture: the picture's.
+  // place: the element around the picture, to which the planes are added. picture: the picture's element.
   constructor(viewer, place, picture) {
     this.#viewer = viewer;
     this.#place = place;
@@ -69,7 +69,7 @@ export class Slices {
     store.setPage({ windows: ends === null ? rest : { ...rest, [this.source.volume]: ends } });
   }
 
-  // right and down: in parts of a plane's sides. To the right the window widens, up the level rises.
+  // right and down: fractions of a plane's sides. To the right the window widens; upwards the level rises.
   changeWindow(right, down) {
     const [low, high] = this.window, [least, greatest] = this.source.grid.range, whole = Math.max(greatest - least, 1e-30);
     const width = Math.max((high - low) * Math.exp(2 * right), whole * 1e-5), level = (low + high) / 2 - down * Math.max(high - low, whole * 1e-3);
@@ -80,7 +80,7 @@ export class Slices {
     this.#viewer.store.setPage({ cursor: point });
   }
 
-  // Whether a click was taken as a point of a mark that is being made.
+  // Whether a click was taken as a point of the mark that is being made.
   addPoint(point) { return this.#viewer.marking?.addPoint(point) ?? false; }
   finishMark() { this.#viewer.marking?.finish(); }
 
@@ -89,7 +89,7 @@ export class Slices {
   #followClicks(picture) {
     let from = null;
     picture.addEventListener("pointerdown", (event) => { from = event.button === 0 && event.isPrimary && !event.shiftKey && !event.ctrlKey ? event : null; });
-    // A click tells how many there were: the second of two adds no point.
+    // The event tells the number of clicks: the second of two adds no point.
     picture.addEventListener("click", (event) => {
       if (event.detail <= 1 && from !== null && Math.hypot(event.clientX - from.clientX, event.clientY - from.clientY) <= STILL) this.#clicked(event, picture);
       from = null;
@@ -97,13 +97,13 @@ export class Slices {
     picture.addEventListener("dblclick", () => this.finishMark());
   }
 
-  // The crosshair, or the next point of a mark, goes to what is seen there.
+  // The crosshair, or the next point of a mark, goes to the place that is seen there.
   async #clicked(event, picture) {
     const { channel, store, report, marking } = this.#viewer, box = picture.getBoundingClientRect(), number = ++this.#pickNumber;
     if (!channel.depth || (this.layout === "picture" && !marking?.isMaking)) return;
     try {
       const point = await pick(channel, store.scene, [event.clientX - box.left, event.clientY - box.top], box.width, box.height);
-      if (number !== this.#pickNumber) return; // a later click
+      if (number !== this.#pickNumber) return; // a later click has come
       if (point === null) report("Nothing is seen there.");
       else if (!this.addPoint(point)) this.moveTo(point);
     } catch (error) {
@@ -113,7 +113,7 @@ export class Slices {
 
   // ---- what is shown ----
 
-  // Makes layout and planes as the store has them.
+  // Brings layout and planes to the state of the store.
   update() {
     const { layout } = this, shown = layout === "four" ? 3 : layout === "beside" ? 1 : 0;
     this.#place.dataset.layout = layout;
@@ -149,7 +149,7 @@ export class Slices {
     this.#values.get(name).want(plane, source, labelSources(this.#viewer, source.volume), blend);
   }
 
-  // What planes look like besides their values; `key` differs where this does.
+  // The look of planes besides their values; `key` differs where the look does.
   look() {
     const { store } = this.#viewer, { source, window } = this, { showLabels = true, showIsolines = true } = store.page;
     const sources = labelSources(this.#viewer, source.volume), maps = sources.map((map) => (showLabels ? map : null));
@@ -160,7 +160,8 @@ export class Slices {
 
   // ---- the crosshair's own value ----
 
-  // listener({ voxel, value, labels }) is told of the voxel under the crosshair; null: it lies beside the volume.
+  // listener({ voxel, value, labels }) gets the voxel under the crosshair; null: the crosshair lies beside
+  // the volume.
   set onReadout(listener) { this.#onReadout = listener; }
   get readout() { return this.#readout; }
 
@@ -180,7 +181,7 @@ export class Slices {
         const found = await read(map), label = map.labels.find((one) => one.value === found);
         if (label) labels.push(label.name ?? `label ${label.value}`);
       }
-      if (this.#reading !== key) return; // it has moved meanwhile
+      if (this.#reading !== key) return; // the crosshair has moved meanwhile
       this.#readout = { voxel: index, inside: holds(source.grid, index), value, labels };
       this.#onReadout();
     } catch (error) {

@@ -1,8 +1,10 @@
-// The line below the picture: whether it shows what the scene is now, how far the next picture is, and what others are waited for.
+// The line below the picture. It says whether the picture shows the present scene, the progress of the next
+// picture, and which other pictures are waited for.
 
 import { make } from "./controls.js";
 
-const ASK_AFTER = 600, ASK_EVERY = 400; // milliseconds of a picture under way, for how far it is
+// Milliseconds until the progress of a picture is first asked for, and between such questions.
+const ASK_AFTER = 600, ASK_EVERY = 400;
 const STAGES = { moving: "moving", settled: "refining", refining: "refining", final: "final", waiting: "waiting" };
 
 // find(id): an element of the viewer. Returns show(frame), of frames.js, and end().
@@ -10,7 +12,7 @@ export function statusLine(find, channel) {
   const stage = find("stage"), progress = find("progress");
   let timer = 0, number = 0;
 
-  // Tells how far it is, as long as the picture is under way.
+  // Shows the progress as long as the picture is under way.
   async function ask(mine) {
     const { part, others } = await channel.progress().catch(() => ({ part: 0, others: 0 }));
     if (mine !== number) return;

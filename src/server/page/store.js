@@ -1,13 +1,13 @@
-// What a person works on, and its history: the scene, the marks that stand in it, and how the page shows them. The
-// scene is the program's own scene file as an object: what is sent for a frame, downloaded and rendered elsewhere is
-// this object and nothing else. Objects are never altered, only replaced.
+// A person's work and its history: the scene, the marks in it, and how the page shows them. The scene is the
+// program's own scene file as an object. Exactly this object is sent for a frame, downloaded, and rendered
+// elsewhere. Objects are never altered, only replaced.
 
 import { reshaped } from "./camera.js";
 
-const MOST_STEPS = 100; // that can be undone, of each history
+const MOST_STEPS = 100; // the most steps that can be undone, for each history
 const UNREMEMBERED = ["camera", "size", "time", "page"]; // changes that are no steps of the main history
 
-// What is undone: everything but the camera and the picture's size.
+// The part of the scene that is undone: everything but the camera and the picture's size.
 function lasting({ scene: { camera, image: { width, height, ...image }, ...rest }, marks }) {
   return { rest, image, marks };
 }
@@ -20,14 +20,15 @@ export class Store {
   #redo = [];
   #undoCamera = []; // { camera, image: { width, height } }
   #redoCamera = [];
-  #gesture = 0; // number of the gesture that is under way, or was the last
+  #gesture = 0; // number of the present or the last gesture
   #holds = false; // a gesture is under way
   #last = { name: "", gesture: -1 };
-  #lastCamera = -1; // gesture in which the camera was moved last
+  #lastCamera = -1; // number of the gesture in which the camera was last moved
 
-  // marks: what a person has measured and written (marks.js). page: what is no part of pictures: layout, crosshair, bookmarks.
+  // marks: a person's measures and texts (marks.js). page: settings that are no part of pictures: layout,
+  // crosshair, bookmarks.
   constructor(scene, { marks = [], page = {}, history = null } = {}) {
-    this.scene = { volumes: [], ...scene }; // a scene may be of meshes alone
+    this.scene = { volumes: [], ...scene }; // a scene may consist of meshes only
     this.marks = marks;
     this.page = page;
     if (history !== null) [this.#undo, this.#redo, this.#undoCamera, this.#redoCamera] = history;
@@ -38,7 +39,7 @@ export class Store {
     this.#listeners.push(listener);
   }
 
-  // A hand has taken hold of something: all changes until endGesture() are undone together.
+  // A gesture has begun: all changes until endGesture() are undone together.
   beginGesture() {
     this.#gesture++;
     this.#holds = true;
@@ -91,7 +92,7 @@ export class Store {
     this.change(`render ${key}`, (scene) => ({ ...scene, render: { ...scene.render, [key]: value } }));
   }
 
-  // Replaces all of it, as one step: a session or a scene that was opened. The picture keeps its size.
+  // Replaces everything, as one step, by a session or a scene that was opened. The picture keeps its size.
   replace({ scene, marks = this.marks, page = this.page }) {
     const { width, height } = this.scene.image;
     this.beginGesture();
@@ -156,7 +157,7 @@ export class Store {
     to.push(now);
     this.marks = marks;
     this.#last = { name: "", gesture: -1 };
-    // A step of marks alone leaves the scene, and so its picture.
+    // A step of marks only leaves the scene, and so its picture.
     if (!isSame(rest, now.rest) || !isSame(image, now.image)) {
       const { camera, image: { width, height } } = this.scene;
       this.scene = { ...rest, camera, image: { ...image, width, height } };

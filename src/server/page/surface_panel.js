@@ -6,10 +6,12 @@ import { blankContext, drawBars, drawValueAxis } from "./histogram.js";
 import { opacityAt, rangeOf } from "./transfer_function.js";
 
 const HEIGHT = 88, AXIS = 16, MARGIN = 9, GRIP = 10; // pixels
-const OUTWARDS = 0.6; // of the way from the last surface's value to what surrounds things: a further surface lies around it
+// A further surface is added around the last one: at this part of the way from its value to the value of the
+// surroundings.
+const OUTWARDS = 0.6;
 const PALETTE = ["#e8c39e", "#4fa3e0", "#d9534f", "#6cc070", "#c48be0", "#e0c04f"];
 
-// The lines over the histogram, which are dragged; the slider below does the same for the keyboard.
+// The lines over the histogram, which are dragged. The slider below serves the keyboard.
 function lines({ surfaces, chosen, choose, set, about }) {
   const [low, high] = about.range[1] > about.range[0] ? about.range : [about.range[0] - 0.5, about.range[0] + 0.5];
   const canvas = make("canvas", { class: "values", "aria-hidden": "true", onpointerdown: down });
@@ -59,7 +61,7 @@ function lines({ surfaces, chosen, choose, set, about }) {
   return { element: area, update };
 }
 
-// Where the first surface is looked for: the first value that the function makes half as opaque as any.
+// The value of the first surface: the first value at which the function reaches half of its greatest opacity.
 function firstValue(tf, range) {
   const most = Math.max(...tf.opacity.map((point) => point[1])), [low, high] = rangeOf(tf);
   for (let n = 0; n <= 200 && most > 0; n++) {
@@ -72,7 +74,7 @@ function firstValue(tf, range) {
 const isClear = (tf) => tf.opacity.every((point) => point[1] === 0);
 const cleared = (tf) => ({ ...tf, opacity: tf.opacity.map(([value]) => [value, 0]) });
 
-// The middle of the fullest bin: mostly what surrounds things.
+// The middle of the fullest bin, which is mostly the surroundings of things.
 function commonest({ histogram, range: [low, high] }) {
   return low + ((histogram.indexOf(Math.max(...histogram)) + 0.5) / histogram.length) * (high - low);
 }
@@ -81,9 +83,10 @@ export function surfacePanel({ store, start, current, failed, channel }) {
   const { element, body } = section("Isosurfaces", false);
   const volume = () => store.scene.volumes[current.volume], about = () => start.volumes[current.volume];
   const surfaces = () => volume().iso ?? [], surface = () => surfaces()[chosen];
-  const shown = new Map(); // by volume: the transfer function that "Surfaces alone" has hidden
+  const shown = new Map(); // for each volume: the transfer function that "Surfaces alone" has hidden
   let chosen = 0, parts = [];
-  const isOfValue = () => volume()?.transfer_function?.opacity !== undefined; // not of two numbers
+  // The function is not of two numbers.
+  const isOfValue = () => volume()?.transfer_function?.opacity !== undefined;
 
   const changeSurface = (name, part) => store.changeVolume(current.volume, `iso ${chosen} ${name}`, (v) => ({
     ...v, iso: v.iso.map((one, n) => (n === chosen ? { ...one, ...part } : one)),
@@ -110,7 +113,8 @@ export function surfacePanel({ store, start, current, failed, channel }) {
     choose(Math.max(0, gone - 1));
   }
 
-  // Hides what else the volume shows, or brings it back; where it has come without any, as it is by default.
+  // Hides everything else that the volume shows, or brings it back. Where the volume came without anything
+  // else, its default look comes back.
   async function setAlone(alone) {
     const tf = volume().transfer_function, { iso: _, transfer_function: __, ...bare } = volume(), index = current.volume;
     const set = (wanted) => store.changeVolume(index, "iso alone", (v) => ({ ...v, transfer_function: wanted }));

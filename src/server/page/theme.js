@@ -6,14 +6,14 @@ function stored() {
   try {
     return localStorage.getItem(KEY);
   } catch {
-    return null; // a browser that keeps nothing
+    return null; // the browser keeps nothing
   }
 }
 
 // root: the viewer's element, which carries the theme. Returns the function that changes from one to the other.
 export function installTheme(root, changed) {
   const apply = (theme) => { root.dataset.theme = theme; };
-  const notebook = document.body.dataset.jpThemeLight; // JupyterLab tells its own theme
+  const notebook = document.body.dataset.jpThemeLight; // JupyterLab has a theme of its own
   const light = notebook !== undefined ? notebook === "true" : matchMedia("(prefers-color-scheme: light)").matches;
   apply(stored() ?? (light ? "light" : "dark"));
   return () => {
@@ -22,7 +22,7 @@ export function installTheme(root, changed) {
     try {
       localStorage.setItem(KEY, theme);
     } catch {
-      // it holds until the page is closed
+      // the choice holds until the page is closed
     }
     changed();
   };

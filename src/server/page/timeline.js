@@ -5,13 +5,14 @@ import { axes, distance, withType } from "./camera.js";
 import { add, rotate, scale, subtract, turnOfFrames } from "./vector.js";
 
 export const CAMERA = "camera";
-const STEP = Math.PI / 30; // of a turning camera between two points of its keys: the chord is 0.14 % nearer than the arc
-const ZOOM_STEP = 0.1; // of the logarithm of its distance
-const DIGITS = 7; // of numbers between keys
+// Angle between two points of a turning camera's keys: the chord is 0.14 % nearer than the arc.
+const STEP = Math.PI / 30;
+const ZOOM_STEP = 0.1; // step of the logarithm of its distance
+const DIGITS = 7; // digits of numbers between keys
 
 const byFrame = (a, b) => a[0] - b[0];
 
-// A key at a frame; one that is there already gets the value.
+// Sets a key at a frame. A key that is there already gets the value.
 export function withKey(tracks, path, frame, value) {
   const point = [frame, value], before = tracks.find((track) => track.path === path);
   if (!before) return [...tracks, { path, points: [point] }];
@@ -19,19 +20,20 @@ export function withKey(tracks, path, frame, value) {
   return tracks.map((track) => (track === before ? { path, points } : track));
 }
 
-// The last key of a track takes the track with it.
+// Removes a key. The last key of a track takes the track with it.
 export function withoutKey(tracks, path, frame) {
   return tracks.map((track) => (track.path === path ? { path, points: track.points.filter(([at]) => at !== frame) } : track))
     .filter((track) => track.points.length > 0);
 }
 
-// The key at another frame, where it takes the place of one that is there.
+// Moves a key to another frame, where it replaces a key that is there.
 export function withMovedKey(tracks, path, from, to) {
   const value = tracks.find((track) => track.path === path).points.find(([at]) => at === from)[1];
   return withKey(withoutKey(tracks, path, from), path, to, value);
 }
 
-// The camera on the way from one to another, which it turns about its target at an even speed; part: from 0 to 1.
+// The camera on its way from one camera to another. It turns about its target at an even speed; part: from 0
+// to 1.
 export function cameraBetween(a, b, part) {
   const [from, to] = [a, b].map((camera) => { const { right, up, towards } = axes(camera); return [right, up, towards]; });
   const { axis, angle } = turnOfFrames(from, to), turned = (vector) => rotate(vector, axis, part * angle);
@@ -61,7 +63,7 @@ function cameraPoints(points, type) {
   });
 }
 
-// What `halflight animate` takes as keys. type: of the scene's camera.
+// The keys as `halflight animate` takes them. type: of the scene's camera.
 export function keyTexts(tracks, type) {
   return tracks.flatMap(({ path, points }) => {
     if (path !== CAMERA) return [`${path}=${points.map(([frame, value]) => `${frame}:${value}`).join(",")}`];

@@ -3,8 +3,9 @@
 import { button, make } from "./controls.js";
 import { CAMERA, withMovedKey, withoutKey } from "./timeline.js";
 
-// get() gives { tracks, frames, frame, fps }; setTracks(tracks) takes changed ones; show(frame) goes to a frame; play()
-// begins or ends playing; canShow: whether frames can be shown at all. Returns { element, update }.
+// get() returns { tracks, frames, frame, fps }; setTracks(tracks) takes changed tracks; show(frame) goes to a
+// frame; play() begins or ends playing; canShow: whether frames can be shown at all. Returns { element,
+// update }.
 export function timelineStrip({ get, setTracks, show, play, canShow }) {
   const slider = make("input", { type: "range", min: 0, step: 1, "aria-label": "Frame", oninput: () => show(+slider.value) });
   const told = make("output", { class: "time" });

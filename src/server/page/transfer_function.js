@@ -4,14 +4,14 @@
 const byValue = (a, b) => a[0] - b[0];
 const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
 
-// Two rows at one value make a step; a third one there would mean nothing, and is refused by the scene's reader.
+// Two rows at one value make a step. A third row there would mean nothing, and the scene's reader refuses it.
 const isReadable = (rows) => rows.every((row, n) => n < 2 || row[0] !== rows[n - 2][0]);
 const nearest = (rows, value) => rows.reduce((best, row, n) => (Math.abs(row[0] - value) < Math.abs(rows[best][0] - value) ? n : best), 0);
 
-// Whether a volume's function takes two numbers, and has boxes in place of points.
+// Whether a volume's function takes two numbers, so that it has boxes instead of points.
 export const isPlane = (volume) => volume?.transfer_function?.second !== undefined;
 
-// Opacity points that may stand at one value, as at a step, keep their order. The first and the last may go as far as
+// Opacity points at one value, as at a step, keep their order. The first and the last point may go as far as
 // `range`, or stay beyond it where their neighbours are.
 export function movePoint(tf, index, value, opacity, range) {
   const before = tf.opacity[index - 1]?.[0] ?? Math.min(range[0], tf.opacity[index][0]);
@@ -21,7 +21,7 @@ export function movePoint(tf, index, value, opacity, range) {
   return isReadable(points) ? { ...tf, opacity: points } : tf;
 }
 
-// { tf, index } with a new point.
+// { tf, index }: the function with a new point, and the point's index.
 export function addPoint(tf, value, opacity) {
   const point = [value, clamp(opacity, 0, 1)];
   const points = [...tf.opacity, point].sort(byValue);
@@ -74,13 +74,13 @@ export function stretched(tf, [from, to], [low, high]) {
   return { ...tf, opacity: tf.opacity.map(moved), color: tf.color.map(moved) };
 }
 
-// From the first value that points or colours stand at to the last.
+// The range from the first to the last value at which a point or a colour stands.
 export function rangeOf(tf) {
   const values = [...tf.opacity, ...tf.color].map((p) => p[0]);
   return [Math.min(...values), Math.max(...values)];
 }
 
-// Of rows [value, number, ...], piecewise linear and constant beyond the ends.
+// The row at a value, of rows [value, number, ...], which are piecewise linear and constant beyond the ends.
 export function interpolate(rows, value) {
   if (rows.length === 0) return [];
   if (value <= rows[0][0]) return rows[0].slice(1);

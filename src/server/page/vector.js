@@ -27,7 +27,8 @@ export function turnOfFrames(from, to) {
   const entry = (row, column) => from.reduce((sum, axis, n) => sum + to[n][row] * axis[column], 0);
   const w = Math.sqrt(Math.max(0, 1 + entry(0, 0) + entry(1, 1) + entry(2, 2))) / 2;
   let axis = [entry(2, 1) - entry(1, 2), entry(0, 2) - entry(2, 0), entry(1, 0) - entry(0, 1)];
-  if (length(axis) < 1e-9) axis = [0, 1, 2].map((k) => Math.sqrt(Math.max(0, (1 + entry(k, k)) / 2))); // none, or half a turn
+  // There is no turn, or half a turn.
+  if (length(axis) < 1e-9) axis = [0, 1, 2].map((k) => Math.sqrt(Math.max(0, (1 + entry(k, k)) / 2)));
   return { axis: normalize(axis), angle: 2 * Math.acos(Math.min(w, 1)) };
 }
 

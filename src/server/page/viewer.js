@@ -1,4 +1,5 @@
-// The viewer: the picture, what lies over it, and the panels beside it, in any element of a page or a notebook.
+// The viewer: the picture, the overlays on it, and the panels beside it, in any element of a page or a
+// notebook.
 
 import { worldBox } from "./boxes.js";
 import { reshaped } from "./camera.js";
@@ -35,7 +36,7 @@ import { length, subtract } from "./vector.js";
 import { viewPanel } from "./view_panel.js";
 import { volumeChooser, volumePanel } from "./volume_panel.js";
 
-// One file each; in the order of the side bar, whose four parts have names.
+// Each panel is a file. They stand in the order of the side bar, whose four parts have names.
 const PARTS = {
   Look: [volumeChooser, lookPanel, functionPanel, labelPanel, surfacePanel, meshPanel, volumePanel], Light: [lightPanel, shadowPanel, skyPanel],
   Inside: [cutSwitch, cutPanel, sceneCutPanel, slicePanel, markPanel], "Picture and files": [viewPanel, openPanel, exportPanel, sessionPanel, filmPanel],
@@ -78,10 +79,10 @@ const MARKUP = `
     <dialog id="help" aria-labelledby="help-title"></dialog>
   </div>`;
 
-const MOST_SIDE = 4096; // pixels of the picture
-const NEAR = 0.02; // of a volume's diagonal
+const MOST_SIDE = 4096; // the most pixels along a side of the picture
+const NEAR = 0.02; // fraction of a volume's diagonal
 const MESSAGE_TIME = 5000; // milliseconds
-const SWEEP_TIME = 1800; // milliseconds of the light that shows, once, what it is that shadows tell
+const SWEEP_TIME = 1800; // milliseconds of the moving light that shows, once, what shadows tell
 
 // Returns the function that shows a line over the picture for a while, in milliseconds.
 function messageBox(box) {
@@ -111,7 +112,8 @@ function followSize(store, area, signal) {
   measure();
 }
 
-// What is seen fits again, from the same side: only the distance and the target are the program's choice.
+// Fits the seen part into the picture again, from the same side: the program chooses only the distance and
+// the target.
 async function frameEverything({ store, channel, failed }) {
   const { camera, ...rest } = store.scene;
   try {
@@ -122,10 +124,10 @@ async function frameEverything({ store, channel, failed }) {
   }
 }
 
-// How near the eye comes to its target: a small part of the largest volume.
+// The least distance of the eye from its target: a small part of the largest volume.
 const nearestOf = ({ volumes }) => NEAR * Math.max(0, ...volumes.filter(Boolean).map((volume) => length(subtract(worldBox(volume).max, worldBox(volume).min))));
 
-// What keys and buttons do besides moving the camera.
+// The functions of keys and buttons that do not move the camera.
 function actionsOf(viewer, find, root, update) {
   const { store, overlay } = viewer;
   return {
@@ -153,7 +155,7 @@ function actionsOf(viewer, find, root, update) {
   };
 }
 
-// A session, or a scene of what is open; a scene of other files is opened as a file.
+// Opens a session, or a scene of the open volumes; a scene of other files is opened as a file.
 async function openSession(file, restore, viewer) {
   try {
     if ((await restore(file)) === "other") viewer.upload(file);
@@ -162,7 +164,7 @@ async function openSession(file, restore, viewer) {
   }
 }
 
-// Unfolds a section of the side bar and leads the keyboard there.
+// Unfolds a section of the side bar, and moves the keyboard's focus there.
 function revealIn(root) {
   return (title) => {
     const element = [...root.querySelectorAll(".section")].find((one) => one.firstElementChild.textContent === title);
@@ -173,10 +175,12 @@ function revealIn(root) {
   };
 }
 
-// Fills an empty element with a viewer. channel: how pictures are asked for (http_channel.js); start: what is open;
-// keyboard: where its keys are listened to; reopen(start, source, kept): called where a person opens another file; source: the path
-// by which this one was opened; kept: a session (session.js) to go on with; restore(file): opens a session or a scene;
-// startAfresh(): forgets what was done; address: what goes before a link's end. Returns { store, start, frames, overlay, probe, slices, marking, report, end }; end() stops all of it.
+// Fills an empty element with a viewer. channel: the way to ask for pictures (http_channel.js). start: the
+// open scene (start.json). keyboard: the element or document whose keys are used. reopen(start, source,
+// kept): called when a person opens another file. source: the path by which the present file was opened.
+// kept: a session (session.js) to go on with. restore(file): opens a session or a scene. startAfresh():
+// forgets all changes. address: the part of a link before its end. Returns { store, start, frames, overlay,
+// probe, slices, marking, report, end }; end() stops all of it.
 export function mount(element, channel, start, { keyboard = element, reopen = () => {}, source = null, kept = null, restore = null, startAfresh = () => {}, address = "" } = {}) {
   element.innerHTML = MARKUP;
   const root = element.firstElementChild, find = (id) => root.querySelector(`#${id}`);
@@ -207,7 +211,7 @@ export function mount(element, channel, start, { keyboard = element, reopen = ()
     find("undo").disabled = !store.canUndo;
     find("redo").disabled = !store.canRedo;
   };
-  // What follows the camera and the layout is little, and is drawn for each of a hand's moves.
+  // Following the camera and the layout is little work, which is done for each movement of the hand.
   store.listen((_, name) => {
     if (name !== "camera" && name !== "page") update();
     else panels.forEach((panel) => panel.updateView?.());

@@ -1,10 +1,10 @@
-// The panel of a volume: its clip box, how it is shaded; and the list that chooses among several volumes.
+// The panel of a volume: its clip box and its shading; and the list that chooses among several volumes.
 
 import { worldBox } from "./boxes.js";
 import { hexOf, linearOf } from "./color.js";
 import { button, color, keyButton, make, row, section, segments, select, shortNumber, slider, toggle } from "./controls.js";
 
-// Two sliders on one track: from where to where the volume is kept along an axis.
+// Two sliders on one track: the two ends of the part of the volume that is kept along an axis.
 function clipRow(axis, box, get, set, paths) {
   const name = "xyz"[axis], span = box.max[axis] - box.min[axis];
   const input = (end) => make("input", {
@@ -29,7 +29,7 @@ function clipRow(axis, box, get, set, paths) {
   return { element: row(make("span", { class: `name axis-name axis-${axis}` }, `Clip ${name}`), track, measure), update };
 }
 
-// Above all panels, where there are several volumes: which of them the panels are about.
+// The list above all panels, where there are several volumes: it chooses the volume of the panels.
 export function volumeChooser({ store, current, chooseVolume }) {
   const { element, update } = select({
     label: "Volume", choices: store.scene.volumes.map((v, n) => [String(n), v.name ?? (v.file ?? "shapes").split("/").pop()]),
@@ -52,7 +52,7 @@ export function volumePanel({ store, start, current, overlay, channel, report })
     }));
   }
 
-  // How much of the light a medium scatters, of which colour, and which way.
+  // The scattering of a medium: how much light, in which colour, and in which direction.
   function scatteringParts() {
     const scattering = () => volume().scattering ?? {}, albedo = () => scattering().albedo ?? [1, 1, 1];
     const level = () => Math.max(...albedo()), tint = () => (level() > 0 ? albedo().map((c) => c / level()) : [1, 1, 1]);
@@ -72,7 +72,8 @@ export function volumePanel({ store, start, current, overlay, channel, report })
     ];
   }
 
-  // Numbers of things in place of amounts: each gets a smooth surface, its name and its colour.
+  // The switch that treats values as names of things, not as amounts. Each thing gets a smooth surface, a
+  // name and a colour.
   async function showLabels() {
     const { transfer_function: _, iso: __, shading: ___, ...bare } = volume(), index = current.volume;
     const volumes = store.scene.volumes.map((v, n) => (n === index ? { ...bare, labels: true } : v));
