@@ -180,8 +180,8 @@ static void look(frame *frame) {
                              fmax(vec3_length(frame->eye.du), vec3_length(frame->eye.dv)) * middle_depth);
 }
 
-/* Voxels smaller than pixels could fall between them: the frame is then made of smaller pixels, about as
- * large as voxels, and averaged. */
+/* Where voxels are smaller than pixels, they could fall between pixels. The frame is then made of smaller
+ * pixels, about as large as voxels, which are averaged. */
 enum { GREATEST_OVERSAMPLING = 8, GREATEST_OVERSAMPLED_SIDE = 4096 };
 
 static int oversampling(const frame *frame, const hl_scene_description *scene) {

@@ -13,23 +13,24 @@
 enum { FRAME_LIGHTS = MAXIMUM_SWEEP_LIGHTS, CONTENT_POINTS = 64 };
 
 typedef struct frame {
-  int width, height; /* pixels: those of the picture times oversampling */
+  int width, height; /* pixels: the picture's size times oversampling */
   int oversampling;  /* a pixel of the picture is the mean of oversampling x oversampling pixels of the
                       * frame */
   view eye;
   vec3 eye_direction;  /* e: unit, from the eye towards the content */
-  vec3 middle;         /* of the content */
+  vec3 middle;         /* middle of the content */
   double pixel;        /* edge of an image pixel where the content is nearest, frame units */
   double middle_pixel; /* edge of an image pixel at the content's middle, frame units */
   double voxel;        /* the smallest edge of a voxel, frame units */
   double spacing;      /* ds, frame units */
   vec3 *points;        /* corners of the content of all grids; owned by the caller; [8 * grids] */
   int point_count;
-  light_sectors sectors; /* of lights within the content */
+  light_sectors sectors; /* the sectors of lights within the content */
   light_source *lights;  /* [light_count]; owned by the caller; sectors of a light follow each other */
   int light_count;
-  const surfaces *surfaces;    /* of the scene's meshes; null: none */
-  const surface_tree *contact; /* of what shadow buffers leave light behind (render/late/) */
+  const surfaces *surfaces;    /* surfaces of the scene's meshes; null: none */
+  const surface_tree *contact; /* the tree of surfaces that shadow buffers leave light behind
+                                * (render/late/) */
 } frame;
 
 /* The eye's view in width x height pixels. */
@@ -46,11 +47,11 @@ static inline bool hl_is_maximum(const hl_render_settings *settings) {
   return settings->compositing == HL_COMPOSITING_MAXIMUM;
 }
 
-/* Corners of the box around a grid's relevant bricks, of which there is one at least. */
+/* Finds the corners of the box around a grid's relevant bricks. There must be at least one. */
 void hl_frame_content(const grid *grid, vec3 corners[8]);
 
-/* Corners of the part of the content that the eye sees: what a shadow buffer must cover. points: room for
- * CONTENT_POINTS a grid. */
+/* Finds the corners of the part of the content that the eye sees, which a shadow buffer must cover. points:
+ * room for CONTENT_POINTS for each grid. Returns their number. */
 int hl_frame_visible_points(const frame *frame, vec3 *points);
 
 #endif

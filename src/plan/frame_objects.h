@@ -1,7 +1,7 @@
 /* plan/frame_objects.h - the volumes, lights and meshes of a frame, as plain data in frame space.
  *
- * In:  the scene that is brought to frame space (framed_scene.h). Out: what back ends ask about the things of
- * a scene. They see no descriptions. */
+ * In:  the scene that is brought to frame space (framed_scene.h). Out: the properties of a scene's things
+ * that back ends ask for. Back ends see no descriptions. */
 #ifndef HL_PLAN_FRAME_OBJECTS_H
 #define HL_PLAN_FRAME_OBJECTS_H
 
@@ -17,24 +17,26 @@ typedef struct frame_volume {
   const hl_transfer_function *function; /* borrowed; lengths are frame space's */
   const classifier *classifier;         /* borrowed; the transfer function's tables */
   double empty;                         /* data value beyond the volume */
-  uint64_t version, tables_version; /* of the grid's voxels, and of what follows from the transfer function:
-                                       they rise with each change */
-  int object;                       /* its number in the layer of objects */
+  uint64_t version, tables_version; /* versions of the grid's voxels, and of everything that follows from the
+                                     * transfer function; they rise with each change */
+  int object;                       /* the volume's number in the layer of objects */
   bool visible, casts_shadow, receives_shadow, multiple_scattering, is_cut;
   hl_shading shading;
   hl_cut_shading cut_shading;
   hl_material material;
-  double anisotropy; /* of the phase function */
+  double anisotropy; /* anisotropy of the phase function */
   double albedo[HL_CHANNELS], attenuation_color[HL_CHANNELS];
 } frame_volume;
 
-/* A light of the frame, whole. Where its rays run is told by its light_source, or by one for each sector. */
+/* A light of the frame, as a whole. Its light_source, or the light_source of each of its sectors, says where
+ * its rays run. */
 typedef struct frame_light {
   int index;              /* in the scene's list of lights; suns of a sky follow the lights of the list */
-  double sun_part;        /* of a sun of the sky: the part of its light that a medium takes; else 0 */
-  bool is_wide;           /* it has an extent, or its directions have one */
+  double sun_part;        /* the fraction of the light that a medium takes, where the light is a sun of the
+                           * sky; else 0 */
+  bool is_wide;           /* the light has an extent, or its directions have one */
   bool is_inverse_square; /* samples receive the intensity divided by the square of their distance */
-  bool has_image;         /* it projects a picture, or shows one */
+  bool has_image;         /* the light projects a picture, or shows one */
   bool has_colored_image; /* colours of the picture that it shows come from different places */
   double color[HL_CHANNELS], intensity; /* frame space */
 } frame_light;
@@ -43,14 +45,15 @@ typedef struct frame_light {
  * same index. */
 typedef struct frame_mesh {
   const char *name; /* borrowed; null: none */
-  int object;       /* its number in the layer of objects: an isosurface has that of its volume */
+  int object;       /* the mesh's number in the layer of objects; an isosurface has the number of its
+                     * volume */
   bool visible, casts_shadow, receives_shadow;
   double opacity, attenuation_color[HL_CHANNELS];
   size_t triangle_count, sphere_count;
 } frame_mesh;
 
-/* framed: it lives until the frame ends. The volume's classifier, value beyond and versions are
- * left to the caller. */
+/* framed: must live until the frame ends. The caller sets the volume's classifier, value beyond and
+ * versions. */
 frame_volume hl_frame_volume(const framed_scene *framed, size_t index);
 frame_light hl_frame_light(const framed_scene *framed, size_t index);
 frame_mesh hl_frame_mesh(const framed_scene *framed, size_t index);

@@ -1,9 +1,9 @@
-/* plan/frame_plan.h - the plan of a frame: all that is decided before its first sheet, as plain data in frame
- * space.
+/* plan/frame_plan.h - the plan of a frame: everything that is decided before its first sheet, as plain data
+ * in frame space.
  *
  * A plan is made once (render/plan_frame.c) and never changes afterwards. A back end (render/backend.h) makes
- * the picture of a plan; the processors and a device read the same one. A part of a shared picture is the
- * same plan with another share. What a plan borrows stays as it is until the frame ends. */
+ * the picture of a plan; the processors and a device read the same plan. A part of a shared picture is the
+ * same plan with another share. Data that a plan borrows do not change until the frame ends. */
 #ifndef HL_PLAN_FRAME_PLAN_H
 #define HL_PLAN_FRAME_PLAN_H
 
@@ -24,7 +24,7 @@ typedef struct plan_volumes {
   grid *grids;        /* owned; [count] */
   int count;
   const kernel *kernel;
-  bool splat; /* else gather */
+  bool splat; /* densities are splatted; else they are gathered */
 } plan_volumes;
 
 /* Light that does not travel along the sheets. */
@@ -40,7 +40,7 @@ typedef struct light_plan {
   const light_source *source;
   light_emission *emission; /* owned; the picture on the light itself; null: none */
   light_shadow shadow;      /* as planned: a back end works on a copy (hl_light_shadow_begin) */
-  shadow_layouts memory;    /* of the shadow's method */
+  shadow_layouts memory;    /* memory of the shadow's method */
 } light_plan;
 
 /* One pass over the sheets. */
@@ -54,13 +54,13 @@ typedef struct sweep_plan {
 typedef struct plan_sweeps {
   sweep_sheets *sheets; /* owned; [count] */
   sweep_plan *list;     /* owned; [count] */
-  light_plan *lights;   /* owned; [light_count]; of all sweeps, one after the other */
+  light_plan *lights;   /* owned; [light_count]; the lights of all sweeps, one sweep after the other */
   int count, light_count;
 } plan_sweeps;
 
 typedef struct frame_plan {
-  hl_render_settings settings; /* of the scene; its texts are not used */
-  int width, height;           /* of the picture, pixels */
+  hl_render_settings settings; /* settings of the scene; its texts are not used */
+  int width, height;           /* size of the picture, pixels */
   double unit;                 /* world length of 1 in frame space */
   double ambient[HL_CHANNELS]; /* light from everywhere, R, G, B */
   frame frame;                 /* the eye, the lights, the surfaces; its arrays are the plan's own */
@@ -73,20 +73,21 @@ typedef struct frame_plan {
   plan_sweeps sweeps;
   picture_share share;     /* the part of the picture that is made */
   const hl_layers *layers; /* borrowed; the layers that are wanted; null: none */
-  int channels;            /* of light attenuation: 1 or 3 */
-  int tiles_x;             /* of the picture */
+  int channels;            /* number of channels of light attenuation: 1 or 3 */
+  int tiles_x;             /* of the picture's tiles */
   size_t tiles;
   vec3 *seen; /* owned; [seen_count]; corners of the content that the eye sees */
   int seen_count;
 } frame_plan;
 
-/* Allocates the arrays of a plan of zeros for a scene in frame space, and copies what the scene says of the
- * picture, the lights and the meshes. Release the plan after a failure, too. */
+/* Allocates the arrays of a plan of zeros for a scene in frame space, and copies the scene's picture size and
+ * settings, lights and meshes. Release the plan after a failure, too. */
 hl_status hl_frame_plan_create(hl_context *context, const framed_scene *framed, frame_plan *plan,
                                hl_error *error);
 void hl_frame_plan_release(hl_context *context, frame_plan *plan);
 
-/* After the frame's eye and lights: chooses the sweeps, and refuses those that no sheets serve. */
+/* Chooses the sweeps, and refuses a frame that no sheets serve. Call it after the frame's eye and lights are
+ * set up. */
 hl_status hl_plan_sweeps(hl_context *context, frame_plan *plan, hl_error *error);
 
 /* True where depth, normals or objects are wanted: some sweep must then go front to back. */

@@ -15,13 +15,13 @@ typedef struct framed_scene {
   hl_scene_volume *volumes;    /* owned; [volume_count] */
   hl_light *lights;            /* owned; [light_count] */
   hl_scene_mesh *meshes;       /* owned; [mesh_count], with room for the volumes' isosurfaces */
-  int *mesh_objects;           /* owned; likewise; their numbers in the layer of objects */
+  int *mesh_objects;           /* owned; as the array before; numbers of the meshes in the layer of objects */
   const scene_order *order;    /* borrowed; where in the world's lists volumes, lights and meshes stand */
   double (*vertices)[3];       /* owned; of all polygons */
   hl_opacity_point *gradients; /* owned; of all volumes' gradient opacity */
-  hl_cut *cuts;                /* owned; those of the volumes */
-  double *sun_parts;     /* owned; [light_count]; of suns of the sky: what a medium takes of their light;
-                            else 0 */
+  hl_cut *cuts;                /* owned; the cuts of the volumes */
+  double *sun_parts;     /* owned; [light_count]; the fraction of a light that a medium takes, where the light
+                          * is a sun of the sky; else 0 */
   uint64_t *plane_marks; /* owned; [volume_count]; of the content of functions of two numbers */
   double unit;           /* world length of 1 in frame space: the smallest voxel edge is from 1 to 2 */
 } framed_scene;

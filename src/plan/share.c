@@ -8,7 +8,7 @@
 #include "grid/relevant.h"
 #include "shadow/shadow_method.h"
 
-/* One cell while cells are put in order. */
+/* A cell while cells are put in order. */
 typedef struct share_cell {
   double key;    /* rises from band to band */
   double weight; /* how much matter lies under it */
@@ -141,7 +141,7 @@ static const double LEAST_WEIGHT = 0.1;
 typedef void brick_action(const share_content *content, const picture_share *share, share_arrays *arrays,
                           size_t cell, double height, double bricks);
 
-/* The cell of a point of the frame; false: it lies beside the picture. */
+/* Finds the cell of a point of the frame; false: the point lies beside the picture. */
 static bool cell_of(const frame *frame, const picture_share *share, vec3 point, size_t *cell) {
   double uv[2], side = (double)TILE * share->oversampling;
   if (!hl_view_project(&frame->eye, point, uv)) return false;
@@ -151,8 +151,9 @@ static bool cell_of(const frame *frame, const picture_share *share, vec3 point, 
   return true;
 }
 
-/* Acts on the visible bricks of a grid; of all bricks, one in `step` is looked at, for so many. Their list
- * would not do: where voxels are in pages it has more of them, which depends on a process's memory. */
+/* Acts on the visible bricks of a grid. Of all bricks, one in `step` is looked at, and counts for `step`
+ * bricks. The grid's list of bricks does not serve here: where voxels are in pages, the list depends on a
+ * process's memory. */
 static void visit_grid(const share_content *content, const picture_share *share, const grid *grid,
                        size_t step, brick_action *act, share_arrays *arrays) {
   size_t bricks = grid->relevant_count > 0 ? hl_grid_bricks(grid) : 0, cell;
@@ -172,7 +173,7 @@ static void visit_bricks(const share_content *content, const picture_share *shar
                          share_arrays *arrays) {
   size_t bricks = 0;
   for (int g = 0; g < content->grid_count; g++) bricks += hl_grid_bricks(&content->grids[g]);
-  for (int g = 0; g < content->grid_count; g++) /* an odd step does not stay in one column of bricks */
+  for (int g = 0; g < content->grid_count; g++) /* an odd step visits several columns of bricks */
     visit_grid(content, share, &content->grids[g], bricks / SHARE_BRICKS | 1, act, arrays);
 }
 
@@ -205,9 +206,9 @@ static int compare_cells(const void *a, const void *b) {
   return first->index < second->index ? -1 : 1;
 }
 
-/* Gives each cell, in their order, to the band in which the middle of its weight lies, and bands to parts:
- * forwards and backwards by turns, so that the last part has two bands side by side, and the first one, too,
- * where there are three. */
+/* Gives each cell, in their order, to the band in which the middle of its weight lies. Then gives bands to
+ * parts, forwards and backwards by turns. So the last part has two neighbouring bands, and where a part has
+ * three bands, the first part has two of them, too. */
 static void cut_bands(const picture_share *share, const share_cell *cells, int bands, int32_t *part_of) {
   double sum = 0, before = 0;
   const int parts = share->parts;
@@ -221,7 +222,7 @@ static void cut_bands(const picture_share *share, const share_cell *cells, int b
 
 /* ---- how many bands ---- */
 
-/* Adds a brick to what its parts have at its depth. */
+/* Adds a brick to the sums that its parts have at its depth. */
 static void place_brick(const share_content *content, const picture_share *share, share_arrays *arrays,
                         size_t cell, double height, double bricks) {
   (void)share;
@@ -232,7 +233,7 @@ static void place_brick(const share_content *content, const picture_share *share
     arrays->depths[i][arrays->cut[i][cell]][at] += bricks * arrays->each[cell];
 }
 
-/* Whether a cell lies beside one of another part. */
+/* Whether a cell lies beside a cell of another part. */
 static bool is_at_border(const picture_share *share, const int32_t *part_of, int32_t index) {
   int x = index % share->cells_x, y = index / share->cells_x;
   int32_t own = part_of[index];
@@ -241,9 +242,9 @@ static bool is_at_border(const picture_share *share, const int32_t *part_of, int
          (y + 1 < share->cells_y && part_of[index + share->cells_x] != own);
 }
 
-/* What parts of so many bands would cost, in units of a part's mean: the slowest ones of all depths, for
- * which the others wait; and half of the cells at borders once more, for light that several parts work
- * through (measured: docs/laboratory/ranks.md). */
+/* The cost of a division into bands, in units of a part's mean. At each depth the slowest part counts,
+ * because the others wait for it. Half of the cells at borders count once more, for light that several parts
+ * work through (measured: docs/laboratory/ranks.md). */
 static double cost_of(const picture_share *share, const share_arrays *arrays, int bands) {
   const int32_t *part_of = arrays->cut[bands - 1];
   double(*depths)[DEPTHS] = arrays->depths[bands - 1], all = 0, slowest = 0, cells = 0, border = 0;

@@ -1,12 +1,12 @@
-/* plan/share.h - how a picture is shared out: which of its pixels each of several renderers makes.
+/* plan/share.h - divides a picture among several renderers: says which pixels each of them makes.
  *
  * Rays of the eye and of a light that meet lie in one plane with the eye and the light. In the picture these
- * planes are lines through the light's image, or parallel lines where that is infinitely far away. So a band
- * of the picture along such lines looks up a band of the light's shadow buffer alone, over all sheets: each
- * part of a picture is such a band, of the brightest light whose method lets parts work through their own
- * light. Bands are made of whole cells, and cut so that about as much matter lies under each. Where parts
- * wait for each other from depth to depth, each may be of two or three bands, which have more equal shares of
- * the matter at each depth. Where all light is needed anyway, parts are rows of cells in turn. */
+ * planes are lines through the light's image, or parallel lines where the image is infinitely far away. So a
+ * band of the picture along such lines looks up only a band of the light's shadow buffer, over all sheets.
+ * Each part of a picture is such a band, for the brightest light whose method lets parts work through their
+ * own light. Bands consist of whole cells, and about as much matter lies under each of them. Where parts wait
+ * for each other from depth to depth, a part may have two or three bands, so that shares of the matter are
+ * more equal at each depth. Where all parts need all light anyway, parts take rows of cells in turn. */
 #ifndef HL_PLAN_SHARE_H
 #define HL_PLAN_SHARE_H
 
@@ -17,8 +17,8 @@
 /* A cell is as many pixels of the picture as a tile has of the frame: `oversampling` tiles a side. */
 typedef struct picture_share {
   int part, parts;                /* this renderer's part; how many there are */
-  const light_exchange *exchange; /* borrowed; with the other parts; null: they cannot be asked */
-  int cells_x, cells_y;           /* of the whole picture */
+  const light_exchange *exchange; /* borrowed; exchange with the other parts; null: they cannot be asked */
+  int cells_x, cells_y;           /* number of cells of the whole picture */
   int oversampling;               /* tiles of the frame along a cell's side */
   unsigned char *memory;          /* owned; holds part_of; null: the picture is not shared */
   int32_t *part_of;               /* [cells_y][cells_x] */
@@ -26,17 +26,17 @@ typedef struct picture_share {
 
 /* What the picture shows. */
 typedef struct share_content {
-  const frame *frame; /* its eye and lights must be set up */
+  const frame *frame; /* the frame, whose eye and lights must be set up */
   const grid *grids;  /* [grid_count]; the frame's */
   int grid_count;
-  const sheet_stack *sheets; /* of the frame's first sweep */
+  const sheet_stack *sheets; /* sheets of the frame's first sweep */
 } share_content;
 
-/* Counts what hl_share_create() takes for a picture of width x height pixels. */
+/* Counts the memory that hl_share_create() takes for a picture of width x height pixels. */
 void hl_share_count(int width, int height, int parts, hl_layout *layout);
 
-/* Shares a picture out; the same on every machine. share: its part and parts are set; with one part nothing
- * is done. Owned by the caller; release it after a failure, too. */
+/* Shares a picture out; the result is the same on every machine. share: its members part and parts must be
+ * set; with one part nothing is done. It is owned by the caller, who must release it after a failure, too. */
 hl_status hl_share_create(hl_context *context, const share_content *content, picture_share *share,
                           hl_error *error);
 void hl_share_release(hl_context *context, picture_share *share);

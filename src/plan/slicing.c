@@ -11,8 +11,8 @@ static const double STEEPEST = 0.5;
  * light's direction (80 degrees). Flatter crossings are refused. */
 static const double FLATTEST_EYE_RAY = 0.05, FLATTEST_LIGHT = 0.17;
 
-/* The least |cos| of the angle between h and the eye's rays through the picture's corners; 0 unless all cross
- * the sheets in the same direction. */
+/* The least |cos| of the angle between h and the eye's rays through the picture's corners. 0 unless all these
+ * rays cross the sheets in the same direction. */
 static double flattest_eye_ray(const view *eye, vec3 h) {
   double least = INFINITY, sense = 0;
   for (int corner = 0; corner < 4; corner++) {
@@ -45,13 +45,13 @@ static vec3 slicing_axis(const frame *frame, const hl_render_settings *settings,
   return h;
 }
 
-/* The least cosine of the angle between the slicing axis and a light's rays to the content (78 degrees), and
- * of those of a soft parallel light that has a sweep of its own (70 degrees: along flatter rays, floors shade
- * themselves). */
+/* The least cosine of the angle between the slicing axis and a light's rays to the content (78 degrees). The
+ * second number holds for a soft parallel light that has a sweep of its own (70 degrees): along flatter rays,
+ * floors shade themselves. */
 static const double FLATTEST = 0.2, FLATTEST_ALONE = 0.35;
 
-/* Whether all rays of a light cross the sheets at this cosine or a greater one: of a near light those from
- * its centre, of a parallel one those of its disk where it is soft. */
+/* Whether all rays of a light cross the sheets at this cosine or a greater one. For a near light these are
+ * the rays from its centre, for a soft parallel light the rays of its disk. */
 static bool rays_cross(const frame *frame, const light_source *source, vec3 h, double least) {
   if (source->parallel) {
     double off = acos(fmin(fmax(vec3_dot(source->direction, h), -1), 1));
@@ -97,9 +97,9 @@ static bool eye_crosses(const frame *frame, vec3 h, bool back_to_front) {
 }
 
 /* The slicing axis of one light. Where some rays of a near light, or of a wide parallel one, do not cross the
- * half-way vector's sheets, the axis leans towards the middle of the light's rays, no further than needed: it
- * then moves without a jump as the light does. For a parallel light it leans no further than the eye allows;
- * false where no sheets serve both a near light and the eye. */
+ * half-way vector's sheets, the axis leans towards the middle of the light's rays, but no farther than
+ * needed. So it moves without a jump as the light moves. For a parallel light it leans no farther than the
+ * eye allows. False where no sheets serve both a near light and the eye. */
 static bool axis_of_light(const frame *frame, const hl_render_settings *settings, const light_source *source,
                           vec3 *h, bool *back_to_front) {
   const bool wide = source->parallel;
@@ -123,8 +123,8 @@ static bool axis_of_light(const frame *frame, const hl_render_settings *settings
   return true;
 }
 
-/* False where the light's rays do not cross the sheets that would serve it and the eye: it must be cut into
- * sectors. */
+/* Finds whether sheets can serve the light and the eye. False where the light's rays do not cross these
+ * sheets; the light must then be cut into sectors. */
 static bool serves(const frame *frame, const hl_render_settings *settings, const light_source *source) {
   bool back_to_front;
   vec3 h;

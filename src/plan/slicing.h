@@ -1,5 +1,5 @@
-/* plan/slicing.h - the sweeps of a frame: the direction of the sheets of each, and the lights that share
- * them. */
+/* plan/slicing.h - the sweeps of a frame: the direction of each sweep's sheets, and the lights that share the
+ * sweep. */
 #ifndef HL_PLAN_SLICING_H
 #define HL_PLAN_SLICING_H
 
@@ -16,13 +16,13 @@ typedef struct sweep_sheets {
   int light_count;
 } sweep_sheets;
 
-/* After the eye. Brings the lights to frame space, and cuts lights that no sheets serve into sectors. Narrow
- * spot lights and lights with a texture shine in one direction and are never cut. The frame's lights need
- * room for LIGHT_SECTORS each. */
+/* Brings the lights to frame space, and cuts lights that no sheets serve into sectors. Call it after the eye
+ * is set up. Narrow spot lights and lights with a texture shine in one direction and are never cut. The array
+ * of the frame's lights needs room for LIGHT_SECTORS sources for each light. */
 void hl_frame_set_up_lights(frame *frame, const framed_scene *framed);
 
-/* Groups lights into sweeps and slices each (section 3.1 and fig. 3); sweeps: room for light_count + 1.
- * Returns how many there are: at least one. */
+/* Groups lights into sweeps, and slices each sweep (section 3.1 and fig. 3). sweeps: room for light_count +
+ * 1. Returns the number of sweeps, which is at least one. */
 int hl_frame_sweeps(const frame *frame, const hl_render_settings *settings, sweep_sheets *sweeps);
 
 /* One more sweep, without lights, image-aligned: front to back for the eye. */
