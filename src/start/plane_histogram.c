@@ -1,8 +1,8 @@
-/* start/plane_histogram.c - how many voxels have a value and a gradient: what the page's editor of transfer
- * functions of two numbers shows under its boxes.
+/* start/plane_histogram.c - counts voxels by value and gradient. The page's editor of transfer functions of
+ * two numbers shows the counts under its boxes.
  *
- * Gradients are differences of neighbours, per unit of the file's world; where steps between voxels are not
- * at right angles, as if they were. Large volumes are counted in equal steps. */
+ * Gradients are differences of neighbours, per unit of the file's world. Steps between voxels are taken to be
+ * at right angles, even where they are not. Large volumes are counted in equal steps. */
 #include "plane_histogram.h"
 
 #include <math.h>

@@ -56,8 +56,7 @@ static void put_mask(FILE *out, const hl_volume *mask) {
   fputc('}', out);
 }
 
-/* Whether the volume has the cuts that are chosen for it where nobody says which, to take away what holds it.
- */
+/* Whether the volume has the automatic cuts that remove its holder. */
 static bool has_chosen_cuts(hl_context *context, const hl_scene_volume *volume) {
   hl_scene *chosen = NULL;
   if (volume->cut_count == 0 ||
@@ -74,7 +73,7 @@ static bool has_chosen_cuts(hl_context *context, const hl_scene_volume *volume) 
   return same;
 }
 
-/* What the volume holds, and what was chosen for it. */
+/* Writes the kind of data in the volume, and the choices that were made for it. */
 static void put_chosen(FILE *out, hl_context *context, const hl_scene_volume *volume) {
   const char *kind = NULL;
   if (hl_volume_guess(volume->volume, volume->file, &kind, NULL) != HL_OK) kind = "";

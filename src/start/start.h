@@ -1,6 +1,6 @@
-/* start/start.h - what the viewer's page is told first, as JSON: the scene, the ranges and histograms of its
- * volumes, the presets and colormaps that there are. The viewer's server and the page without a server
- * (src/web) send the same text. */
+/* start/start.h - the first message to the viewer's page, as JSON: the scene, the ranges and histograms of
+ * its volumes, and all presets and colormaps. The viewer's server and the page without a server (src/web)
+ * send the same text. */
 #ifndef HL_START_START_H
 #define HL_START_START_H
 
@@ -9,7 +9,7 @@
 
 #include <halflight/halflight.h>
 
-/* number: by which the page names what is open. folder: whether the page may list and open other files. The
+/* number: by which the page names the open scene. folder: whether the page may list and open other files. The
  * text is the caller's, from malloc; null: out of memory. */
 char *describe_start(hl_context *context, const hl_scene *scene, const char *title, long long number,
                      bool folder);
