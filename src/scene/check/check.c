@@ -82,7 +82,7 @@ static hl_status check_scales(const hl_scene_description *d, hl_error *error) {
   return status;
 }
 
-/* Checks what a transfer function of two numbers needs of the scene. */
+/* Checks that the scene has everything that a transfer function of two numbers needs. */
 static hl_status check_second(const hl_scene_description *d, size_t v, hl_error *error) {
   const hl_function_plane *plane = &d->volumes[v].transfer_function.plane;
   if (plane->second == HL_SECOND_NONE || d->volumes[v].label_count > 0) return HL_OK;
@@ -106,7 +106,7 @@ static hl_status check_second(const hl_scene_description *d, size_t v, hl_error 
   return HL_OK;
 }
 
-/* Checks what a field in bricks needs of the scene: those of several levels are sums of B-splines. */
+/* Checks that the scene suits a field in bricks: fields of several levels are sums of B-splines. */
 static hl_status check_bricks(const hl_scene_description *d, size_t v, hl_error *error) {
   const hl_kernel kernel = d->render.kernel;
   if (d->volumes[v].volume->bricks == NULL) return HL_OK;

@@ -23,7 +23,7 @@ hl_status hl_cuts_check(const hl_checker *check, const hl_cut *cuts, size_t coun
 /* Checks one mesh of a description. */
 hl_status hl_scene_mesh_check(const hl_scene_mesh *mesh, size_t index, hl_error *error);
 
-/* Checks a transfer function; place: what errors call it ("/volumes/0/transfer_function"). */
+/* Checks a transfer function. place: its name in errors ("/volumes/0/transfer_function"). */
 hl_status hl_transfer_function_check(const hl_transfer_function *function, const char *place,
                                      hl_error *error);
 

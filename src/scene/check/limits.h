@@ -8,22 +8,24 @@
 #define HL_LIMIT_VOLUMES        256
 #define HL_LIMIT_MESHES         256
 #define HL_LIMIT_ISO            64    /* isosurfaces of one volume */
-#define HL_LIMIT_CUTS           64    /* of one volume, and of a scene */
-#define HL_LIMIT_VERTICES       1024  /* of one polygon */
+#define HL_LIMIT_CUTS           64    /* number of cuts of one volume, and of a scene */
+#define HL_LIMIT_VERTICES       1024  /* number of vertices of one polygon */
 #define HL_LIMIT_TEXTURE_SIDE   32768 /* pixels of a light's texture */
 #define HL_LIMIT_TEXTURE_PIXELS (1 << 26)
-#define HL_LIMIT_POINTS         65536 /* of one transfer function */
+#define HL_LIMIT_POINTS         65536 /* number of points of one transfer function */
 #define HL_LIMIT_SHAPES         256   /* boxes, or polygons, of a transfer function of two numbers */
 #define HL_LIMIT_PLANE_SIDE     4096  /* pixels of its image */
 #define HL_LIMIT_LENGTH         1e15  /* any coordinate or length: squares and cubes stay finite */
-#define HL_LIMIT_CORNER \
-  1e14 /* of a volume from the origin: a camera that frames it stands within HL_LIMIT_LENGTH */
-#define HL_LIMIT_INTENSITY \
-  1e35 /* large, for light that falls off with the square of distances in nanometres */
-#define HL_LIMIT_BRIGHTNESS    1e20 /* of a light, a voxel's edge away; sums and products still fit floats */
+/* Distance of a volume from the origin: a camera that frames it stands within HL_LIMIT_LENGTH. */
+#define HL_LIMIT_CORNER 1e14
+/* Large, for light that falls off with the square of distances in nanometres. */
+#define HL_LIMIT_INTENSITY 1e35
+#define HL_LIMIT_BRIGHTNESS                                                       \
+  1e20 /* brightness of a light, a voxel's edge away; sums and products still fit \
+        * floats */
 #define HL_LIMIT_REACH         1e12 /* distances and lengths, in smallest voxel edges */
 #define HL_LIMIT_TEXTURE_VALUE 1e6
-#define HL_LIMIT_RADIANCE      1e6  /* of a sky's colours, and of their factor */
+#define HL_LIMIT_RADIANCE      1e6  /* radiance of a sky's colours, and their factor */
 #define HL_LIMIT_VOXEL_VALUE   1e36 /* differences and sums of such values still fit floats */
 #define HL_LIMIT_LIGHT_SAMPLES 64
 #define HL_LIMIT_THREADS       1024

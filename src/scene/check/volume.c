@@ -77,8 +77,8 @@ hl_status hl_transfer_function_check(const hl_transfer_function *function, const
   return status == HL_OK ? hl_plane_check(&function->plane, place, error) : status;
 }
 
-/* Checks the three scale factors, each the product of the common one and the axis's own; errors name the
- * product. */
+/* Checks the three scale factors. Each is the product of the common factor and the axis's own factor; errors
+ * name the product. */
 static hl_status check_axis_scales(const hl_checker *check, const hl_scene_volume *volume) {
   const double *axis = volume->axis_scale;
   if (axis[0] == 1 && axis[1] == 1 && axis[2] == 1) return HL_OK;

@@ -1,8 +1,8 @@
 /* scene/function/function_plane.c - the boxes, polygons and images of a transfer function of two numbers:
- * what they show at a point, or on average in a part, of the plane of the two.
+ * their opacity and colour at a point of the plane of the two numbers, or on average in a part of it.
  *
- * In: a transfer function. Out: extinction and colour, asked of by the tables of grid/plane_table.c, by the
- * reference and by the outline over the value alone, which framing and exposure go by. */
+ * In: a transfer function. Out: extinction and colour, for the tables of grid/plane_table.c, for the
+ * reference, and for the outline over the value alone, which framing and exposure use. */
 #include "scene/function/function_plane.h"
 
 #include <math.h>

@@ -36,9 +36,9 @@ typedef struct plane_sum {
 /* The function's mean over a part of the plane; at a point where low and high are the same. */
 plane_sum hl_plane_mean(const hl_transfer_function *function, const plane_box *part);
 
-/* Replaces the function's opacity and colour by what the plane shows of each value between low and high: for
- * the greatest opacity a bound, which is 0 only where nothing shows with any second number. The points are
- * owned by *function; those before are not freed. */
+/* Replaces the function's opacity and colour by the outline of the plane over the values between low and
+ * high. The outline's opacity is a bound of the greatest opacity, which is 0 only where nothing shows with
+ * any second number. The new points are owned by *function; the old points are not freed. */
 hl_status hl_plane_outline(hl_context *context, double low, double high, hl_transfer_function *function,
                            hl_error *error);
 
@@ -47,10 +47,10 @@ hl_status hl_plane_copy(hl_context *context, const hl_function_plane *from, hl_f
                         hl_error *error);
 void hl_plane_release(hl_context *context, hl_function_plane *plane);
 
-/* A mark of the plane's content: of other content, another one. */
+/* A number that identifies the plane's content: other content has another number. */
 uint64_t hl_plane_mark(const hl_function_plane *plane);
 
-/* Checks the plane of a transfer function; place: what errors call the function. */
+/* Checks the plane of a transfer function. place: the function's name in errors. */
 hl_status hl_plane_check(const hl_function_plane *plane, const char *place, hl_error *error);
 
 #endif

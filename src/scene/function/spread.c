@@ -80,7 +80,7 @@ static void divide_rows(rows *r, const double old[2]) {
   if (end < 0) add_row(r, last, last, 0, 0);
 }
 
-/* Spreads rows; *to (hl_release) and *made are the new ones. */
+/* Spreads rows. *to: the new rows (hl_release); *made: their number. */
 static hl_status spread_rows(hl_context *context, rows *r, const double old[2], const double range[2],
                              hl_range_scale scale, hl_error *error) {
   if (r->count == 0) return HL_OK;

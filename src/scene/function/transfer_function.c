@@ -25,7 +25,7 @@ static size_t count_not_above(const void *points, size_t count, size_t stride, d
   return low;
 }
 
-/* points: at least one. */
+/* points: there must be at least one. */
 static double opacity_between(const hl_opacity_point *points, size_t count, double value) {
   size_t after = count_not_above(points, count, sizeof *points, value);
   if (after == 0) return points[0].opacity;

@@ -12,7 +12,7 @@
  * is along z. */
 bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forward);
 
-#define HL_VIEW_AZIMUTH   30 /* of the three-quarter view, degrees */
+#define HL_VIEW_AZIMUTH   30 /* azimuth of the three-quarter view, degrees */
 #define HL_VIEW_ELEVATION 20
 
 /* The picture's axes; unit. */

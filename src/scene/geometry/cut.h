@@ -34,7 +34,7 @@ void hl_add_scene_cuts(const hl_scene_description *scene, hl_scene_volume *volum
 /* The volumes of a scene that has cuts of its own, with these beside each volume's; all null where it has
  * none. */
 typedef struct placed_cuts {
-  hl_scene_volume *volumes; /* owned; what they hold is the scene's */
+  hl_scene_volume *volumes; /* owned; the arrays in them belong to the scene */
   hl_cut *cuts;             /* owned; of all volumes */
 } placed_cuts;
 

@@ -240,7 +240,8 @@ hl_status hl_lights_place(hl_context *context, const hl_scene_description *from,
   }
   for (int i = 0; i < suns->count; i++)
     *(hl_light *)&to->lights[to->light_count++] = hl_sun_light(&from->sky, &suns->suns[i]);
-  to->sky.suns = suns->count > 0; /* what is kept of a sky depends on whether its image lacks them */
+  to->sky.suns = suns->count > 0; /* the part of a sky that is kept depends on whether its image lacks the
+                                   * suns */
   if (suns->count > 0) to->sky.pixels = suns->rest;
   return HL_OK;
 }

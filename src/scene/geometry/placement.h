@@ -38,7 +38,8 @@ typedef struct hl_frame_space {
 /* The distance, in frame units, below which a light with falloff gets no brighter. */
 #define HL_LEAST_LIGHT_DISTANCE 1e-3
 
-hl_frame_space hl_scene_frame_space(const hl_scene_description *scene); /* of one volume or mesh at least */
+/* The description has at least one volume or mesh. */
+hl_frame_space hl_scene_frame_space(const hl_scene_description *scene);
 
 /* The empty value, of the volume's surroundings and of voxels that are not finite: the most frequent
  * transparent value; if no value is transparent, a value below the volume's range, which is then treated as

@@ -35,7 +35,7 @@ hl_status hl_labels_function(hl_context *context, const hl_scene_volume *volume,
   for (size_t n = 0; n < labels; n++) {
     const hl_label *label = &volume->labels[n];
     const double value = (double)label->value;
-    /* The voxels are floats: those of a great label lie within this distance of it. */
+    /* The voxels are floats. The voxels of a large label lie within this distance of it. */
     const double around = fmax(0.5, fabs(value) * 0x1p-24);
     double begin = fmax(value - around, end), shown = label->visible ? label->opacity : 0;
     if (begin > end && last > 0) opacity[opacity_count++] = (hl_opacity_point){end, last};
@@ -65,8 +65,8 @@ enum { POINTS = 4 };
  * that just touches a ball of a few voxels is half covered where the occupancy is 1/2: outlines are the
  * label's own. */
 static const double SOLID_FROM = 0.48, SOLID_TO = 0.51, SOLID_OPACITY = 0.9999;
-/* A translucent label is a skin from its surface to this occupancy: a label one voxel thin has both of its
- * skins. */
+/* A translucent label is a skin from its surface to this occupancy. A label that is one voxel thin has both
+ * of its skins. */
 static const double SKIN_FROM = 0.5, SKIN_TO = 0.7;
 
 /* The points of one drawn volume. */
@@ -102,7 +102,7 @@ static bool is_drawn(const hl_label *label) { return label->visible && label->op
 static bool is_solid(const hl_label *label) { return label->visible && label->opacity >= 1; }
 static bool is_skin(const hl_label *label) { return is_drawn(label) && !is_solid(label); }
 
-/* Solid labels are drawn as one volume, each other one by itself. */
+/* The number of drawn volumes. All solid labels are drawn as one volume, and each other label by itself. */
 static size_t count_drawn(const hl_scene_volume *volume) {
   if (volume->label_count == 0) return 1;
   size_t skins = 0, solids = 0;
@@ -194,7 +194,7 @@ static hl_status draw_masked(hl_context *context, hl_scene_description *placed, 
 
 hl_status hl_labels_draw(hl_context *context, hl_scene_description *placed, drawn_labels *drawn,
                          hl_error *error) {
-  const hl_scene_volume *volumes = placed->volumes; /* label maps among them */
+  const hl_scene_volume *volumes = placed->volumes; /* some of them are label maps */
   const size_t volume_count = placed->volume_count;
   size_t count = 0, maps = 0;
   for (size_t v = 0; v < volume_count; v++) {

@@ -1,5 +1,5 @@
-/* scene/label/label_list.c - the labels of a label map: those that its voxels have, with the names and
- * colours that its file, a table or nobody gives them. */
+/* scene/label/label_list.c - the labels of a label map: the labels that its voxels have, with names and
+ * colours from its file or from a table, if these give them any. */
 #include <math.h>
 #include <string.h>
 
@@ -73,7 +73,7 @@ static const hl_label *row_of(const hl_label_list *table, int64_t value) {
   return NULL;
 }
 
-/* Names and colours one label: by the table first, then by the file. */
+/* Gives one label a name and a colour: from the table first, then from the file. */
 static void describe(const hl_volume *map, const hl_label_list *table, int64_t value, hl_label *label) {
   *label = (hl_label){.value = value, .opacity = 1, .visible = 1};
   hl_label_distinct_color(value, label->color);

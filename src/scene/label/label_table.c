@@ -20,7 +20,8 @@ typedef struct word {
   bool is_number, is_whole, has_point;
 } word;
 
-/* The columns of a table with a header that are of use, as BIDS' dseg.tsv has them; -1: none. */
+/* The useful columns of a table with a header, as in dseg.tsv of BIDS; -1: the table does not have the
+ * column. */
 typedef struct columns {
   int value, name, color;
 } columns;
@@ -104,7 +105,7 @@ static bool read_color(const word *words, double color[3]) {
   return true;
 }
 
-/* Reads one line's label; false: it has none of the forms. */
+/* Reads a label from one line. False: the line has none of the forms. */
 static bool read_label(const word *words, int count, hl_label *label) {
   *label = (hl_label){.value = words[0].whole, .opacity = 1, .visible = 1};
   if (count >= 5 && !words[1].is_number) {
@@ -133,7 +134,8 @@ static bool read_web_color(const char *text, double color[3]) {
   return true;
 }
 
-/* Reads one line's label by the columns of a table; one without a colour ("n/a") gets one of its own. */
+/* Reads a label from one line by the columns of a table. A label without a colour ("n/a") gets a colour made
+ * from its number. */
 static bool read_row(const word *words, int count, const columns *at, hl_label *label) {
   if (at->name >= count) return false;
   *label = (hl_label){
@@ -157,7 +159,7 @@ static hl_status fail_line(const char *name, size_t line, const char *what, hl_e
       name, line, what);
 }
 
-/* Adds a line's label; lines without one are passed over. */
+/* Adds a label from a line. Lines without a label are left out. */
 static hl_status add_line(const char *name, size_t number, char *line, columns *table, hl_label_list *list,
                           hl_error *error) {
   word words[MOST_WORDS];
@@ -177,7 +179,7 @@ static hl_status add_line(const char *name, size_t number, char *line, columns *
   return HL_OK;
 }
 
-/* Sorts by value; of several lines for one label the last counts. */
+/* Sorts labels by value. Of several lines for one label the last one counts. */
 static void sort(hl_label_list *list) {
   size_t kept = 0;
   qsort(list->labels, list->count, sizeof *list->labels, by_value);
@@ -188,7 +190,7 @@ static void sort(hl_label_list *list) {
   list->count = kept;
 }
 
-/* Behind the mark of UTF-8 text, if there is one. */
+/* Skips the mark of UTF-8 text, if there is one. */
 static char *skip_mark(char *text) { return strncmp(text, "\xef\xbb\xbf", 3) == 0 ? text + 3 : text; }
 
 /* Ends a line at its line feed, its carriage return or both. Returns the next line; null: there is none. */

@@ -13,14 +13,14 @@ enum { HL_MOST_LABELS = 16384 };
 typedef struct hl_label_list {
   hl_label *labels; /* [count]; rising by value */
   size_t count;
-  char *names; /* what the labels' names point into */
+  char *names; /* memory that the labels' names point into */
 } hl_label_list;
 
 /* Reads a table. Lines are "number name R G B [A]", "number R G B A visible mesh \"name\"" or either with
  * commas; colours are sRGB, of 0 to 255 or, where none is above 1 and one has a point, of 0 to 1. Lines that
  * begin with #, and a first line without a number, are skipped. */
 hl_status hl_label_table_load(hl_context *context, const char *path, hl_label_list *list, hl_error *error);
-/* The same from memory; name: what errors call the text. */
+/* Reads a table from memory. name: the text's name in errors. */
 hl_status hl_label_table_parse(hl_context *context, const char *text, size_t length, const char *name,
                                hl_label_list *list, hl_error *error);
 void hl_label_list_release(hl_context *context, hl_label_list *list);

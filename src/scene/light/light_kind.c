@@ -1,4 +1,5 @@
-/* scene/light/light_kind.c - finds the table of a light's type; and what several types share. */
+/* scene/light/light_kind.c - finds the table of a light's type, and has functions that several types
+ * share. */
 #include "scene/light/light_kind.h"
 
 #define HL_LIGHT_KIND(value, name) [value] = &hl_light_kind_##name,

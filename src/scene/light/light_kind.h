@@ -1,12 +1,12 @@
 /* scene/light/light_kind.h - the interface of a type of light.
  *
- * A type of light is a table in a file of its own: what its settings must be together, and its shape as
- * geometry. light_kinds.h lists the types. Checks, files and everything that renders ask the table: they do
- * not name a type. (The reference, which shares no code with what it judges, names them.)
+ * A type of light is a table in a file of its own: the rules for its settings, and its shape as geometry.
+ * light_kinds.h lists the types. Checks, files and everything that renders ask the table: they do not name a
+ * type. (The reference, which shares no code with what it judges, names them.)
  *
- * `facing` is a unit vector: from the light to the content, of parallel light its direction. Offsets are from
- * the light's centre; of parallel light they are from its direction, and directions are points at distance 1.
- */
+ * `facing` is a unit vector: the direction from the light to the content, or the direction of parallel light.
+ * Offsets are counted from the light's centre. For parallel light they are counted from its direction;
+ * directions are points at distance 1. */
 #ifndef HL_SCENE_LIGHT_LIGHT_KIND_H
 #define HL_SCENE_LIGHT_LIGHT_KIND_H
 
@@ -16,12 +16,12 @@
 
 typedef struct light_kind {
   /* ---- what it is ---- */
-  bool parallel;      /* it is infinitely far away, and has a direction in place of a position */
-  bool sphere;        /* it looks like the disk that faces whoever looks */
-  bool cone;          /* it shines within a cone around `direction` alone */
+  bool parallel;      /* the light is infinitely far away, and has a direction instead of a position */
+  bool sphere;        /* the light looks like the disk that faces the observer */
+  bool cone;          /* the light shines only within a cone around `direction` */
   bool outline;       /* `vertices` say its shape and its place */
   bool parallelogram; /* the unit square lies along edge1 and edge2 */
-  double deviations;  /* its extent is so many standard deviations of its points */
+  double deviations;  /* the light's extent in standard deviations of its points */
 
   /* ---- checks; settings are in their ranges already ---- */
   hl_status (*check)(const hl_checker *check,
@@ -30,7 +30,7 @@ typedef struct light_kind {
   hl_status (*check_reach)(const hl_checker *check, const hl_light *light, const hl_frame_space *space);
 
   /* ---- its shape ---- */
-  vec3 (*centre)(const hl_light *light); /* null: it has none */
+  vec3 (*centre)(const hl_light *light); /* null: the light has no centre */
   /* The mean of x x' over all its points, x being their offsets: a rect has (e1 e1' + e2 e2') / 12, a disk
    * r^2/4 (1 - n n'). */
   mat3 (*spread)(const hl_light *light, vec3 facing);
@@ -39,7 +39,8 @@ typedef struct light_kind {
   /* The plane of its emission image. */
   emission_plane (*plane)(const hl_light *light, vec3 facing);
   bool (*has_surface)(const hl_light *light); /* an image can be on it */
-  bool (*is_wide)(const hl_light *light);     /* it is more than a point, or than one direction */
+  bool (*is_wide)(const hl_light *light);     /* whether the light is more than a point, or than one
+                                               * direction */
   /* How long the two sides of the unit square look along a unit vector, in units of length; infinite: not
    * known. Null where the light is parallel. */
   void (*apparent_lengths)(const hl_light *light, vec3 along, double length[2]);

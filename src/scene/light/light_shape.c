@@ -22,9 +22,9 @@ static double greatest_side(const double (*vertices)[3], size_t count) {
   return side;
 }
 
-/* A fan of triangles from the first vertex, each with a signed area: what lies outside the polygon cancels.
- * Over a triangle a, b, c the mean of x is s / 3 and that of x x' is (a a' + b b' + c c' + s s') / 12, s = a
- * + b + c, since barycentric coordinates have the mean products 1/6 (squares) and 1/12 (derived). */
+/* A fan of triangles from the first vertex, each with a signed area; parts outside the polygon cancel. Over a
+ * triangle a, b, c the mean of x is s / 3, and the mean of x x' is (a a' + b b' + c c' + s s') / 12, s = a +
+ * b + c, since barycentric coordinates have the mean products 1/6 (squares) and 1/12 (derived). */
 polygon_shape hl_polygon_shape(const double (*vertices)[3], size_t count) {
   polygon_shape shape = {.diameter = greatest_side(vertices, count)};
   vec3 first = vec3_of(vertices[0]), twice_area = {0, 0, 0}, sum = {0, 0, 0};

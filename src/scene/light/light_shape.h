@@ -9,8 +9,8 @@
 typedef struct polygon_shape {
   vec3 normal; /* unit; zero where there is no area */
   double area;
-  double diameter; /* of the vertices' bounds: the greatest side */
-  vec3 centre;     /* of area */
+  double diameter; /* the greatest side of the vertices' bounds */
+  vec3 centre;     /* centre of the area */
   mat3 spread;     /* mean of (x - centre)(x - centre)' over the area */
 } polygon_shape;
 
@@ -26,8 +26,8 @@ bool hl_polygon_crosses_itself(const polygon_shape *shape, const double (*vertic
 /* The plane of a light's emission image: offsets from the light's centre, or for parallel light from the
  * direction towards it, at distance 1. */
 typedef struct emission_plane {
-  vec3 middle;    /* of the image */
-  vec3 right, up; /* from there to the middles of its right and top edges */
+  vec3 middle;    /* middle of the image */
+  vec3 right, up; /* vectors from there to the middles of its right and top edges */
 } emission_plane;
 
 /* Unit vectors to the right and upwards, as seen by someone who looks against a unit normal. */

@@ -1,5 +1,5 @@
-/* scene/light/rect.c - a light that is a parallelogram, given by its centre and two edges; of one edge
- * without length, a line. */
+/* scene/light/rect.c - a light that is a parallelogram, given by its centre and two edges. Where one edge has
+ * no length, it is a line. */
 #include "scene/light/light_kind.h"
 
 /* The least area of a parallelogram that an image can be on, as a part of the product of its edges. */

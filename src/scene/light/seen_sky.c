@@ -1,7 +1,7 @@
 /* scene/light/seen_sky.c - the sky as the eye sees it behind a picture.
  *
- * In:  linear premultiplied pixels of all that stands before the sky.
- * Out: the same over the sky, with alpha 1. */
+ * In:  linear premultiplied pixels of everything before the sky. Out: these pixels over the sky, with alpha
+ * 1. */
 #include <halflight/render.h>
 #include <math.h>
 

@@ -26,7 +26,7 @@ sky_axes hl_sky_axes(const hl_sky *sky) {
 }
 
 /* The two pixels around a position along one axis, and the fraction of the way from the first to the second.
- * Around: the second after the last pixel is the first; else positions beyond the ends count as the ends. */
+ * around: the first pixel follows the last one; otherwise positions beyond the ends count as the ends. */
 static double neighbours(double position, int count, bool around, size_t pixel[2]) {
   double at = position - 0.5;
   if (around && at < 0) at += count;
