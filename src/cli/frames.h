@@ -1,4 +1,4 @@
-/* cli/frames.h - what commands that make many pictures share: parts of the work, pictures that are there
+/* cli/frames.h - functions for commands that make many pictures: parts of the work, pictures that exist
  * already, a bar with an estimate. */
 #ifndef HL_CLI_FRAMES_H
 #define HL_CLI_FRAMES_H

@@ -226,8 +226,8 @@ static hl_status load_volume_scene(hl_context *context, const cli_input *input,
   return status;
 }
 
-/* Relative file names in a picture's scene start in the picture's folder; where a file is not there, all of
- * them in the current folder, as on the command line that made the picture. */
+/* Relative file names in a picture's scene start in the picture's folder. If one of the files is not there,
+ * all names start in the current folder, as on the command line that made the picture. */
 static hl_status load_picture_scene(hl_context *context, const cli_input *input, hl_scene **scene,
                                     hl_error *error) {
   char *text = NULL, *folder = strdup(input->path);

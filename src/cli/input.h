@@ -17,12 +17,13 @@ typedef enum input_kind { INPUT_SCENE, INPUT_PICTURE, INPUT_VOLUME } input_kind;
 
 typedef struct cli_input {
   const char *path;  /* as given; "-" is standard input */
-  const char *title; /* what messages call it */
+  const char *title; /* the input's name in messages */
   input_kind kind;
   unsigned char *bytes; /* owned; [length]: the content of a pipe or a picture; else null */
   size_t length;
-  const char *look;     /* of a bare volume (hl_look_name); null: the one that the data choose */
-  const double *smooth; /* of a bare volume, voxels (hl_volume_smooth()); null: as the data need it */
+  const char *look;     /* look of a bare volume (hl_look_name); null: the look that suits the data */
+  const double *smooth; /* smoothing of a bare volume, voxels (hl_volume_smooth()); null: as much as the data
+                         * need */
 } cli_input;
 
 /* The rows of --array, --component, --time, --channel and --level in a subcommand's table of options;
@@ -87,7 +88,7 @@ void input_load_options(const cli_value *reading, const cli_value *spacing, hl_v
 hl_status input_load_volume(hl_context *context, const cli_input *input,
                             const hl_volume_load_options *options, hl_volume **volume, hl_error *error);
 
-/* Replaces a volume by one that --smooth makes of it. */
+/* Replaces a volume by the smoothed volume that --smooth asks for. */
 hl_status input_smooth(double sigma, hl_volume **volume, hl_error *error);
 
 /* Writes into a scene's volume how it was read, as the scene's text will say. Its strings are borrowed. */

@@ -24,7 +24,8 @@ void json_text(json_writer *writer, const char *key, const char *value); /* null
 void json_bool(json_writer *writer, const char *key, bool value);
 void json_whole_number(json_writer *writer, const char *key, uint64_t value);
 void json_signed_number(json_writer *writer, const char *key, int64_t value);
-void json_number(json_writer *writer, const char *key, double value); /* not finite becomes null */
+/* A number that is not finite becomes null. */
+void json_number(json_writer *writer, const char *key, double value);
 /* One line: [a, b, c] */
 void json_numbers(json_writer *writer, const char *key, const double *values, size_t count);
 /* A value that is written already. */

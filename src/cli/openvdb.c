@@ -27,8 +27,8 @@ static hl_status fail_io(hl_error *error, const char *what) {
   return HL_ERROR_IO;
 }
 
-/* The converter: what HALFLIGHT_OPENVDB names, the program beside this one, or nanovdb_convert in the PATH.
- */
+/* Finds the converter: the program in HALFLIGHT_OPENVDB, or halflight-openvdb beside this program, or
+ * nanovdb_convert in the PATH. */
 static void find_converter(char path[PATH_MAX]) {
   static const char name[] = "halflight-openvdb";
   const char *named = getenv("HALFLIGHT_OPENVDB");

@@ -20,7 +20,7 @@ static const char *choice_name(const void *choices, size_t index) {
   return choice->name;
 }
 
-/* How many rows a command has: those of its own table, then those of the table that it shares. */
+/* The number of rows of a command: the rows of its own table and of the table that it shares. */
 static size_t row_count(const cli_command *command) { return command->option_count + command->shared_count; }
 
 /* The option in a row; null: the command has not the option of this row. */
@@ -238,7 +238,8 @@ static int refuse_unknown(const cli_command *command, const char *argument) {
               command->name);
 }
 
-/* Parses the option at arguments[*index] and its value. *index becomes that of the last argument used. */
+/* Parses the option at arguments[*index] and its value. *index becomes the index of the last argument that
+ * was used. */
 static int parse_option(const cli_command *command, int argument_count, char **arguments, int *index,
                         cli_value *values) {
   const char *argument = arguments[*index], *attached = NULL;

@@ -29,11 +29,12 @@ typedef hl_setting_choice cli_choice; /* a null name ends the list */
 
 typedef struct cli_option {
   const char *name; /* without the dashes */
-  char letter;      /* of the short form; 0: none */
+  char letter;      /* the letter of the short form; 0: none */
   cli_option_kind kind;
   const char *argument; /* the value as help shows it; null for a switch, or to list the choices */
   const char *help;     /* lines, the first one short */
-  const char *group;    /* heading above this option in help; null: same group as the one before */
+  const char *group;    /* heading above this option in help; null: the option belongs to the group of the
+                         * option before */
   const cli_choice *choices;
   int count;        /* OPTION_NUMBERS: how many numbers, 1 to 3 */
   char separator;   /* between the numbers: ',' or 'x' */
@@ -45,17 +46,17 @@ typedef struct cli_option {
       *setting; /* key of a scene's setting: its range, and its choices if any, replace these; or null */
   hl_setting_kind setting_kind;
   bool repeatable; /* OPTION_TEXT: may be given again; every text is kept */
-  bool reserved;   /* not in this version yet: not shown in help, refused when given */
+  bool reserved;   /* not in this version yet: the option is not shown in help, and is refused when given */
 } cli_option;
 
 enum { MAXIMUM_REPEATS = 32 };
 
 typedef struct cli_value {
   bool given;
-  const char *text;                   /* the value as typed; of a repeatable option the last one */
+  const char *text;                   /* the value as typed; for a repeatable option the last one */
   const char *texts[MAXIMUM_REPEATS]; /* the values as typed; [count] */
   int count;
-  bool chosen; /* one of the choices was given: `choice` is its value */
+  bool chosen; /* one of the choices was given; `choice` is its value */
   int choice;
   double number[3];
   bool percent[3]; /* the number is a percentile */
@@ -71,7 +72,8 @@ typedef struct cli_command {
   const char *description;
   const cli_option *options;
   size_t option_count;
-  const cli_option *shared; /* another subcommand's table, some of whose options this one has too; or null */
+  const cli_option *shared; /* another subcommand's table, some of whose options this subcommand has, too; or
+                             * null */
   size_t shared_count;
   bool (*has_shared)(size_t row); /* whether it has the option in this row of `shared` */
   /* values: [option_count + shared_count], of its own table first; operands: null after the last. Returns the

@@ -24,7 +24,7 @@ int output_check(const char *path, const char *const *extensions, char *const *i
 /* Writes all the bytes to standard output; returns the exit code. */
 int output_to_stdout(const unsigned char *bytes, size_t length);
 
-/* The text of a scene for a picture at this path (hl_text_release()): what lies beside the picture is named
+/* The text of a scene for a picture at this path (hl_text_release()). Files beside the picture are named
  * relative to it. */
 hl_status output_scene_text(hl_context *context, const hl_scene *scene, const char *path, char **text,
                             hl_error *error);

@@ -1,4 +1,4 @@
-/* cli/overlay.c - pictures as files, with what is drawn over them. */
+/* cli/overlay.c - pictures as files, with their overlays. */
 #include "overlay.h"
 
 #include <stdlib.h>

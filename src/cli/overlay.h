@@ -1,4 +1,4 @@
-/* cli/overlay.h - what the options of `halflight render` draw over its pictures, and the pictures' files. */
+/* cli/overlay.h - the overlays that options of `halflight render` ask for, and the files of pictures. */
 #ifndef HL_CLI_OVERLAY_H
 #define HL_CLI_OVERLAY_H
 
@@ -8,11 +8,11 @@
 #define MILLIMETRES_PER_INCH 25.4
 
 typedef struct cli_overlay {
-  hl_overlay overlay; /* its texts are those of the options, or owned below */
+  hl_overlay overlay; /* its texts belong to the options, or are owned below */
   hl_annotation notes[MAXIMUM_REPEATS];
   char *texts[MAXIMUM_REPEATS]; /* owned; of `notes` */
-  char unit[40];                /* of --scale-bar */
-  double width;                 /* of --width, millimetres; 0: not stated */
+  char unit[40];                /* unit of --scale-bar */
+  double width;                 /* width from --width, millimetres; 0: not stated */
   double pixels_per_inch;       /* that files state, of --dpi; 0: as --width wants, or none */
   double font_points;           /* 0: the default */
   bool drawn;                   /* anything is drawn over pictures */
@@ -23,21 +23,21 @@ double overlay_unit(const char *name);
 
 void overlay_release(cli_overlay *overlay);
 
-/* Whether a picture differs from the one that its scene alone describes, by what is drawn over it or by the
- * size on paper that its file states. */
+/* Whether a picture differs from the picture that its scene alone describes, by overlays or by the size on
+ * paper that its file states. */
 bool overlay_is_any(const cli_overlay *overlay);
 
 /* Finds out whether everything can be drawn over a picture of the scene, before the picture is made. */
 hl_status overlay_check_scene(hl_context *context, const cli_overlay *overlay, const hl_scene *scene,
                               hl_error *error);
 
-/* Writes a picture, with what is drawn over it, in the format that the path ends in. options: the scene's,
- * as they are for hl_image_write(). overlay: may be null. */
+/* Writes a picture with its overlays, in the format that the path's ending names. options: the scene's, as
+ * for hl_image_write(). overlay: may be null. */
 hl_status overlay_write(hl_context *context, const cli_overlay *overlay, const hl_image *image,
                         const hl_scene *scene, const char *path, hl_image_write_options *options,
                         hl_error *error);
 
-/* The same bytes in memory; format: "png" and so on. */
+/* Writes the same bytes to memory. format: "png" and so on. */
 hl_status overlay_encode(hl_context *context, const cli_overlay *overlay, const hl_image *image,
                          const hl_scene *scene, const char *format, hl_image_write_options *options,
                          unsigned char **bytes, size_t *length, hl_error *error);

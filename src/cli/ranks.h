@@ -6,8 +6,8 @@
 
 /* Which of how many processes this is, as the launcher says that has started it. */
 typedef struct launcher {
-  const char *rank_name, *size_name; /* of variables of the environment */
-  const char *rank, *size;           /* what they say; to be checked */
+  const char *rank_name, *size_name; /* names of variables of the environment */
+  const char *rank, *size;           /* values of these variables, which must be checked */
   hl_mpi mpi;                        /* the library that its processes join by */
 } launcher;
 
@@ -21,8 +21,8 @@ hl_mpi launcher_mpi(void);
  * to be left with hl_ranks_leave() in any case. */
 int ranks_begin(cli_host *host, const char *option, hl_ranks **ranks);
 
-/* Where the exit code is one of failure, ends the others too: nobody waits for a rank that has failed. Before
- * anything that the others use is released. ranks: may be null. */
+/* Ends the other ranks, too, where the exit code stands for a failure, so that nobody waits for a rank that
+ * has failed. Call it before anything that the other ranks use is released. ranks: may be null. */
 void ranks_check(hl_ranks *ranks, int exit_code);
 
 #endif

@@ -84,7 +84,8 @@ static const cli_option animate_options[ANIMATE_OPTION_COUNT] = {
                              .help = "leave the pictures beside the film, in its name with\n\"-frames\""},
 };
 
-/* The options of `render` that say what is shown and how, but not those about one picture or its file. */
+/* The options of `render` that say what is shown and how; the options about a single picture or its file are
+ * not among them. */
 static bool has_render_option(size_t row) {
   switch ((enum render_option)row) {
     case RENDER_OUTPUT:
@@ -111,7 +112,7 @@ static bool has_render_option(size_t row) {
 /* One run. */
 typedef struct animate_job {
   cli_host host;
-  const cli_value *values, *render; /* of the command's own options, and of those of `render` */
+  const cli_value *values, *render; /* values of the command's own options, and of the options of `render` */
   char **inputs;                    /* null after the last */
   cli_overlay overlay;              /* owned; drawn over each frame */
   char *input;

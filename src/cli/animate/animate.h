@@ -12,7 +12,7 @@ typedef struct animate_frames {
   const film *film;
   const char *folder;
   frames_style style;
-  int digits; /* of a picture's number */
+  int digits; /* number of digits of a picture's number */
   int done;   /* number of pictures that are there already, among those that this run renders */
   int rendered;
 } animate_frames;
@@ -36,7 +36,7 @@ int animate_join(const animate_frames *frames, const char *path, double frames_p
 /* Removes the film's pictures, and the folder if it is empty then. */
 void animate_remove_frames(const animate_frames *frames);
 
-/* The same for the pictures of a series of files, "turn-frames/000000.png" and so on. */
+/* Does the same for the pictures of a series of files, "turn-frames/000000.png" and so on. */
 int animate_join_series(const char *folder, int count, const char *output, double frames_per_second,
                         bool quiet);
 void animate_remove_series(const char *folder, int count);

@@ -1,9 +1,8 @@
-/* cli/animate/frames.c - the numbered pictures of `halflight animate`: rendered where they are not there yet,
- * joined to a film, removed.
+/* cli/animate/frames.c - the numbered pictures of `halflight animate`: pictures that are missing are
+ * rendered; then pictures are joined to a film, and removed.
  *
- * A picture carries its scene. One that is there with the scene of its frame is kept, so that a run goes on
- * where the last one stopped, and so that several runs can share a folder.
- */
+ * A picture carries its scene. A picture that exists with the scene of its frame is kept. So a run goes on
+ * where the last run stopped, and several runs can share a folder. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
-/* cli/figure/figure.c - `halflight figure FIGURE.json`: pictures side by side on a page, that share a camera,
- * a light or a range of values.
+/* cli/figure/figure.c - `halflight figure FIGURE.json`: pictures side by side on a page, which share a
+ * camera, a light or a range of values.
  *
- * All scenes are made before the first picture: then what cannot be drawn is refused at once. */
+ * All scenes are made before the first picture, so that a panel which cannot be drawn is refused at once. */
 #define _GNU_SOURCE
 #include <math.h>
 #include <stdio.h>
@@ -56,7 +56,7 @@ static void size_panel(const figure_page *page, figure_panel *panel) {
   render_set_size(&panel->values[RENDER_SIZE], width, width / aspect, panel->size_text);
 }
 
-/* Takes what the first panel shares into a description of another one. */
+/* Copies everything that the first panel shares into the description of another panel. */
 static void take_shared(const figure_page *page, hl_scene_description *description,
                         hl_scene_volume *volumes) {
   const hl_scene_description *first = hl_scene_describe(page->panels[0].scene);
@@ -256,8 +256,8 @@ static int make_and_write(figure_job *job) {
 
 /* ---- the run ---- */
 
-/* Names in the file are relative to its folder, which becomes the current one; the output's is made absolute
- * before. */
+/* Makes the file's folder the current folder, because names in the file are relative to it. The output's name
+ * is made absolute before. */
 static int enter_folder(figure_job *job) {
   static const char *const extensions[] = {".pdf", ".svg", ".png", ".tif", ".tiff", NULL};
   const cli_value *given = &job->values[FIGURE_OUTPUT];

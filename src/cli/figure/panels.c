@@ -31,7 +31,7 @@ typedef struct page_reading {
 
 /* ---- names of files ---- */
 
-/* Whether a text, or what follows its '=', leads out of the folder. */
+/* Whether a text, or the part of it after '=', leads out of the folder. */
 static bool leads_out(const char *text) {
   const char *equals = strchr(text, '=');
   for (const char *at = text; at != NULL; at = at == text && equals != NULL ? equals + 1 : NULL) {
@@ -132,7 +132,7 @@ static int add_json_option(const page_reading *reading, figure_panel *panel, con
   if (json_is_true(value) && render_options[which].kind == OPTION_SWITCH)
     return add_option(panel, name, NULL);
   if (json_is_null(value) || json_is_false(value))
-    return EXIT_CODE_OK; /* what the shared options say is off */
+    return EXIT_CODE_OK; /* the shared options say that it is off */
   if (!json_is_array(value) || !render_options[which].repeatable)
     return add_value(reading, panel, which, value);
   size_t index;
@@ -202,7 +202,8 @@ static int read_corner(const page_reading *reading, figure_panel *panel, const j
   return EXIT_CODE_OK;
 }
 
-/* The object's options, over those of `below`, which stands under it; both may be null. */
+/* Joins an object's options, `above`, and the options under it, `below`, which count where the object has
+ * none. Both may be null. */
 static json_t *join(const json_t *below, const json_t *above) {
   json_t *joined = json_object();
   const char *key;
@@ -253,7 +254,7 @@ static int add_panel(page_reading *reading, const json_t *given, const json_t *b
   if (exit_code == EXIT_CODE_OK && inset != NULL && inside >= 0)
     exit_code = fail(EXIT_CODE_INPUT, "%s: an inset has no inset", reading->path);
   if (exit_code == EXIT_CODE_OK && inset != NULL) {
-    json_t *bare = json_copy(keys); /* what is drawn over the panel is not drawn over its inset again */
+    json_t *bare = json_copy(keys); /* the overlays of the panel are not drawn over its inset again */
     static const char *const drawn[] = {"scale-bar", "scale_bar", "legend", "axes", "annotate", "unit"};
     for (size_t n = 0; n < sizeof drawn / sizeof *drawn; n++) json_object_del(bare, drawn[n]);
     exit_code = add_panel(reading, inset, bare, index);
@@ -263,7 +264,8 @@ static int add_panel(page_reading *reading, const json_t *given, const json_t *b
   return exit_code;
 }
 
-/* Without letters in the file, several panels are "a", "b" and so on; "letters": false leaves them out. */
+/* Letters the panels. Without letters in the file, several panels are "a", "b" and so on; "letters": false
+ * leaves letters out. */
 static int add_letters(const page_reading *reading, const json_t *letters) {
   figure_page *page = reading->page;
   int outer = 0;

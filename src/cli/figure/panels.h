@@ -1,4 +1,5 @@
-/* cli/figure/panels.h - what FIGURE.json of `halflight figure` says: a page, and the pictures on it. */
+/* cli/figure/panels.h - the content of a FIGURE.json of `halflight figure`: a page, and the pictures on
+ * it. */
 #ifndef HL_CLI_FIGURE_PANELS_H
 #define HL_CLI_FIGURE_PANELS_H
 
@@ -6,9 +7,9 @@
 
 enum { FIGURE_MOST_PANELS = 64 };
 
-/* A picture: what `halflight render` would be told. */
+/* A picture: the command line that `halflight render` would get. */
 typedef struct figure_panel {
-  cli_value values[RENDER_OPTION_COUNT]; /* their texts are owned by `words` */
+  cli_value values[RENDER_OPTION_COUNT]; /* `words` owns their texts */
   char **words;                          /* owned; [word_count]; options and inputs as a command line */
   size_t word_count;
   char *operands[MAXIMUM_OPERANDS + 1]; /* null after the last */
@@ -18,7 +19,7 @@ typedef struct figure_panel {
   double part;                          /* an inset's width over that panel's */
   bool right, lower;                    /* the inset's corner */
   bool bare;
-  char size_text[RENDER_SIZE_TEXT]; /* of --size */
+  char size_text[RENDER_SIZE_TEXT]; /* text of --size */
   hl_scene *scene;                  /* owned */
   hl_image *image;                  /* owned */
   cli_overlay overlay;
@@ -33,7 +34,7 @@ typedef struct figure_page {
   int columns;
   double background[3];
   bool transparent;
-  bool share_camera, share_light, share_function; /* of the first panel */
+  bool share_camera, share_light, share_function; /* the panel shares these properties of the first panel */
 } figure_page;
 
 /* Reads the file. Call figure_page_release() even after a failure. Returns the exit code. */

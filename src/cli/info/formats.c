@@ -1,4 +1,4 @@
-/* cli/info/formats.c - `halflight info --formats`: what this program reads and writes. */
+/* cli/info/formats.c - `halflight info --formats`: the formats that this program reads and writes. */
 #include "formats.h"
 
 #include <halflight/halflight.h>
@@ -9,7 +9,7 @@
 #include "cli/message.h"
 #include "cli/openvdb.h"
 
-/* The formats of one kind. get: as hl_volume_get_format(). */
+/* The formats of one kind. get: a function like hl_volume_get_format(). */
 typedef struct format_kind {
   const char *key, *title;
   hl_status (*get)(size_t index, hl_file_format *format);

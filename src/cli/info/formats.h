@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-/* Prints what this program reads and writes. Returns the exit code. */
+/* Prints the formats that this program reads and writes. Returns the exit code. */
 int info_formats(bool as_json);
 
 #endif

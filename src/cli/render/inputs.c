@@ -1,9 +1,8 @@
 /* cli/render/inputs.c - one scene from the operands of `halflight render`: a scene, or volumes.
  *
- * Each of several volumes keeps the look that it would have alone. Light, background and render settings are
- * those of the first volume; the camera frames all volumes, and the sheets are as close as the finest of the
- * volumes needs them.
- */
+ * Where there are several volumes, each keeps the look that it would have alone. Light, background and render
+ * settings come from the first volume; the camera frames all volumes, and the sheets are as close as the
+ * finest of the volumes needs them. */
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
@@ -25,7 +24,8 @@ void render_name_scene(const char *input, bool bare, hl_error *error) {
            strcmp(input, "-") == 0 ? "standard input" : input, line);
 }
 
-/* Refuses several inputs of which one is no volume, and options for reading volumes beside a scene. */
+/* Refuses several inputs if one of them is no volume, and refuses options for reading volumes beside a
+ * scene. */
 static int check_kinds(const cli_value *values, const cli_input *inputs, size_t count) {
   for (size_t n = 0; n < count && count > 1; n++)
     if (inputs[n].kind != INPUT_VOLUME)

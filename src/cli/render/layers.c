@@ -79,7 +79,7 @@ int render_layers_protect(const cli_host *host, const char *output, size_t light
   static const char *const names[] = {"ambient",     "emission",   "sky",    "sky_shadow",
                                       "depth_first", "depth_mean", "normal", "object"};
   int exit_code = EXIT_CODE_OK;
-  if (!has_extension(output, ".npy")) return EXIT_CODE_OK; /* .exr holds them itself */
+  if (!has_extension(output, ".npy")) return EXIT_CODE_OK; /* an .exr file holds all layers itself */
   for (size_t i = 0; i < sizeof names / sizeof *names && exit_code == EXIT_CODE_OK; i++)
     exit_code = protect_from_layer(host, output, names[i], input);
   for (size_t i = 0; i < light_count && exit_code == EXIT_CODE_OK; i++) {

@@ -17,7 +17,7 @@
 typedef struct render_job {
   cli_host host;
   cli_value values[RENDER_OPTION_COUNT]; /* --size is set by --width */
-  char size_text[RENDER_SIZE_TEXT];      /* of that --size */
+  char size_text[RENDER_SIZE_TEXT];      /* text for the option --size */
   char **inputs;                         /* [input_count], null after the last */
   int input_count;
   char *input;          /* the first */

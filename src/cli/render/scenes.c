@@ -1,8 +1,8 @@
-/* cli/render/scenes.c - `halflight render 'examples/fig*.json'`: scenes that a pattern finds, a picture of
- * each.
+/* cli/render/scenes.c - `halflight render 'examples/fig*.json'`: makes a picture of each scene that a pattern
+ * finds.
  *
  * Each scene is rendered as if it stood alone on the command line, in the order of the numbers in the names.
- * A scene that fails has no picture, and the others are made all the same. */
+ * A scene that fails has no picture; the other pictures are made nevertheless. */
 #define _GNU_SOURCE
 #include <glob.h>
 #include <stdio.h>

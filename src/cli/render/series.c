@@ -1,9 +1,9 @@
-/* cli/render/series.c - `halflight render 'dump_*.vti' -o 'frames/%04d.png'`: a series of files, a picture of
- * each.
+/* cli/render/series.c - `halflight render 'dump_*.vti' -o 'frames/%04d.png'`: makes a picture of each file of
+ * a series.
  *
- * Look, camera and lights are those of the first file that can be read, and so are all other files that the
- * options name (label maps, masks, meshes, skies): they are read with it, before the first picture. Files are
- * in the order of the numbers in their names, and pictures are numbered from 0 in this order. */
+ * Look, camera and lights come from the first file that can be read. All other files that the options name
+ * (label maps, masks, meshes, skies) are read with this file, before the first picture. Files are in the
+ * order of the numbers in their names, and pictures are numbered from 0 in this order. */
 #define _GNU_SOURCE
 #include "series.h"
 
@@ -96,8 +96,8 @@ static int load_first(series_job *job, bool *bare) {
   return exit_code;
 }
 
-/* Lets pass the time up to a picture: the scene of a file is replaced by that of a film's frame, in which the
- * keys' numbers have their values there. */
+/* Moves to the time of a picture: the scene of a file is replaced by the scene of a film's frame, in which
+ * the numbers of keys have their values at this time. */
 static hl_status move(const series_job *job, int number, hl_scene **scene, hl_error *error) {
   if (job->motion == NULL) return HL_OK;
   film_options options = *job->motion;
@@ -115,7 +115,7 @@ static hl_status move(const series_job *job, int number, hl_scene **scene, hl_er
   return HL_OK;
 }
 
-/* Tries the keys with the first file's scene, so that a mistake in them is told before any picture. */
+/* Tries the keys with the first file's scene, so that a mistake in them is found before the first picture. */
 static int try_motion(series_job *job) {
   hl_scene *scene = job->scene;
   hl_error error = {0};
@@ -178,7 +178,7 @@ static int make_picture(series_job *job, hl_renderer *renderer, int number) {
     return bad ? EXIT_CODE_OK : exit_code;
   }
   hl_status status = move(job, number, &scene, &error);
-  bool there = status == HL_OK && is_there(job, number, scene, path); /* of a label map */
+  bool there = status == HL_OK && is_there(job, number, scene, path); /* for a label map */
   const frames_style style = {.no_metadata = job->values[RENDER_NO_METADATA].given, .overlay = &job->overlay};
   if (status == HL_OK && !there) status = frames_render(&job->host, renderer, scene, style, path, &error);
   hl_scene_release(scene);

@@ -8,7 +8,7 @@
 typedef struct series_job {
   cli_host host;
   cli_value values[RENDER_OPTION_COUNT]; /* --range is set by --range-of-all */
-  const char *pattern;                   /* of OUT, with one %d */
+  const char *pattern;                   /* pattern of OUT, with one %d */
   char **files;                          /* owned; [count]: volumes, or meshes where there is no volume */
   bool of_meshes;                        /* the files are meshes */
   char *meshes[MAXIMUM_OPERANDS + 1];    /* borrowed; null after the last: meshes in every picture */
@@ -17,31 +17,33 @@ typedef struct series_job {
   int count, part, parts;
   int first;                          /* the number of the file that the scene is of */
   int wanted, done, rendered, failed; /* pictures of this part; files of this part that cannot be read */
-  double seconds;                     /* of the rendered ones */
+  double seconds;                     /* for the rendered pictures */
   hl_scene *scene;                    /* owned; of the first file that can be read */
-  char size_text[RENDER_SIZE_TEXT];   /* of --size, where --width sets it */
+  char size_text[RENDER_SIZE_TEXT];   /* text of --size, where --width sets it */
   cli_overlay overlay;                /* owned; drawn over each picture */
-  const film_options *motion;         /* borrowed; what moves from picture to picture; null: nothing */
+  const film_options *motion;         /* borrowed; the keys that move numbers from picture to picture; null:
+                                       * nothing moves */
 } series_job;
 
 /* True if the text has one "%d" or "%04d", and no other '%' but "%%". */
 bool series_has_number(const char *text);
 
-/* Finds the files that the operands name, and which of them are in every picture. Call series_release_files()
- * even after a failure. Returns the exit code. */
+/* Finds the files that the operands name, and tells files of the series from files that are in every picture.
+ * Call series_release_files() even after a failure. Returns the exit code. */
 int series_find_files(series_job *job, char **operands);
 void series_release_files(series_job *job);
 
-/* Reads a volume of the series. channel: HL_INDEX_DEFAULT: the one that the options ask for. A failure is
- * told once. Returns the exit code. */
+/* Reads a volume of the series. channel: HL_INDEX_DEFAULT means the channel that the options ask for. A
+ * failure is printed once. Returns the exit code. */
 int series_load_volume(series_job *job, int number, int channel, hl_volume **volume);
 
-/* The scene of a file: that of the first one, with what this file holds in place of it. Where the exit code
- * is not 0, job->bad[number] says whether the file is to blame. */
+/* The scene of a file: the scene of the first file, with the content of this file. Where the exit code is not
+ * 0, job->bad[number] says whether the file is to blame. */
 int series_scene(series_job *job, int number, hl_scene **scene);
 
-/* The same with the voxels or triangles of the first file, for its text alone, which tells whether a picture
- * is of this scene. Fails, without a line, for label maps, whose text depends on what the file holds. */
+/* Makes the scene of a file with the voxels or triangles of the first file. Only its text is used, to find
+ * out whether a picture belongs to this scene. Fails, without an error line, for label maps, whose text
+ * depends on the file's content. */
 hl_status series_scene_unread(const series_job *job, int number, hl_scene **scene);
 
 #endif

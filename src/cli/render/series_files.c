@@ -70,8 +70,9 @@ static int add_pattern(series_job *job, const char *pattern) {
   return exit_code;
 }
 
-/* Meshes that are named one by one are in every picture, unless they are all that there is. A pattern that
- * finds meshes beside volumes is refused: which of them belongs to which volume is not known. */
+/* Separates meshes from the series. Meshes that are named one by one are in every picture, unless there are
+ * only meshes. A pattern that finds meshes beside volumes is refused, because nothing says which mesh belongs
+ * to which volume. */
 static int part_meshes(series_job *job) {
   int meshes = 0;
   for (int n = 0; n < job->count; n++) meshes += is_mesh_file(job->host.context, job->files[n]);
@@ -89,7 +90,8 @@ int series_find_files(series_job *job, char **operands) {
     else if (is_mesh_file(job->host.context, operand)) job->meshes[job->mesh_count++] = operand;
     else exit_code = add_file(job, operand);
   }
-  if (job->mesh_count == operand_count) { /* no volume, no pattern: they are the series */
+  /* Without a volume and without a pattern, the meshes are the series. */
+  if (job->mesh_count == operand_count) {
     job->mesh_count = 0;
     for (int n = 0; n < operand_count && exit_code == EXIT_CODE_OK; n++)
       exit_code = add_file(job, operands[n]);
@@ -110,7 +112,7 @@ void series_release_files(series_job *job) {
 
 /* ---- what a file holds ---- */
 
-/* Files are read alike: at the first one's resolution, and only in the anatomical space that it is in. */
+/* All files are read alike: at the resolution of the first file, and only in its anatomical space. */
 static void reading_of(const series_job *job, hl_volume_load_options *options) {
   render_load_options(job->values, options);
   if (job->scene != NULL) options->level = hl_scene_describe(job->scene)->volumes[0].level;
@@ -180,7 +182,8 @@ static hl_status make_scene(const series_job *job, hl_scene_volume *volumes, siz
   return status;
 }
 
-/* The volumes of the first file in its scene, one or a channel each; those after them are label maps. */
+/* The number of volumes of the first file in its scene: one, or one for each channel. The volumes after them
+ * are label maps. */
 static size_t volumes_of_file(const series_job *job) {
   const hl_scene_description *description = hl_scene_describe(job->scene);
   size_t count = 1;
@@ -231,7 +234,7 @@ static int volume_scene(series_job *job, int number, hl_scene **scene) {
   return exit_code;
 }
 
-/* Gives a layer of a label map what the options say of the first file's. */
+/* Gives a layer of a label map the settings that options gave the first file's layer. */
 static void take_settings(const hl_scene_volume *from, hl_scene_volume *layer) {
   hl_scene_volume made = *from;
   made.volume = layer->volume;

@@ -18,7 +18,7 @@ typedef struct views_job {
   char size_text[RENDER_SIZE_TEXT];
   char **inputs;
   const char *output;
-  bool files; /* one for each side */
+  bool files; /* there is a file for each side */
   char names[MOST_VIEWS][NAME_BYTES];
   int choices[MOST_VIEWS];
   size_t count;

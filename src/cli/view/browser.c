@@ -19,7 +19,7 @@ static bool has_screen(void) {
   return (x11 != NULL && x11[0] != '\0') || (wayland != NULL && wayland[0] != '\0');
 }
 
-/* A folder for files of this user: mkdtemp() makes one in it that nobody else can enter. */
+/* A folder for files of this user, in which mkdtemp() makes a folder that nobody else can enter. */
 static const char *private_place(void) {
   static const char *const names[] = {"XDG_RUNTIME_DIR", "TMPDIR"};
   for (size_t n = 0; n < sizeof names / sizeof *names; n++) {

@@ -7,7 +7,7 @@
 /* A file that leads the browser to the page. Command lines can be read by every user of the machine, so the
  * page's URL, which holds the token, stands in this file, which its owner alone can read. */
 typedef struct browser_page {
-  char folder[PATH_MAX / 2]; /* of the file alone; "": there is none */
+  char folder[PATH_MAX / 2]; /* folder of the file; "": there is none */
   char path[PATH_MAX];
 } browser_page;
 

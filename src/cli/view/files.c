@@ -128,7 +128,7 @@ hl_status view_open_file(void *user_data, const server_file *file, hl_scene **sc
 
 /* ---- files that are added ---- */
 
-/* Adds meshes. One that has the first of the colours for meshes takes the next one. */
+/* Adds meshes. A mesh that has the first of the colours for meshes gets the next colour. */
 static hl_status join_meshes(hl_context *context, const hl_scene_mesh *meshes, size_t count, hl_scene **scene,
                              hl_error *error) {
   const size_t before = hl_scene_describe(*scene)->mesh_count;

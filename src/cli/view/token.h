@@ -7,8 +7,9 @@
 enum { VIEW_TOKEN_DIGITS = 32 };
 
 /* The token that the user's last viewer on this port had, or a new one that is kept, so that an open page
- * goes on when the viewer is started again. It lies in XDG_RUNTIME_DIR, which the user alone can enter and
- * which goes when he logs out. False: there is no such folder, or no file in it can be trusted or written. */
+ * goes on when the viewer is started again. It lies in XDG_RUNTIME_DIR, which only the user can enter, and
+ * which is removed when the user logs out. False: there is no such folder, or no file in it can be trusted or
+ * written. */
 bool view_token_of_port(int port, char token[VIEW_TOKEN_DIGITS + 1]);
 
 #endif

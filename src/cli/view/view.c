@@ -37,7 +37,8 @@ static const cli_option view_options[VIEW_OPTION_COUNT] = {
                              "only print the URL (default: open a browser too, where\nthere is a screen)"},
 };
 
-/* The options of `render` that say what is shown and how, but not those about one picture or its file. */
+/* The options of `render` that say what is shown and how; the options about a single picture or its file are
+ * not among them. */
 static bool has_render_option(size_t row) {
   switch ((enum render_option)row) {
     case RENDER_OUTPUT:
@@ -77,7 +78,7 @@ static bool has_render_option(size_t row) {
 /* One run. */
 typedef struct view_job {
   cli_host host;
-  const cli_value *values, *render; /* of the command's own options, and of those of `render` */
+  const cli_value *values, *render; /* values of the command's own options, and of the options of `render` */
   hl_scene *scene;                  /* owned */
   browser_page page;
 } view_job;
