@@ -20,9 +20,8 @@
 #define HL_LIMIT_CORNER 1e14
 /* Large, for light that falls off with the square of distances in nanometres. */
 #define HL_LIMIT_INTENSITY 1e35
-#define HL_LIMIT_BRIGHTNESS                                                       \
-  1e20 /* brightness of a light, a voxel's edge away; sums and products still fit \
-        * floats */
+/* Brightness of a light, a voxel's edge away; sums and products still fit floats. */
+#define HL_LIMIT_BRIGHTNESS    1e20
 #define HL_LIMIT_REACH         1e12 /* distances and lengths, in smallest voxel edges */
 #define HL_LIMIT_TEXTURE_VALUE 1e6
 #define HL_LIMIT_RADIANCE      1e6  /* radiance of a sky's colours, and their factor */
