@@ -22,9 +22,9 @@ static void add_pixels(hl_key *key, const float *pixels, int width, int height) 
     hl_key_add_whole(key, (int64_t)hl_key_mark(pixels, 3 * (size_t)width * (size_t)height * sizeof *pixels));
 }
 
-/* A light's type and where it stands come first: the order then stays while colours and intensities change.
- * Of lights of one type those that shine from above are first, since sheets suit the first one best, and the
- * main light of a scene mostly stands above. */
+/* A light's type and place come first, so that the order stays while colours and intensities change. Of
+ * lights of one type, lights that shine from above come first: sheets suit the first light best, and the main
+ * light of a scene mostly stands above. */
 static void write_light(const void *data, hl_key *key) {
   const hl_light *light = data;
   hl_key_add_whole(key, light->type);
@@ -44,7 +44,7 @@ static void write_light(const void *data, hl_key *key) {
 
 /* ---- volumes ---- */
 
-/* What is known of the voxels without reading them. */
+/* Adds the facts about the voxels that are known without reading them. */
 static void add_voxels(hl_key *key, const hl_volume *volume) {
   for (int axis = 0; axis < 3; axis++) hl_key_add_whole(key, (int64_t)volume->dimension[axis]);
   hl_key_add_whole(key, volume->storage);
@@ -75,7 +75,7 @@ static void add_mask(hl_key *key, const hl_mask *mask) {
   add_voxels(key, mask->volume);
 }
 
-/* Where a volume is and what its voxels are come first: the order then stays while its look is changed. */
+/* A volume's place and voxels come first, so that the order stays while its look is changed. */
 static void write_volume(const void *data, hl_key *key) {
   const hl_scene_volume *volume = data;
   affine3 place = hl_scene_volume_index_to_world(volume);
@@ -99,8 +99,8 @@ static int compare_bytes(const void *a, const void *b, size_t count) {
   return memcmp(a, b, count);
 }
 
-/* Compares the voxels of volumes of one size and storage. Voxels outside of memory are told by their
- * histograms alone, which are equal here. */
+/* Compares the voxels of volumes with equal size and storage. Voxels outside of memory are compared only by
+ * their histograms, which are equal here. */
 static int compare_voxels(const hl_volume *a, const hl_volume *b) {
   if (a == b || a == NULL || b == NULL || a->voxels == NULL || b->voxels == NULL) return 0;
   const size_t row = a->dimension[0] * hl_storage_bytes(a->storage);
@@ -132,7 +132,7 @@ static void write_mesh(const void *data, hl_key *key) {
   hl_key_add_whole(key, (int64_t)mesh->mesh->mark);
 }
 
-/* Meshes of equal keys have the same triangles and spheres. */
+/* Compares meshes. Meshes with equal keys have the same triangles and spheres. */
 static int compare_meshes(const void *a, const void *b) {
   const hl_mesh_description *first = &((const hl_scene_mesh *)a)->mesh->description,
                             *second = &((const hl_scene_mesh *)b)->mesh->description;
@@ -145,7 +145,8 @@ typedef struct sort_kind {
   const void *items;
   size_t count, size;
   hl_key_write *write;
-  int (*compare)(const void *a, const void *b); /* of things with equal keys; null: keys hold all */
+  int (*compare)(const void *a, const void *b); /* compares things with equal keys; null: keys hold
+                                                 * everything */
 } sort_kind;
 
 static int compare(const sort_kind *kind, const hl_key *keys, int a, int b) {

@@ -1,8 +1,8 @@
 /* scene/order.h - the order in which frames take a scene's lights, volumes and meshes.
  *
- * Sheets are shared by lights one after the other, and sums of floats depend on their order. So frames take
- * what a scene holds in an order that depends on what the things are, and not on where the scene lists them:
- * scenes that differ in the order of their lists have the same pictures, to the byte. */
+ * Sheets are shared by lights one after the other, and sums of floats depend on their order. So frames take a
+ * scene's things in an order that depends on the things themselves, and not on their places in the scene's
+ * lists. Scenes that differ only in the order of their lists have the same pictures, to the byte. */
 #ifndef HL_SCENE_ORDER_H
 #define HL_SCENE_ORDER_H
 
@@ -17,10 +17,9 @@ typedef struct scene_order {
   int *meshes;  /* owned; [mesh_count] */
 } scene_order;
 
-/* given: the description as it was given, whose lights are where the camera's axes have them: their order is
- * then the same wherever the camera stands. placed: the one that is rendered; its first lights are those of
- * `given`. Things that are alike in all that a picture shows have one order as good as another. After an
- * error, too, the order is to be released. */
+/* given: the description as it was given. Its lights may be placed in the camera's axes, so their order does
+ * not depend on the camera. placed: the description that is rendered; its first lights are the lights of
+ * `given`. Things that look alike in a picture may have any order. Release the order after an error, too. */
 hl_status hl_scene_order_find(hl_context *context, const hl_scene_description *given,
                               const hl_scene_description *placed, scene_order *order, hl_error *error);
 void hl_scene_order_release(hl_context *context, scene_order *order);

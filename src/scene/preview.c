@@ -92,8 +92,8 @@ static double edge_of(const hl_scene_volume *volume) {
   return hl_scene_smallest_edge(&alone);
 }
 
-/* Gives the volume the coarsest copy whose voxels are about as long as the sheets are apart. False: it stays.
- */
+/* Gives the volume its coarsest copy whose voxels are about as long as the sheets are apart. False: the
+ * volume stays as it is. */
 static bool replace(const hl_preview *preview, hl_scene_volume *volume, double apart) {
   const levels *l = levels_of(preview, volume);
   for (size_t n = l != NULL ? l->count : 0; n > 0; n--) {

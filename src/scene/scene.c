@@ -160,7 +160,7 @@ hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_funct
   return status;
 }
 
-/* Copies a volume's function; one of two numbers gets its outline over the value. */
+/* Copies a volume's function. A function of two numbers gets its outline over the value. */
 static hl_status copy_function(hl_context *context, const hl_transfer_function *from, const hl_volume *volume,
                                hl_transfer_function *to, hl_error *error) {
   hl_status status = hl_transfer_function_copy(context, from, to, error);
@@ -262,7 +262,7 @@ void hl_light_images_release(hl_context *context, hl_light *light) {
 typedef struct light_picture {
   const float *pixels; /* [height][width][3]; null: none */
   int width, height;
-  const char *file; /* its name; null: none */
+  const char *file; /* name of the file; null: none */
 } light_picture;
 
 static hl_status copy_picture(hl_context *context, light_picture from, const float **pixels,

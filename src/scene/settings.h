@@ -28,7 +28,7 @@ void hl_settings_defaults(hl_setting_kind kind, void *object);
 /* Adds the fields of all rows that objects of this type have, in their order, to a key. */
 void hl_settings_key_add(hl_setting_kind kind, const void *object, int type, hl_key *key);
 
-/* The name of one of the row's choices; null: none has this value. */
+/* The name of one of the row's choices; null: no choice has this value. */
 const char *hl_setting_choice_name(const hl_setting *setting, int value);
 
 /* The row's `mend` with its range written out. */

@@ -7,21 +7,21 @@
 #include "grid/classifier.h"
 #include "light/light_source.h"
 
-/* One volume's densities in a tile, on cache lines of its own: each thread writes its own beside another's.
- */
+/* One volume's densities in a tile. Each thread writes its own densities, so they have cache lines of their
+ * own. */
 typedef struct attenuate_volume {
   _Alignas(64) const classifier *classifier;
   const float *density;       /* [256], block-major; on this sheet */
   const float *before;        /* [256], block-major; on the sheet before */
   const float *enter, *leave; /* [256], block-major; null: the box does not cut anything visible */
   uint32_t blocks;            /* blocks with density on either sheet */
-  int surface;                /* it has surfaces; else it is a medium */
-  float voxel;                /* its smallest edge; frame units */
+  int surface;                /* the volume has surfaces; else it is a medium */
+  float voxel;                /* the smallest edge of its voxels; frame units */
   float weight[HL_CHANNELS];  /* relative extinction of R, G, B */
   int uncut;                  /* the box does not cut the slab here */
   const slab_run *faces;      /* the run of the slab where a face is near that is a surface; else null */
   int slab;                   /* the slab's number in its run */
-  const grid *grid;           /* of gradient opacity: the gradient's */
+  const grid *grid;           /* with gradient opacity: the grid whose gradient counts */
   const kernel *kernel;
   const float (*to_index)[4]; /* frame space to index space */
 } attenuate_volume;
@@ -30,8 +30,9 @@ typedef struct attenuate_job {
   sheet_rays rays; /* light pixels -> frame space */
   float path; /* parallel light: sheet spacing / |l.h|; point light: the sheet spacing, which pixels divide by
                  their own |l.h| */
-  float through[3];      /* parallel: from one sheet to the next along the light's rays; frame units */
-  float height, spacing; /* of the sheet above the first, and to the one before; frame units */
+  float through[3];      /* parallel: step from one sheet to the next along the light's rays; frame units */
+  float height, spacing; /* height of the sheet above the first, and distance to the sheet before; frame
+                          * units */
   int sheet;             /* k: the slab lies between sheets k-1 and k */
   const attenuate_volume *volumes;
   int volume_count;
@@ -49,27 +50,29 @@ typedef struct attenuate_job {
 
 /* A volume's surface is lit by the light that arrives at its outside. Matter that light crosses while it goes
  * deeper into one and the same surface shades all that lies behind, but not this surface. So a pixel keeps,
- * beside its transmittance T, the light Y at the outside: Y - T is what the surface has taken so far. A slab
- * that lets t through, from the value x1 to the value x2, changes them so (derived):
+ * beside its transmittance T, the light Y at the outside. Y - T is the light that the surface has taken so
+ * far. A slab with the transmittance t, in which values go from x1 to x2, changes both numbers as follows
+ * (derived):
+ *
  *
  *     Y <- T t + k (Y - T) + k' T (1 - t)      T <- T t
  *
  * The depth h of a value is its distance from the value at which its surface begins, classifier.outside.
- * While light goes on within one surface, which begins at one value,
- * k = k' = min(1, h2 / h1)^OUTWARDS_POWER: 1 while it goes deeper, falling to 0 where the surface ends. Light
- * that enters another surface within the slab has k = 0 and k' = 1; light that leaves one, or a cut's face,
- * has k = k' = 0. The product over slabs depends on h at both ends alone, and not on how the way is cut into
- * slabs. Where values hardly change, matter is no surface (classifier.normal_edge): EVEN_VOXELS of such
- * matter on the light's way divide k and k' by e. In a medium k = k' = 0. Where several volumes share a slab,
- * k and k' are their means, weighted by optical depth.
+ * While light goes on within one surface, which begins at one value, k = k' = min(1, h2 / h1)^OUTWARDS_POWER:
+ * 1 while it goes deeper, falling to 0 where the surface ends. Light that enters another surface within the
+ * slab has k = 0 and k' = 1. Light that leaves a surface, or a cut's face, has k = k' = 0. The product over
+ * slabs depends only on h at both ends, and not on how the way is cut into slabs. Where values hardly change,
+ * matter is no surface (classifier.normal_edge): EVEN_VOXELS of such matter on the light's way divide k and
+ * k' by e. In a medium k = k' = 0. Where several volumes share a slab, k and k' are their means, weighted by
+ * optical depth.
  *
  * A face that cuts matter is a surface, too. Its outside is the face, and light goes deeper into it whatever
  * the values behind it are: k = k' = 1 for visible matter up to a voxel behind a face through which the light
  * comes in. Deeper, the k of the values gets the power 1 - skin, where the skin falls from 1 to 0 at
  * FACE_VOXELS behind the face. There the eye, too, sees less and less of the face (render/slab_lanes.h).
  *
- * OUTWARDS_POWER: how soon a surface that light leaves again counts as left: h falls to 2/3 within the
- * outermost voxel or so of an edge, and then 1/25 of what was taken still lights the surface. */
+ * OUTWARDS_POWER: sets how soon a surface that light leaves again counts as left. Within about the outermost
+ * voxel of an edge h falls to 2/3; then 1/25 of the taken light still lights the surface. */
 #define OUTWARDS_POWER 16
 
 /* Voxels of even matter after which a surface counts as left: few enough that light hardly goes on from a
@@ -77,17 +80,17 @@ typedef struct attenuate_job {
  * it is seen. */
 #define EVEN_VOXELS 4
 
-/* A surface in the dark takes no light, but a method that blurs what was taken before needs to know that it
- * is there: light from beside the shadow ends at it, too. Where less than DARK_AT_START is left, the pixel
- * becomes -DARK_MARK times what the chunk's surfaces let pass, at most -LEAST_MARK. Where a surface takes all
- * light, the pixel becomes -LEAST_MARK. Readers take marks as 0. */
+/* A surface in the dark takes no light, but a method that blurs the light taken before needs to know that the
+ * surface is there, because light from beside the shadow ends at it, too. Where less than DARK_AT_START is
+ * left, the pixel becomes -DARK_MARK times the transmittance of the chunk's surfaces, at most -LEAST_MARK.
+ * Where a surface takes all light, the pixel becomes -LEAST_MARK. Readers take marks as 0. */
 #define DARK_AT_START (1.0f / 256)
 #define DARK_MARK     0x1p-64f
 #define LEAST_MARK    0x1p-88f
 
 /* Blocks of a tile, one bit each. */
 typedef struct attenuated_blocks {
-  uint32_t lit;   /* of the blocks with density: those that light still reaches, or whose surface it lights */
+  uint32_t lit;   /* blocks with density that light still reaches, or whose surface it lights */
   uint32_t taken; /* blocks in which some light was absorbed */
 } attenuated_blocks;
 

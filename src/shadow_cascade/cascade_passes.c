@@ -74,7 +74,7 @@ static bool row_is_zeros(const cascade_level *level, const cascade_field *field,
   return hl_cascade_all_zeros(level, field, piece.first, piece.end - 1, piece.y, piece.y);
 }
 
-/* Adds a row of tiles. Most rows are zeros, and were before: these return at once. */
+/* Adds a row of tiles. Most rows are zeros and were zeros before; for these it returns at once. */
 static void add_tiles(const add_task *task, row_piece piece) {
   const cascade_level *level = task->sum.level;
   const cascade_field *a = task->sum.a, *to = task->sum.to;
@@ -134,7 +134,7 @@ typedef struct blur_task {
   cascade_blurred_sum sum;
   field_blur_job job;
   field_blur_tile_function *function;
-  int reach_x, reach_y; /* of the blur; tiles */
+  int reach_x, reach_y; /* reach of the blur; tiles */
 } blur_task;
 
 static void blur_piece(void *data, size_t index, int worker) {
@@ -221,7 +221,7 @@ enum { MERGE_SUMS = 6 };
 
 typedef struct merge_task {
   const cascade_level *level;
-  int ratio; /* of the levels' scales */
+  int ratio; /* ratio of the levels' scales */
   split_task split;
   add_task sums[MERGE_SUMS];
 } merge_task;

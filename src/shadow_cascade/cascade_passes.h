@@ -27,14 +27,14 @@ typedef struct cascade_blur {
   double resampled[2]; /* along rows and columns: variance of the resampling itself, which is taken off */
 } cascade_blur;
 
-/* The sum to = a + (1 - thin) b. a and b may both be on levels twice as fine as to, or b alone on one twice
- * as coarse. */
+/* The sum to = a + (1 - thin) b. Either a and b are both on levels twice as fine as the level of `to`, or b
+ * alone is on a level twice as coarse. */
 typedef struct cascade_sum {
-  const cascade_level *level_a;  /* of a and thin */
+  const cascade_level *level_a;  /* level of a and thin */
   const cascade_field *a, *thin; /* a: null for zeros where b is coarser than to; thin: null for zeros */
   const cascade_level *level_b;  /* null where b is */
   const cascade_field *b;        /* null for zeros where a is not coarser than to */
-  const cascade_level *level;    /* of to */
+  const cascade_level *level;    /* level of `to` */
   const cascade_field *to;
   int reach; /* `to` is computed within this many pixels of the buffer around tiles that are read;
                 READ_EVERYWHERE: in all tiles */

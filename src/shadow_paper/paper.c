@@ -18,7 +18,7 @@ typedef struct soft_paper {
   const light_emission *emission; /* null: boxes */
   bool parallel;
   double size;         /* L of the virtual light; parallel: L / Z */
-  double light_height; /* of the light along the sheets' normal (not parallel) */
+  double light_height; /* distance of the light along the sheets' normal (not parallel) */
   double pixel;        /* buffer pixel: frame units; not parallel: at distance 1 */
   double last;         /* height of the last convolved sheet */
   double remainder;    /* accumulated width not yet convolved, pixels */
@@ -73,7 +73,7 @@ typedef struct convolution {
   int sheet, reach;            /* reach: pixels around a tile that it reads */
   unsigned char *wanted;       /* [tiles]; of the tiles that can change */
   shadow_plane kind;           /* the planes that are convolved now */
-  bool last;                   /* they are the last of this convolution */
+  bool last;                   /* these slabs are the last of this convolution */
   const blur_functions *blur;
   blur_box box;
   /* with an emission image, instead of the box: */

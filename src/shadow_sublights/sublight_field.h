@@ -23,7 +23,8 @@ typedef slab_rows half_pixel_tile_function(const half_pixel_job *job, int tile_x
 
 typedef struct sublight_job {
   const float *slab[HL_CHANNELS][SLAB_COPIES];
-  const float *slab_outside[HL_CHANNELS][SLAB_COPIES]; /* what the slab leaves of full light at the outside */
+  const float *slab_outside[HL_CHANNELS][SLAB_COPIES]; /* the fraction of full light at the outside that is
+                                                        * left after the slab */
   size_t slab_stride;
   const slab_rows *rows; /* [slab_tiles_y][slab_tiles_x] */
   int slab_tiles_x, slab_tiles_y;
@@ -32,7 +33,7 @@ typedef struct sublight_job {
                                     continuous coordinates */
   int half[2];                   /* shift in half pixels, rounded */
   sublight_pixel *transmittance[HL_CHANNELS]; /* pixel (0,0) of the sub-light's buffer; rows stride apart */
-  sublight_pixel *outside[HL_CHANNELS];       /* the same, of the light at the outside; null: none */
+  sublight_pixel *outside[HL_CHANNELS];       /* the same pixels, for the light at the outside; null: none */
   size_t stride;                              /* a tile's margin on either side */
   int tiles_x;
   float

@@ -296,8 +296,8 @@ static void composite_row(const sublight_task *task, sublight *sublight, int y) 
   }
 }
 
-/* Tiles that this part of a shared picture needs no more are as dark ones: work skips them, and the slab's
- * blocks that no sub-light's tile reads any more. */
+/* Treats tiles that this part of a shared picture no longer needs as dark tiles. Work skips them, and so it
+ * skips blocks of the slab that no sub-light's tile reads any more. */
 static void forget_tiles(const sublight_task *task, sublight *sublight, int y) {
   const sublights *all = task->sublights;
   const size_t tiles_x = (size_t)all->tiles_x, row = (size_t)y * tiles_x;

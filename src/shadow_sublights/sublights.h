@@ -21,8 +21,8 @@ typedef struct sublight_map {
 /* One sub-light's buffer. */
 typedef struct sublight {
   view view;
-  sublight_pixel *pixels; /* pixel (0,0) of the first channel, the others a plane apart, then those of the
-                             light at the outside; a part of `memory` */
+  sublight_pixel *pixels; /* pixel (0,0) of the first channel. The other channels follow, each a plane apart,
+                           * and then the channels of the light at the outside; a part of `memory` */
   uint16_t *lit; /* [tiles]; blocks with light at the end of the last run of slabs; a part of `flags` */
   unsigned char *touched; /* [tiles]; 1 where slabs have absorbed light since; a part of `marks` */
   sublight_job job;       /* the current slab's */
@@ -34,7 +34,7 @@ typedef struct sublight {
 
 typedef struct sublights {
   int count, channels, tiles_x, tiles_y;
-  int kinds; /* of planes: 1, or 2 with the light at the outside of surfaces */
+  int kinds; /* kinds of planes: 1, or 2 with the light at the outside of surfaces */
   size_t stride, plane;
   int slabs; /* composited so far */
   /* in one block, see lay_out_sublights() */

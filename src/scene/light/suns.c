@@ -1,12 +1,14 @@
 /* scene/light/suns.c - finds the suns of a sky's image, and makes lights of them.
  *
- * The search goes from the brightest pixel on. Around it the spot is a cap of directions: of a ladder of
- * radii, the one that holds the most light for its size. What a pixel of the cap has beyond the brightest of
- * the ring around the cap, in each channel, is the sun's; the rest stays in the image, which so has no step
- * at the cap's rim. Spots that are too wide, or too weak for a light of their own, stay as they are.
+ * The search goes from the brightest pixel on. The spot around this pixel is a cap of directions. Its radius
+ * is chosen from a ladder of radii: it is the radius that holds the most light for its size. In each channel,
+ * the sun gets the light of the cap's pixels that exceeds the brightest pixel of the ring around the cap. The
+ * rest stays in the image, so that the image has no step at the cap's rim. Spots that are too wide, or too
+ * weak for a light of their own, stay as they are.
  *
- * The image is bilinear between the middles of its pixels (scene/light/sky.c), a sum of one tent for each
- * pixel. Integrals over a tent's directions are those over its row's angle times those over its column's. */
+ * The image is bilinear between the middles of its pixels (scene/light/sky.c), and so is a sum of tents, one
+ * for each pixel. The integral over a tent's directions is the integral over its row's angle times the
+ * integral over its column's angle. */
 #include "scene/light/suns.h"
 
 #include <string.h>
@@ -18,16 +20,16 @@
 static const double WIDEST = 12 * HL_PI / 180, FARTHEST = 20 * HL_PI / 180;
 /* Radii fall by this factor, from the farthest to less than a pixel. */
 static const double LADDER = 0.70710678118654752;
-/* The ring around a cap is as much wider, and by so many rows of the image. */
+/* The radius of the ring around a cap is RING times the cap's radius, plus RING_ROWS rows of the image. */
 static const double RING = 1.2, RING_ROWS = 1.5;
-/* A sun's brightest pixel is so many times as bright as the mean of the image. */
+/* A sun's brightest pixel is at least this many times as bright as the mean of the image. */
 static const double FAR_ABOVE = 8;
 /* A sun sends at least this fraction of the image's light. */
 static const double LEAST_SHARE = 0.05;
 /* What surrounds a sun has at most this fraction of its brightest pixel. */
 static const double MOST_AROUND = 0.5;
 
-enum { TRIES = 64 /* spots that are looked at */, STEPS = 16 /* towards the middle of one */ };
+enum { TRIES = 64 /* spots that are looked at */, STEPS = 16 /* steps towards the middle of a spot */ };
 
 /* ---- integrals over a pixel's tent ---- */
 
@@ -44,8 +46,8 @@ static const double NODES[5] = {-0.906179845938664, -0.538469310105683, 0, 0.538
                     WEIGHTS[5] = {0.236926885056189, 0.478628670499366, 0.568888888888889, 0.478628670499366,
                                   0.236926885056189};
 
-/* Adds the piece from `from` to `to`, cut at `last`; the tent is 0 at `foot` and 1 at `top`, or 1 throughout
- * where these are the same. */
+/* Adds the piece from `from` to `to`, cut off at `last`. The tent is 0 at `foot` and 1 at `top`; where these
+ * are the same it is 1 throughout. */
 static void add_piece(double from, double to, double last, double foot, double top, row_integrals *sum) {
   to = fmin(to, last);
   for (int i = 0; i < 5 && to > from; i++) {
@@ -145,8 +147,9 @@ static void renew_peaks(search *all, const cap *changed) {
 
 typedef void visit_pixel(const search *all, int row, int column, void *data);
 
-/* The columns of a row that a cap may touch: so many on either side of its middle. Derived: a direction at
- * the angles a and b to up and t about it has the cosine sin a sin b cos t + cos a cos b to the middle. */
+/* The number of columns of a row, to each side of a cap's middle, that the cap may touch. Derived: a
+ * direction at the angle a to up, turned about up by t from the middle, which is at the angle b to up, has
+ * the cosine sin a sin b cos t + cos a cos b to the middle. */
 static int columns_of_cap(const search *all, const cap *of, int row) {
   double a = (row + 0.5) * HL_PI / all->sky->height, b = acos(fmin(fmax(of->middle.z, -1), 1));
   double least = (cos(of->radius) - cos(a) * cos(b)) / fmax(sin(a) * sin(b), 1e-12);
@@ -188,8 +191,8 @@ static void add_to_center(const search *all, int row, int column, void *data) {
                        vec3_scale(direction_of(all, row, column), all->rows[row].area * (double)brightness));
 }
 
-/* The middle of the spot around a pixel: of what is at least half as bright, as far as a cap about this
- * middle reaches. */
+/* The middle of the spot around a pixel: the mean over pixels at least half as bright, within a cap about
+ * this middle. */
 static vec3 find_middle(const search *all, int row, int column, double radius) {
   cap around = {direction_of(all, row, column), radius};
   for (int i = 0; i < STEPS; i++) {
@@ -206,7 +209,7 @@ static vec3 find_middle(const search *all, int row, int column, double radius) {
 typedef struct spot {
   cap cap;
   float around[3];      /* the greatest of the ring around it */
-  double irradiance[3]; /* of what is beyond */
+  double irradiance[3]; /* irradiance of the light beyond the ring */
   double brightness;    /* the sum of these */
   vec3 moment;          /* integral of brightness times unit vectors */
 } spot;
@@ -305,7 +308,7 @@ static size_t image_bytes(const hl_sky *sky) {
   return (size_t)sky->width * (size_t)sky->height * 3 * sizeof(float);
 }
 
-/* Takes a sun out of the image, of which the first one makes a copy. */
+/* Takes a sun out of the image. The first sun makes a copy of the image. */
 static hl_status take_out(hl_context *context, search *all, const spot *sun, sky_suns *found,
                           hl_error *error) {
   size_t bytes = image_bytes(all->sky);

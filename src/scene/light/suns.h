@@ -1,7 +1,8 @@
 /* scene/light/suns.h - the suns of a sky's image: compact bright spots, which become lights of their own.
  *
- * A sun's light is what its spot has beyond the brightest of its surroundings, taken out of the image: the
- * rest of the image and the suns together send what the image sends, in each channel. */
+ * A sun gets the light of its spot that exceeds the brightest pixel of the surroundings; this light is taken
+ * out of the image. The rest of the image and the suns together send the same light as the image, in each
+ * channel. */
 #ifndef HL_SCENE_LIGHT_SUNS_H
 #define HL_SCENE_LIGHT_SUNS_H
 
