@@ -19,17 +19,17 @@ struct hl_scene {
   hl_context *context;
   atomic_int references;
   hl_scene_description description; /* its arrays and texts are owned by the scene */
-  /* The description for rendering. All lights are in the world, followed by the suns of the sky, whose image
-   * lacks them. The scene's cuts are in its volumes. Volumes of occupancy replace label maps, and lattices
-   * (label/mask.h) replace masks. It owns its array of lights. */
-  hl_scene_description placed;
-  sky_suns suns;         /* suns of the sky, where they are lights; placed.sky.suns says so */
-  placed_cuts cut;       /* the placed description's volumes, where the scene has cuts */
-  drawn_labels drawn;    /* the volumes of occupancy and the lattices */
-  scene_order order;     /* in which frames take the placed description's lists */
+  hl_scene_description placed;      /* the same for rendering: all lights in the world, after them the suns of
+                                       the sky, whose image lacks them, the scene's cuts in its volumes, and
+                                       volumes of occupancy in place of label maps, lattices (label/mask.h) in
+                                       place of masks; owns its array of lights */
+  sky_suns suns;                    /* of the sky, where they are lights: placed.sky.suns tells */
+  placed_cuts cut;                  /* the placed description's volumes, where the scene has cuts */
+  drawn_labels drawn;               /* the volumes of occupancy and the lattices */
+  scene_order order;                /* in which frames take the placed description's lists */
   uint64_t *plane_marks; /* owned; [placed.volume_count]; of the content of functions of two numbers,
                             0 where there is none; for keys of kept results */
-  uint64_t sky_mark;     /* identifies the pixels of the sky's image, for keys of kept results */
+  uint64_t sky_mark;     /* of the pixels of the sky's image; for keys of kept results */
 };
 
 /* Frees the pixels and file names of a light's texture and emission, where they are owned. */

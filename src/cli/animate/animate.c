@@ -287,7 +287,7 @@ static int run_job(animate_job *job) {
   return exit_code == EXIT_CODE_OK ? finish(job, &frames) : exit_code;
 }
 
-/* Joins the pictures of a series of files, one for each. */
+/* Joins the pictures of a series of files; each file has one picture. */
 static int finish_series(const animate_job *job, const cli_value *values) {
   bool quiet = values[RENDER_QUIET].given;
   if (job->parts > 1 || !movie_available()) {
