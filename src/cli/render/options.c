@@ -33,7 +33,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_FORMAT] = {.name = "format",
                        .kind = OPTION_CHOICE,
                        .choices = formats,
-                       .help = "of OUT, where its name does not say it\n(default png)"},
+                       .help = "format of OUT where its name does not tell it\n(default png)"},
     [RENDER_SIZE] = {.name = "size",
                      .kind = OPTION_NUMBERS,
                      .argument = "WxH",
@@ -51,9 +51,9 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_BACKGROUND] = {.name = "background",
                            .kind = OPTION_COLOR,
                            .argument = "COLOR|transparent|sky",
-                           .help = "under a .png: linear R,G,B 0..1, #rrggbb or a CSS\nname (both sRGB; "
-                                   "default black, of bare volumes\ndark grey; black for --look mip); sky: "
-                                   "the light from\nall directions itself is seen",
+                           .help = "colour under a .png: linear R,G,B 0..1, #rrggbb or a\nCSS name (both "
+                                   "sRGB; default black, for bare volumes\ndark grey, black with --look "
+                                   "mip); sky: shows the\nlight that comes from all directions",
                            .setting_kind = HL_SETTINGS_IMAGE,
                            .setting = "background"},
     [RENDER_EXPOSURE] =
@@ -91,38 +91,38 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_SCALE_BAR] = {.name = "scale-bar",
                           .kind = OPTION_TEXT,
                           .argument = "auto|LENGTH[@DEPTH]",
-                          .help = "a bar with its length, as 50um; of a perspective\npicture (not --ortho) "
-                                  "@target or at this distance\nfrom the eye"},
-    [RENDER_UNIT] = {.name = "unit",
-                     .kind = OPTION_TEXT,
-                     .argument = "UNIT",
-                     .help =
-                         "of lengths in the volumes' files, where these do\nnot tell it: mm, um, nm, ..."},
+                          .help = "a bar with its length, as 50um; in a perspective\npicture (not --ortho) "
+                                  "it holds at the target (@target)\nor at this distance from the eye"},
+    [RENDER_UNIT] =
+        {.name = "unit",
+         .kind = OPTION_TEXT,
+         .argument = "UNIT",
+         .help = "unit of lengths in the volumes' files, where these do\nnot tell it: mm, um, nm, ..."},
     [RENDER_LEGEND] = {.name = "legend",
                        .kind = OPTION_TEXT,
                        .argument = "auto|TITLE",
-                       .help =
-                           "colours and opacity over the values, surfaces, or\nnames of labels; TITLE, as "
-                           "'Density (g/cm3)'"},
-    [RENDER_AXES] = {.name = "axes",
-                     .kind = OPTION_CHOICE,
-                     .choices = axes_choices,
-                     .help = "the world's directions as arrows, or the body's as\nletters at the edges"},
+                       .help = "colours and opacity over the values, or surfaces, or\nnames of labels; TITLE "
+                               "as 'Density (g/cm3)'"},
+    [RENDER_AXES] =
+        {.name = "axes",
+         .kind = OPTION_CHOICE,
+         .choices = axes_choices,
+         .help = "arrows of the world's directions, or letters of the\nbody's directions at the edges"},
     [RENDER_ANNOTATE] = {.name = "annotate",
                          .kind = OPTION_TEXT,
                          .argument = "TEXT@X,Y[,Z]",
                          .help = "a text at fractions of the picture from its upper\nleft, or beside a point "
-                                 "X,Y,Z of the world; again for\nmore",
+                                 "X,Y,Z of the world; give the\noption again for more texts",
                          .repeatable = true},
-    [RENDER_FONT_SIZE] = {.name = "font-size",
-                          .kind = OPTION_NUMBERS,
-                          .argument = "POINTS",
-                          .help =
-                              "of letters (default 7, of a picture 89 mm wide where\n--width and --dpi do "
-                              "not say)",
-                          .count = 1,
-                          .low = 1,
-                          .high = 200},
+    [RENDER_FONT_SIZE] =
+        {.name = "font-size",
+         .kind = OPTION_NUMBERS,
+         .argument = "POINTS",
+         .help =
+             "size of letters (default 7, in a picture 89 mm wide\nwhere --width and --dpi do not say it)",
+         .count = 1,
+         .low = 1,
+         .high = 200},
 
     [RENDER_VIEW] =
         {.name = "view",
@@ -149,22 +149,23 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_AZIMUTH] = {.name = "azimuth",
                         .kind = OPTION_NUMBERS,
                         .argument = "DEG",
-                        .help = "turned about up; 0 is from the front (along +y\nwhere z is up), positive: "
-                                "the eye moves right\n(default: chosen)",
+                        .help = "turns the view about up; 0 looks from the front (along\n+y where z is up), "
+                                "positive moves the eye right\n(default: chosen)",
                         .count = 1,
                         .low = -360,
                         .high = 360},
     [RENDER_ELEVATION] = {.name = "elevation",
                           .kind = OPTION_NUMBERS,
                           .argument = "DEG",
-                          .help = "90 looks straight down (default 20; of flat\nfields 40)",
+                          .help =
+                              "height of the eye; 90 looks straight down (default 20,\nfor flat fields 40)",
                           .count = 1,
                           .low = -90,
                           .high = 90},
     [RENDER_ROLL] = {.name = "roll",
                      .kind = OPTION_NUMBERS,
                      .argument = "DEG",
-                     .help = "positive: the picture turns clockwise (default 0)",
+                     .help = "turns the picture clockwise if positive (default 0)",
                      .count = 1,
                      .low = -360,
                      .high = 360},
@@ -184,25 +185,24 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                      .setting = "fovy_deg"},
     [RENDER_ORTHO] = {.name = "ortho",
                       .kind = OPTION_SWITCH,
-                      .help = "parallel projection, the same framing"},
+                      .help = "parallel projection with the same framing"},
 
     INPUT_OPTIONS(RENDER_ARRAY, "Volume files"),
     [RENDER_CHANNEL] = {.name = "channel",
                         .kind = OPTION_TEXT,
                         .argument = "N|N,N|all",
-                        .help = "of several channels this one, from 0 (default: 0);\nseveral, or all, share "
-                                "a picture, each in a "
-                                "colour\nof its own: the file's, or green, magenta, ..."},
+                        .help =
+                            "number of the channel to show, from 0 (default: 0);\nseveral channels, or all, "
+                            "share a picture, each in its\ncolour from the file, or in green, magenta, ..."},
     [RENDER_SPACING] = INPUT_OPTION_SPACING,
-    [RENDER_SMOOTH] =
-        {.name = "smooth",
-         .kind = OPTION_NUMBERS,
-         .argument = "SIGMA",
-         .help = "smooth the voxels by a Gaussian of so many voxels\nalong each axis; 0: not at all "
-                 "(default: 0.8 where\nbare brains or thick slices make stairs)",
-         .count = 1,
-         .low = 0,
-         .high = 16},
+    [RENDER_SMOOTH] = {.name = "smooth",
+                       .kind = OPTION_NUMBERS,
+                       .argument = "SIGMA",
+                       .help = "smooth the voxels by a Gaussian of SIGMA voxels along\neach axis; 0: do not "
+                               "smooth (default: 0.8 where bare\nbrains or thick slices make stairs)",
+                       .count = 1,
+                       .low = 0,
+                       .high = 16},
 
     [RENDER_LOOK] =
         {.name = "look",
@@ -214,37 +214,36 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
         {.name = "tf",
          .kind = OPTION_TEXT,
          .argument = "[NAME=]FILE|PRESET",
-         .help = "transfer function: a JSON file (Halflight's, a\nscene's first, ParaView's; or its .pvsm), "
-                 "Slicer's\n(.vp.json, .vp, presets.xml:NAME) or a preset, see\n'halflight help presets'; of "
-                 "volume "
-                 "NAME alone (again\nfor others; default: chosen from the data)",
+         .help =
+             "transfer function: a JSON file (Halflight's, a\nscene's first, ParaView's; or its .pvsm), "
+             "Slicer's\n(.vp.json, .vp, presets.xml:NAME) or a preset, see\n'halflight help presets'; with "
+             "NAME=, for the volume\nNAME only (give it again for others; default: chosen from\nthe data)",
          .repeatable = true},
     [RENDER_COLORMAP] =
         {.name = "colormap",
          .kind = OPTION_TEXT,
          .argument = "[NAME=]MAP|COLOR",
-         .help = "colours over the values that are seen, see\n'halflight help colormaps'; or one colour (of a"
-                 "\nmaximum projection from black to it), as\n#rrggbb or a CSS name; NAME as for --tf",
+         .help = "colours over the visible values, see\n'halflight help colormaps'; or one colour as #rrggbb "
+                 "or\na CSS name (in a maximum projection from black to it);\nNAME as for --tf",
          .repeatable = true},
-    [RENDER_RANGE] = {.name = "range",
-                      .kind = OPTION_NUMBERS,
-                      .argument = "LO,HI",
-                      .help = "values that opacity and colours spread over; or\npercentiles of the data "
-                              "(1%,99.5%)",
-                      .count = 2,
-                      .separator = ',',
-                      .percent = true,
-                      .low = -INFINITY,
-                      .high = INFINITY},
+    [RENDER_RANGE] =
+        {.name = "range",
+         .kind = OPTION_NUMBERS,
+         .argument = "LO,HI",
+         .help = "values over which opacity and colours spread; or\npercentiles of the data (1%,99.5%)",
+         .count = 2,
+         .separator = ',',
+         .percent = true,
+         .low = -INFINITY,
+         .high = INFINITY},
     [RENDER_RANGE_SCALE] = {.name = "range-scale",
                             .kind = OPTION_CHOICE,
                             .help =
                                 "they spread over --range evenly, or evenly over\nthe values' logarithms"},
     [RENDER_RANGE_OF_ALL] = {.name = "range-of-all",
                              .kind = OPTION_SWITCH,
-                             .help =
-                                 "of a series of files: as --range with the least and\ngreatest value of all "
-                                 "(default: the first file's look)"},
+                             .help = "for a series of files: --range from the least to the\ngreatest value "
+                                     "of all files (default: the first\nfile's look)"},
     [RENDER_THRESHOLD] = {.name = "threshold",
                           .kind = OPTION_NUMBERS,
                           .argument = "V",
@@ -252,35 +251,36 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                           .count = 1,
                           .low = -INFINITY,
                           .high = INFINITY},
-    [RENDER_ISO] = {.name = "iso",
-                    .kind = OPTION_TEXT,
-                    .argument = "[NAME=]VALUE[:COLOR[:OPACITY]]",
-                    .help = "the surface on which the volume has this value, in\nplace of the transfer "
-                            "function (beside it with "
-                            "--tf\nor --look); again for more (--iso 80:skyblue:0.3)",
-                    .repeatable = true},
-    [RENDER_CLIP] =
-        {.name = "clip",
+    [RENDER_ISO] =
+        {.name = "iso",
          .kind = OPTION_TEXT,
-         .argument = "AXIS=LO:HI",
-         .help = "keep a part along x, y or z: fractions\n(x=0:0.5), or the file's own units (x=10mm:40mm);\n"
-                 "again for other axes",
+         .argument = "[NAME=]VALUE[:COLOR[:OPACITY]]",
+         .help =
+             "the surface on which the volume has this value; it\nreplaces the transfer function, or stands "
+             "beside it\nwith --tf or --look; give it again for more surfaces\n(--iso 80:skyblue:0.3)",
          .repeatable = true},
+    [RENDER_CLIP] = {.name = "clip",
+                     .kind = OPTION_TEXT,
+                     .argument = "AXIS=LO:HI",
+                     .help = "keep a part along x, y or z: fractions\n(x=0:0.5), or the file's own units "
+                             "(x=10mm:40mm);\ngive it again for other axes",
+                     .repeatable = true},
     [RENDER_CUT_PLANE] = {.name = "cut-plane",
                           .kind = OPTION_TEXT,
                           .argument = "X,Y,Z:NX,NY,NZ",
-                          .help = "cut away what lies beyond a plane through a point\n(fractions, or the "
-                                  "file's own units), in a direction;\nagain for more",
+                          .help = "cut away everything beyond a plane through a point\n(fractions, or the "
+                                  "file's own units), in a direction;\ngive it again for more planes",
                           .repeatable = true},
-    [RENDER_CUT_BOX] = {.name = "cut-box",
-                        .kind = OPTION_TEXT,
-                        .argument = "AXIS=LO:HI,...",
-                        .help = "cut a box out (x=0.5:,y=:0.5,z=0.5: is an octant);\nagain for more",
-                        .repeatable = true},
+    [RENDER_CUT_BOX] =
+        {.name = "cut-box",
+         .kind = OPTION_TEXT,
+         .argument = "AXIS=LO:HI,...",
+         .help = "cut a box out (x=0.5:,y=:0.5,z=0.5: is an octant);\ngive it again for more boxes",
+         .repeatable = true},
     [RENDER_CUT_SPHERE] = {.name = "cut-sphere",
                            .kind = OPTION_TEXT,
                            .argument = "X,Y,Z:RADIUS",
-                           .help = "cut a sphere out (0.5,0.5,1:0.3); again for more",
+                           .help = "cut a sphere out (0.5,0.5,1:0.3); give it again for more\nspheres",
                            .repeatable = true},
     [RENDER_CUT_SHADING] =
         {.name = "cut-shading",
@@ -291,15 +291,15 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
          .setting = "cut_shading"},
     [RENDER_CUT_CASTS_SHADOW] = {.name = "cut-casts-shadow",
                                  .kind = OPTION_SWITCH,
-                                 .help = "what is cut away goes on casting its shadow"},
+                                 .help = "matter that is cut away still casts its shadow"},
     [RENDER_WHOLE] = {.name = "whole",
                       .kind = OPTION_SWITCH,
-                      .help = "of a bare volume all: with tables, head rests and\ntowels beside a scanned "
-                              "object, which are cut away\notherwise"},
+                      .help = "show a bare volume whole: with tables, head rests and\ntowels beside a "
+                              "scanned object, which are otherwise cut\naway"},
     [RENDER_SHADING] = {.name = "shading",
                         .kind = OPTION_CHOICE,
                         .help = "surfaces, a medium such as smoke, or the\ncolours themselves without light "
-                                "(default phong;\nof smoke none)",
+                                "(default phong;\nfor smoke none)",
                         .setting_kind = HL_SETTINGS_VOLUME,
                         .setting = "shading"},
     [RENDER_SCATTERING] = {.name = "scattering",
@@ -310,11 +310,10 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                                "fraction of it each time: 0.9,\nor R,G,B",
                            .setting_kind = HL_SETTINGS_VOLUME,
                            .setting = "scattering/albedo"},
-    [RENDER_FLOOR] =
-        {.name = "floor",
-         .kind = OPTION_SWITCH,
-         .help =
-             "a floor below what is seen, three times as wide,\nwhich receives its shadow and is not cut"},
+    [RENDER_FLOOR] = {.name = "floor",
+                      .kind = OPTION_SWITCH,
+                      .help = "a floor below everything that is seen, three times as\nwide, which receives "
+                              "its shadow and is not cut"},
 
     [RENDER_LABELS] = {.name = "labels",
                        .kind = OPTION_TEXT,
@@ -323,12 +322,11 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                        .help =
                            "a label map or segmentation (.seg.nrrd, NIfTI, ...)\nin the same world: smooth "
                            "surfaces in colours"},
-    [RENDER_MASK] =
-        {.name = "mask",
-         .kind = OPTION_TEXT,
-         .argument = "FILE",
-         .help = "a label map that reveals, colours and fades the\nvolumes within its labels: those of "
-                 "--show, or all"},
+    [RENDER_MASK] = {.name = "mask",
+                     .kind = OPTION_TEXT,
+                     .argument = "FILE",
+                     .help = "a label map that reveals, colours and fades the\nvolumes within its labels: "
+                             "the labels of --show, or all"},
     [RENDER_LABEL_TABLE] = {.name = "label-table",
                             .kind = OPTION_TEXT,
                             .argument = "FILE",
@@ -348,7 +346,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                         .argument = "COLOR",
                         .group = "Light and shadows",
                         .help = "light from everywhere: a number for grey, linear\nR,G,B, #rrggbb or a CSS "
-                                "name (default 0.2; of bare\nvolumes chosen)",
+                                "name (default 0.2; for bare\nvolumes chosen)",
                         .setting_kind = HL_SETTINGS_SCENE,
                         .setting = "ambient"},
     [RENDER_SKY] =
@@ -361,7 +359,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
          .setting = "color"},
     [RENDER_LIGHT_RIG] = {.name = "light-rig",
                           .kind = OPTION_CHOICE,
-                          .help = "lights that go with the camera, and a sky, in place\nof the scene's"},
+                          .help = "lights that go with the camera, and a sky; they replace\nthe scene's"},
     [RENDER_LIGHT] = {.name = "light",
                       .kind = OPTION_NUMBERS,
                       .argument = "AZ,EL",
@@ -381,7 +379,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                            .setting = "angular_diameter_deg"},
     [RENDER_SHADOWS] = {.name = "shadows",
                         .kind = OPTION_CHOICE,
-                        .help = "of all lights that cast any (default soft)",
+                        .help = "shadows of all lights that cast any (default soft)",
                         .setting_kind = HL_SETTINGS_RENDER,
                         .setting = "shadows"},
     [RENDER_SOFT_METHOD] = {.name = "soft-method",
