@@ -303,7 +303,7 @@ static void test_far_faces(void **state) {
   hl_scene_volume *volume = add_field(&set, 3, (field_kind){far_value, 2, 1, false});
   set_soft_edge(volume);
   const kernel *kernel = hl_kernel_get(HL_KERNEL_BSPLINE);
-  const grid_functions *functions = &hl_hot_functions(HL_INSTRUCTION_SET_SCALAR)->grid;
+  const grid_functions *functions = hl_hot_functions(HL_INSTRUCTION_SET_SCALAR)->grid;
   const grid_source source = {volume, kernel, volume->volume->index_to_world,
                               hl_scene_volume_empty_value(volume)};
   assert_int_equal(hl_pool_create(set.context, 1, &pool, NULL), HL_OK);
