@@ -39,6 +39,10 @@ typedef struct hl_image_write_options {
   double background[3];       /* linear RGB; PNG and TIFF only */
   int background_transparent; /* PNG and TIFF keep alpha, unassociated */
   const char *scene_json;     /* stored in the PNG as the text chunk "halflight:scene"; may be null */
+  const char *field_errors;   /* stored beside scene_json, if that is not null, as the text chunk
+                               * "halflight:field_errors"; may be null. hl_scene_write_options() sets it to the
+                               * scene's: a JSON array of how far its volumes' fields are from their sources
+                               * (hl_volume_get_field_error()), with the number of each volume */
   double exposure; /* stops, -32 to 32; PNG only: the picture's light is multiplied by 2^exposure, the
                       background is not */
   hl_tone tone;    /* PNG only: of the picture's light after the exposure; the background keeps its colour */

@@ -26,6 +26,8 @@ enum { MARK_BYTES = 8 };
 
 /* The keyword of the text chunk that holds the scene. */
 static const char keyword[] = "halflight:scene";
+/* Of the one that tells how far the scene's fields are from their sources. */
+static const char field_errors_keyword[] = "halflight:field_errors";
 
 static uint32_t load_32(const unsigned char *bytes) {
   return (uint32_t)bytes[0] << 24 | (uint32_t)bytes[1] << 16 | (uint32_t)bytes[2] << 8 | bytes[3];
@@ -236,16 +238,22 @@ static void on_write(png_structp png, png_bytep bytes, size_t length) {
 
 static void on_flush(png_structp png) { (void)png; }
 
-static void write_scene(png_writing *writing) {
+static void write_text(png_writing *writing, const char *key, const char *content) {
   png_text text;
   memset(&text, 0, sizeof text);
   text.compression = PNG_ITXT_COMPRESSION_zTXt;
-  text.key = (png_charp)keyword;
-  text.text = (png_charp)writing->options->scene_json;
-  text.itxt_length = strlen(writing->options->scene_json);
+  text.key = (png_charp)key;
+  text.text = (png_charp)content;
+  text.itxt_length = strlen(content);
   text.lang = (png_charp) "";
   text.lang_key = (png_charp) "";
   png_set_text(writing->png, writing->info, &text, 1);
+}
+
+static void write_texts(png_writing *writing) {
+  const char *scene = writing->options->scene_json, *field_errors = writing->options->field_errors;
+  if (scene != NULL) write_text(writing, keyword, scene);
+  if (scene != NULL && field_errors != NULL) write_text(writing, field_errors_keyword, field_errors);
 }
 
 /* Makes all calls that may longjmp. `writing` outlives the jump, and no local is read after it. */
@@ -262,7 +270,7 @@ static void write_png(png_writing *writing) {
     png_uint_32 per_metre = (png_uint_32)(writing->options->pixels_per_inch / 0.0254 + 0.5);
     png_set_pHYs(writing->png, writing->info, per_metre, per_metre, PNG_RESOLUTION_METER);
   }
-  if (writing->options->scene_json != NULL) write_scene(writing);
+  write_texts(writing);
   png_write_info(writing->png, writing->info);
   for (int y = 0; y < image->height; y++) {
     writing->status = hl_encode_step(writing->output->context, y, image->height, writing->error);

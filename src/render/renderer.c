@@ -18,6 +18,7 @@
 #include "render/sky.h"
 #include "scatter/scatter.h"
 #include "scene/check/check.h"
+#include "scene/scene.h"
 #include "surface/place_surfaces.h"
 
 hl_status hl_renderer_create(hl_context *context, hl_renderer **renderer, hl_error *error) {
@@ -330,4 +331,5 @@ void hl_scene_write_options(const hl_scene *scene, hl_image_write_options *optio
   options->background_transparent = description->background_transparent;
   options->exposure = description->exposure;
   options->tone = description->tone;
+  options->field_errors = scene->field_errors;
 }

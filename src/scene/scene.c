@@ -103,6 +103,7 @@ static void destroy(hl_scene *scene) {
   hl_release(context, (void *)d->cuts);
   hl_scene_order_release(context, &scene->order);
   hl_release(context, scene->plane_marks);
+  hl_release(context, scene->field_errors);
   hl_drawn_labels_release(context, &scene->placed, &scene->drawn);
   hl_placed_cuts_release(context, &scene->cut);
   hl_placed_lights_release(context, &scene->placed);
@@ -391,6 +392,8 @@ hl_status hl_scene_create(hl_context *context, const hl_scene_description *descr
   if (status == HL_OK) status = hl_cuts_place(context, &made->placed, &made->cut, error);
   if (status == HL_OK) status = hl_labels_draw(context, &made->placed, &made->drawn, error);
   if (status == HL_OK) status = mark_planes(made, error);
+  if (status == HL_OK)
+    status = hl_field_errors_write(context, &made->description, &made->field_errors, error);
   if (status == HL_OK)
     status = hl_scene_order_find(context, &made->description, &made->placed, &made->order, error);
   if (status != HL_OK) {

@@ -29,8 +29,14 @@ struct hl_scene {
   scene_order order;                /* in which frames take the placed description's lists */
   uint64_t *plane_marks; /* owned; [placed.volume_count]; of the content of functions of two numbers,
                             0 where there is none; for keys of kept results */
+  char *field_errors;    /* owned; of its volumes, as JSON (field_errors.c); null if none is known */
   uint64_t sky_mark;     /* of the pixels of the sky's image; for keys of kept results */
 };
+
+/* Writes how far the fields of the volumes are from their sources, as a JSON array with an object for each
+ * volume of which it is known. *text is owned by the caller (hl_release); null if it is known of none. */
+hl_status hl_field_errors_write(hl_context *context, const hl_scene_description *description, char **text,
+                                hl_error *error);
 
 /* Frees the pixels and file names of a light's texture and emission, where they are owned. */
 void hl_light_images_release(hl_context *context, hl_light *light);

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import halflight as hl
 
@@ -179,6 +180,13 @@ def test_the_program_tells_the_bound(tmp_path: Path, program: str) -> None:
     assert bound is not None and bound.value is not None
     assert told == {"value": bound.value, "of_range": bound.of_range, "kind": "bound", "source": bound.source}
     assert found is not None and float(found[1]) == float(f"{bound.value:.2g}")
+    picture = tmp_path / "a.png"
+    run = subprocess.run([program, "render", path, "-o", picture, "--size", "32x32", "--json"], check=True, capture_output=True, text=True)
+    assert json.loads(run.stdout)["field_errors"] == [{"volume": 0} | told] == json.loads(Image.open(picture).text["halflight:field_errors"])
+    subprocess.run([program, "render", path, "-o", picture, "--size", "32x32", "--no-metadata"], check=True, capture_output=True)
+    assert "halflight:field_errors" not in Image.open(picture).text
+    hl.render(path, size=(32, 32)).save(picture)
+    assert json.loads(Image.open(picture).text["halflight:field_errors"]) == [{"volume": 0} | told]
     shown = subprocess.run([program, "info", path], check=True, capture_output=True, text=True).stdout
     assert f"field       differs from {bound.source} by {bound.value:.2g} at most" in shown
 

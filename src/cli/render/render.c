@@ -248,6 +248,7 @@ static int job_write(render_job *job) {
   if (status == HL_OK) {
     hl_image_write_options options;
     hl_scene_write_options(job->scene, &options);
+    job->result.field_errors = options.field_errors;
     if (job->values[RENDER_DEPTH].given) options.png_depth = job->values[RENDER_DEPTH].choice;
     options.scene_json = scene_json;
     status = job->to_stdout ? write_to_stdout(job, &options, &exit_code, &error)

@@ -229,8 +229,9 @@ typedef struct render_seconds {
 /* The data of a report on a finished rendering. */
 typedef struct render_result {
   const char *input, *output;
-  const char *taken_for; /* the kind of data that the transfer function was chosen for; null: not chosen */
-  const char *next_look; /* the look that shows such data next best; null: a look was asked for */
+  const char *taken_for;    /* the kind of data that the transfer function was chosen for; null: not chosen */
+  const char *next_look;    /* the look that shows such data next best; null: a look was asked for */
+  const char *field_errors; /* the scene's, as JSON; null: of none of its volumes known */
   bool reference;
   const hl_scene_description *description;
   hl_render_statistics statistics;

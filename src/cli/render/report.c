@@ -108,6 +108,7 @@ int render_print_json(const render_result *result) {
   json_text(&json, "shadows", shadows_name(description->render.shadows));
   json_text(&json, "compositing", is_maximum(description) ? "maximum" : "light");
   json_text(&json, "soft_method", soft_method_name(description->render.soft_method));
+  if (result->field_errors != NULL) json_written(&json, "field_errors", result->field_errors);
   print_seconds(&json, result);
   print_work(&json, statistics);
   json_whole_number(&json, "peak_memory_bytes", peak_memory_bytes());
