@@ -105,10 +105,10 @@ void hl_sweep_shade(sweep *sweep, const shade_job *job, size_t tile, int worker)
 
 /* ---- the lights ---- */
 
-/* Whether faces that cut a volume are surfaces, and such a face is near. */
-static bool faces_are_lit(const frame_volume *volume, const patch_slab *slab) {
-  return volume->shading == HL_SHADING_PHONG && volume->cut_shading == HL_CUT_SHADING_FACE &&
-         slab->enter != NULL && !slab->uncut;
+/* Whether faces that cut a volume's visible matter are surfaces, and a face of the volume is near. */
+static bool faces_are_lit(const shade_volume *volume, const patch_slab *slab) {
+  return volume->phong && volume->cut_shading == HL_CUT_SHADING_FACE &&
+         (volume->any_face || volume->light_cut_count > 0) && slab->enter != NULL && !slab->uncut;
 }
 
 /* Does steps 7 to 11 for one tile, with the volumes that cast shadows. */
@@ -127,20 +127,21 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, slab_place place, i
     if (hl_patch_relevant(sheets, place, need) == 0) continue;
     patch_slab slab = hl_patch_slab(sheets, place, need, pixels);
     if (slab.blocks == 0) continue;
-    volumes[count] = (attenuate_volume){.classifier = of->classifier,
-                                        .blocks = slab.blocks,
-                                        .surface = of->shading == HL_SHADING_PHONG,
-                                        .voxel = sweep->constants.volumes[g].voxel,
-                                        .before = slab.before,
-                                        .density = slab.current,
-                                        .enter = slab.enter,
-                                        .leave = slab.leave,
-                                        .uncut = slab.uncut,
-                                        .faces = faces_are_lit(of, &slab) ? slab.run : NULL,
-                                        .slab = slab.slab,
-                                        .grid = &sweep->content.grids[g],
-                                        .kernel = sweep->content.kernel,
-                                        .to_index = sweep->constants.volumes[g].to_index};
+    volumes[count] = (attenuate_volume){
+        .classifier = of->classifier,
+        .blocks = slab.blocks,
+        .surface = of->shading == HL_SHADING_PHONG,
+        .voxel = sweep->constants.volumes[g].voxel,
+        .before = slab.before,
+        .density = slab.current,
+        .enter = slab.enter,
+        .leave = slab.leave,
+        .uncut = slab.uncut,
+        .faces = faces_are_lit(&sweep->constants.volumes[g], &slab) ? slab.run : NULL,
+        .slab = slab.slab,
+        .grid = &sweep->content.grids[g],
+        .kernel = sweep->content.kernel,
+        .to_index = sweep->constants.volumes[g].to_index};
     for (int c = 0; c < HL_CHANNELS; c++) volumes[count].weight[c] = (float)of->attenuation_color[c];
     count++;
   }

@@ -275,7 +275,7 @@ DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *ligh
   if (!(extinction > 0.0f)) return 0;
   float path = path_through_sheet(in_frame, !light->parallel, light->slab_path, u, v);
 #if OUTSIDE
-  const float skin = BOXED && volume->cut_shading == CUT_SHADING_FACE
+  const float skin = BOXED && volume->any_face && volume->cut_shading == CUT_SHADING_FACE
                          ? skin_of_faces(volume, in_index - 1, !light->parallel, u, v)
                          : 0.0f;
   const kept_light kept = kept_in_slab(&sweep->volume, a, b, part, path, extinction, skin, pixel->passing[0],
