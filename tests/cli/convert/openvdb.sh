@@ -10,5 +10,5 @@ pyopenvdb.write("-smoke.vdb", grids=[grid])
 END
 mkdir temporary
 export TMPDIR=$PWD/temporary
-halflight info ./-smoke.vdb | grep "dimensions\|range"
+halflight info ./-smoke.vdb | grep "dimensions\|^  range"
 ls temporary | wc -l
