@@ -169,7 +169,8 @@ static hl_status make_patch(hl_pool *pool, capping *cap, hl_error *error) {
   if (patch->positions == NULL || patch->normals == NULL || cap->inside == NULL)
     return fail_cap(vertices, error);
   patch->vertex_count = vertices;
-  hl_pool_run(pool, cap->across[1] + 1, place_row, cap);
+  hl_status status = hl_lattice_run(pool, cap->across[1] + 1, place_row, cap, error);
+  if (status != HL_OK) return status;
   const size_t crossed = visit_cells(cap, false); /* each adds two vertices and a triangle */
   vertices += 2 * crossed;
   void *positions = hl_reallocate(cap->context, patch->positions, vertices, sizeof *patch->positions);

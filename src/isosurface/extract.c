@@ -220,8 +220,8 @@ hl_status hl_iso_extract(hl_pool *pool, lattice *lattice, iso_triangles *made, h
   job->lattice = lattice;
   job->made = made;
   hl_cube_patterns(job->patterns);
-  hl_pool_run(pool, lattice->count, count_triangles, job);
-  hl_status status = number_parts(job, error);
+  hl_status status = hl_lattice_run(pool, lattice->count, count_triangles, job, error);
+  if (status == HL_OK) status = number_parts(job, error);
   if (status == HL_OK) {
     made->positions = hl_allocate(context, made->vertex_count, sizeof *made->positions);
     made->normals = hl_allocate(context, made->vertex_count, sizeof *made->normals);
@@ -229,8 +229,8 @@ hl_status hl_iso_extract(hl_pool *pool, lattice *lattice, iso_triangles *made, h
     if (made->positions == NULL || made->normals == NULL || made->triangles == NULL)
       status = hl_fail_memory(error, made->triangle_count * sizeof *made->triangles, "an isosurface");
   }
-  if (status == HL_OK) hl_pool_run(pool, lattice->count, place_vertices, job);
-  if (status == HL_OK) hl_pool_run(pool, lattice->count, write_triangles, job);
+  if (status == HL_OK) status = hl_lattice_run(pool, lattice->count, place_vertices, job, error);
+  if (status == HL_OK) status = hl_lattice_run(pool, lattice->count, write_triangles, job, error);
   hl_release(context, job);
   return status;
 }

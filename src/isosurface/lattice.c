@@ -166,6 +166,12 @@ void hl_lattice_release(lattice *made) {
   hl_release(made->context, made->bricks);
 }
 
+hl_status hl_lattice_run(hl_pool *pool, size_t count, void (*function)(void *, size_t, int), void *data,
+                         hl_error *error) {
+  hl_pool_run(pool, count, function, data);
+  return hl_pool_cancelled(pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing") : HL_OK;
+}
+
 hl_status hl_lattice_create(hl_context *context, hl_pool *pool, const grid *grid, const kernel *kernel,
                             double value, lattice *made, hl_error *error) {
   *made = (lattice){.context = context, .grid = grid, .kernel = kernel};
@@ -186,7 +192,7 @@ hl_status hl_lattice_create(hl_context *context, hl_pool *pool, const grid *grid
   if (made->bricks != NULL) list_bricks(made, marks);
   hl_release(context, marks);
   if (made->bricks == NULL) return hl_fail_memory(error, total * sizeof *made->slot, "an isosurface");
-  hl_pool_run(pool, made->count, find_inside, made);
-  hl_pool_run(pool, made->count, find_crossings, made);
-  return HL_OK;
+  hl_status status = hl_lattice_run(pool, made->count, find_inside, made, error);
+  if (status == HL_OK) status = hl_lattice_run(pool, made->count, find_crossings, made, error);
+  return status;
 }

@@ -41,6 +41,11 @@ hl_status hl_lattice_create(hl_context *context, hl_pool *pool, const grid *grid
                             double value, lattice *made, hl_error *error);
 void hl_lattice_release(lattice *made);
 
+/* Runs function(data, index, worker) for each index below `count`. An error where the run was cancelled: the
+ * numbers that it was to write are then missing, and must not be read. */
+hl_status hl_lattice_run(hl_pool *pool, size_t count, void (*function)(void *, size_t, int), void *data,
+                         hl_error *error);
+
 /* The position of point i along an axis. */
 static inline double hl_lattice_position(const lattice *lattice, int axis, int32_t i) {
   return i == 0                           ? -lattice->outside[axis]

@@ -176,9 +176,8 @@ static hl_status add_middles(hl_pool *pool, halving *job, hl_error *error) {
   if (positions == NULL || normals == NULL)
     return hl_fail_memory(error, vertices * sizeof *made->positions, "an isosurface");
   job->first_vertex = made->vertex_count;
-  hl_pool_run(pool, job->count, place_middle, job);
   made->vertex_count = vertices;
-  return HL_OK;
+  return hl_lattice_run(pool, job->count, place_middle, job, error);
 }
 
 /* The triangles that are left when edges are halved. */
@@ -233,10 +232,15 @@ static hl_status halve_edges(hl_pool *pool, const lattice *lattice, iso_triangle
   const size_t vertices = triangles->vertex_count;
   job.normals = hl_allocate(lattice->context, vertices, sizeof *job.normals);
   if (job.normals == NULL) return hl_fail_memory(error, vertices * sizeof *job.normals, "an isosurface");
-  hl_pool_run(pool, (vertices + RUN_VERTICES - 1) / RUN_VERTICES, turn_normals, &job);
+  hl_status status = hl_lattice_run(pool, (vertices + RUN_VERTICES - 1) / RUN_VERTICES, turn_normals, &job,
+                                    error);
+  if (status != HL_OK) {
+    hl_release(lattice->context, job.normals);
+    return status;
+  }
   const size_t listed = list_edges(&job, NULL); /* most edges are those of two triangles */
   *any = listed > 0 && triangles->triangle_count + listed <= HL_LIMIT_TRIANGLES;
-  const hl_status status = *any ? halve(pool, &job, listed, error) : HL_OK;
+  if (*any) status = halve(pool, &job, listed, error);
   hl_release(lattice->context, job.normals);
   return status;
 }
