@@ -300,7 +300,7 @@ def several_files(browser, url):
     check(len(both["volumes"]) == 1 and len(both["meshes"]) == 1 and both["render"]["shadows"] == "hard", "the mesh is added to what was made")
     changes(browser, "a mesh that is hidden", lambda: press_named(browser, "Show triangle.obj"), "meshes")
     check(scene_of(browser)["meshes"][0]["visible"] is False, "its eye")
-    browser.wait("JSON.parse(sessionStorage.getItem('halflight-session')).scene.meshes[0].visible === false")
+    browser.wait("JSON.parse(sessionStorage.getItem('halflight-session') ?? '{}').scene?.meshes?.[0].visible === false")
     browser.run("window.old = true; 0")
     browser.call("Page.reload")
     browser.wait("window.old === undefined && document.getElementById('title')?.textContent === 'first.nrrd + triangle.obj'")

@@ -101,7 +101,8 @@ export function paint(canvas, { plane, values, labels }, [low, high], maps, isAl
     data[4 * n] = data[4 * n + 1] = data[4 * n + 2] = grey;
     data[4 * n + 3] = Number.isNaN(value) ? 0 : 255;
   }
-  maps.forEach((map, m) => { if (map !== null) tint(data, labels[m], map.labels, isAlone ? 1 : LABEL_STRENGTH); });
+  // A map that was added just now has no values yet.
+  maps.forEach((map, m) => { if (map !== null && labels[m] !== undefined) tint(data, labels[m], map.labels, isAlone ? 1 : LABEL_STRENGTH); });
   canvas.width = width;
   canvas.height = height;
   canvas.getContext("2d").putImageData(image, 0, 0);

@@ -86,7 +86,8 @@ export function surfacePanel({ store, start, current, failed, channel }) {
   const shown = new Map(); // for each volume: the transfer function that "Surfaces alone" has hidden
   let chosen = 0, parts = [];
   // The function is not of two numbers.
-  const isOfValue = () => volume()?.transfer_function?.opacity !== undefined;
+  // A maximum projection shows no surfaces.
+  const isOfValue = () => volume()?.transfer_function?.opacity !== undefined && store.scene.render?.compositing !== "maximum";
 
   const changeSurface = (name, part) => store.changeVolume(current.volume, `iso ${chosen} ${name}`, (v) => ({
     ...v, iso: v.iso.map((one, n) => (n === chosen ? { ...one, ...part } : one)),
