@@ -5,7 +5,7 @@ import { hexOf, linearOf } from "./color.js";
 import { button, color, isActive, make, row, section, select, slider } from "./controls.js";
 import { FunctionCanvas } from "./function_canvas.js";
 import { byGradient, planePanel } from "./plane_panel.js";
-import { colormapOf, isPlane, movePoint, moveStop, rangeOf, recolorStop, stretched, withColormap } from "./transfer_function.js";
+import { colormapOf, isPlane, isProjection, movePoint, moveStop, rangeOf, recolorStop, stretched, withColormap } from "./transfer_function.js";
 
 // The numbers of the point or colour that is chosen in the drawing.
 function chosenPoint(canvas, get, set, range) {
@@ -138,13 +138,14 @@ export function functionPanel({ store, start, current, channel, failed }) {
       label: "Colours", choices: [["", "own"], ...Object.keys(start.colormaps).map((name) => [name, name])],
       get: () => colormapOf(get(), start.colormaps), set: (name) => name && set(withColormap(get(), start.colormaps[name], spread(rangeOf(get()), range)), `map ${name}`),
     });
+    const gradient = button("by gradient", () => { before.set(current.volume, get()); set(byGradient(get(), volume(), about), "by gradient"); },
+      { title: "Boxes in the plane of value and gradient in place of the line" });
     const zoomed = row(make("span", { class: "name" }, "Zoom to"), make("span", { class: "buttons" },
       button("all values", () => { canvas.shown = range; }),
       button("range", () => { canvas.shown = rangeOf(get()); }),
-      button("by gradient", () => { before.set(current.volume, get()); set(byGradient(get(), volume(), about), "by gradient"); },
-        { title: "Boxes in the plane of value and gradient in place of the line" })));
+      gradient));
     body.replaceChildren(canvas.element, chosen.element, density.element, maps.element, presets.element, ends.element, zoomed);
-    parts = [{ update: () => canvas.draw() }, chosen, density, maps, presets, ends];
+    parts = [{ update: () => canvas.draw() }, chosen, density, maps, presets, ends, { update: () => { gradient.hidden = isProjection(store.scene); } }];
     parts.forEach((part) => part.update());
   }
   const update = () => {

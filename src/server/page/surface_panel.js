@@ -3,7 +3,7 @@
 import { hexOf, linearOf } from "./color.js";
 import { color, make, section, shortNumber, slider, tabs, toggle } from "./controls.js";
 import { blankContext, drawBars, drawValueAxis } from "./histogram.js";
-import { opacityAt, rangeOf } from "./transfer_function.js";
+import { isProjection, opacityAt, rangeOf } from "./transfer_function.js";
 
 const HEIGHT = 88, AXIS = 16, MARGIN = 9, GRIP = 10; // pixels
 // A further surface is added around the last one: at this part of the way from its value to the value of the
@@ -85,9 +85,8 @@ export function surfacePanel({ store, start, current, failed, channel }) {
   const surfaces = () => volume().iso ?? [], surface = () => surfaces()[chosen];
   const shown = new Map(); // for each volume: the transfer function that "Surfaces alone" has hidden
   let chosen = 0, parts = [];
-  // The function is not of two numbers.
-  // A maximum projection shows no surfaces.
-  const isOfValue = () => volume()?.transfer_function?.opacity !== undefined && store.scene.render?.compositing !== "maximum";
+  // Surfaces can be added where the function is of one number and the scene is no maximum projection.
+  const isOfValue = () => volume()?.transfer_function?.opacity !== undefined && !isProjection(store.scene);
 
   const changeSurface = (name, part) => store.changeVolume(current.volume, `iso ${chosen} ${name}`, (v) => ({
     ...v, iso: v.iso.map((one, n) => (n === chosen ? { ...one, ...part } : one)),

@@ -9,6 +9,8 @@ const isReadable = (rows) => rows.every((row, n) => n < 2 || row[0] !== rows[n -
 const nearest = (rows, value) => rows.reduce((best, row, n) => (Math.abs(row[0] - value) < Math.abs(rows[best][0] - value) ? n : best), 0);
 
 // Whether a volume's function takes two numbers, so that it has boxes instead of points.
+// Whether a scene is a maximum projection, which shows no surfaces and goes by one number.
+export const isProjection = (scene) => scene.render?.compositing === "maximum";
 export const isPlane = (volume) => volume?.transfer_function?.second !== undefined;
 
 // Opacity points at one value, as at a step, keep their order. The first and the last point may go as far as
