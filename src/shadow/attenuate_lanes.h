@@ -112,10 +112,10 @@ LANES_INLINE lanes kept_in_skin(lanes kept, lanes skin) {
  * the value there; corner: the block's first pixel. */
 LANES_INLINE kept_light kept_by_face(const attenuate_volume *volume, kept_light kept, table_coordinate b,
                                      const int corner[2]) {
+  lanes skin = skin_of_faces(volume->faces, volume->slab, block_u(corner[0]), block_v(corner[1]));
+  if (lanes_bits(skin > 0.0f) == 0) return kept; /* most blocks lie deeper */
   lanes values[3];
   table_values(volume->classifier->sums, b, values);
-  if (lanes_bits(values[0] > 0.0f) == 0) return kept;
-  lanes skin = skin_of_faces(volume->faces, volume->slab, block_u(corner[0]), block_v(corner[1]));
   skin = lanes_keep(values[0] > 0.0f, skin);
   return (kept_light){kept_in_skin(kept.before, skin), kept_in_skin(kept.within, skin)};
 }
