@@ -50,6 +50,9 @@ void hl_pool_clear(hl_pool *pool, void *memory, size_t bytes);
 /* Whether to stop. Polls the cancel callback. For the calling thread, between runs. */
 bool hl_pool_cancelled(hl_pool *pool);
 
+/* The same as a status: HL_ERROR_CANCELLED, "cancelled while DOING", where the pool stops. */
+hl_status hl_pool_check(hl_pool *pool, const char *doing, hl_error *error);
+
 /* Whether to stop, for functions that spend long on a single index. Cheap: only worker 0 polls the cancel
  * callback. */
 bool hl_pool_stops(hl_pool *pool, int worker);

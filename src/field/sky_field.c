@@ -437,7 +437,7 @@ hl_status hl_sky_make(hl_context *context, hl_pool *pool, const sky_content *con
   make(&own, &arrays, functions, made->memory, pool);
   hl_release(context, layout.base);
   store(content, made->memory, light, pool);
-  return hl_pool_cancelled(pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering") : HL_OK;
+  return hl_pool_check(pool, "rendering", error);
 }
 
 void hl_sky_release(hl_context *context, sky_field *field) {

@@ -40,17 +40,20 @@ static void move_vertices(void *data, size_t index, int worker) {
 }
 
 /* Brings the triangles to the world; a mirroring placement turns them around. */
-static void place(hl_pool *pool, const hl_scene_volume *volume, const grid *grid, iso_triangles *made) {
+static hl_status place(hl_pool *pool, const hl_scene_volume *volume, const grid *grid, iso_triangles *made,
+                       hl_error *error) {
   move_job job = {.placement = placement_of(volume, grid), .made = made};
   mat3 inverse, m = job.placement.linear;
-  if (!mat3_invert(m, &inverse)) return; /* refused when the scene was checked */
+  if (!mat3_invert(m, &inverse)) return HL_OK; /* refused when the scene was checked */
   job.normals = mat3_transpose(inverse);
-  hl_pool_run(pool, (made->vertex_count + RUN_VERTICES - 1) / RUN_VERTICES, move_vertices, &job);
-  if (vec3_dot(m.row[0], vec3_cross(m.row[1], m.row[2])) > 0) return;
+  const size_t runs = (made->vertex_count + RUN_VERTICES - 1) / RUN_VERTICES;
+  hl_status status = hl_lattice_run(pool, runs, move_vertices, &job, error);
+  if (status != HL_OK || vec3_dot(m.row[0], vec3_cross(m.row[1], m.row[2])) > 0) return status;
   for (size_t t = 0; t < made->triangle_count; t++) {
     uint32_t *corner = made->triangles[t], kept = corner[0];
     corner[0] = corner[1], corner[1] = kept;
   }
+  return HL_OK;
 }
 
 static hl_status mesh_of(hl_context *context, iso_triangles *made, hl_mesh **mesh, hl_error *error) {
@@ -80,11 +83,9 @@ hl_status hl_isosurface_create(hl_pool *pool, const hl_scene_volume *volume, con
   if (status == HL_OK) status = hl_iso_cut(context, &made, grid->cuts, grid->cut_count, error);
   if (status == HL_OK) status = hl_iso_cap(pool, &lattice, &made, error);
   hl_lattice_release(&lattice);
-  if (status == HL_OK && hl_pool_cancelled(pool))
-    status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing");
   if (status == HL_OK && made.triangle_count > 0) {
-    place(pool, volume, grid, &made);
-    status = mesh_of(context, &made, mesh, error);
+    status = place(pool, volume, grid, &made, error);
+    if (status == HL_OK) status = mesh_of(context, &made, mesh, error);
     if (status == HL_OK) (*mesh)->is_cut = true;
     if (status == HL_OK && hl_iso_caps_close(grid)) hl_mesh_take_as_closed(*mesh);
   }

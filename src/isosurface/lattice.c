@@ -169,7 +169,7 @@ void hl_lattice_release(lattice *made) {
 hl_status hl_lattice_run(hl_pool *pool, size_t count, void (*function)(void *, size_t, int), void *data,
                          hl_error *error) {
   hl_pool_run(pool, count, function, data);
-  return hl_pool_cancelled(pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing") : HL_OK;
+  return hl_pool_check(pool, "preparing", error);
 }
 
 hl_status hl_lattice_create(hl_context *context, hl_pool *pool, const grid *grid, const kernel *kernel,

@@ -234,11 +234,7 @@ static hl_status halve_edges(hl_pool *pool, const lattice *lattice, iso_triangle
   if (job.normals == NULL) return hl_fail_memory(error, vertices * sizeof *job.normals, "an isosurface");
   hl_status status = hl_lattice_run(pool, (vertices + RUN_VERTICES - 1) / RUN_VERTICES, turn_normals, &job,
                                     error);
-  if (status != HL_OK) {
-    hl_release(lattice->context, job.normals);
-    return status;
-  }
-  const size_t listed = list_edges(&job, NULL); /* most edges are those of two triangles */
+  const size_t listed = status == HL_OK ? list_edges(&job, NULL) : 0; /* most edges are of two triangles */
   *any = listed > 0 && triangles->triangle_count + listed <= HL_LIMIT_TRIANGLES;
   if (*any) status = halve(pool, &job, listed, error);
   hl_release(lattice->context, job.normals);

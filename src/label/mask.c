@@ -236,8 +236,8 @@ static hl_status fill(hl_context *context, int threads, mask_job *job, hl_volume
     hl_pool_run(pool, map->dimension[2], fill_slice, job);
     hl_pool_run(pool, map->dimension[2], fill_slopes, job);
     hl_pool_run(pool, bricks[2], fill_bricks, job);
-    status = hl_pool_cancelled(pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while making a mask")
-                                     : adopt(context, job, made, error);
+    status = hl_pool_check(pool, "making a mask", error);
+    if (status == HL_OK) status = adopt(context, job, made, error);
   }
   hl_pool_destroy(pool);
   hl_release(context, job->sums);

@@ -79,8 +79,7 @@ hl_status hl_label_parts(hl_context *context, hl_pool *pool, const hl_volume *ma
     job.bounds[n] = (label_bounds){{INT64_MAX, INT64_MAX, INT64_MAX}, {-1, -1, -1}};
   if (status == HL_OK) {
     hl_pool_run(pool, map->dimension[2], bound_slice, &job);
-    if (hl_pool_cancelled(pool))
-      status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while reading labels");
+    status = hl_pool_check(pool, "reading labels", error);
   }
   for (size_t n = 0; status == HL_OK && n < count; n++) {
     for (size_t t = 1; t < threads; t++)

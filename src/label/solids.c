@@ -91,8 +91,7 @@ static hl_status add_colors(hl_context *context, hl_pool *pool, solids_job *job,
   if (status == HL_OK) {
     hl_pool_run(pool, job->part.size[2], color_slice, job);
     hl_srgb_encoder_destroy(&job->encoder);
-    if (hl_pool_cancelled(pool))
-      status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while colouring labels");
+    status = hl_pool_check(pool, "colouring labels", error);
   }
   hl_release(context, job->sums);
   if (status == HL_OK) made->colors = job->colors;

@@ -307,7 +307,7 @@ static hl_status create_bricks(hl_context *context, reference_volume *volume, hl
   if (volume->clearance == NULL) return hl_fail_memory(error, count, "the bricks of a volume");
   hl_pool_run(pool, volume->bricks[2], mark_visible, volume);
   measure_clearance(volume, pool);
-  return hl_pool_cancelled(pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing") : HL_OK;
+  return hl_pool_check(pool, "preparing", error);
 }
 
 double hl_reference_clearance(const reference_volume *volume, vec3 point, vec3 direction) {

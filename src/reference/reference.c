@@ -359,7 +359,7 @@ static hl_status render(const reference *all, hl_pool *pool, float *pixels, size
     return hl_fail_memory(error, threads * sizeof(reference_worker), "the reference's threads");
   hl_pool_run(pool, made.runs_per_row * (size_t)all->scene->height, render_run, &made);
   workers_release(all->context, made.workers);
-  return hl_pool_cancelled(pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering") : HL_OK;
+  return hl_pool_check(pool, "rendering", error);
 }
 
 void hl_reference_options_defaults(hl_reference_options *options) {

@@ -205,8 +205,7 @@ static hl_status prepare_volume(const preparation *with, const hl_scene_volume *
     hl_prepared_release(context, prepared);
     const grid_source source = {scene, hl_kernel_get(kernel), index_to_frame, empty};
     status = hl_grid_create(context, pool, with->functions, &source, &prepared->grid, error);
-    if (status == HL_OK && hl_pool_cancelled(pool))
-      status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing");
+    if (status == HL_OK) status = hl_pool_check(pool, "preparing", error);
     if (status != HL_OK) return status;
     hl_volume_retain(scene->volume);
     prepared->version++;
@@ -230,7 +229,7 @@ static hl_status prepare_volume(const preparation *with, const hl_scene_volume *
   hl_grid_mark_relevant(&prepared->grid, with->functions, &prepared->classifier, pool);
   prepared->tables_version++;
   hl_faces_find(pool, hl_kernel_get(kernel), &prepared->classifier, &prepared->grid);
-  return hl_pool_cancelled(pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing") : HL_OK;
+  return hl_pool_check(pool, "preparing", error);
 }
 
 hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_functions *hot,

@@ -291,8 +291,7 @@ hl_status hl_view_sheets_begin(const sheet_content *content, const view *view, b
   if (status == HL_OK) status = sort_voxels(sheets, error);
   if (status == HL_OK) status = keep_patches(sheets, error);
   if (status != HL_OK) return status;
-  return hl_pool_cancelled(content->pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing")
-                                          : HL_OK;
+  return hl_pool_check(content->pool, "preparing", error);
 }
 
 void hl_view_sheets_end(view_sheets *sheets) {

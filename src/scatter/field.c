@@ -253,9 +253,7 @@ static hl_status find_field(const scatter_scene *scene, const surface_tree *tree
   field->channels = grey ? 1 : 3;
   solve_channels(scene, &arrays, inflow, &work, field);
   hl_release(scene->context, passing.base);
-  if (hl_pool_cancelled(scene->pool))
-    return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while light is scattered");
-  return HL_OK;
+  return hl_pool_check(scene->pool, "light is scattered", error);
 }
 
 hl_status hl_scatter_update(const scatter_scene *scene, scatter_field *field, hl_error *error) {

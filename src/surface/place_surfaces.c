@@ -178,8 +178,7 @@ static hl_status create(hl_context *context, hl_pool *pool, const hl_scene_descr
   }
   if (status == HL_OK) status = hl_clusters_create(context, pool, made, error);
   if (status == HL_OK) status = hl_surface_seams_create(context, made, error);
-  if (status == HL_OK && hl_pool_cancelled(pool))
-    status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering");
+  if (status == HL_OK) status = hl_pool_check(pool, "rendering", error);
   if (status != HL_OK) hl_surfaces_release(context, made);
   return status;
 }

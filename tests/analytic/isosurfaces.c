@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "../asserts.h"
+#include "core/context.h"
 #include "grid/make_grid.h"
 #include "grid/relevant.h"
 #include "isosurface/cubes.h"
@@ -227,6 +228,50 @@ static void test_caps_close(void **state) {
   stage_close(&set);
 }
 
+/* The cancel callback of test_cancelled(). It says stop from a question on. */
+typedef struct questions {
+  int asked, stop_at;
+} questions;
+
+static int answer(void *user_data) {
+  questions *all = user_data;
+  return all->asked++ >= all->stop_at;
+}
+
+/* Wherever an extraction is stopped, it tells so and makes no surface. */
+static void test_cancelled(void **state) {
+  (void)state;
+  stage set;
+  hl_pool *pool = NULL;
+  grid grid;
+  open_stage(&set);
+  const hl_scene_volume *volume = add_ball(&set, (vec3){0, 0, 0});
+  const kernel *kernel = hl_kernel_get(set.scene.render.kernel);
+  const grid_source source = {volume, kernel, volume->volume->index_to_world,
+                              hl_scene_volume_empty_value(volume)};
+  const grid_functions *functions = hl_hot_functions(HL_INSTRUCTION_SET_SCALAR)->grid;
+  assert_int_equal(hl_pool_create(set.context, 1, &pool, NULL), HL_OK);
+  assert_int_equal(hl_grid_create(set.context, pool, functions, &source, &grid, NULL), HL_OK);
+  questions all = {0, 0};
+  set.context->options.cancelled = answer;
+  set.context->options.user_data = &all;
+  hl_mesh *mesh = NULL;
+  hl_status status = HL_ERROR_CANCELLED;
+  while (status == HL_ERROR_CANCELLED) {
+    all.asked = 0;
+    hl_pool_resume(pool);
+    status = hl_isosurface_create(pool, volume, &grid, kernel, -12 * 12 - 1, &mesh, NULL);
+    assert_true(status == HL_OK || (status == HL_ERROR_CANCELLED && mesh == NULL));
+    all.stop_at++;
+  }
+  assert_true(all.stop_at > 5); /* steps: inside, crossings, counts, vertices, triangles, refinement */
+  assert_int_equal(status, HL_OK);
+  hl_mesh_release(mesh);
+  hl_grid_release(set.context, &grid);
+  hl_pool_destroy(pool);
+  stage_close(&set);
+}
+
 /* ---- pictures ---- */
 
 /* The silhouette is a disk, antialiased, and the same at any spacing of sheets. */
@@ -404,16 +449,12 @@ static void test_clip(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_ball),
-                                     cmocka_unit_test(test_long_voxels),
-                                     cmocka_unit_test(test_patterns),
-                                     cmocka_unit_test(test_noise_is_watertight),
-                                     cmocka_unit_test(test_caps_close),
-                                     cmocka_unit_test(test_silhouette),
-                                     cmocka_unit_test(test_translucent),
-                                     cmocka_unit_test(test_shadow),
-                                     cmocka_unit_test(test_against_the_reference),
-                                     cmocka_unit_test(test_threads),
-                                     cmocka_unit_test(test_clip)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_ball),       cmocka_unit_test(test_long_voxels),
+      cmocka_unit_test(test_patterns),   cmocka_unit_test(test_noise_is_watertight),
+      cmocka_unit_test(test_caps_close), cmocka_unit_test(test_cancelled),
+      cmocka_unit_test(test_silhouette), cmocka_unit_test(test_translucent),
+      cmocka_unit_test(test_shadow),     cmocka_unit_test(test_against_the_reference),
+      cmocka_unit_test(test_threads),    cmocka_unit_test(test_clip)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
