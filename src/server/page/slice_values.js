@@ -50,7 +50,7 @@ export class SliceValues {
   #wanted = null;
   #busy = false;
   #known = new Map(); // for each text of a request: its answer; for the newest plane only
-  shown = null; // { plane, values, labels: [{ values, labels }] }
+  shown = null; // { plane, values, labels: [{ volume, of, values }] }
 
   constructor(channel, onLoad, onFail) {
     this.#channel = channel;
@@ -62,7 +62,7 @@ export class SliceValues {
   want(plane, source, labels, blend) {
     const requests = [asked(plane, source.volume, "voxels", blend),
       ...labels.map((map) => asked(planeIn(plane, source, map), map.volume, map.of, "maximum"))].map((request) => JSON.stringify(request));
-    this.#wanted = { plane, requests };
+    this.#wanted = { plane, requests, maps: labels };
     if (!this.#busy) this.#load();
   }
 
@@ -75,14 +75,14 @@ export class SliceValues {
   async #load() {
     this.#busy = true;
     while (this.#wanted !== null) {
-      const { plane, requests } = this.#wanted;
+      const { plane, requests, maps } = this.#wanted;
       this.#wanted = null;
       try {
         const known = new Map();
         for (const request of requests) known.set(request, this.#known.get(request) ?? (await this.#channel.slice(JSON.parse(request))));
         this.#known = known;
         const [values, ...labels] = requests.map((request) => known.get(request));
-        this.shown = { plane, values: values.values, labels: labels.map((one) => one.values) };
+        this.shown = { plane, values: values.values, labels: labels.map(({ values: own }, m) => ({ volume: maps[m].volume, of: maps[m].of, values: own })) };
         this.#onLoad();
       } catch (error) {
         this.#onFail(error);
@@ -92,8 +92,8 @@ export class SliceValues {
   }
 }
 
-// Puts greys and labels into a canvas with one pixel for each sample. maps: labelSources(), in the order of
-// labels; null ones are not drawn. isAlone: the values themselves are labels.
+// Puts greys and labels into a canvas with one pixel for each sample. maps: the labelSources() that are drawn, of
+// which some may have no values yet. isAlone: the values themselves are labels.
 export function paint(canvas, { plane, values, labels }, [low, high], maps, isAlone) {
   const { width, height } = plane, image = new ImageData(width, height), { data } = image, span = high > low ? high - low : 1;
   for (let n = 0; n < width * height; n++) {
@@ -101,8 +101,10 @@ export function paint(canvas, { plane, values, labels }, [low, high], maps, isAl
     data[4 * n] = data[4 * n + 1] = data[4 * n + 2] = grey;
     data[4 * n + 3] = Number.isNaN(value) ? 0 : 255;
   }
-  // A map that was added just now has no values yet.
-  maps.forEach((map, m) => { if (map !== null && labels[m] !== undefined) tint(data, labels[m], map.labels, isAlone ? 1 : LABEL_STRENGTH); });
+  for (const map of maps) {
+    const own = labels.find((one) => one.volume === map.volume && one.of === map.of);
+    if (own) tint(data, own.values, map.labels, isAlone ? 1 : LABEL_STRENGTH);
+  }
   canvas.width = width;
   canvas.height = height;
   canvas.getContext("2d").putImageData(image, 0, 0);

@@ -152,10 +152,10 @@ export class Slices {
   // The look of planes besides their values; `key` differs where the look does.
   look() {
     const { store } = this.#viewer, { source, window } = this, { showLabels = true, showIsolines = true } = store.page;
-    const sources = labelSources(this.#viewer, source.volume), maps = sources.map((map) => (showLabels ? map : null));
+    const sources = labelSources(this.#viewer, source.volume), maps = showLabels ? sources : [];
     const surfaces = showIsolines ? (store.scene.volumes[source.volume].iso ?? []) : [];
     const isAlone = sources.some((map) => map.volume === source.volume && map.of === "voxels");
-    return { window, maps, surfaces, isAlone, key: JSON.stringify([window, maps.map((map) => map?.labels), surfaces]) };
+    return { window, maps, surfaces, isAlone, key: JSON.stringify([window, maps.map((map) => map.labels), surfaces]) };
   }
 
   // ---- the crosshair's own value ----
