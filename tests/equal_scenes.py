@@ -148,6 +148,20 @@ def write_all(folder, program):
     return write_dropped(folder, program) + write_scenes(folder)
 
 
+def compare_pictures(command, program, folder, names, first=1):
+    """Prints a line of TAP for each name, numbered from `first`: whether a command makes the program's picture, byte for byte. Returns how many differ."""
+    failures = 0
+    for number, name in enumerate(names, first):
+        expected = render_with([program], folder, name, "native.npy")
+        try:
+            good, why = render_with(command, folder, name, "other.npy") == expected, ""
+        except subprocess.CalledProcessError as error:
+            good, why = False, f": exit code {error.returncode}"
+        failures += not good
+        print(f"{'ok' if good else 'not ok'} {number} - {name}{why}", flush=True)
+    return failures
+
+
 def render_with(command, folder, name, out):
     """The picture's bytes, as a program renders it. command: the program's words."""
     size = [] if name.endswith(".json") else ["--size", "x".join(map(str, SIZE_DROPPED))]

@@ -158,6 +158,20 @@ static hl_status finish_volume(hl_volume *made, const char *subject, hl_volume *
   return status;
 }
 
+hl_volume_description hl_volume_own_grid(const hl_volume *volume) {
+  const vec3 origin = volume->index_to_world.offset;
+  hl_volume_description grid;
+  hl_volume_description_defaults(&grid);
+  for (int axis = 0; axis < 3; axis++) {
+    const vec3 step = mat3_column(volume->index_to_world.linear, axis);
+    memcpy(grid.axis[axis], (const double[3]){step.x, step.y, step.z}, sizeof grid.axis[axis]);
+    grid.dimensions[axis] = volume->dimension[axis];
+  }
+  memcpy(grid.origin, (const double[3]){origin.x, origin.y, origin.z}, sizeof grid.origin);
+  grid.space = volume->space;
+  return grid;
+}
+
 hl_status hl_volume_adopt(hl_context *context, const hl_volume_description *description, const char *subject,
                           void *voxels, hl_volume **volume, hl_error *error) {
   return hl_volume_adopt_exact(context, description, subject, voxels, NULL, volume, error);

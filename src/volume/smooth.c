@@ -90,18 +90,8 @@ static void weigh(const hl_volume *volume, float *line, float *values, const flo
 
 /* The grid of a volume, and what its file tells of its world. */
 static hl_status adopt(const hl_volume *volume, float *values, hl_volume **smoothed, hl_error *error) {
-  hl_volume_description d;
-  hl_volume_description_defaults(&d);
-  for (int a = 0; a < 3; a++) {
-    vec3 axis = mat3_column(volume->index_to_world.linear, a);
-    d.dimensions[a] = volume->dimension[a];
-    d.axis[a][0] = axis.x, d.axis[a][1] = axis.y, d.axis[a][2] = axis.z;
-  }
-  d.origin[0] = volume->index_to_world.offset.x;
-  d.origin[1] = volume->index_to_world.offset.y;
-  d.origin[2] = volume->index_to_world.offset.z;
+  hl_volume_description d = hl_volume_own_grid(volume);
   d.type = HL_VOXEL_F32;
-  d.space = volume->space;
   hl_status status = hl_volume_adopt(volume->context, &d, "smoothed voxels", values, smoothed, error);
   if (status != HL_OK) return status;
   hl_volume *made = *smoothed;

@@ -198,6 +198,9 @@ typedef enum hl_whole {
 /* The same for one voxel of any volume. */
 hl_whole hl_volume_whole(const hl_volume *volume, size_t i, size_t j, size_t k, int64_t *whole);
 
+/* The description of a volume's grid: dimensions, axes, origin and space. The rest has its defaults. */
+hl_volume_description hl_volume_own_grid(const hl_volume *volume);
+
 /* Makes a volume of packed voxels that are already in stored form (hl_voxels_store()), in a block of
  * hl_allocate() that the volume takes over, also on failure. description: the grid, the type in the file, and
  * value_scale and value_offset for values of the file's type. subject: starts the error lines. */

@@ -12,7 +12,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
-from equal_scenes import render_with, write_all  # noqa: E402
+from equal_scenes import compare_pictures, write_all  # noqa: E402
 
 
 def main():
@@ -27,14 +27,7 @@ def main():
         expected = (ROOT / "packaging/wheel/formats.txt").read_text()
         failures += listed != expected
         print(f"{'ok' if listed == expected else 'not ok'} 1 - the formats are those of packaging/wheel/formats.txt")
-        for number, (name, _) in enumerate(scenes, 2):
-            try:
-                good = render_with(command, folder, name, "wheel.npy") == render_with([program], folder, name, "native.npy")
-                why = ""
-            except subprocess.CalledProcessError as error:
-                good, why = False, f": exit code {error.returncode}: {error.stderr}"
-            failures += not good
-            print(f"{'ok' if good else 'not ok'} {number} - {name}{why}", flush=True)
+        failures += compare_pictures(command, program, folder, [name for name, _ in scenes], 2)
     if failures:
         sys.exit(1)
 

@@ -7,13 +7,12 @@ FOLDER is that of scripts/windows. The scenes are those of tests/equal_scenes.py
 import os
 import pathlib
 import shutil
-import subprocess
 import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
-from equal_scenes import render_with, write_all  # noqa: E402
+from equal_scenes import compare_pictures, write_all  # noqa: E402
 
 
 def main():
@@ -27,16 +26,7 @@ def main():
         folder = pathlib.Path(text)
         scenes = write_all(folder, program)
         print(f"1..{len(scenes)}")
-        failures = 0
-        for number, (name, _) in enumerate(scenes, 1):
-            expected = render_with([program], folder, name, "native.npy")
-            try:
-                good, why = render_with([wine, made], folder, name, "windows.npy") == expected, ""
-            except subprocess.CalledProcessError as error:
-                good, why = False, f": exit code {error.returncode}"
-            failures += not good
-            print(f"{'ok' if good else 'not ok'} {number} - {name}{why}", flush=True)
-        if failures:
+        if compare_pictures([wine, made], program, folder, [name for name, _ in scenes]):
             sys.exit(1)
 
 

@@ -73,15 +73,8 @@ static void send_blocks(const gathering *g) {
 
 static hl_status adopt(const hl_volume *map, void *voxels, void *numbers, hl_volume **whole,
                        hl_error *error) {
-  hl_volume_description grid;
-  hl_volume_description_defaults(&grid);
-  for (int a = 0; a < 3; a++) {
-    vec3 axis = mat3_column(map->index_to_world.linear, a);
-    grid.dimensions[a] = map->dimension[a];
-    grid.axis[a][0] = axis.x, grid.axis[a][1] = axis.y, grid.axis[a][2] = axis.z;
-  }
+  hl_volume_description grid = hl_volume_own_grid(map);
   grid.type = map->type;
-  grid.space = map->space;
   grid.value_scale = map->value_scale;
   grid.value_offset = map->value_offset + map->value_scale * hl_voxel_type_bias(map->type);
   hl_status status = hl_volume_adopt_exact(map->context, &grid, "a label map", voxels, numbers, whole, error);
