@@ -129,9 +129,9 @@ static float entering_last(const lines_job *job, int line) {
   return job->inflow != NULL ? job->inflow->against[line] : 0;
 }
 
-/* Sets y before anything has come along a line: the energy that each node sends out, plus the light that
- * enters, at every node. Nodes with a node before them take this light back. With meshes the light is added
- * only at first nodes. */
+/* Sets y at each node before light goes along the line: the energy that the node sends out, plus the light
+ * that enters the line. Without meshes every node gets the entering light, and go_forward() subtracts it
+ * again from all nodes but the first. With meshes only the first node gets it, as far as walls let it in. */
 static void begin_sums(const lines_job *job, int line, float *sums) {
   const scatter_walls *walls = walls_of(job);
   float length = length_of(line) * job->nodes->spacing, entered = entering(job, line);
@@ -142,7 +142,7 @@ static void begin_sums(const lines_job *job, int line, float *sums) {
     for (size_t n = 0; n < nodes; n++) sums[n] = length * job->sent[n] + entered;
 }
 
-/* The light that a node with a node before it takes back. */
+/* The entering light that go_forward() subtracts from a node that is not the first of its line. */
 static float taken_back(const lines_job *job, int line) {
   return walls_of(job) != NULL ? 0 : entering(job, line);
 }

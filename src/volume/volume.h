@@ -75,8 +75,8 @@ struct hl_volume {
   uint32_t (*mask_bricks)[2]; /* owned; bricks of a mask's lattice (label/mask.h); null for other volumes */
   struct hl_pages *pages; /* owned (pages.h); the voxels are in a scratch file, or over ranks; null if they
                            * are in memory */
-  struct hl_volume *gathered; /* owned (store/gathered.h); of a label map over ranks: all of it in memory;
-                               * null if nobody has asked for its labels */
+  struct hl_volume *gathered; /* owned (store/gathered.h); a copy of the whole map in memory, where this
+                               * volume is a label map over ranks. Null until the labels are asked for */
   struct hl_bricks *bricks;   /* owned (bricks/bricks.h, in_bricks.h); the field itself; null if there are
                                * voxels. Voxels are found in it when they are asked for */
   hl_volume_field_error field_error; /* of a field in bricks; its kind is null where it is unknown */
