@@ -9,6 +9,9 @@ import tempfile
 import time
 
 HANG = 300  # seconds, for a browser that hangs alone
+# What the page is doing, for the message of a test that waits in vain.
+STATE = """JSON.stringify({ ...globalThis.halflight?.frames?.statistics,
+  says: [...document.querySelectorAll('#message, #stage, #progress')].map((e) => e.textContent.trim()), visible: document.visibilityState })"""
 
 
 class BrowserError(Exception):
@@ -131,7 +134,7 @@ class Browser:
         end = time.monotonic() + timeout
         while not self.run(condition):
             if time.monotonic() > end:
-                raise BrowserError(f"never true: {condition}; {self.problems}")
+                raise BrowserError(f"never true: {condition}; {self.run(STATE)}; {self.problems}")
             time.sleep(0.03)
 
     def resize(self, width, height):

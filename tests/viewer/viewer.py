@@ -26,9 +26,12 @@ class Viewer:
         return self
 
     def __exit__(self, *_):
+        died = self.process.poll() not in (None, 0)
         if self.process.poll() is None:
             self.process.kill()
-        self.process.communicate()
+        _, errors = self.process.communicate()
+        if died:
+            print(f"the viewer has ended with status {self.process.returncode}: {errors[-8000:]}", file=sys.stderr)
 
     def interrupt(self, timeout=300):
         """Ctrl-C; returns the exit status."""

@@ -132,6 +132,10 @@ export class Frames {
     }
     this.#busy = false;
     if (this.#ended || this.statistics.stage === "failed") return;
+    this.#refineSoon();
+  }
+
+  #refineSoon() {
     clearTimeout(this.#timer);
     this.#timer = setTimeout(() => this.#refine(this.#generation), REST_AFTER);
   }
@@ -186,7 +190,12 @@ export class Frames {
     const options = stage === "final" ? { format: "png" } : { quality: 92, moving: true };
     if (stage === "final") this.#tell("refining", scene, began, null);
     const frame = await this.#channel.fetchFrame(scene, options);
-    if (frame === null || generation !== this.#generation) return;
+    if (generation !== this.#generation) return;
+    if (frame === null) {
+      // The other end took this frame for outdated, but nothing newer has come: the final picture is asked for again.
+      if (stage === "final") this.#refineSoon();
+      return;
+    }
     await this.#show(frame.blob, scene.image);
     if (generation !== this.#generation) return;
     if (stage === "final") {
