@@ -248,6 +248,7 @@ static void print_field_error(const hl_volume *volume) {
   hl_volume_field_error e = {.struct_size = sizeof e};
   if (hl_volume_get_field_error(volume, &e) != HL_OK) return;
   if (isnan(e.value)) printf("  field       its difference from %s is unknown\n", e.source);
+  else if (e.value == 0) printf("  field       equals %s\n", e.source);
   else
     printf("  field       differs from %s by %.2g%s, %.2g of the range\n", e.source, e.value,
            strcmp(e.kind, "bound") == 0 ? " at most" : "", e.of_range);
