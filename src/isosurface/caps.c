@@ -320,8 +320,9 @@ hl_status hl_iso_cap(hl_pool *pool, const lattice *lattice, iso_triangles *made,
   return status;
 }
 
-bool hl_iso_caps_close(const grid *grid) {
-  bool all = true;
-  for (int n = 0; n < 6; n++) all &= ends_volume(grid, n);
-  return all;
+uint8_t hl_iso_capped_faces(const grid *grid) {
+  uint8_t faces = 0;
+  for (int n = 0; n < 6; n++)
+    if (ends_volume(grid, n)) faces |= (uint8_t)(1 << n);
+  return faces;
 }

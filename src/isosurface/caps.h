@@ -9,7 +9,10 @@
  * volume goes on, get none. */
 hl_status hl_iso_cap(hl_pool *pool, const lattice *lattice, iso_triangles *made, hl_error *error);
 
-/* Whether each face of the box gets a cap, so that surface and caps enclose the inside. */
-bool hl_iso_caps_close(const grid *grid);
+/* The faces of the box that get caps. Bit 2 a is the lower face of axis a, bit 2 a + 1 the upper one. */
+uint8_t hl_iso_capped_faces(const grid *grid);
+
+/* The caps of all faces of the box. Surface and caps then enclose the inside. */
+enum { ISO_ALL_CAPPED = 63 };
 
 #endif

@@ -87,7 +87,7 @@ hl_status hl_isosurface_create(hl_pool *pool, const hl_scene_volume *volume, con
     status = place(pool, volume, grid, &made, error);
     if (status == HL_OK) status = mesh_of(context, &made, mesh, error);
     if (status == HL_OK) (*mesh)->is_cut = true;
-    if (status == HL_OK && hl_iso_caps_close(grid)) hl_mesh_take_as_closed(*mesh);
+    if (status == HL_OK && hl_iso_capped_faces(grid) == ISO_ALL_CAPPED) hl_mesh_take_as_closed(*mesh);
   }
   hl_iso_triangles_release(context, &made);
   return status;

@@ -8,6 +8,7 @@
 #include "grid/faces.h"
 #include "grid/make_grid.h"
 #include "grid/relevant.h"
+#include "isosurface/caps.h"
 #include "isosurface/isosurface.h"
 #include "scene/label/draw_labels.h"
 
@@ -31,11 +32,19 @@ static bool same_clip(const prepared_volume *prepared, const hl_scene_volume *sc
                              memcmp(prepared->clip + 3, scene->clip_max, sizeof scene->clip_max) == 0);
 }
 
+/* The shape of a cut in the grid's index space. */
+static cut_shape cut_in_grid(const hl_scene_volume *scene, size_t cut, const grid *grid) {
+  cut_shape shape = hl_cut_shape(scene, cut);
+  const vec3 shift = mat3_apply(shape.to_shape.linear, vec3_of(grid->shift));
+  shape.to_shape.offset = vec3_subtract(shape.to_shape.offset, shift);
+  return shape;
+}
+
 static bool same_cuts(const prepared_volume *prepared, const hl_scene_volume *scene) {
   const grid *grid = &prepared->grid;
   if (grid->cut_count != scene->cut_count) return false;
   for (size_t i = 0; i < scene->cut_count; i++) {
-    cut_shape shape = hl_cut_shape(scene, i);
+    cut_shape shape = cut_in_grid(scene, i, grid);
     if (!hl_cut_same(&prepared->cuts[i], &shape)) return false;
   }
   return grid->cut_count == 0 || grid->cut_casts_shadow == (scene->cut_casts_shadow != 0);
@@ -47,12 +56,12 @@ static hl_status keep_cuts(hl_context *context, prepared_volume *prepared, const
   hl_release(context, prepared->cuts);
   grid->cuts = prepared->cuts = NULL;
   grid->cut_count = 0;
-  hl_status status = hl_cut_shapes(context, scene, &prepared->cuts, error);
-  if (status != HL_OK) return status;
-  for (size_t i = 0; i < scene->cut_count; i++) {
-    affine3 *to_shape = &prepared->cuts[i].to_shape;
-    to_shape->offset = vec3_subtract(to_shape->offset, mat3_apply(to_shape->linear, vec3_of(grid->shift)));
+  if (scene->cut_count > 0) {
+    prepared->cuts = hl_allocate(context, scene->cut_count, sizeof *prepared->cuts);
+    if (prepared->cuts == NULL)
+      return hl_fail_memory(error, scene->cut_count * sizeof *prepared->cuts, "cuts");
   }
+  for (size_t i = 0; i < scene->cut_count; i++) prepared->cuts[i] = cut_in_grid(scene, i, grid);
   grid->cuts = prepared->cuts;
   grid->cut_count = scene->cut_count;
   grid->cut_casts_shadow = scene->cut_casts_shadow != 0;
@@ -256,13 +265,15 @@ hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_funct
 
 /* ---- isosurfaces ---- */
 
-/* The mesh of a surface of the frame before; null: there was none. */
-static const prepared_iso *known_iso(const prepared_volume *prepared, const hl_scene_volume *scene,
-                                     double value) {
-  for (size_t i = 0; i < prepared->iso_count; i++)
-    if (prepared->iso[i].value == value &&
-        memcmp(prepared->iso[i].axis_scale, scene->axis_scale, sizeof scene->axis_scale) == 0)
-      return &prepared->iso[i];
+/* The surface of the frame before that has the value, axes and caps of the wanted one; null: there was none.
+ * Where voxels, clip box or cuts changed, prepare_volume() has released all surfaces of the frame before. */
+static const prepared_iso *known_iso(const prepared_volume *prepared, const prepared_iso *wanted) {
+  for (size_t i = 0; i < prepared->iso_count; i++) {
+    const prepared_iso *known = &prepared->iso[i];
+    if (known->value == wanted->value && known->capped == wanted->capped &&
+        memcmp(known->axis_scale, wanted->axis_scale, sizeof wanted->axis_scale) == 0)
+      return known;
+  }
   return NULL;
 }
 
@@ -273,9 +284,10 @@ static hl_status prepare_iso(hl_context *context, hl_pool *pool, const hl_scene_
   hl_status status = HL_OK;
   if (made == NULL) return hl_fail_memory(error, scene->iso_count * sizeof *made, "isosurfaces");
   for (size_t i = 0; i < scene->iso_count && status == HL_OK; i++) {
-    const prepared_iso *known = known_iso(prepared, scene, scene->iso[i].value);
     made[i].value = scene->iso[i].value;
+    made[i].capped = hl_iso_capped_faces(grid);
     memcpy(made[i].axis_scale, scene->axis_scale, sizeof made[i].axis_scale);
+    const prepared_iso *known = known_iso(prepared, &made[i]);
     if (known != NULL) {
       made[i].mesh = known->mesh;
       hl_mesh_retain(known->mesh);

@@ -8,10 +8,12 @@
 #include "grid/grid.h"
 #include "render/hot.h"
 
-/* An isosurface of a volume; kept between frames while its surface stays the same. */
+/* An isosurface of a volume. It is kept between frames while its value, its volume's axes and its caps stay
+ * the same. */
 typedef struct prepared_iso {
   double value;
   double axis_scale[3]; /* the volume's axes */
+  uint8_t capped;       /* the faces of the volume's box that have caps (hl_iso_capped_faces) */
   hl_mesh *mesh;        /* owned; null: the surface is empty */
 } prepared_iso;
 

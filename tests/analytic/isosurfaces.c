@@ -430,6 +430,43 @@ static void test_threads(void **state) {
   stage_close(&set);
 }
 
+/* A renderer that keeps surfaces draws a fresh renderer's bytes after a neighbour came, a cut came or went,
+ * or both moved. The neighbour opens the surface where it touches the box, and its empty matter is not seen.
+ */
+static void test_moved_neighbours(void **state) {
+  (void)state;
+  static const struct {
+    double beside; /* the gap between the box's face and the neighbour */
+    double cut;    /* where a plane cuts the ball; 0: nowhere */
+  } steps[] = {{30, 0}, {0, 0}, {0, -2}, {30, -2}, {0, 3}, {0, 0}, {1, 0}};
+  enum { STEPS = sizeof steps / sizeof *steps };
+  static float kept[PIXELS * 4], fresh[STEPS][PIXELS * 4];
+  stage set;
+  open_stage(&set);
+  hl_isosurface surface = surface_of(12, 1);
+  hl_cut cut = {.type = HL_CUT_PLANE, .normal = {0, 1, 0}};
+  hl_scene_volume *ball = add_ball(&set, (vec3){0, 0, 0});
+  ball->iso = &surface, ball->iso_count = 1;
+  clip_ball(ball);
+  hl_scene_volume *neighbour = stage_add_box(&set, (vec3){3.1, -20, -20}, (vec3){20, 20, 20});
+  stage_set_opacity(&set, neighbour, 0, 1);
+  stage_look(&set, (vec3){80, 30, 100}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+  (void)stage_add_directional(&set, (vec3){-0.4, -0.8, -1});
+  hl_renderer *renderer = NULL;
+  assert_int_equal(hl_renderer_create(set.context, &renderer, NULL), HL_OK);
+  for (int i = 0; i < STEPS; i++) {
+    neighbour->translate[0] = steps[i].beside;
+    cut.point[1] = steps[i].cut;
+    ball->cuts = &cut, ball->cut_count = steps[i].cut != 0;
+    stage_render_with(&set, renderer, kept);
+    stage_render_sheets(&set, fresh[i]);
+    if (memcmp(kept, fresh[i], sizeof kept) != 0) fail_msg("step %d differs from a fresh renderer's", i);
+    if (i > 0) assert_memory_not_equal(fresh[i - 1], fresh[i], sizeof kept);
+  }
+  hl_renderer_destroy(renderer);
+  stage_close(&set);
+}
+
 /* A clip box cuts the surface off. */
 static void test_clip(void **state) {
   (void)state;
@@ -455,6 +492,7 @@ int main(void) {
       cmocka_unit_test(test_caps_close), cmocka_unit_test(test_cancelled),
       cmocka_unit_test(test_silhouette), cmocka_unit_test(test_translucent),
       cmocka_unit_test(test_shadow),     cmocka_unit_test(test_against_the_reference),
-      cmocka_unit_test(test_threads),    cmocka_unit_test(test_clip)};
+      cmocka_unit_test(test_threads),    cmocka_unit_test(test_moved_neighbours),
+      cmocka_unit_test(test_clip)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

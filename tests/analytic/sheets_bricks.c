@@ -11,6 +11,7 @@
 
 #include "core/context.h"
 #include "reference_stage.h"
+#include "render/renderer_state.h"
 #include "volume/in_bricks.h"
 #include "ways_in_bricks.h"
 
@@ -178,8 +179,33 @@ static void test_layers(void **state) {
   stage_close(&set);
 }
 
+/* A cut that stays where it is leaves the tables that follow from it for the next frame, also where the
+ * lattice of the bricks lies half a voxel off the voxels. */
+static void test_kept_cut(void **state) {
+  (void)state;
+  static const hl_cut CUT = {.type = HL_CUT_PLANE, .normal = {0, 0, 1}};
+  static float pixels[FLOATS];
+  stage set;
+  stage_open(&set);
+  hl_scene_volume *noise = add_noise(&set, (const size_t[3]){37, 29, 34}, 3);
+  light_scene(&set, noise);
+  set.scene.width = set.scene.height = SIDE;
+  set.scene.render.kernel = HL_KERNEL_BSPLINE;
+  noise->cuts = &CUT, noise->cut_count = 1;
+  put_in_bricks(&set, 3);
+  for (int axis = 0; axis < 3; axis++) noise->volume->bricks->origin[axis] = 0.5;
+  hl_renderer *renderer = NULL;
+  assert_int_equal(hl_renderer_create(set.context, &renderer, NULL), HL_OK);
+  for (int frame = 0; frame < 2; frame++) {
+    stage_render_with(&set, renderer, pixels);
+    assert_int_equal(renderer->cache.prepared[0].tables_version, 1);
+  }
+  hl_renderer_destroy(renderer);
+  stage_close(&set);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_voxels), cmocka_unit_test(test_ways),
-                                     cmocka_unit_test(test_layers)};
+                                     cmocka_unit_test(test_layers), cmocka_unit_test(test_kept_cut)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
