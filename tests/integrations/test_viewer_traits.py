@@ -1,6 +1,8 @@
 """The viewer's traits with the real anywidget, without a browser: tests/notebook has one."""
 import json
 import re
+import sys
+import types
 
 import numpy as np
 import pytest
@@ -67,3 +69,11 @@ def test_pages_without_widgets_show_the_picture(viewer):
     bundle = viewer._repr_mimebundle_()
     data = bundle[0] if isinstance(bundle, tuple) else bundle
     assert "application/vnd.jupyter.widget-view+json" in data and data["image/png"].startswith("iVBOR")
+
+
+def test_colab_is_told_where_the_widgets_code_lies(viewer, monkeypatch):
+    installed = types.SimpleNamespace(_installed_url="https://widgets.example")
+    monkeypatch.setitem(sys.modules, "google.colab.output", types.SimpleNamespace(enable_custom_widget_manager=lambda: None, _widgets=installed))
+    data, metadata = viewer._repr_mimebundle_()
+    assert metadata["application/vnd.jupyter.widget-view+json"]["colab"]["custom_widget_manager"] == {"url": "https://widgets.example"}
+    assert data["image/png"].startswith("iVBOR")

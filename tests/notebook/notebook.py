@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""halflight.show() in a real JupyterLab: its frames, its scene, and that it turns as the page does.
+"""halflight.show() in a real JupyterLab and in a real Notebook 7: its frames, its scene, and that it turns as the page does.
 
 usage: notebook.py BUILD [PICTURES]
-JupyterLab and anywidget come from PyPI into a virtual environment of the build folder, once; where they cannot be had,
+The hosts and anywidget come from PyPI into a virtual environment of the build folder, once; where they cannot be had,
 the test is skipped.
 """
 import json
@@ -22,7 +22,7 @@ from browser import Browser  # noqa: E402
 from checks import check  # noqa: E402
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
-PACKAGES = ("jupyterlab>=4", "anywidget>=0.9", "numpy", "pillow", "cffi", "axe-core-python")  # the last for ../viewer/tools.py
+PACKAGES = ("jupyterlab>=4", "notebook>=7", "anywidget>=0.9", "numpy", "pillow", "cffi", "axe-core-python")  # the last for ../viewer/tools.py
 CELLS = ["""import numpy, halflight
 z, y, x = numpy.mgrid[-1:1:32j, -1:1:32j, -1:1:32j]
 ball = numpy.exp(-6 * ((x - 0.3) ** 2 + y**2 + 1.5 * z**2)).astype(numpy.float32)
@@ -34,8 +34,10 @@ picture = halflight.Renderer().render(scene)
 print("PIXELS", hashlib.sha256(picture.to_srgb8().tobytes()).hexdigest(), scene.volumes[0])""",
          """widget.camera = halflight.Camera(position=(120.0, -40.0, 60.0), target=(15.5, 15.5, 15.5))
 widget.lights = [halflight.Directional(direction=(1.0, 0.0, -1.0))]"""]
-# Each host's program, the class of its settings, and the address of a notebook in it.
-HOSTS = {"JupyterLab": ("jupyter-lab", "LabApp", "lab/tree")}
+# Each host's program, its settings, and the address of a notebook in it.
+HOSTS = {"JupyterLab": ("jupyter-lab", ("--LabApp.expose_app_in_browser=True", "--LabApp.news_url=None",
+                                        "--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate"), "lab/tree"),
+         "Notebook": ("jupyter-notebook", ("--JupyterNotebookApp.expose_app_in_browser=True",), "notebooks")}
 PANEL = "[...globalThis.jupyterapp?.shell.widgets('main') ?? []].find((w) => w.context?.path === 'show.ipynb')"
 
 
@@ -54,7 +56,7 @@ def environment():
         got = subprocess.run([folder / "bin" / "pip", "install", "--quiet", *PACKAGES], capture_output=True, text=True)
         if got.returncode != 0:
             shutil.rmtree(folder)
-            skip("JupyterLab cannot be had from PyPI")
+            skip("JupyterLab and Notebook cannot be had from PyPI")
     return folder / "bin"
 
 
@@ -87,8 +89,7 @@ class Host:
                "JUPYTER_RUNTIME_DIR": folder + "/run", "IPYTHONDIR": folder + "/ipython"}
         self.process = subprocess.Popen(
             [programs / program, "--no-browser", f"--port={port}", "--IdentityProvider.token=test", "--allow-root",
-             f"--{settings}.expose_app_in_browser=True", "--ServerApp.root_dir=" + folder, f"--{settings}.news_url=None",
-             f"--{settings}.check_for_updates_class=jupyterlab.NeverCheckForUpdate"],
+             "--ServerApp.root_dir=" + folder, *settings],
             env={**os.environ, **own}, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self._wait(port)
 
@@ -150,6 +151,7 @@ RECORD = r"""(() => { globalThis.sent = [];
 
 def check_viewer(browser, name, picture):
     browser.wait(f"{PANEL}?.context.isReady === true", timeout=300)
+    browser.problems.clear()  # what the host says at its start
     run_cell(browser, 0)
     browser.wait(f"({VIEWER})?.frames.statistics.stage === 'final'", timeout=300)
     first = pixels(browser)
