@@ -2,7 +2,6 @@
 #include "light/light_caps.h"
 
 #include "light/light_extent.h"
-#include "scene/light/light_kind.h"
 
 /* Number of points along each side of a part; the part's middle and spread are means over them. */
 enum { POINTS_OF_PART = 8 };
@@ -23,10 +22,10 @@ static void cut_rect(const double length[2], int parts[2]) {
 /* Chooses the number of parts along a and b of the unit square (hl_light_point), for a view from the
  * content's middle. */
 static void choose_parts(const light_source *source, int parts[2]) {
-  const light_kind *kind = hl_light_kind(source->light);
+  const light_kind *kind = source->shape.kind;
   vec3 way = vec3_subtract(source->content, source->position), to = vec3_normalise(way);
   double length[2];
-  kind->apparent_lengths(source->light, to, length);
+  kind->apparent_lengths(&source->shape, to, length);
   bool narrow = fmax(length[0], length[1]) <= NARROW * vec3_length(way);
   parts[0] = parts[1] = kind->sphere || narrow ? 1 : 2;
   if (kind->parallelogram) cut_rect(length, parts);
@@ -59,14 +58,14 @@ static light_cap cap_of_part(const light_source *source, const int parts[2], int
 
 light_caps hl_light_caps(const light_source *source) {
   light_caps caps = {.count = 0};
-  if (source->parallel || !hl_light_is_wide(source->light)) return caps;
+  if (source->parallel || !source->shape.is_wide) return caps;
   int parts[2];
   choose_parts(source, parts);
   caps.count = parts[0] * parts[1];
   for (int i = 0; i < caps.count; i++) caps.cap[i] = cap_of_part(source, parts, i);
-  if (!hl_light_kind(source->light)->sphere) return caps;
+  if (!source->shape.kind->sphere) return caps;
   /* a sphere counts as the disk that faces the point, wherever the point is */
-  double radius = source->light->radius;
+  double radius = source->shape.radius;
   vec3_store(caps.cap[0].middle, source->position);
   for (int i = 0; i < 6; i++) caps.cap[0].spread[i] = i < 3 ? (float)(radius * radius / 2) : 0;
   return caps;

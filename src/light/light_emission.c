@@ -3,15 +3,14 @@
 #include "light/light_emission.h"
 
 #include "core/memory.h"
-#include "scene/light/light_kind.h"
 
 /* Number of samples of the image along each side of a cell. */
 enum { LEAST_SAMPLES = 4, GREATEST_SAMPLES = 32 };
 
 /* Adds the colour at a point of the image, bilinear between the middles of pixels. s to the right and t
  * upwards, each from -1 to 1. */
-static void add_color(const hl_light_emission *emission, double s, double t, double sum[HL_CHANNELS]) {
-  const int size[2] = {emission->width, emission->height};
+static void add_color(const light_picture *picture, double s, double t, double sum[HL_CHANNELS]) {
+  const int size[2] = {picture->width, picture->height};
   const double position[2] = {(1 + s) / 2 * size[0] - 0.5, (1 - t) / 2 * size[1] - 0.5};
   size_t pixel[2][2];
   double fraction[2];
@@ -24,7 +23,7 @@ static void add_color(const hl_light_emission *emission, double s, double t, dou
   for (int corner = 0; corner < 4; corner++) {
     int right = corner & 1, below = corner >> 1;
     double weight = (right ? fraction[0] : 1 - fraction[0]) * (below ? fraction[1] : 1 - fraction[1]);
-    const float *color = emission->pixels + 3 * (pixel[1][below] * (size_t)emission->width + pixel[0][right]);
+    const float *color = picture->pixels + 3 * (pixel[1][below] * (size_t)picture->width + pixel[0][right]);
     for (int c = 0; c < HL_CHANNELS; c++) sum[c] += weight * (double)color[c];
   }
 }
@@ -34,16 +33,15 @@ static void add_color(const hl_light_emission *emission, double s, double t, dou
  * reversed. */
 static void mean_of_cell(const light_source *source, const emission_plane *plane, int side, int i, int j,
                          double mean[HL_CHANNELS]) {
-  const hl_light_emission *emission = &source->light->emission;
-  int longer = emission->width > emission->height ? emission->width : emission->height,
-      n = 2 * longer / side + 1;
+  const light_picture *picture = &source->emission;
+  int longer = picture->width > picture->height ? picture->width : picture->height, n = 2 * longer / side + 1;
   n = n < LEAST_SAMPLES ? LEAST_SAMPLES : n > GREATEST_SAMPLES ? GREATEST_SAMPLES : n;
   for (int c = 0; c < HL_CHANNELS; c++) mean[c] = 0;
   for (int k = 0; k < n * n; k++) {
     double s, t, a = (i + (k / n + 0.5) / n) / side, b = (j + (k % n + 0.5) / n) / side;
     vec3 offset = hl_light_point(source, a, b);
     hl_emission_place(plane, source->parallel ? vec3_scale(offset, -1) : offset, &s, &t);
-    add_color(emission, s, t, mean);
+    add_color(picture, s, t, mean);
   }
   for (int c = 0; c < HL_CHANNELS; c++) mean[c] /= n * n;
 }
@@ -51,11 +49,11 @@ static void mean_of_cell(const light_source *source, const emission_plane *plane
 void hl_light_emission_weights(const light_source *source, int side, float (*weights)[HL_CHANNELS],
                                double mean[HL_CHANNELS]) {
   size_t cells = (size_t)side * (size_t)side;
-  for (int c = 0; c < HL_CHANNELS; c++) mean[c] = source->light->emission.pixels == NULL;
+  for (int c = 0; c < HL_CHANNELS; c++) mean[c] = source->emission.pixels == NULL;
   for (size_t i = 0; i < cells; i++)
     for (int c = 0; c < HL_CHANNELS; c++) weights[i][c] = 1;
-  if (source->light->emission.pixels == NULL) return;
-  emission_plane plane = hl_emission_plane(source->light, source->direction);
+  if (source->emission.pixels == NULL) return;
+  emission_plane plane = source->shape.kind->plane(&source->shape, source->direction);
   for (size_t i = 0; i < cells; i++) {
     double color[HL_CHANNELS];
     mean_of_cell(source, &plane, side, (int)(i / (size_t)side), (int)(i % (size_t)side), color);
@@ -85,7 +83,7 @@ static void weigh_cells(const light_source *source, light_emission *emission) {
 hl_status hl_light_emission_create(hl_context *context, const light_source *source, light_emission **emission,
                                    hl_error *error) {
   *emission = NULL;
-  if (source->light->emission.pixels == NULL) return HL_OK;
+  if (source->emission.pixels == NULL) return HL_OK;
   *emission = hl_allocate_zeroed(context, 1, sizeof **emission);
   if (*emission == NULL) return hl_fail_memory(error, sizeof **emission, "a light's emission image");
   weigh_cells(source, *emission);

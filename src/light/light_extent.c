@@ -1,10 +1,8 @@
 /* light/light_extent.c - points on a light, and moments of the light as seen from the sheets. */
 #include "light/light_extent.h"
 
-#include "scene/light/light_kind.h"
-
 vec3 hl_light_point(const light_source *source, double a, double b) {
-  return hl_light_kind(source->light)->point(source->light, source->direction, a, b);
+  return source->shape.kind->point(&source->shape, source->direction, a, b);
 }
 
 /* ---- the light as seen from the sheets ---- */
@@ -32,8 +30,7 @@ static vec3 onto_plane(vec3 x, vec3 normal) {
 /* The u axis in the sheets before it is turned to the principal axis: a parallelogram's edge, else the
  * light's tilt. */
 static vec3 first_axis(const light_source *source, vec3 normal) {
-  vec3 along = hl_light_kind(source->light)->parallelogram ? vec3_of(source->light->edge1)
-                                                           : source->direction;
+  vec3 along = source->shape.kind->parallelogram ? source->shape.edge1 : source->direction;
   vec3 axis = onto_plane(along, normal);
   return vec3_length(axis) > 1e-3 * vec3_length(along) ? vec3_normalise(axis) : vec3_perpendicular(normal);
 }
@@ -118,5 +115,5 @@ double hl_light_average_size(const light_source *source, vec3 normal) {
   vec3 u = vec3_perpendicular(normal), v = vec3_cross(normal, u);
   vec3 su = mat3_apply(source->spread, u), sv = mat3_apply(source->spread, v);
   covariance c = turn_to_axes((covariance){vec3_dot(u, su), vec3_dot(u, sv), vec3_dot(v, sv)}, &u, &v);
-  return hl_light_kind(source->light)->deviations * (sqrt(c.uu) + sqrt(c.vv)) / 2;
+  return source->shape.kind->deviations * (sqrt(c.uu) + sqrt(c.vv)) / 2;
 }

@@ -1,30 +1,37 @@
 /* light/light_source.c - see light_source.h. */
 #include "light/light_source.h"
 
-#include "scene/light/light_kind.h"
-
 /* The square of a light's size, as a fraction of its distance, up to which the light is a point: no pixel
  * shows its penumbrae. */
 static const double POINT_LIKE = 1e-12;
 
 static double trace(mat3 m) { return m.row[0].x + m.row[1].y + m.row[2].z; }
 
+static light_screen screen_of(const hl_light_texture *texture) {
+  return (light_screen){{texture->pixels, texture->width, texture->height},
+                        vec3_of(texture->screen_center),
+                        vec3_of(texture->screen_right),
+                        vec3_of(texture->screen_up)};
+}
+
 light_source hl_light_source(const hl_light *light, const hl_render_settings *settings, vec3 content) {
-  light_source source = {.parallel = hl_light_kind(light)->parallel, .content = content, .light = light};
+  light_source source = {.parallel = hl_light_kind(light)->parallel,
+                         .content = content,
+                         .shape = hl_light_shape(light),
+                         .screen = screen_of(&light->texture),
+                         .emission = {light->emission.pixels, light->emission.width, light->emission.height}};
   source.shadows = light->shadows == HL_SHADOWS_DEFAULT ? settings->shadows : light->shadows;
   source.soft_method = settings->soft_method;
-  source.screen_center = vec3_of(light->texture.screen_center);
-  source.screen_right = vec3_of(light->texture.screen_right);
-  source.screen_up = vec3_of(light->texture.screen_up);
   if (source.parallel) {
-    source.direction = vec3_normalise(vec3_of(light->direction));
+    source.direction = vec3_normalise(source.shape.direction);
   } else {
-    source.position = hl_light_centre(light);
-    vec3 way = vec3_subtract(light->texture.pixels != NULL ? source.screen_center : content, source.position);
-    if (hl_light_kind(light)->cone) way = vec3_of(light->direction);
+    source.position = source.shape.centre;
+    vec3 way = vec3_subtract(source.screen.picture.pixels != NULL ? source.screen.center : content,
+                             source.position);
+    if (source.shape.kind->cone) way = source.shape.direction;
     source.direction = vec3_length(way) > 0 ? vec3_normalise(way) : (vec3){0, 0, 1};
   }
-  source.spread = hl_light_spread(light, source.direction);
+  source.spread = source.shape.kind->spread(&source.shape, source.direction);
   double distance = source.parallel ? 1 : vec3_length(vec3_subtract(content, source.position));
   if (source.shadows == HL_SHADOWS_SOFT && !(trace(source.spread) > POINT_LIKE * distance * distance))
     source.shadows = HL_SHADOWS_HARD;
@@ -38,7 +45,7 @@ light_source hl_light_in_sector(const light_source *whole, const light_sectors *
   source.direction = sectors->axis[sector];
   double distance = vec3_length(vec3_subtract(whole->content, whole->position));
   source.content = vec3_add(whole->position, vec3_scale(source.direction, distance > 0 ? distance : 1));
-  source.spread = hl_light_spread(whole->light, source.direction);
+  source.spread = whole->shape.kind->spread(&whole->shape, source.direction);
   return source;
 }
 
@@ -75,15 +82,14 @@ sector_fraction hl_sector_fraction(const light_sectors *sectors, int sector) {
 /* ---- the cone of a spot light ---- */
 
 light_cone hl_light_cone(const light_source *source, vec3 content, double pixel) {
-  const hl_light *light = source->light;
+  const light_shape *shape = &source->shape;
   light_cone cone = {.scale = 0};
-  if (!hl_light_kind(light)->cone) return cone;
+  if (!shape->kind->cone) return cone;
   double distance = vec3_length(vec3_subtract(content, source->position));
-  double edge = light->falloff_angle_deg * HL_PI / 180, opening = light->opening_angle_deg * HL_PI / 360;
-  double sharpest = distance > pixel ? pixel / distance : 1, middle = opening - edge / 2;
-  edge = fmax(edge, sharpest);
+  double sharpest = distance > pixel ? pixel / distance : 1,
+         middle = shape->cone_half_angle - shape->cone_edge / 2, edge = fmax(shape->cone_edge, sharpest);
   double outer = cos(fmin(middle + edge / 2, HL_PI)), full = cos(fmax(middle - edge / 2, 0));
-  vec3_store(cone.axis, vec3_normalise(vec3_of(light->direction)));
+  vec3_store(cone.axis, vec3_normalise(shape->direction));
   cone.outer = (float)outer;
   cone.scale = (float)(1 / (full - outer));
   return cone;
@@ -95,9 +101,9 @@ static bool bound_screen(const view *view, const light_source *source, double lo
   low[0] = low[1] = INFINITY;
   high[0] = high[1] = -INFINITY;
   for (int corner = 0; corner < 4; corner++) {
-    vec3 at = vec3_add(source->screen_center, vec3_scale(source->screen_right, corner & 1 ? 1 : -1));
+    vec3 at = vec3_add(source->screen.center, vec3_scale(source->screen.right, corner & 1 ? 1 : -1));
     double uv[2];
-    if (!hl_view_project(view, vec3_add(at, vec3_scale(source->screen_up, corner & 2 ? 1 : -1)), uv))
+    if (!hl_view_project(view, vec3_add(at, vec3_scale(source->screen.up, corner & 2 ? 1 : -1)), uv))
       return false;
     for (int axis = 0; axis < 2; axis++) {
       low[axis] = fmin(low[axis], uv[axis]);
@@ -113,8 +119,8 @@ static bool bound_screen(const view *view, const light_source *source, double lo
  * axes, unit and perpendicular. */
 static bool bound_cone(const view *view, const light_source *source, double low[2], double high[2]) {
   const vec3 axes[2] = {view->du, view->dv};
-  vec3 cone = vec3_normalise(vec3_of(source->light->direction));
-  double sine = sin(source->light->opening_angle_deg * HL_PI / 360);
+  vec3 cone = vec3_normalise(source->shape.direction);
+  double sine = sin(source->shape.cone_half_angle);
   for (int i = 0; i < 2; i++) {
     double along = vec3_dot(cone, axes[i]), ahead = vec3_dot(cone, view->corner);
     double r = hypot(along, ahead), psi = atan2(along, ahead);
@@ -143,8 +149,8 @@ void hl_lit_region(const view *view, const light_source *source, double low[2], 
   if (source->shadows != HL_SHADOWS_HARD)
     return; /* occluders outside the lit region cast penumbrae into it, so the bounds stay whole for its cone
              * and screen */
-  if (source->light->texture.pixels != NULL && bound_screen(view, source, lit_low, lit_high))
+  if (source->screen.picture.pixels != NULL && bound_screen(view, source, lit_low, lit_high))
     cut(lit_low, lit_high, low, high);
-  if (hl_light_kind(source->light)->cone && bound_cone(view, source, lit_low, lit_high))
+  if (source->shape.kind->cone && bound_cone(view, source, lit_low, lit_high))
     cut(lit_low, lit_high, low, high);
 }

@@ -8,9 +8,7 @@
 #ifndef HL_LIGHT_LIGHT_SOURCE_H
 #define HL_LIGHT_LIGHT_SOURCE_H
 
-#include <halflight/scene.h>
-
-#include "core/vector.h"
+#include "scene/light/light_kind.h"
 #include "view/view.h"
 
 enum { HL_CHANNELS = 3 }; /* R, G, B */
@@ -42,6 +40,19 @@ typedef struct sector_fraction {
 /* sectors may be null, which means a whole light. */
 sector_fraction hl_sector_fraction(const light_sectors *sectors, int sector);
 
+/* A picture that a light projects or shows. */
+typedef struct light_picture {
+  const float
+      *pixels; /* borrowed from the scene; [height][width][3]: linear RGB, top row first; null: none */
+  int width, height;
+} light_picture;
+
+/* The picture that a light projects, and the screen on which it stands; frame space. */
+typedef struct light_screen {
+  light_picture picture;
+  vec3 center, right, up; /* the screen's middle, and from there the middles of its right and top edges */
+} light_screen;
+
 typedef struct light_source {
   bool parallel;
   vec3 direction; /* unit vector along which light travels: a parallel light's direction, a spot light's axis,
@@ -52,17 +63,19 @@ typedef struct light_source {
                    * distance 1 */
   hl_shadows shadows; /* off, hard or soft */
   hl_soft_method soft_method;
-  const hl_light *light;
+  light_shape shape;      /* frame space; vertices of polygons are borrowed until the frame ends */
+  light_screen screen;    /* the picture that the light projects */
+  light_picture emission; /* the picture on the light's own surface */
   double of_sky;   /* the fraction of the light that a medium takes, where the light is a sun of the sky,
                     * which makes no highlights; else 0 */
   int light_index; /* index in the scene */
   int row;         /* index in the frame's list of lights */
   const light_sectors *sectors; /* the frame's sectors, where this is one sector of a light; else null */
   int sector;
-  vec3 screen_center, screen_right, screen_up; /* the light screen of a light with a texture; frame space */
 } light_source;
 
-/* Makes the source of a light. light: in frame space. content: the content's middle. */
+/* Makes the source of a light. light: in frame space; must live, with its vertices, as long as the source.
+ * content: the content's middle. */
 light_source hl_light_source(const hl_light *light, const hl_render_settings *settings, vec3 content);
 
 /* Makes the source of one sector of a light, which must not be parallel. */

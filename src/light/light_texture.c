@@ -11,14 +11,14 @@
  * + s R + t U. For a light at P, x - P = w (c - P + s R + t U); for parallel light along d, x = c + s R + t U
  * + k d. These are three linear equations, whose third unknown is w or k. */
 static view view_of_screen(const light_source *source, int width, int height) {
-  vec3 corner = vec3_add(vec3_subtract(source->screen_center, source->screen_right), source->screen_up);
+  vec3 corner = vec3_add(vec3_subtract(source->screen.center, source->screen.right), source->screen.up);
   view view = {.perspective = !source->parallel,
                .width = width,
                .height = height,
                .origin = source->position,
                .corner = source->parallel ? corner : vec3_subtract(corner, source->position),
-               .du = vec3_scale(source->screen_right, 2.0 / width),
-               .dv = vec3_scale(source->screen_up, -2.0 / height),
+               .du = vec3_scale(source->screen.right, 2.0 / width),
+               .dv = vec3_scale(source->screen.up, -2.0 / height),
                .direction = source->direction};
   hl_view_finish(&view);
   return view;
@@ -159,8 +159,8 @@ static void spread_on_screen(const light_source *source, const view *view, vec3 
                              double deviation[2]) {
   vec3 ray = source->parallel ? source->direction : vec3_normalise(vec3_subtract(content, source->position));
   mat3 inverse, spread = source->spread;
-  if (hl_light_kind(source->light)->sphere) /* a sphere counts as the disk that faces the content */
-    spread = hl_light_spread(source->light, vec3_scale(ray, -1));
+  if (source->shape.kind->sphere) /* a sphere counts as the disk that faces the content */
+    spread = source->shape.kind->spread(&source->shape, vec3_scale(ray, -1));
   deviation[0] = deviation[1] = 0;
   if (source->shadows != HL_SHADOWS_SOFT ||
       !mat3_invert(mat3_from_columns(ray, view->du, view->dv), &inverse))
@@ -207,7 +207,7 @@ static hl_status make_levels(hl_context *context, const light_source *source, co
                              hl_error *error) {
   double deviation[2], widest = 0, reach = 0;
   level_plan plans[TEXTURE_LEVELS];
-  const bool box = hl_light_kind(source->light)->parallelogram;
+  const bool box = source->shape.kind->parallelogram;
   kernel_fraction *below = box ? box_below : disk_below;
   double half_widths = box ? sqrt(3) : 2; /* half width in standard deviations */
   spread_on_screen(source, view, use->content, deviation);
@@ -259,7 +259,7 @@ static int resolution(double length, int count, double pixel, float *sharpness) 
   return chosen;
 }
 
-static hl_status average_image(hl_context *context, const hl_light_texture *described, light_texture *texture,
+static hl_status average_image(hl_context *context, const light_picture *described, light_texture *texture,
                                hl_error *error) {
   const texture_image image = {described->pixels, described->width, described->height};
   double step_u = (double)described->width / texture->width,
@@ -280,12 +280,12 @@ static void store_row(float to[4], const double from[4]) {
 
 hl_status hl_light_texture_create(hl_context *context, const light_source *source, const texture_use *use,
                                   light_texture *texture, hl_error *error) {
-  const hl_light_texture *described = &source->light->texture;
+  const light_picture *described = &source->screen.picture;
   *texture = (light_texture){.pixels = described->pixels, .parallel = source->parallel};
   if (described->pixels == NULL) return HL_OK;
   view whole = view_of_screen(source, 1, 1);
-  double right = 2 * length_at_content(source, &whole, source->screen_right, use->content);
-  double up = 2 * length_at_content(source, &whole, source->screen_up, use->content);
+  double right = 2 * length_at_content(source, &whole, source->screen.right, use->content);
+  double up = 2 * length_at_content(source, &whole, source->screen.up, use->content);
   texture->width = resolution(right, described->width, use->pixel, &texture->sharpness[0]);
   texture->height = resolution(up, described->height, use->pixel, &texture->sharpness[1]);
   view view = view_of_screen(source, texture->width, texture->height);

@@ -78,8 +78,8 @@ static bool scatters_unevenly(const hl_scene_volume *volume) {
 static bool has_wide_light(const hl_scene_description *scene, bool near) {
   bool found = false;
   for (size_t i = 0; i < scene->light_count; i++)
-    found = found ||
-            (hl_light_is_wide(&scene->lights[i]) && !(near && hl_light_kind(&scene->lights[i])->parallel));
+    found = found || (hl_light_shape(&scene->lights[i]).is_wide &&
+                      !(near && hl_light_kind(&scene->lights[i])->parallel));
   return found;
 }
 
@@ -132,7 +132,7 @@ static void write_key(const void *data, hl_key *key) {
   for (size_t i = 0; i < scene->light_count; i++) {
     const hl_light *light = &scene->lights[i];
     bool parallel = hl_light_kind(light)->parallel;
-    hl_key_add_whole(key, hl_light_is_wide(light) ? parallel ? 2 : 1 : 0);
+    hl_key_add_whole(key, hl_light_shape(light).is_wide ? parallel ? 2 : 1 : 0);
     if (parallel) hl_key_add_numbers(key, &light->angular_diameter_deg, 1);
   }
   for (size_t v = 0; v < scene->volume_count; v++) {
@@ -175,7 +175,7 @@ static void fill_row_of_table(void *data, size_t index, int worker) {
     return;
   }
   const hl_light *light = &scene->lights[row];
-  if (hl_light_kind(light)->parallel && hl_light_is_wide(light))
+  if (hl_light_kind(light)->parallel && hl_light_shape(light).is_wide)
     fill_row(table->g, cos(light->angular_diameter_deg * HL_PI / 360), &job->rings, table->parallel[row], 1);
 }
 

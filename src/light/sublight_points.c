@@ -76,7 +76,7 @@ void hl_sublight_grid_point(int side, int i, int j, double square[2]) {
 
 /* Polygons have no common shape, so they use the turned grid. */
 void hl_sublight_point(const light_source *source, int side, int i, int j, double square[2]) {
-  const light_kind *kind = hl_light_kind(source->light);
+  const light_kind *kind = source->shape.kind;
   if (side < 2 || side >= 2 + SEARCHED_SIDES || kind->outline) {
     hl_sublight_grid_point(side, i, j, square);
     return;

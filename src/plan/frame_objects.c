@@ -32,7 +32,7 @@ frame_light hl_frame_light(const framed_scene *framed, size_t index) {
   const hl_light *scene = &framed->scene.lights[index];
   frame_light light = {.index = framed->order->lights[index],
                        .sun_part = framed->sun_parts[index],
-                       .is_wide = hl_light_is_wide(scene),
+                       .is_wide = hl_light_shape(scene).is_wide,
                        .is_inverse_square = scene->falloff == HL_FALLOFF_INVERSE_SQUARE,
                        .has_image = scene->texture.pixels != NULL || scene->emission.pixels != NULL,
                        .has_colored_image = hl_light_emission_colored(scene),
@@ -43,14 +43,9 @@ frame_light hl_frame_light(const framed_scene *framed, size_t index) {
 
 frame_mesh hl_frame_mesh(const framed_scene *framed, size_t index) {
   const hl_scene_mesh *scene = &framed->scene.meshes[index];
-  frame_mesh mesh = {.name = scene->name,
-                     .object = framed->mesh_objects[index],
-                     .visible = scene->visible,
-                     .casts_shadow = scene->casts_shadow,
-                     .receives_shadow = scene->receives_shadow,
-                     .opacity = scene->opacity,
-                     .triangle_count = scene->mesh->description.triangle_count,
-                     .sphere_count = scene->mesh->description.sphere_count};
-  memcpy(mesh.attenuation_color, scene->attenuation_color, sizeof mesh.attenuation_color);
-  return mesh;
+  return (frame_mesh){.name = scene->name,
+                      .object = framed->mesh_objects[index],
+                      .look = hl_surface_look(scene),
+                      .triangle_count = scene->mesh->description.triangle_count,
+                      .sphere_count = scene->mesh->description.sphere_count};
 }

@@ -8,6 +8,7 @@
 #include "grid/classifier.h"
 #include "light/light_source.h"
 #include "plan/framed_scene.h"
+#include "surface/surfaces.h"
 
 /* A volume of the frame. Its grid is the plan's grid of the same index. */
 typedef struct frame_volume {
@@ -47,8 +48,7 @@ typedef struct frame_mesh {
   const char *name; /* borrowed; null: none */
   int object;       /* the mesh's number in the layer of objects; an isosurface has the number of its
                      * volume */
-  bool visible, casts_shadow, receives_shadow;
-  double opacity, attenuation_color[HL_CHANNELS];
+  surface_look look;
   size_t triangle_count, sphere_count;
 } frame_mesh;
 

@@ -41,8 +41,8 @@ static json_t *whole_light_of(const frame_light *light) {
 static json_t *mesh_of(const frame_mesh *mesh) {
   json_t *made = json_pack("{s: i, s: I, s: I, s: f, s: b, s: b}", "object", mesh->object, "triangles",
                            (json_int_t)mesh->triangle_count, "spheres", (json_int_t)mesh->sphere_count,
-                           "opacity", mesh->opacity, "visible", mesh->visible, "casts_shadow",
-                           mesh->casts_shadow);
+                           "opacity", mesh->look.opacity, "visible", mesh->look.visible, "casts_shadow",
+                           mesh->look.casts_shadow);
   add_name(made, mesh->name);
   return made;
 }

@@ -46,11 +46,11 @@ void hl_share_count(int width, int height, int parts, hl_layout *layout) {
 
 /* ---- along which lines ---- */
 
-static double brightness(const light_source *source, vec3 middle) {
-  const hl_light *light = source->light;
+static double brightness(const share_content *content, const light_source *source) {
+  const frame_light *light = &content->lights[source->row];
   double color = (light->color[0] + light->color[1] + light->color[2]) * light->intensity;
-  if (light->falloff != HL_FALLOFF_INVERSE_SQUARE) return color;
-  vec3 way = vec3_subtract(source->position, middle);
+  if (!light->is_inverse_square) return color;
+  vec3 way = vec3_subtract(source->position, content->frame->middle);
   return color / fmax(vec3_dot(way, way), 1e-12);
 }
 
@@ -62,12 +62,13 @@ static bool is_divided(const picture_share *share, const light_source *source) {
 }
 
 /* The brightest light whose shadows are divided; null: none is. */
-static const light_source *brightest(const frame *frame, const picture_share *share) {
+static const light_source *brightest(const share_content *content, const picture_share *share) {
+  const frame *frame = content->frame;
   const light_source *found = NULL;
   for (int i = 0; i < frame->light_count; i++) {
     const light_source *source = &frame->lights[i];
     if (!is_divided(share, source)) continue;
-    if (found == NULL || brightness(source, frame->middle) > brightness(found, frame->middle)) found = source;
+    if (found == NULL || brightness(content, source) > brightness(content, found)) found = source;
   }
   return found;
 }
@@ -107,8 +108,9 @@ static double turn_of(const double way[2]) {
  * across m, at c + t m', where t = cross(p - c, d) / cross(m', d); m is the direction of the line through c,
  * and m' = (-m_y, m_x). Where the light's image lies within the picture or near it, so that not all lines run
  * along m, the key is their angle instead. */
-static void set_keys(const frame *frame, const picture_share *share, share_cell *cells) {
-  const light_image image = image_of(&frame->eye, brightest(frame, share));
+static void set_keys(const share_content *content, const picture_share *share, share_cell *cells) {
+  const frame *frame = content->frame;
+  const light_image image = image_of(&frame->eye, brightest(content, share));
   const double middle[2] = {frame->width / 2.0, frame->height / 2.0};
   double m[2], way[2];
   bool along = true;
@@ -291,7 +293,7 @@ static bool lies_over_ranks(const share_content *content) {
 /* Whether parts wait for each other from depth to depth. Where volumes lie over ranks, parts of one band need
  * the fewest pages. */
 static bool waits_at_depths(const share_content *content, const picture_share *share) {
-  const light_source *light = brightest(content->frame, share);
+  const light_source *light = brightest(content, share);
   const shadow_method *method = light != NULL ? hl_shadow_method(light) : NULL;
   return method != NULL && method->exchanges && share->exchange != NULL && !lies_over_ranks(content);
 }
@@ -302,7 +304,7 @@ static bool waits_at_depths(const share_content *content, const picture_share *s
 static bool is_cut_in_bands(const share_content *content, const picture_share *share) {
   const frame *frame = content->frame;
   bool soft = false;
-  if (brightest(frame, share) != NULL) return true;
+  if (brightest(content, share) != NULL) return true;
   for (int i = 0; i < frame->light_count; i++) soft = soft || frame->lights[i].shadows == HL_SHADOWS_SOFT;
   return lies_over_ranks(content) && !soft;
 }
@@ -328,7 +330,7 @@ hl_status hl_share_create(hl_context *context, const share_content *content, pic
     take_turns(share);
     return HL_OK;
   }
-  set_keys(frame, share, arrays.cells);
+  set_keys(content, share, arrays.cells);
   weigh_cells(content, share, &arrays);
   qsort(arrays.cells, cells_of(share), sizeof *arrays.cells, compare_cells);
   int bands = waits_at_depths(content, share) ? choose_bands(content, share, &arrays) : 1;

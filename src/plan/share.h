@@ -13,6 +13,7 @@
 #include "core/light_exchange.h"
 #include "core/memory.h"
 #include "plan/frame.h"
+#include "plan/frame_objects.h"
 
 /* A cell is as many pixels of the picture as a tile has of the frame: `oversampling` tiles a side. */
 typedef struct picture_share {
@@ -26,8 +27,9 @@ typedef struct picture_share {
 
 /* What the picture shows. */
 typedef struct share_content {
-  const frame *frame; /* the frame, whose eye and lights must be set up */
-  const grid *grids;  /* [grid_count]; the frame's */
+  const frame *frame;        /* the frame, whose eye and lights must be set up */
+  const frame_light *lights; /* the frame's lights, which its light sources name by row */
+  const grid *grids;         /* [grid_count]; the frame's */
   int grid_count;
   const sheet_stack *sheets; /* sheets of the frame's first sweep */
 } share_content;

@@ -55,8 +55,7 @@ static const double FLATTEST = 0.2, FLATTEST_ALONE = 0.35;
 static bool rays_cross(const frame *frame, const light_source *source, vec3 h, double least) {
   if (source->parallel) {
     double off = acos(fmin(fmax(vec3_dot(source->direction, h), -1), 1));
-    return source->shadows != HL_SHADOWS_SOFT ||
-           off + source->light->angular_diameter_deg / 2 * HL_PI / 180 < acos(least);
+    return source->shadows != HL_SHADOWS_SOFT || off + atan(source->shape.radius) < acos(least);
   }
   for (int i = 0; i < frame->point_count; i++) {
     vec3 way = vec3_subtract(frame->points[i], source->position);

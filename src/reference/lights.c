@@ -205,7 +205,8 @@ static hl_status find_mean(hl_context *context, reference_light *light, hl_error
   if (light->described->type == HL_LIGHT_POINT || light->described->type == HL_LIGHT_SPOT)
     for (size_t i = 0; i < MEAN_POINTS; i++)
       dense.points[i] = point_of_disk(light->centre, facing, light->described->radius, i, MEAN_POINTS);
-  emission_plane plane = hl_emission_plane(light->described, facing);
+  const light_shape shape = hl_light_shape(light->described);
+  emission_plane plane = shape.kind->plane(&shape, facing);
   for (size_t i = 0; i < MEAN_POINTS; i++) {
     double color[3];
     emission_color(light->emission, &plane, offset_of(light, dense.points[i]), color);
@@ -236,7 +237,7 @@ hl_status hl_reference_light_create(const reference *all, const hl_light *light,
   if (light->texture.pixels != NULL) made->texture = &light->texture;
   made->cap = made->directional ? cos(light->angular_diameter_deg * HL_PI / 360) : 1;
   if (made->directional) made->towards = vec3_scale(vec3_normalise(vec3_of(light->direction)), -1);
-  else made->centre = hl_light_centre(light);
+  else made->centre = hl_light_shape(light).centre;
   if (light->emission.pixels != NULL) {
     made->emission = &light->emission;
     hl_status status = find_mean(all->context, made, error);
@@ -355,8 +356,10 @@ void hl_reference_light_reach(const reference *all, const reference_light *light
   size_t count = casts ? light->point_count : 1;
   bool extended = light->emission != NULL && count > 1;
   emission_plane plane = {.middle = {0, 0, 0}};
-  if (extended)
-    plane = hl_emission_plane(light->described, light->directional ? vec3_scale(light->towards, -1) : facing);
+  if (extended) {
+    const light_shape shape = hl_light_shape(light->described);
+    plane = shape.kind->plane(&shape, light->directional ? vec3_scale(light->towards, -1) : facing);
+  }
   for (size_t i = 0; i < count && !hl_pool_stops(all->pool, worker->number); i++) {
     vec3 light_point = casts ? light->points[i] : centre;
     if (light->sphere) /* a sphere shows its disk to the point */

@@ -54,7 +54,7 @@ static hl_status add_surfaces(hl_renderer *renderer, const framed_scene *framed,
     status = hl_surfaces_update(renderer->context, renderer->pool, scene, &renderer->cache.surfaces, error);
   if (status != HL_OK || scene->mesh_count == 0) return status;
   for (size_t i = 0; i < scene->mesh_count; i++, frame->point_count += 8)
-    hl_surface_corners(&scene->meshes[i], frame->voxel, frame->points + frame->point_count);
+    hl_surface_corners(&renderer->cache.surfaces.meshes[i], frame->voxel, frame->points + frame->point_count);
   frame->surfaces = &renderer->cache.surfaces;
   frame->contact = &renderer->cache.contact;
   return HL_OK;
@@ -96,7 +96,7 @@ static int attenuation_channels(const frame_plan *plan) {
   for (int i = 0; i < plan->volumes.count; i++)
     if (plan->volumes.list[i].casts_shadow && !hl_is_grey(plan->volumes.list[i].attenuation_color)) return 3;
   for (int i = 0; i < plan->mesh_count; i++)
-    if (plan->meshes[i].casts_shadow && !hl_is_grey(plan->meshes[i].attenuation_color)) return 3;
+    if (plan->meshes[i].look.casts_shadow && !hl_is_grey(plan->meshes[i].look.attenuation_color)) return 3;
   return 1;
 }
 
@@ -191,7 +191,7 @@ static hl_status place_eye_and_lights(const framed_scene *framed, frame_plan *pl
 
 /* Finds the part of the picture that this renderer makes. */
 static hl_status share_picture(hl_renderer *renderer, frame_plan *plan, hl_error *error) {
-  const share_content content = {&plan->frame, plan->volumes.grids, plan->volumes.count,
+  const share_content content = {&plan->frame, plan->lights, plan->volumes.grids, plan->volumes.count,
                                  &plan->sweeps.sheets[0].sheets};
   hl_layout counted = {0};
   plan->share = (picture_share){.part = renderer->part,

@@ -57,9 +57,9 @@ static field_surface surface_of(const surfaces *all, const surface_mesh *mesh) {
       .sphere_colors = mesh->sphere_colors,
       .triangle_count = mesh->triangle_count,
       .sphere_count = mesh->sphere_count,
-      .opacity = mesh->scene->opacity,
-      .visible = mesh->scene->visible,
-      .casts_shadow = mesh->scene->casts_shadow,
+      .opacity = mesh->look.opacity,
+      .visible = mesh->look.visible,
+      .casts_shadow = mesh->look.casts_shadow,
       .cuts = all->cuts,
       .cut_count = mesh->is_cut ? all->cut_count : 0};
 }

@@ -14,16 +14,16 @@ static void set_sample(surface_samples *samples, int i, const surface_point *poi
   for (int c = 0; c < 3; c++) samples->color[c][i] = (float)point->color[c];
 }
 
-static void set_material(surface_samples *samples, const hl_scene_mesh *mesh) {
-  samples->ambient = (float)mesh->material.ambient;
-  samples->diffuse = (float)mesh->material.diffuse;
-  samples->specular = (float)mesh->material.specular;
-  samples->shininess = (float)mesh->material.shininess;
-  samples->emission = (float)mesh->material.emission;
-  samples->receives_shadow = mesh->receives_shadow;
+static void set_material(surface_samples *samples, const surface_look *look) {
+  samples->ambient = (float)look->material.ambient;
+  samples->diffuse = (float)look->material.diffuse;
+  samples->specular = (float)look->material.specular;
+  samples->shininess = (float)look->material.shininess;
+  samples->emission = (float)look->material.emission;
+  samples->receives_shadow = look->receives_shadow;
   samples->even = 0;
   samples->contact = NULL;
-  for (int c = 0; c < 3; c++) samples->behind[c] = (float)(1 - mesh->opacity * mesh->attenuation_color[c]);
+  for (int c = 0; c < 3; c++) samples->behind[c] = (float)(1 - look->opacity * look->attenuation_color[c]);
 }
 
 /* Step 16 for one fragment. pixels: the tile's. */
@@ -37,7 +37,7 @@ static void composite_fragment(int back_to_front, const fragment *f, const float
 }
 
 void hl_surface_batch_place(const sweep *sweep, const tile_slab *slab, surface_batch *batch) {
-  set_material(&batch->samples, batch->mesh->scene);
+  set_material(&batch->samples, &batch->mesh->look);
   surface_point first = hl_surface_point_of(sweep, slab, batch->fragments[0]);
   for (int i = 1; i < batch->count; i++) {
     surface_point point = hl_surface_point_of(sweep, slab, batch->fragments[i]);

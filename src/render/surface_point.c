@@ -26,7 +26,7 @@ surface_point hl_surface_point_of(const sweep *sweep, const tile_slab *slab, con
   vec3 flat = hl_primitive_kind(all, f->primitive)
                   ->look(all, mesh, f->primitive, point.position, &point.normal, point.color);
   if (vec3_dot(flat, point.towards_eye) >= 0) return point;
-  point.normal = vec3_scale(point.normal, mesh->scene->two_sided ? -1 : 0);
-  if (!mesh->scene->two_sided) point.color[0] = point.color[1] = point.color[2] = 0;
+  point.normal = vec3_scale(point.normal, mesh->look.two_sided ? -1 : 0);
+  if (!mesh->look.two_sided) point.color[0] = point.color[1] = point.color[2] = 0;
   return point;
 }

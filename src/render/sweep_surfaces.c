@@ -71,7 +71,7 @@ void hl_sweep_surfaces_count(sweep *sweep, hl_layout *layout) {
 bool hl_sweep_has_unseen(const sweep *sweep) {
   const surfaces *all = sweep->frame->surfaces;
   for (size_t m = 0; sweep->content.volume_count > 0 && m < all->mesh_count; m++)
-    if (!all->meshes[m].scene->visible && hl_mesh_takes_light(all->meshes[m].scene)) return true;
+    if (!all->meshes[m].look.visible && hl_mesh_takes_light(&all->meshes[m])) return true;
   return false;
 }
 
@@ -262,7 +262,7 @@ static float behind_surface(const attenuate_job *job, float before, float passin
 bool hl_sweep_surfaces_attenuate(const sweep *sweep, const attenuate_job *job, fragment_range range) {
   for (size_t i = 0; i < range.count; i++) {
     const fragment *f = &range.first[i];
-    const double *color = sweep->frame->surfaces->meshes[f->mesh].scene->attenuation_color;
+    const double *color = sweep->frame->surfaces->meshes[f->mesh].look.attenuation_color;
     size_t row = (size_t)hl_pixel_row(f->pixel), column = (size_t)hl_pixel_column(f->pixel);
     for (int c = 0; c < job->channels; c++) {
       float *at = job->transmittance[c] + row * job->stride + column, before = *at;

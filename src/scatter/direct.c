@@ -28,6 +28,7 @@ typedef struct direct_job {
   const scatter_nodes *nodes;
   scatter_arrays *arrays;
   size_t node_count;
+  const hl_light *light; /* whose source is `source` */
   const light_source *source;
   light_cone cone;
   int side; /* points along each side of the light's square */
@@ -89,7 +90,7 @@ static float within_cone(const light_cone *cone, vec3 towards) {
 /* Takes a mesh's part of the light on its way. */
 static void meet_mesh(void *data, const surface_hit *hit) {
   float *passing = data;
-  const double *color = hit->mesh->scene->attenuation_color;
+  const double *color = hit->mesh->look.attenuation_color;
   for (int c = 0; c < 3; c++) passing[c] *= (float)(1 - hit->opacity * color[c]);
 }
 
@@ -110,7 +111,7 @@ static void add_point(const direct_job *job, const int32_t at[3], size_t node, c
   if (!source->parallel) {
     centre = fmax(vec3_length(vec3_subtract(source->position, here)), job->nodes->spacing / 2);
     strength *= within_cone(&job->cone, towards);
-    if (source->light->falloff == HL_FALLOFF_INVERSE_SQUARE) strength /= (float)(centre * centre);
+    if (job->light->falloff == HL_FALLOFF_INVERSE_SQUARE) strength /= (float)(centre * centre);
   }
   find_passing(job, at, node, towards, source->parallel ? INFINITY : distance, passing);
   vec3 from = vec3_add(here, vec3_scale(SCATTER_BESIDE, job->nodes->spacing));
@@ -118,7 +119,7 @@ static void add_point(const direct_job *job, const int32_t at[3], size_t node, c
                        meet_mesh, passing);
   for (int c = 0; c < 3; c++)
     job->arrays->direct[(size_t)c * job->node_count + node] +=
-        strength * passing[c] * (float)(source->light->color[c] * source->light->intensity);
+        strength * passing[c] * (float)(job->light->color[c] * job->light->intensity);
 }
 
 /* Lights one row of nodes. Nodes that scatter nothing need no light. */
@@ -151,6 +152,7 @@ void hl_scatter_fill_direct(const scatter_scene *scene, const scatter_nodes *nod
     light_source source = hl_light_source(&scene->scene->lights[l], &scene->scene->render, middle);
     source.of_sky = scene->sun_parts[l];
     if (source.shadows == HL_SHADOWS_OFF) continue;
+    job.light = &scene->scene->lights[l];
     job.source = &source;
     job.side = source.shadows == HL_SHADOWS_SOFT ? SOFT_SIDE : 1;
     job.cone = hl_light_cone(&source, middle, nodes->spacing);

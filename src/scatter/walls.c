@@ -44,7 +44,7 @@ typedef struct wall_ray {
 } wall_ray;
 
 static double passing_of(const surface_hit *hit) {
-  const double *color = hit->mesh->scene->attenuation_color;
+  const double *color = hit->mesh->look.attenuation_color;
   return 1 - hit->opacity * (color[0] + color[1] + color[2]) / 3;
 }
 

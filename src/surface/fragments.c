@@ -52,28 +52,28 @@ static hl_status rasterise(fragment_work *work, fragments *made, hl_error *error
 
 /* Whether a view's rays come from outside of a mesh. Where they begin at a point, this point must lie outside
  * of the mesh's box. */
-static bool is_outside(const view *view, const hl_scene_mesh *mesh) {
+static bool is_outside(const view *view, const surface_mesh *mesh) {
   return !view->perspective || hl_surface_is_outside(mesh, view->origin, 0);
 }
 
 /* Whether the eye sees none of a mesh's backs: it is closed, opaque, and the eye is outside. */
 static bool has_hidden_backs(const fragments_source *source, const surface_mesh *mesh) {
   return !source->of_light && !source->unseen && hl_surface_is_closed(mesh) && mesh->colors == NULL &&
-         mesh->face_colors == NULL && is_outside(source->view, mesh->scene);
+         mesh->face_colors == NULL && is_outside(source->view, mesh);
 }
 
 /* Whether a light lights none of a mesh's backs: the mesh is closed and lets no light through, and the light
  * is outside. */
 static bool has_dark_backs(const fragments_source *source, const surface_mesh *mesh) {
   return source->of_light && hl_surface_is_closed(mesh) && hl_surface_is_opaque(mesh) &&
-         is_outside(source->view, mesh->scene);
+         is_outside(source->view, mesh);
 }
 
 /* Which primitives of a mesh a view's fragments are made of. */
 static binned wanted_of(const fragments_source *source, const surface_mesh *mesh) {
-  bool shades = mesh->scene->casts_shadow,
-       seen_here = source->unseen ? shades && !mesh->scene->visible
-                                  : mesh->scene->visible || (source->of_light && shades);
+  bool shades = mesh->look.casts_shadow, seen_here = source->unseen
+                                                         ? shades && !mesh->look.visible
+                                                         : mesh->look.visible || (source->of_light && shades);
   return !seen_here ? BINNED_NOTHING : has_hidden_backs(source, mesh) ? BINNED_FRONTS : BINNED_ALL;
 }
 
@@ -81,7 +81,7 @@ static binned wanted_of(const fragments_source *source, const surface_mesh *mesh
 static void describe_meshes(const fragments_source *source, float *least, bool *dark_backs) {
   for (size_t m = 0; m < source->surfaces->mesh_count; m++) {
     const surface_mesh *mesh = &source->surfaces->meshes[m];
-    const double *color = mesh->scene->attenuation_color;
+    const double *color = mesh->look.attenuation_color;
     least[m] = source->of_light ? (float)fmin(color[0], fmin(color[1], color[2])) : 1;
     dark_backs[m] = has_dark_backs(source, mesh);
   }

@@ -27,7 +27,7 @@ static void place_spheres(surfaces *made, const surface_mesh *mesh) {
   for (size_t n = 0; n < d->sphere_count; n++) {
     float *sphere = made->spheres[mesh->first_sphere + n];
     vec3_store(sphere, affine3_apply(mesh->placement, hl_surface_vector(d->spheres[n])));
-    sphere[3] = (float)(d->spheres[n][3] * mesh->scene->scale);
+    sphere[3] = (float)(d->spheres[n][3] * mesh->scale);
   }
 }
 
@@ -107,8 +107,8 @@ static hl_status count_primitives(const hl_scene_description *scene, surfaces *m
   for (size_t m = 0; m < scene->mesh_count; m++) {
     const hl_mesh_description *d = &scene->meshes[m].mesh->description;
     if (made->meshes != NULL)
-      made->meshes[m] = (surface_mesh){.scene = &scene->meshes[m],
-                                       .placement = hl_scene_mesh_to_world(&scene->meshes[m]),
+      made->meshes[m] = (surface_mesh){.placement = hl_scene_mesh_to_world(&scene->meshes[m]),
+                                       .scale = scene->meshes[m].scale,
                                        .colors = d->colors,
                                        .face_colors = d->face_colors,
                                        .sphere_colors = d->sphere_colors,
@@ -206,7 +206,7 @@ static hl_status update_cuts(hl_context *context, const hl_scene_description *sc
   for (size_t m = 0; m < kept->mesh_count; m++) {
     vec3 corner[8];
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    hl_surface_corners(&scene->meshes[m], 0, corner);
+    hl_surface_corners(&kept->meshes[m], 0, corner);
     for (int i = 0; i < 8; i++) vec3_bound(corner[i], low, high);
     kept->meshes[m].is_cut = scene->meshes[m].cut && !scene->meshes[m].mesh->is_cut && kept->cut_count > 0 &&
                              !hl_cuts_leave_box(kept->cuts, kept->cut_count, low, high);
@@ -221,7 +221,7 @@ hl_status hl_surfaces_update(hl_context *context, hl_pool *pool, const hl_scene_
     hl_surfaces_release(context, kept);
     if (scene->mesh_count > 0) status = create(context, pool, scene, kept, error);
   }
-  for (size_t m = 0; m < kept->mesh_count; m++) kept->meshes[m].scene = &scene->meshes[m];
+  for (size_t m = 0; m < kept->mesh_count; m++) kept->meshes[m].look = hl_surface_look(&scene->meshes[m]);
   return status == HL_OK && kept->mesh_count > 0 ? update_cuts(context, scene, kept, error) : status;
 }
 

@@ -90,7 +90,7 @@ float hl_primitive_opacity(const surfaces *all, const surface_mesh *mesh, uint32
 
 /* The colour of a mesh's material times a row of the mesh's colours; null: white. Linear RGB. */
 static inline void hl_primitive_color(const surface_mesh *mesh, const float *own, double color[3]) {
-  for (int c = 0; c < 3; c++) color[c] = mesh->scene->color[c] * (own != NULL ? (double)own[c] : 1);
+  for (int c = 0; c < 3; c++) color[c] = mesh->look.color[c] * (own != NULL ? (double)own[c] : 1);
 }
 
 #endif

@@ -120,7 +120,7 @@ bool hl_next_pixel(const view *view, const tile_part *part, const seen_part *see
 fragment hl_fragment_of(const fragment_work *work, size_t mesh_index, uint32_t primitive) {
   const fragments_source *source = work->source;
   const surface_mesh *mesh = &source->surfaces->meshes[mesh_index];
-  bool counts = source->of_light || source->unseen ? mesh->scene->casts_shadow : mesh->scene->visible;
+  bool counts = source->of_light || source->unseen ? mesh->look.casts_shadow : mesh->look.visible;
   return (fragment){.primitive = primitive,
                     .opacity = counts ? hl_primitive_opacity(source->surfaces, mesh, primitive) : 0,
                     .mesh = (uint16_t)mesh_index};

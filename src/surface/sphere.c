@@ -25,7 +25,7 @@ static const float *color_of(const surfaces *all, const surface_mesh *mesh, uint
 }
 
 static double opacity(const surfaces *all, const surface_mesh *mesh, uint32_t primitive) {
-  double opacity = mesh->scene->opacity;
+  double opacity = mesh->look.opacity;
   const float *own = color_of(all, mesh, primitive);
   return own == NULL ? opacity : opacity * fmin(fmax((double)own[3], 0), 1);
 }

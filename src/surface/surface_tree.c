@@ -69,9 +69,9 @@ static void make(surface_tree *tree, boxed_primitive *list, uint32_t first, uint
 
 /* What a tree for a distance may hold of a mesh. */
 static mesh_held held_of(const surface_mesh *mesh, double distance) {
-  if (!hl_mesh_takes_light(mesh->scene)) return HELD_NOT;
+  if (!hl_mesh_takes_light(mesh)) return HELD_NOT;
   if (mesh->is_cut) return HELD_CUT;
-  return isinf(distance) || !mesh->scene->mesh->closed ? HELD_WHOLE : HELD_NOT;
+  return isinf(distance) || !mesh->mesh->closed ? HELD_WHOLE : HELD_NOT;
 }
 
 /* Whether a tree for a distance takes a mesh's primitive number i of those of its kind. near: which

@@ -45,8 +45,8 @@ void hl_surface_tree_release(hl_context *context, surface_tree *tree);
 bool hl_surface_tree_count(const surfaces *all, double distance, hl_layout *layout);
 
 /* Whether a mesh takes light away. */
-static inline bool hl_mesh_takes_light(const hl_scene_mesh *mesh) {
-  return mesh->casts_shadow && mesh->opacity > 0;
+static inline bool hl_mesh_takes_light(const surface_mesh *mesh) {
+  return mesh->look.casts_shadow && mesh->look.opacity > 0;
 }
 
 /* A place where a ray meets a surface. */

@@ -13,10 +13,24 @@
 #include "core/vector.h"
 #include "scene/geometry/cut.h"
 
+/* How a mesh looks, and what it takes of light. */
+typedef struct surface_look {
+  double color[3];             /* linear RGB */
+  double opacity;              /* times the opacity of its vertices */
+  double attenuation_color[3]; /* the fractions of `opacity` that it takes of red, green and blue light */
+  hl_material material;
+  bool smooth;    /* normals are interpolated between vertices */
+  bool two_sided; /* the side that faces away from the eye is lit like the front */
+  bool visible, casts_shadow, receives_shadow;
+} surface_look;
+
+surface_look hl_surface_look(const hl_scene_mesh *mesh);
+
 typedef struct surface_mesh {
-  const hl_scene_mesh *scene;      /* in frame space; borrowed from the frame */
+  surface_look look;               /* the frame's */
   hl_mesh *mesh;                   /* retained, because its arrays are borrowed */
   affine3 placement;               /* maps the mesh to frame space */
+  double scale;                    /* length in frame space of 1 in the mesh */
   const float (*colors)[4];        /* borrowed; [vertices of the mesh]; null: none */
   const float (*face_colors)[4];   /* borrowed; [triangle_count]; null: none */
   const float (*sphere_colors)[4]; /* borrowed; [sphere_count]; null: none */
@@ -68,7 +82,7 @@ static inline bool hl_surface_left(const surfaces *all, const surface_mesh *mesh
 }
 
 /* The corners of a box around a mesh; frame space. A flat mesh gets a box with the thickness `least`. */
-void hl_surface_corners(const hl_scene_mesh *mesh, double least, vec3 corners[8]);
+void hl_surface_corners(const surface_mesh *mesh, double least, vec3 corners[8]);
 
 /* Whether a mesh has an inside, and the opacity 1 apart from its own colours. */
 bool hl_surface_is_closed(const surface_mesh *mesh);
@@ -80,7 +94,7 @@ bool hl_surface_takes_all(const surface_mesh *mesh);
 bool hl_surface_is_opaque(const surface_mesh *mesh);
 
 /* Whether a ball lies outside of a mesh's box, by at least a hundredth of the box's edges; frame space. */
-bool hl_surface_is_outside(const hl_scene_mesh *mesh, vec3 centre, double radius);
+bool hl_surface_is_outside(const surface_mesh *mesh, vec3 centre, double radius);
 
 /* A position from surfaces->positions, or a normal from surfaces->normals. */
 static inline vec3 hl_surface_vector(const float v[3]) { return (vec3){v[0], v[1], v[2]}; }

@@ -33,7 +33,7 @@ static void bound(const surfaces *all, uint32_t primitive, float low[3], float h
 static double clamped(float opacity) { return fmin(fmax((double)opacity, 0), 1); }
 
 static double opacity(const surfaces *all, const surface_mesh *mesh, uint32_t primitive) {
-  double opacity = mesh->scene->opacity, sum = 0;
+  double opacity = mesh->look.opacity, sum = 0;
   if (mesh->face_colors != NULL)
     return opacity * clamped(mesh->face_colors[primitive - mesh->first_triangle][3]);
   if (mesh->colors == NULL) return opacity;

@@ -28,7 +28,7 @@ static void interpolate_color(const surface_mesh *mesh, const uint32_t *corner, 
   for (int c = 0; c < 3; c++) {
     double own = 0;
     for (int i = 0; i < 3; i++) own += weight[i] * mesh->colors[corner[i] - mesh->first_vertex][c];
-    color[c] = mesh->scene->color[c] * own;
+    color[c] = mesh->look.color[c] * own;
   }
 }
 
@@ -41,7 +41,7 @@ vec3 hl_triangle_look(const surfaces *all, const surface_mesh *mesh, uint32_t tr
   vec3 cross = vec3_cross(vec3_subtract(at[1], at[0]), vec3_subtract(at[2], at[0])),
        flat = vec3_normalise(cross);
   find_weights(at, cross, point, weight);
-  *normal = mesh->scene->smooth ? smooth_normal(all, mesh, triangle, weight, flat) : flat;
+  *normal = mesh->look.smooth ? smooth_normal(all, mesh, triangle, weight, flat) : flat;
   if (mesh->face_colors != NULL)
     hl_primitive_color(mesh, mesh->face_colors[triangle - mesh->first_triangle], color);
   else if (mesh->colors != NULL) interpolate_color(mesh, corner, weight, color);

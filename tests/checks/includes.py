@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Dependencies between rooms and between the files of a room point one way; programs see the public headers alone.
+"""Dependencies between rooms and between the files of a room point one way; programs see the public headers alone; plans are plain data.
 
 usage: includes.py SOURCE_FOLDER
 The rooms and what each may use are the table in docs/architecture.md: the rooms named there, and the rooms that those may use.
@@ -46,6 +46,20 @@ for room, uses in ALLOWED.items():
     for use in sorted(uses - set(ALLOWED) - {PUBLIC_HEADERS}):
         problems.append(f"docs/architecture.md: src/{room}/ may use {use}, which is no room of the table")
 find_circles(ALLOWED)
+
+
+# The headers whose structs a plan is made of.
+PLAN_HEADERS = ["plan/frame_plan.h", "plan/frame_objects.h", "plan/frame.h", "light/light_source.h", "scene/light/light_shape.h",
+                "surface/surfaces.h"]
+
+
+def check_plan():
+    """A plan is plain data: no member of its structs points to a description of the scene."""
+    for header in PLAN_HEADERS:
+        text = (root / "src" / header).read_text()
+        for struct, body in re.findall(r"^typedef struct (\w+) \{\n(.*?)^\}", text, re.M | re.S):
+            for kind in re.findall(r"^  (?:const )?(hl_light|hl_scene_\w+) \*", body, re.M):
+                problems.append(f"src/{header}: {struct} points to the description {kind}: copy what back ends need of it")
 
 
 def includes(path):
@@ -102,6 +116,8 @@ for source in sources:
 
 for room in sorted(ALLOWED):
     find_circles_within(room)
+
+check_plan()
 
 headers = sorted((root / "include" / "halflight").glob("*.h"))
 for header in headers:

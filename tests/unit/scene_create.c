@@ -391,8 +391,9 @@ static void shapes_have_their_moments(void **state) {
   polygon.type = HL_LIGHT_POLYGON;
   polygon.vertices = outline;
   polygon.vertex_count = 5;
-  mat3 a = hl_light_spread(&rect, (vec3){0, 0, 1}), b = hl_light_spread(&polygon, (vec3){0, 0, 1});
-  vec3 centre = hl_light_centre(&polygon);
+  light_shape box = hl_light_shape(&rect), shape = hl_light_shape(&polygon);
+  mat3 a = box.kind->spread(&box, (vec3){0, 0, 1}), b = shape.kind->spread(&shape, (vec3){0, 0, 1});
+  vec3 centre = shape.centre;
   assert_near(vec3_length(vec3_subtract(centre, (vec3){1, 0, 5})), 0, 1e-12);
   assert_near(a.row[0].x, 16.0 / 12, 1e-12);
   assert_near(a.row[1].y, 36.0 / 12, 1e-12);
@@ -400,8 +401,9 @@ static void shapes_have_their_moments(void **state) {
   /* three unit squares: the mean of x is 7/6; of x^2 (1/3 + 7/3 + 7/3) / 3; of x y (1/4 + 3/4 + 9/4) / 3 */
   polygon.vertices = notched;
   polygon.vertex_count = 6;
-  centre = hl_light_centre(&polygon);
-  b = hl_light_spread(&polygon, (vec3){0, 0, 1});
+  shape = hl_light_shape(&polygon);
+  centre = shape.centre;
+  b = shape.kind->spread(&shape, (vec3){0, 0, 1});
   assert_near(centre.x, 7.0 / 6, 1e-12);
   assert_near(centre.y, 5.0 / 6, 1e-12);
   assert_near(b.row[0].x, 5.0 / 3 - 49.0 / 36, 1e-12);

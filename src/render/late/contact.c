@@ -56,11 +56,11 @@ static void meet(void *data, const surface_hit *hit) {
   vec3 normal = hl_primitive_kind(ray->all, hit->primitive)
                     ->normal(ray->all, hit->primitive, hit->at, ray->point, &distance);
   if (!(fabs(distance) <= ray->close)) return;
-  if (hit->mesh == ray->mesh && ray->mesh->scene->smooth &&
+  if (hit->mesh == ray->mesh && ray->mesh->look.smooth &&
       fabs(vec3_dot(normal, ray->normal)) > HL_MESH_ROUNDED &&
       are_neighbours(ray->all, hit->primitive, ray->primitive))
     return;
-  const double *color = hit->mesh->scene->attenuation_color;
+  const double *color = hit->mesh->look.attenuation_color;
   for (int c = 0; c < HL_CHANNELS; c++) ray->passing[hit->ray][c] *= 1 - hit->opacity * color[c];
 }
 
@@ -251,7 +251,7 @@ static bool is_close(const sweep *sweep, const contact_light *light, const surfa
  * from its centre as those that stand for it. */
 static bool is_outside(const contact_light *light, const surface_mesh *mesh) {
   const light_source *source = light->source;
-  return source->parallel || hl_surface_is_outside(mesh->scene, source->position, 1.5 * light->points->reach);
+  return source->parallel || hl_surface_is_outside(mesh, source->position, 1.5 * light->points->reach);
 }
 
 /* The samples, as bits, that the eye sees from within a closed part of their mesh, which lets no light
@@ -261,7 +261,7 @@ static uint32_t samples_within(const sweep *sweep, const surface_batch *batch) {
   const view *eye = &sweep->frame->eye;
   uint32_t within = 0;
   if (!hl_surface_is_opaque(batch->mesh) || !eye->perspective ||
-      hl_surface_is_outside(batch->mesh->scene, eye->origin, 0))
+      hl_surface_is_outside(batch->mesh, eye->origin, 0))
     return 0;
   for (int i = 0; i < batch->count; i++) {
     uint32_t primitive = batch->fragments[i]->primitive;
@@ -341,7 +341,7 @@ bool hl_contact_find(const sweep *sweep, const tile_slab *slab, const surface_ba
   contact_search search = {sweep, passing, false};
   contact_ray rays[SURFACE_SAMPLES];
   bool placed = false;
-  if (!batch->mesh->scene->receives_shadow) return false;
+  if (!batch->mesh->look.receives_shadow) return false;
   const uint32_t within = samples_within(sweep, batch), all = (1u << batch->count) - 1;
   const bool hollow = may_be_hollow(batch->mesh);
   if (sweep->frame->contact->box_count == 0 && within == 0 && !hollow) return false;

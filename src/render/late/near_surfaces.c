@@ -55,7 +55,7 @@ static double part_missed(const sweep *sweep, int light, const near_sample *samp
 static void take(const sweep *sweep, const near_sample *sample, int light, double part,
                  float (*passing)[TILE_PIXELS]) {
   const fragment *f = sample->fragment;
-  const double *color = sweep->frame->surfaces->meshes[f->mesh].scene->attenuation_color;
+  const double *color = sweep->frame->surfaces->meshes[f->mesh].look.attenuation_color;
   int at = hl_pixel_row(f->pixel) * TILE + hl_pixel_column(f->pixel);
   for (int c = 0; c < sweep->channels; c++)
     passing[light * sweep->channels + c][at] *= 1 - f->opacity * (float)(color[c] * part);
@@ -89,7 +89,7 @@ static bool find_near(const sweep *sweep, const tile_slab *slab, fragment_range 
     const fragment *f = &near.first[i];
     int block = f->pixel / BLOCK_PIXELS, lane = f->pixel % BLOCK_PIXELS;
     if ((slab->blocks >> block & 1) == 0) continue;
-    if (!sweep->frame->surfaces->meshes[f->mesh].scene->casts_shadow) continue;
+    if (!sweep->frame->surfaces->meshes[f->mesh].look.casts_shadow) continue;
     if (!job->back_to_front && pixels[(block * 4 + 3) * BLOCK_PIXELS + lane] >= PIXEL_OPAQUE) continue;
     near_sample sample = {.fragment = f, .cut = cut};
     if (!set_piece(job, piece, f->pixel, &sample) || !shows_matter(slab, f->pixel)) continue;

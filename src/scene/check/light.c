@@ -24,7 +24,7 @@ static hl_status check_texture(const hl_checker *parent, const hl_light *light) 
   if (!(vec3_length(normal) > 1e-4))
     return hl_check_refuse(&check, "screen/up", "lies along right: give two directions that span the screen");
   vec3 way = hl_light_kind(light)->parallel ? vec3_of(light->direction)
-                                            : vec3_subtract(center, hl_light_centre(light));
+                                            : vec3_subtract(center, hl_light_shape(light).centre);
   if (!(fabs(vec3_dot(vec3_normalise(normal), vec3_normalise(way))) > 1e-4))
     return hl_check_refuse(&check, "screen/center",
                            "the light's rays run along the screen, not through it: turn or move the screen");
@@ -45,7 +45,7 @@ static hl_status check_emission(const hl_checker *parent, const hl_light *light)
     return hl_check_refuse(
         parent, "emission",
         "is beside a texture: a light has an image of its own or projects one, use two lights");
-  if (!hl_light_kind(light)->has_surface(light))
+  if (!hl_light_shape(light).has_surface)
     return hl_check_refuse(parent, "emission",
                            "is on a light without a surface: give it a radius, an angle or two edges");
   return HL_OK;

@@ -2,8 +2,6 @@
  * the way that it travels. */
 #include "scene/light/light_kind.h"
 
-static double radius_of(const hl_light *light) { return tan(light->angular_diameter_deg * HL_PI / 360); }
-
 static hl_status check_falloff(const hl_checker *check, const hl_light *light) {
   if (light->falloff == HL_FALLOFF_NONE) return HL_OK;
   return hl_check_refuse(
@@ -16,24 +14,19 @@ static hl_status reaches(const hl_checker *check, const hl_light *light, const h
   return HL_OK;
 }
 
-static mat3 spread(const hl_light *light, vec3 facing) { return hl_disk_spread(facing, radius_of(light)); }
-
-static vec3 point(const hl_light *light, vec3 facing, double a, double b) {
-  return hl_disk_point(facing, radius_of(light), a, b);
+static light_shape shape_of(const hl_light *light) {
+  bool wide = light->angular_diameter_deg > 0;
+  return (light_shape){.direction = vec3_of(light->direction),
+                       .radius = tan(light->angular_diameter_deg * HL_PI / 360),
+                       .is_wide = wide,
+                       .has_surface = wide};
 }
-
-static emission_plane plane(const hl_light *light, vec3 facing) {
-  return hl_disk_plane(facing, radius_of(light), vec3_of(light->emission.up));
-}
-
-static bool is_wide(const hl_light *light) { return light->angular_diameter_deg > 0; }
 
 const light_kind hl_light_kind_directional = {.parallel = true,
                                               .deviations = 4,
                                               .check = check_falloff,
                                               .check_reach = reaches,
-                                              .spread = spread,
-                                              .point = point,
-                                              .plane = plane,
-                                              .has_surface = is_wide,
-                                              .is_wide = is_wide};
+                                              .shape = shape_of,
+                                              .spread = hl_round_spread,
+                                              .point = hl_round_point,
+                                              .plane = hl_round_plane};

@@ -14,7 +14,7 @@
 #include "scene/light/light_kinds.h"
 #include "scene/light/light_shape.h"
 
-typedef struct light_kind {
+struct light_kind {
   /* ---- what it is ---- */
   bool parallel;      /* the light is infinitely far away, and has a direction instead of a position */
   bool sphere;        /* the light looks like the disk that faces the observer */
@@ -30,51 +30,36 @@ typedef struct light_kind {
   hl_status (*check_reach)(const hl_checker *check, const hl_light *light, const hl_frame_space *space);
 
   /* ---- its shape ---- */
-  vec3 (*centre)(const hl_light *light); /* null: the light has no centre */
+  /* Makes the shape of the settings. `kind` and `image_up` are set by hl_light_shape(). */
+  light_shape (*shape)(const hl_light *light);
   /* The mean of x x' over all its points, x being their offsets: a rect has (e1 e1' + e2 e2') / 12, a disk
-   * r^2/4 (1 - n n'). */
-  mat3 (*spread)(const hl_light *light, vec3 facing);
+   * r^2/4 (1 - n n'). Spheres, and the directions of parallel light, count as the disk perpendicular to
+   * `facing`. */
+  mat3 (*spread)(const light_shape *shape, vec3 facing);
   /* The offset of the point for (a, b) of the unit square: equal areas to equal areas. */
-  vec3 (*point)(const hl_light *light, vec3 facing, double a, double b);
-  /* The plane of its emission image. */
-  emission_plane (*plane)(const hl_light *light, vec3 facing);
-  bool (*has_surface)(const hl_light *light); /* an image can be on it */
-  bool (*is_wide)(const hl_light *light);     /* whether the light is more than a point, or than one
-                                               * direction */
+  vec3 (*point)(const light_shape *shape, vec3 facing, double a, double b);
+  /* The plane of the image on its surface. */
+  emission_plane (*plane)(const light_shape *shape, vec3 facing);
   /* How long the two sides of the unit square look along a unit vector, in units of length; infinite: not
    * known. Null where the light is parallel. */
-  void (*apparent_lengths)(const hl_light *light, vec3 along, double length[2]);
-} light_kind;
+  void (*apparent_lengths)(const light_shape *shape, vec3 along, double length[2]);
+};
 
 /* The table of a light's type. */
 const light_kind *hl_light_kind(const hl_light *light);
 
-/* The light's centre, world; not for parallel lights. */
-static inline vec3 hl_light_centre(const hl_light *light) { return hl_light_kind(light)->centre(light); }
-
-/* Spheres, and the directions of parallel light, count as the disk perpendicular to `facing`. */
-static inline mat3 hl_light_spread(const hl_light *light, vec3 facing) {
-  return hl_light_kind(light)->spread(light, facing);
-}
-
-static inline emission_plane hl_emission_plane(const hl_light *light, vec3 facing) {
-  return hl_light_kind(light)->plane(light, facing);
-}
-
-/* Whether a light is wider than a point, or, if it is parallel, than one direction. */
-static inline bool hl_light_is_wide(const hl_light *light) { return hl_light_kind(light)->is_wide(light); }
+/* The shape of a light. Its vertices are borrowed from the light. */
+light_shape hl_light_shape(const hl_light *light);
 
 /* ---- for types whose place is `position` and whose shape is a disk or a sphere of `radius` ---- */
 
-vec3 hl_position_of_light(const hl_light *light);
 hl_status hl_check_round_reach(const hl_checker *check, const hl_light *light, const hl_frame_space *space);
-bool hl_has_radius(const hl_light *light);
-void hl_apparent_diameter(const hl_light *light, vec3 along, double length[2]);
-/* The shape of a disk of this radius that faces along a unit vector: of a sphere whoever looks at it, of a
- * disk its normal. */
-mat3 hl_round_spread(const hl_light *light, vec3 facing);
-vec3 hl_round_point(const hl_light *light, vec3 facing, double a, double b);
-emission_plane hl_round_plane(const hl_light *light, vec3 facing);
+light_shape hl_round_shape(const hl_light *light);
+void hl_apparent_diameter(const light_shape *shape, vec3 along, double length[2]);
+/* The points of a disk of this radius that faces along a unit vector: of a sphere whoever looks at it. */
+mat3 hl_round_spread(const light_shape *shape, vec3 facing);
+vec3 hl_round_point(const light_shape *shape, vec3 facing, double a, double b);
+emission_plane hl_round_plane(const light_shape *shape, vec3 facing);
 
 /* The tables, one a file. */
 #define HL_LIGHT_KIND(value, name) extern const light_kind hl_light_kind_##name;

@@ -1,10 +1,32 @@
-/* scene/light/light_shape.h - the shapes of extended lights as geometry: centre, area, points, spread. */
+/* scene/light/light_shape.h - the shape of a light as geometry: centre, area, points, spread. */
 #ifndef HL_SCENE_LIGHT_LIGHT_SHAPE_H
 #define HL_SCENE_LIGHT_LIGHT_SHAPE_H
 
 #include <halflight/scene.h>
 
 #include "core/vector.h"
+
+typedef struct light_kind light_kind; /* light_kind.h */
+
+/* The shape of a light, which the light's type makes of the light's settings. Lengths and positions are those
+ * of the space that the settings are in. Members that a type does not have are 0. */
+typedef struct light_shape {
+  const light_kind *kind;
+  vec3 centre;       /* not of parallel lights */
+  vec3 direction;    /* of parallel lights and of lights with a cone: the way that the light travels, of any
+                      * length */
+  vec3 normal;       /* of a disk; unit */
+  vec3 edge1, edge2; /* of a parallelogram: full edges */
+  double radius;     /* of a sphere or a disk; of parallel light: the radius of the disk of its
+                      * directions, at distance 1 */
+  double cone_half_angle, cone_edge; /* of a cone, radians: beyond its half angle it is dark; the smooth edge
+                                      * within has the width cone_edge */
+  const double (*vertices)[3];       /* borrowed from the settings; [vertex_count]; of a polygon */
+  size_t vertex_count;
+  vec3 image_up;    /* where the top of an image on the light's surface points */
+  bool is_wide;     /* the light is more than a point, or than one direction */
+  bool has_surface; /* an image can be on it */
+} light_shape;
 
 typedef struct polygon_shape {
   vec3 normal; /* unit; zero where there is no area */

@@ -4,12 +4,9 @@
 
 const light_kind hl_light_kind_point = {.sphere = true,
                                         .deviations = 4,
-
                                         .check_reach = hl_check_round_reach,
-                                        .centre = hl_position_of_light,
+                                        .shape = hl_round_shape,
                                         .spread = hl_round_spread,
                                         .point = hl_round_point,
                                         .plane = hl_round_plane,
-                                        .has_surface = hl_has_radius,
-                                        .is_wide = hl_has_radius,
                                         .apparent_lengths = hl_apparent_diameter};

@@ -44,28 +44,28 @@ static hl_status reaches(const hl_checker *check, const hl_light *light, const h
 
 /* A polygon in its plane: x along its longest edge. */
 typedef struct flat_polygon {
-  const hl_light *light;
+  const light_shape *shape;
   vec3 centre, u, v;
 } flat_polygon;
 
 static void vertex_at(const flat_polygon *polygon, size_t index, double *x, double *y) {
-  vec3 offset = vec3_subtract(vec3_of(polygon->light->vertices[index % polygon->light->vertex_count]),
+  vec3 offset = vec3_subtract(vec3_of(polygon->shape->vertices[index % polygon->shape->vertex_count]),
                               polygon->centre);
   *x = vec3_dot(offset, polygon->u);
   *y = vec3_dot(offset, polygon->v);
 }
 
-static flat_polygon flatten(const hl_light *light) {
-  polygon_shape shape = hl_polygon_shape(light->vertices, light->vertex_count);
-  flat_polygon polygon = {.light = light, .centre = shape.centre};
-  for (size_t i = 0; i < light->vertex_count; i++) {
-    vec3 edge = vec3_subtract(vec3_of(light->vertices[(i + 1) % light->vertex_count]),
-                              vec3_of(light->vertices[i]));
-    edge = vec3_subtract(edge, vec3_scale(shape.normal, vec3_dot(edge, shape.normal)));
+static flat_polygon flatten(const light_shape *shape) {
+  vec3 normal = hl_polygon_shape(shape->vertices, shape->vertex_count).normal;
+  flat_polygon polygon = {.shape = shape, .centre = shape->centre};
+  for (size_t i = 0; i < shape->vertex_count; i++) {
+    vec3 edge = vec3_subtract(vec3_of(shape->vertices[(i + 1) % shape->vertex_count]),
+                              vec3_of(shape->vertices[i]));
+    edge = vec3_subtract(edge, vec3_scale(normal, vec3_dot(edge, normal)));
     if (vec3_length(edge) > vec3_length(polygon.u)) polygon.u = edge;
   }
   polygon.u = vec3_normalise(polygon.u);
-  polygon.v = vec3_cross(shape.normal, polygon.u);
+  polygon.v = vec3_cross(normal, polygon.u);
   return polygon;
 }
 
@@ -74,7 +74,7 @@ static flat_polygon flatten(const hl_light *light) {
  * normal, so the sign is reversed. */
 static double area_left_of(const flat_polygon *polygon, double x) {
   double area = 0;
-  for (size_t i = 0; i < polygon->light->vertex_count; i++) {
+  for (size_t i = 0; i < polygon->shape->vertex_count; i++) {
     double ax, ay, bx, by;
     vertex_at(polygon, i, &ax, &ay);
     vertex_at(polygon, i + 1, &bx, &by);
@@ -90,7 +90,7 @@ static double area_left_of(const flat_polygon *polygon, double x) {
 static double height_of_part(const flat_polygon *polygon, double x, double b) {
   double crossing[HL_LIMIT_VERTICES], length = 0;
   size_t count = 0;
-  for (size_t i = 0; i < polygon->light->vertex_count; i++) {
+  for (size_t i = 0; i < polygon->shape->vertex_count; i++) {
     double ax, ay, bx, by;
     vertex_at(polygon, i, &ax, &ay);
     vertex_at(polygon, i + 1, &bx, &by);
@@ -112,11 +112,11 @@ static double height_of_part(const flat_polygon *polygon, double x, double b) {
 
 /* The point for (a, b): the fraction a of the area lies left of its x, and the fraction b of the polygon's
  * line at x lies below its y. */
-static vec3 point(const hl_light *light, vec3 facing, double a, double b) {
+static vec3 point(const light_shape *shape, vec3 facing, double a, double b) {
   (void)facing;
-  flat_polygon polygon = flatten(light);
+  flat_polygon polygon = flatten(shape);
   double low = INFINITY, high = -INFINITY;
-  for (size_t i = 0; i < light->vertex_count; i++) {
+  for (size_t i = 0; i < shape->vertex_count; i++) {
     double x, y;
     vertex_at(&polygon, i, &x, &y);
     low = fmin(low, x);
@@ -134,25 +134,29 @@ static vec3 point(const hl_light *light, vec3 facing, double a, double b) {
 
 /* ---- the whole ---- */
 
-static vec3 centre(const hl_light *light) {
-  return hl_polygon_shape(light->vertices, light->vertex_count).centre;
+static light_shape shape_of(const hl_light *light) {
+  return (light_shape){.centre = hl_polygon_shape(light->vertices, light->vertex_count).centre,
+                       .vertices = light->vertices,
+                       .vertex_count = light->vertex_count,
+                       .is_wide = true,
+                       .has_surface = true};
 }
 
-static mat3 spread(const hl_light *light, vec3 facing) {
+static mat3 spread(const light_shape *shape, vec3 facing) {
   (void)facing;
-  return hl_polygon_shape(light->vertices, light->vertex_count).spread;
+  return hl_polygon_shape(shape->vertices, shape->vertex_count).spread;
 }
 
 /* The rectangle around the vertices. */
-static emission_plane plane(const hl_light *light, vec3 facing) {
+static emission_plane plane(const light_shape *shape, vec3 facing) {
   (void)facing;
-  polygon_shape shape = hl_polygon_shape(light->vertices, light->vertex_count);
+  vec3 normal = hl_polygon_shape(shape->vertices, shape->vertex_count).normal;
   double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
   vec3 axis[2];
-  hl_upright(shape.normal, vec3_of(light->emission.up), &axis[0], &axis[1]);
-  for (size_t i = 0; i < light->vertex_count; i++)
+  hl_upright(normal, shape->image_up, &axis[0], &axis[1]);
+  for (size_t i = 0; i < shape->vertex_count; i++)
     for (int a = 0; a < 2; a++) {
-      double at = vec3_dot(axis[a], vec3_subtract(vec3_of(light->vertices[i]), shape.centre));
+      double at = vec3_dot(axis[a], vec3_subtract(vec3_of(shape->vertices[i]), shape->centre));
       low[a] = fmin(low[a], at);
       high[a] = fmax(high[a], at);
     }
@@ -161,13 +165,8 @@ static emission_plane plane(const hl_light *light, vec3 facing) {
       vec3_scale(axis[0], (high[0] - low[0]) / 2), vec3_scale(axis[1], (high[1] - low[1]) / 2)};
 }
 
-static bool always(const hl_light *light) {
-  (void)light;
-  return true;
-}
-
-static void apparent_lengths(const hl_light *light, vec3 along, double length[2]) {
-  (void)light, (void)along;
+static void apparent_lengths(const light_shape *shape, vec3 along, double length[2]) {
+  (void)shape, (void)along;
   length[0] = length[1] = INFINITY;
 }
 
@@ -176,10 +175,8 @@ const light_kind hl_light_kind_polygon = {.outline = true,
                                           .deviations = 3.4641016151377544,
                                           .check = check_outline,
                                           .check_reach = reaches,
-                                          .centre = centre,
+                                          .shape = shape_of,
                                           .spread = spread,
                                           .point = point,
                                           .plane = plane,
-                                          .has_surface = always,
-                                          .is_wide = always,
                                           .apparent_lengths = apparent_lengths};

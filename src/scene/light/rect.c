@@ -12,49 +12,46 @@ static hl_status reaches(const hl_checker *check, const hl_light *light, const h
   return status;
 }
 
+static light_shape shape_of(const hl_light *light) {
+  vec3 edge1 = vec3_of(light->edge1), edge2 = vec3_of(light->edge2);
+  double length1 = vec3_length(edge1), length2 = vec3_length(edge2);
+  return (light_shape){.centre = vec3_of(light->position),
+                       .edge1 = edge1,
+                       .edge2 = edge2,
+                       .is_wide = length1 + length2 > 0,
+                       .has_surface = vec3_length(vec3_cross(edge1, edge2)) > THIN * length1 * length2};
+}
+
 /* Derived: the mean of t^2 over t in [-1/2, 1/2] is 1/12. */
-static mat3 spread(const hl_light *light, vec3 facing) {
+static mat3 spread(const light_shape *shape, vec3 facing) {
   (void)facing;
   mat3 none = {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
-  vec3 edge1 = vec3_of(light->edge1), edge2 = vec3_of(light->edge2);
-  return hl_add_scaled(hl_add_scaled(none, hl_outer(edge1, edge1), 1.0 / 12), hl_outer(edge2, edge2),
-                       1.0 / 12);
+  return hl_add_scaled(hl_add_scaled(none, hl_outer(shape->edge1, shape->edge1), 1.0 / 12),
+                       hl_outer(shape->edge2, shape->edge2), 1.0 / 12);
 }
 
-static vec3 point(const hl_light *light, vec3 facing, double a, double b) {
+static vec3 point(const light_shape *shape, vec3 facing, double a, double b) {
   (void)facing;
-  return vec3_add(vec3_scale(vec3_of(light->edge1), a - 0.5), vec3_scale(vec3_of(light->edge2), b - 0.5));
+  return vec3_add(vec3_scale(shape->edge1, a - 0.5), vec3_scale(shape->edge2, b - 0.5));
 }
 
-static emission_plane plane(const hl_light *light, vec3 facing) {
+static emission_plane plane(const light_shape *shape, vec3 facing) {
   (void)facing;
-  return (emission_plane){.middle = {0, 0, 0},
-                          .right = vec3_scale(vec3_of(light->edge1), 0.5),
-                          .up = vec3_scale(vec3_of(light->edge2), 0.5)};
+  return (emission_plane){
+      .middle = {0, 0, 0}, .right = vec3_scale(shape->edge1, 0.5), .up = vec3_scale(shape->edge2, 0.5)};
 }
 
-static bool has_surface(const hl_light *light) {
-  vec3 edge1 = vec3_of(light->edge1), edge2 = vec3_of(light->edge2);
-  return vec3_length(vec3_cross(edge1, edge2)) > THIN * vec3_length(edge1) * vec3_length(edge2);
-}
-
-static bool is_wide(const hl_light *light) {
-  return vec3_length(vec3_of(light->edge1)) + vec3_length(vec3_of(light->edge2)) > 0;
-}
-
-static void apparent_lengths(const hl_light *light, vec3 along, double length[2]) {
-  length[0] = vec3_length(vec3_cross(vec3_of(light->edge1), along));
-  length[1] = vec3_length(vec3_cross(vec3_of(light->edge2), along));
+static void apparent_lengths(const light_shape *shape, vec3 along, double length[2]) {
+  length[0] = vec3_length(vec3_cross(shape->edge1, along));
+  length[1] = vec3_length(vec3_cross(shape->edge2, along));
 }
 
 /* A box is sqrt(12) standard deviations wide. */
 const light_kind hl_light_kind_rect = {.parallelogram = true,
                                        .deviations = 3.4641016151377544,
                                        .check_reach = reaches,
-                                       .centre = hl_position_of_light,
+                                       .shape = shape_of,
                                        .spread = spread,
                                        .point = point,
                                        .plane = plane,
-                                       .has_surface = has_surface,
-                                       .is_wide = is_wide,
                                        .apparent_lengths = apparent_lengths};

@@ -14,7 +14,7 @@ static bool set_end(const fragments_source *source, uint32_t vertex, double at[2
 static bool is_opaque_shade(const fragment_work *work, uint32_t triangle) {
   const surfaces *all = work->source->surfaces;
   size_t mesh = hl_surface_mesh_of(all, triangle);
-  return all->meshes[mesh].scene->casts_shadow && !all->meshes[mesh].is_cut && work->least[mesh] >= 1 &&
+  return all->meshes[mesh].look.casts_shadow && !all->meshes[mesh].is_cut && work->least[mesh] >= 1 &&
          hl_primitive_opacity(all, &all->meshes[mesh], triangle) >= 1;
 }
 

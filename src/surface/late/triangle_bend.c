@@ -50,7 +50,7 @@ static bool bends_both_ways(const bent_triangle *bent, double bend) {
 double hl_triangle_bend(const surfaces *all, const surface_mesh *mesh, uint32_t triangle, vec3 at,
                         vec3 normal, vec3 along) {
   (void)at;
-  if (!mesh->scene->smooth) return 0;
+  if (!mesh->look.smooth) return 0;
   const bent_triangle bent = bent_triangle_of(all, mesh, triangle, normal);
   double bend = bend_along(&bent, along);
   return bends_both_ways(&bent, bend) ? 0 : bend;
