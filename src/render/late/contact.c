@@ -1,4 +1,5 @@
-/* render/late/contact.c - what is close before points of surfaces: see late_surfaces.h. */
+/* render/late/contact.c - finds the surfaces that hide a light from points of surfaces close behind them: see
+ * late_surfaces.h. */
 #include "render/late/late_surfaces.h"
 
 #include "light/light_extent.h"
@@ -8,8 +9,8 @@
 #include "surface/late/lateness.h"
 #include "surface/triangle.h"
 
-/* Rays that come from so far away from an open edge as a buffer may be late, in voxels, and twice as slanted
- * (a buffer's pixel is at most three quarters of a voxel). */
+/* The buffer is late by at most CLOSE times the sum of its pixel and the distance of sheets; its pixel is at
+ * most three quarters of a voxel. The factor of two is for slanted rays. */
 double hl_contact_distance(const frame *frame) { return 2 * CLOSE * (0.75 * frame->voxel + frame->spacing); }
 
 _Static_assert(LIGHT_POINTS_SIDE *LIGHT_POINTS_SIDE <= MOST_BUNDLED, "rays of a sample are one bundle");
@@ -27,15 +28,15 @@ void hl_contact_points(const light_source *source, light_points *points) {
 
 /* ---- one ray ---- */
 
-/* What hides a point of a light from a sample. */
+/* A sample for which rays towards the points of a light are cast, and how much of the light passes. */
 typedef struct contact_ray {
   const surfaces *all;
-  const surface_mesh *mesh;       /* of the sample */
-  uint32_t primitive;             /* likewise */
-  vec3 point, normal;             /* likewise; the primitive's own, towards the eye */
+  const surface_mesh *mesh;       /* the sample's mesh */
+  uint32_t primitive;             /* the sample's primitive */
+  vec3 point, normal;             /* the sample's place, and the primitive's normal towards the eye */
   vec3 plane;                     /* a point of the primitive's plane */
   vec3 smooth;                    /* the sample's normal */
-  double close;                   /* frame units */
+  double close;                   /* a surface whose plane is nearer to the sample is close; frame units */
   double (*passing)[HL_CHANNELS]; /* [points of the light] */
 } contact_ray;
 
@@ -48,7 +49,8 @@ static bool are_neighbours(const surfaces *all, uint32_t a, uint32_t b) {
   return false;
 }
 
-/* Takes the light of a surface that is close to the sample, and no rounded continuation of its own. */
+/* Takes the light that a surface hides, if the surface is close to the sample. A neighbour that continues the
+ * sample's own rounded surface hides nothing. */
 static void meet(void *data, const surface_hit *hit) {
   contact_ray *ray = data;
   double distance;
@@ -90,7 +92,7 @@ static vec3 way_to(const light_source *source, vec3 from, vec3 offset) {
                           : vec3_subtract(vec3_add(source->position, offset), from);
 }
 
-/* The ends of the rays from a sample to all points of the light lie in the ball. */
+/* A ball that holds the ends of the rays from a sample to all points of the light. */
 static hull_ball ends_of_rays(const contact_light *light, vec3 point, double late) {
   vec3 way = way_to(light->source, point, (vec3){0, 0, 0});
   double length = fmax(vec3_length(way), 1e-30), part = FARTHEST_CLOSE * late / length;
@@ -98,7 +100,8 @@ static hull_ball ends_of_rays(const contact_light *light, vec3 point, double lat
   return (hull_ball){vec3_add(point, vec3_scale(way, part)), 2 * part * light->points->reach};
 }
 
-/* Whether the samples that face the light, or are asked for both ways, may find anything close. */
+/* Whether some sample may have a surface close before it. Samples that do not face the light count only where
+ * a layer asks for both sides. */
 static bool may_find(const sweep *sweep, const contact_light *light, const contact_ray *rays, int count) {
   hull_ball balls[2 * SURFACE_SAMPLES];
   int balls_count = 0;
@@ -106,8 +109,8 @@ static bool may_find(const sweep *sweep, const contact_light *light, const conta
   for (int i = 0; i < count; i++) {
     vec3 way = way_to(light->source, rays[i].point, (vec3){0, 0, 0});
     double facing = vec3_dot(way, rays[i].smooth), pixel = pixel_at(light, rays[i].point);
-    if (vec3_dot(way, rays[i].normal) * facing <= 0) continue; /* its triangle is not on the lit side */
-    if (facing < 0 && sweep->layers.pass_count == 0) continue; /* the picture does not ask */
+    if (vec3_dot(way, rays[i].normal) * facing <= 0) continue; /* the triangle's other side is lit */
+    if (facing < 0 && sweep->layers.pass_count == 0) continue; /* the sample faces away, and no layer asks */
     least = fmin(least, RAY_START * pixel);
     balls[balls_count++] = (hull_ball){rays[i].point, 0};
     balls[balls_count++] = ends_of_rays(light, rays[i].point, pixel + sweep->geometry->sheets.spacing);
@@ -115,7 +118,7 @@ static bool may_find(const sweep *sweep, const contact_light *light, const conta
   return balls_count > 0 && hl_surface_tree_reaches(sweep->frame->contact, balls, balls_count, least);
 }
 
-/* The parts of a light that pass what is close before a sample; false: all of it. */
+/* Finds the fractions of a light that pass the surfaces close before a sample. False: all of it passes. */
 static bool look(const sweep *sweep, const contact_light *light, contact_ray *ray,
                  double passing[HL_CHANNELS]) {
   const light_points *points = light->points;
@@ -150,13 +153,14 @@ static bool look(const sweep *sweep, const contact_light *light, contact_ray *ra
 typedef struct hollow {
   vec3 point, normal;
   double bend; /* hollow.h */
-  double late; /* by which a buffer takes surfaces into account; frame units */
+  double late; /* the length by which a buffer takes surfaces into account late; frame units */
 } hollow;
 
 static vec3 vector_of(const float v[3][SURFACE_SAMPLES], int i) { return (vec3){v[0][i], v[1][i], v[2][i]}; }
 
-/* The point of a triangle in the middle of what the eye sees of a pixel: a sample's own may lie behind the
- * wall that hides a part of it. point: in the triangle's plane. */
+/* The point of a triangle in the middle of the part of a pixel in which the eye sees the triangle. The
+ * middle of the whole pixel may lie behind a wall that hides a part of the pixel. point: some point of the
+ * triangle's plane. */
 static vec3 seen_point(const sweep *sweep, const tile_slab *slab, const fragment *f, vec3 normal,
                        vec3 point) {
   double u, v;
@@ -169,7 +173,7 @@ static vec3 seen_point(const sweep *sweep, const tile_slab *slab, const fragment
   return vec3_length(vec3_subtract(seen, point)) < MOST_PIXELS_ASIDE * sweep->frame->pixel ? seen : point;
 }
 
-/* last: the ray of the sample before; null: none. */
+/* Sets the ray of sample i. last: the ray of the sample before it; null: there is none. */
 static void place_ray(const sweep *sweep, const tile_slab *slab, const surface_batch *batch, int i,
                       const contact_ray *last, contact_ray *ray) {
   const surfaces *all = sweep->frame->surfaces;
@@ -195,7 +199,7 @@ static void place_ray(const sweep *sweep, const tile_slab *slab, const surface_b
   if (f->seen != f->samples) ray->point = seen_point(sweep, slab, f, ray->normal, ray->point);
 }
 
-/* The least box around the batch's samples. */
+/* Finds the box around the batch's samples. */
 static void find_bounds(const surface_batch *batch, vec3 *low, vec3 *high) {
   float least[3], greatest[3];
   for (int a = 0; a < 3; a++) {
@@ -209,7 +213,8 @@ static void find_bounds(const surface_batch *batch, vec3 *low, vec3 *high) {
   *low = hl_surface_vector(least), *high = hl_surface_vector(greatest);
 }
 
-/* Makes a box hold the rays from a point. Rays begin off the point's own flat floor. */
+/* Extends a box to hold the rays from a point. The rays begin a little away from the point, so that the box
+ * does not hold the flat surface on which the point lies. */
 static void hold_rays(const sweep *sweep, const contact_light *light, vec3 point, double aside, double low[3],
                       double high[3]) {
   double pixel = pixel_at(light, point);
@@ -220,7 +225,8 @@ static void hold_rays(const sweep *sweep, const contact_light *light, vec3 point
   vec3_bound_ball(ends.at, aside + ends.radius, low, high);
 }
 
-/* Whether the picture asks for light on any sample: one that faces the light; a layer asks for both sides. */
+/* Whether the light on some sample is needed. The picture needs it on samples that face the light, a layer on
+ * all samples. */
 static bool is_asked(const sweep *sweep, const contact_light *light, const surface_batch *batch) {
   if (sweep->layers.pass_count > 0) return true;
   for (int i = 0; i < batch->count; i++) {
@@ -230,8 +236,9 @@ static bool is_asked(const sweep *sweep, const contact_light *light, const surfa
   return false;
 }
 
-/* Whether something may be close before the batch: a quick answer, which is nearly always no. Of parallel
- * rays all ways are alike: those of two corners of the samples' box bound all. */
+/* Whether some surface may be close before the batch. This is quick, and nearly always answers no. The rays
+ * of parallel light are all alike, so that rays from two opposite corners of the samples' box bound them all;
+ * for other lights, rays from all eight corners are taken. */
 static bool is_close(const sweep *sweep, const contact_light *light, const surface_batch *batch) {
   vec3 least, greatest;
   double aside = 0, low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -247,15 +254,15 @@ static bool is_close(const sweep *sweep, const contact_light *light, const surfa
   return hl_surface_tree_overlaps(sweep->frame->contact, low, high);
 }
 
-/* Whether all of a light is outside of a mesh. A light's outermost points lie less than half as far again
- * from its centre as those that stand for it. */
+/* Whether all of a light is outside of a mesh. `reach` is the greatest distance from the light's centre of
+ * the points that stand for the light; the light itself extends less than 1.5 times as far. */
 static bool is_outside(const contact_light *light, const surface_mesh *mesh) {
   const light_source *source = light->source;
   return source->parallel || hl_surface_is_outside(mesh, source->position, 1.5 * light->points->reach);
 }
 
-/* The samples, as bits, that the eye sees from within a closed part of their mesh, which lets no light
- * through. */
+/* The samples that the eye sees from within a closed part of their mesh, one bit each. 0 for meshes that let
+ * light through. */
 static uint32_t samples_within(const sweep *sweep, const surface_batch *batch) {
   const surfaces *all = sweep->frame->surfaces;
   const view *eye = &sweep->frame->eye;
@@ -274,14 +281,14 @@ static uint32_t samples_within(const sweep *sweep, const surface_batch *batch) {
   return within;
 }
 
-/* The lights of a batch while what passes is found. */
+/* The search for the fractions of all lights that pass to a batch. */
 typedef struct contact_search {
   const sweep *sweep;
   float (*passing)[SURFACE_SAMPLES]; /* [lights][channels] */
-  bool found;                        /* some light is taken: passing is set */
+  bool found;                        /* some light is taken, and `passing` is set */
 } contact_search;
 
-/* Sets what passes to a sample of one light. */
+/* Lowers the fraction of one light that passes to a sample. */
 static void set_passing(contact_search *search, int light, int sample, const double parts[HL_CHANNELS]) {
   const int channels = search->sweep->channels;
   for (int row = 0; row < search->sweep->geometry->light_count * channels && !search->found; row++)
@@ -293,7 +300,8 @@ static void set_passing(contact_search *search, int light, int sample, const dou
   }
 }
 
-/* Whether a ray towards a point of a light meets the hollow surface that it leaves again, close by. */
+/* Whether a ray towards a point of a light, which begins on a hollow surface, meets this surface again close
+ * by. */
 static bool returns(const contact_search *search, const surface_batch *batch, const hollow *at, vec3 way) {
   double sine = vec3_dot(way, at->normal), chord = 2 * sine / at->bend;
   if (sine <= 0) return true;
@@ -302,7 +310,7 @@ static bool returns(const contact_search *search, const surface_batch *batch, co
                          vec3_add(at->point, vec3_scale(way, chord)));
 }
 
-/* Takes what hollow surfaces hide of a light from their own points, where it almost grazes them. */
+/* Takes the light that a hollow surface hides from its own points, where the light almost grazes it. */
 static void shade_hollows(contact_search *search, int l, const contact_light *light,
                           const surface_batch *batch) {
   const light_points *points = light->points;
@@ -330,7 +338,7 @@ static bool may_be_hollow(const surface_mesh *mesh) {
   return (mesh->is_cut || !mesh->mesh->closed) && hl_surface_takes_all(mesh);
 }
 
-/* No light from outside comes to samples within a closed part of a mesh. */
+/* Darkens the samples within a closed part of a mesh: light from outside does not reach them. */
 static void darken_within(contact_search *search, int light, uint32_t within) {
   const double nothing[HL_CHANNELS] = {0, 0, 0};
   for (; within != 0; within &= within - 1) set_passing(search, light, __builtin_ctz(within), nothing);

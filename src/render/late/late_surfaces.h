@@ -1,57 +1,59 @@
-/* render/late/late_surfaces.h - the light behind surfaces that a shadow buffer takes into account late: what
- * the sweep asks of this folder.
+/* render/late/late_surfaces.h - corrects the light close behind surfaces, which a shadow buffer takes into
+ * account late. This header has all that a sweep calls in this folder.
  *
- * A shadow buffer takes a surface into account some pixels late (surface/late/lateness.h), and at a boundary
- * edge its look-ups mix the last pixels with those beside the edge. Light would leak where a thin wall stands
- * on a floor, from a lit wall to the next one where both meet in the corner of a dark room, and into matter
- * right behind a surface.
+ * A shadow buffer takes a surface into account some pixels late (surface/late/lateness.h). At a boundary
+ * edge, look-ups also mix pixels of the surface with pixels beside the edge. Without a correction light leaks
+ * in three places: where a thin wall stands on a floor, in the corner of a dark room whose outside is lit,
+ * and into matter right behind a surface.
  *
- * Points of surfaces therefore look for what is close before them by rays towards the light (contact.c).
- * Within a closed part of a mesh there is no light from outside, and no ray is needed. Points of hollow
- * surfaces that light grazes ask for the surface's own bend (hollow.h). Samples of volumes ask the fragments
- * of the eye's view in their slab and in the few before it (near_surfaces.c).
+ * For points of surfaces, short rays towards the light find the surfaces that are close (contact.c). Points
+ * within a closed part of a mesh get no light from outside, and need no rays. For points of hollow surfaces
+ * that light grazes, the bend of the surface tells whether it shades itself (hollow.h). For samples of
+ * volumes, the fragments of the eye's view in the same slab and in the few slabs before it are looked at
+ * (near_surfaces.c).
  *
  * In: the tree of triangles near the boundary edges and corners of meshes that are not closed, and of spheres
- * that cuts cut; fragments of the eye's view. Out: the fractions of light that pass what is close. */
+ * that cuts cut; fragments of the eye's view. Out: the fractions of light that pass the
+ * surfaces that are close. */
 #ifndef HL_RENDER_LATE_LATE_SURFACES_H
 #define HL_RENDER_LATE_LATE_SURFACES_H
 
 #include "render/surface_batch.h"
 
-/* Pixels of a light's buffer by which surfaces are delayed: as far as its look-ups reach beyond the way that
- * they are moved away from the surface (surface_lanes.h). */
+/* The number of pixels of a light's buffer by which surfaces are delayed. It is how far look-ups still reach
+ * towards the surface after they have been moved away from it (surface_lanes.h). */
 double hl_surface_delay(const light_shadow *shadow);
 
 /* ---- points of surfaces ---- */
 
-/* The distance from boundary edges up to which triangles are looked for, before buffers and sheets are known.
- */
+/* The distance from boundary edges up to which the tree must hold triangles; frame units. It is a bound that
+ * needs neither buffers nor sheets. */
 double hl_contact_distance(const frame *frame);
 
 /* The points that stand for a light. */
 void hl_contact_points(const light_source *source, light_points *points);
 
-/* The parts of each light that pass surfaces close before the batch's samples, which are placed. passing:
- * [lights][channels]; set only where the function returns true: some light is taken. */
+/* Finds the fraction of each light that passes the surfaces close before the batch's samples, whose positions
+ * must be set. Returns whether some light is taken; only then it sets passing, [lights][channels]. */
 bool hl_contact_find(const sweep *sweep, const tile_slab *slab, const surface_batch *batch,
                      float (*passing)[SURFACE_SAMPLES]);
 
 /* ---- samples of volumes ---- */
 
-/* A pixel's part of a slab; heights above the first sheet. */
+/* The part of a slab that each pixel of a tile shades, as heights above the first sheet. */
 typedef struct slab_piece {
   const float *from, *to; /* [256], block-major; null: the whole slab */
 } slab_piece;
 
-/* The fragments in a slab and in the few before it: those of meshes that are visible, at which slabs are cut,
- * and of those that are not. */
+/* The fragments in a slab and in the few slabs before it: `seen` of visible meshes, at which the slabs are
+ * cut, and `unseen` of meshes that are not visible. */
 typedef struct near_fragments {
   fragment_range seen, unseen;
 } near_fragments;
 
-/* The fraction of each light that passes the fragments of `near` which the light's buffer does not hold yet,
- * at the middle of each pixel's piece. passing: [lights][channels][256], rows of a tile; written only where
- * the function returns true: some light is taken. */
+/* Finds the fraction of each light that reaches the middle of each pixel's piece of a slab past those
+ * fragments of `near` that the light's buffer does not hold yet. Returns whether some light is taken; only
+ * then it sets passing, [lights][channels][256], in rows of a tile. */
 bool hl_near_surfaces_find(const sweep *sweep, const tile_slab *slab, const near_fragments *near,
                            slab_piece piece, float (*passing)[TILE_PIXELS]);
 

@@ -1,4 +1,5 @@
-/* render/late/near_surfaces.c - what surfaces close before a volume's samples take: see late_surfaces.h. */
+/* render/late/near_surfaces.c - finds the light that surfaces take from samples of volumes close behind them:
+ * see late_surfaces.h. */
 #include "render/late/late_surfaces.h"
 
 #include "render/surface_point.h"
@@ -11,15 +12,16 @@ double hl_surface_delay(const light_shadow *shadow) {
   return shadow->plan.cubic ? CUBIC_DELAY : shadow->method->surface_delay;
 }
 
-/* A sample of a volume, near a surface that the same pixel of the eye meets. */
+/* A sample of a volume, close to a surface that the eye sees in the same pixel. */
 typedef struct near_sample {
   const fragment *fragment;
-  vec3 point, met;  /* of the sample, and of the surface */
-  double low, high; /* heights of the ends of the pixel's piece; the sample is its middle */
+  vec3 point, met;  /* the place of the sample, and of the surface */
+  double low, high; /* heights at which the pixel's piece of the slab begins and ends; the sample is its
+                     * middle */
   bool cut;         /* the piece ends at the surface */
 } near_sample;
 
-/* The heights of the ends of a pixel's piece; false: it has none. */
+/* Sets the heights at which a pixel's piece of the slab begins and ends. False: the piece is empty. */
 static bool set_piece(const shade_job *job, slab_piece piece, int pixel, near_sample *sample) {
   sample->low = (double)job->height - (double)job->spacing;
   sample->high = (double)job->height;
@@ -30,8 +32,8 @@ static bool set_piece(const shade_job *job, slab_piece piece, int pixel, near_sa
 
 static double middle_of(const near_sample *sample) { return (sample->low + sample->high) / 2; }
 
-/* The part of the piece to which a light comes after it has met the plane of the surface, where its buffer
- * will take the surface into account from a later slab on; else 0. */
+/* The fraction of the piece that lies behind the surface as seen from a light, if the light's buffer takes
+ * the surface into account only from a later slab on; else 0. */
 static double part_missed(const sweep *sweep, int light, const near_sample *sample, int slab) {
   const surfaces *all = sweep->frame->surfaces;
   const sheet_stack *sheets = &sweep->geometry->sheets;
@@ -51,7 +53,7 @@ static double part_missed(const sweep *sweep, int light, const near_sample *samp
   return height + delay > (slab - 1 - LEAST_DELAY) * sheets->spacing ? fmin(part, 1) : 0;
 }
 
-/* Takes a fragment's part of the light that comes to a part of a piece. */
+/* Takes the light that a fragment absorbs. part: the fraction of the piece that lies behind the fragment. */
 static void take(const sweep *sweep, const near_sample *sample, int light, double part,
                  float (*passing)[TILE_PIXELS]) {
   const fragment *f = sample->fragment;
@@ -79,8 +81,8 @@ static void fill_with_ones(float (*passing)[TILE_PIXELS], int count) {
     for (int k = 0; k < TILE_PIXELS; k++) passing[i][k] = 1;
 }
 
-/* The same as hl_near_surfaces_find() for some of the fragments. cut: slabs are cut at them. any: whether
- * some light was taken before. */
+/* Does the work of hl_near_surfaces_find() for one list of fragments. cut: slabs are cut at these fragments.
+ * any: some light was taken before, so that `passing` is set. */
 static bool find_near(const sweep *sweep, const tile_slab *slab, fragment_range near, bool cut,
                       slab_piece piece, bool any, float (*passing)[TILE_PIXELS]) {
   const shade_job *job = slab->job;

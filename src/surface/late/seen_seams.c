@@ -10,7 +10,7 @@ static bool set_end(const fragments_source *source, uint32_t vertex, double at[2
   return hl_view_project(source->view, place, at);
 }
 
-/* Whether a triangle casts the shadow of all of it, and takes all light. */
+/* Whether a triangle is whole, casts a shadow, and lets no light through. */
 static bool is_opaque_shade(const fragment_work *work, uint32_t triangle) {
   const surfaces *all = work->source->surfaces;
   size_t mesh = hl_surface_mesh_of(all, triangle);
@@ -35,7 +35,8 @@ void hl_see_seams(const fragment_work *work, const fragment *f, seen_seams *seam
   }
 }
 
-/* The part of the way from the first end of a corner to the second at which it is closest to a point. */
+/* The place of a corner that is closest to a point, as a fraction of the way from its first end to its
+ * second. */
 static double closest_part(const seen_seam *seam, double u, double v) {
   double x = seam->at[1][0] - seam->at[0][0], y = seam->at[1][1] - seam->at[0][1], square = x * x + y * y;
   if (!(square > 0)) return 0;

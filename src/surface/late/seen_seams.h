@@ -1,9 +1,9 @@
 /* surface/late/seen_seams.h - how far fragments of a light's view reach where triangles meet at a corner.
  *
- * A fragment counts from a delayed height on (fragment_work.h: delay), the later the steeper its triangle is.
- * At a corner the two triangles' delays differ, and rays of other directions than the view's would pass
- * between the end of the one and the start of the other: fragments beside the corner fill the slabs between,
- * too. What the other triangle lights is not darkened: there its own plane goes on, as late. */
+ * A fragment takes light from a delayed height on (fragment_work.h: delay). The steeper its triangle is, the
+ * longer is the delay. So the delays of two triangles that meet at a corner differ, and slanted rays could
+ * pass between the end of one and the start of the other. Fragments beside the corner therefore fill the
+ * slabs between, too. They do not darken the lit side of the other triangle, which is delayed as far. */
 #ifndef HL_SURFACE_LATE_SEEN_SEAMS_H
 #define HL_SURFACE_LATE_SEEN_SEAMS_H
 
@@ -13,8 +13,9 @@
 
 /* A corner as a light's view sees it. */
 typedef struct seen_seam {
-  double at[2][2], height[2]; /* of the ends: pixels, and above the first sheet */
-  surface_plane other;        /* of the triangle beyond */
+  double at[2][2],
+      height[2];       /* places of the corner's two ends, pixels; their heights above the first sheet */
+  surface_plane other; /* the plane of the other triangle */
 } seen_seam;
 
 typedef struct seen_seams {
@@ -22,7 +23,7 @@ typedef struct seen_seams {
   int count;
 } seen_seams;
 
-/* Finds the corners of an opaque triangle with opaque ones of meshes that cast shadows. */
+/* Finds the corners at which an opaque triangle meets opaque triangles of meshes that cast shadows. */
 void hl_see_seams(const fragment_work *work, const fragment *f, seen_seams *seams);
 
 /* The height up to which a fragment at a pixel's point fills slabs: `end`, or more close to a corner. */

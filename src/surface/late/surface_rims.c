@@ -23,11 +23,11 @@ static void sum_edges(const surfaces *all, const surface_mesh *mesh, uint64_t *s
   }
 }
 
-/* A distance that marks corners. */
+/* The distance that marks a vertex at a corner, until begin_distances() sets it to 0. */
 static const float AT_CORNER = -1;
 
-/* Marks vertices at which a triangle bends much against their first one; returns how many. first: [vertices];
- * becomes their first triangles. */
+/* Marks each vertex at which some triangle bends much against the vertex's first triangle. Returns the number
+ * of marked vertices. first: [vertices]; becomes the first triangle of each vertex. */
 static size_t mark_corners(const surfaces *all, const surface_mesh *mesh, uint32_t *first, float *from_edge) {
   size_t count = 0;
   for (uint32_t t = mesh->triangle_count; t-- > 0;)
@@ -46,8 +46,8 @@ static size_t mark_corners(const surfaces *all, const surface_mesh *mesh, uint32
   return count;
 }
 
-/* Sets the distance of vertices at open edges and corners to 0, of the others to infinity. sum: [vertices],
- * of edges. */
+/* Sets the distance of vertices at open edges and corners to 0, and the distance of other vertices to
+ * infinity. sum: [vertices]; the sums of sum_edges(). */
 static void begin_distances(const surfaces *all, const surface_mesh *mesh, const uint64_t *sum,
                             uint32_t *first, float *from_edge) {
   size_t vertices = mesh->mesh->description.vertex_count;
@@ -58,7 +58,7 @@ static void begin_distances(const surfaces *all, const surface_mesh *mesh, const
     from_edge[v] = sum[v] != 0 || (from_edge[v] < 0 && !rough) ? 0 : INFINITY;
 }
 
-/* Sets the distance of vertices to 0 of which the scene's cuts cross a triangle. */
+/* Sets the distance of the vertices of triangles that the scene's cuts cross to 0. */
 static void begin_at_cuts(const surfaces *all, const surface_mesh *mesh, float *from_edge) {
   for (uint32_t t = 0; t < mesh->triangle_count && mesh->is_cut; t++) {
     const uint32_t triangle = mesh->first_triangle + t, *corner = all->triangles[triangle];
@@ -67,7 +67,8 @@ static void begin_at_cuts(const surfaces *all, const surface_mesh *mesh, float *
   }
 }
 
-/* Lowers the distances of a triangle's vertices to what its edges allow; returns whether any changed. */
+/* Lowers the distance of each vertex of a triangle to another vertex's distance plus the length of the edge
+ * between. Returns whether a distance changed. */
 static bool follow_edges(const surfaces *all, const surface_mesh *mesh, uint32_t triangle, float distance,
                          float *from_edge) {
   const uint32_t *corner = all->triangles[mesh->first_triangle + triangle];

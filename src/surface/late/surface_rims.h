@@ -8,14 +8,13 @@
 #include "core/memory.h"
 #include "surface/surfaces.h"
 
-/* Sets near[t], of the mesh's triangles, where triangle t has a vertex within a distance, along edges, of an
- * open edge, a cut or a corner; frame units. The distance is followed over few edges: where triangles are
- * very small it is less.
- */
+/* Sets near[t] for each triangle t of a mesh: whether a vertex of the triangle lies within a distance of an
+ * open edge, a cut or a corner; frame units, along edges. The distance is followed over a few edges only, so
+ * that it is shorter where triangles are very small. */
 hl_status hl_surface_rims(hl_context *context, const surfaces *all, const surface_mesh *mesh, double distance,
                           bool *near, hl_error *error);
 
-/* Counts what hl_surface_rims() takes for a while. */
+/* Counts the memory that hl_surface_rims() takes while it runs. */
 void hl_surface_rims_count(const surface_mesh *mesh, hl_layout *layout);
 
 #endif

@@ -10,7 +10,7 @@
 /* An edge of a large triangle. */
 typedef struct large_edge {
   uint32_t triangle, ends[2];
-  double key; /* of edges in the same place nearly the same */
+  double key; /* edges in the same place have nearly the same key */
 } large_edge;
 
 typedef struct seam_search {
@@ -40,7 +40,7 @@ static void set_scale(seam_search *search) {
   search->same = SAME_PLACE * diagonal;
 }
 
-/* A number of the middle of an edge along a direction that walls seldom have. */
+/* An edge's key: the coordinate of its middle along a direction that walls seldom have. */
 static double key_of(const surfaces *all, const uint32_t ends[2]) {
   const vec3 direction = {0.57735, 0.70711, 0.40825};
   return vec3_dot(direction, vec3_add(position_of(all, ends[0]), position_of(all, ends[1]))) / 2;
@@ -105,7 +105,8 @@ static void add_seam(seam_search *search, const large_edge *edge, const large_ed
       edge->triangle, other->triangle, {edge->ends[0], edge->ends[1]}};
 }
 
-/* Adds the seams of edge number i in the order of keys; way: 1 or -1, to which side others are asked. */
+/* Adds the seams of edge number i in the order of keys with edges on one side of it. way: 1 for the edges
+ * after it, -1 for the edges before it. */
 static void find_at(seam_search *search, size_t i, int way) {
   const large_edge *own = &search->edges[search->order[i].index];
   int found = 0;
@@ -121,7 +122,7 @@ static void find_at(seam_search *search, size_t i, int way) {
   }
 }
 
-/* Sorts edges by their keys: as good as floats tell them. */
+/* Sorts edges by their keys, rounded to floats. */
 static void sort_edges(seam_search *search) {
   for (size_t i = 0; i < search->edge_count; i++)
     search->order[i] = (order_key){(uint64_t)hl_ordered_bits((float)search->edges[i].key, false) << 32,
@@ -135,7 +136,7 @@ static void lay_out_edges(seam_search *search, hl_layout *layout) {
   search->edges = hl_layout_take(layout, search->edge_room, sizeof *search->edges);
 }
 
-/* What `edges` edges need at most. */
+/* Lays out the arrays of the search among a number of edges. */
 static void lay_out_found(seam_search *search, size_t edges, hl_layout *layout) {
   search->order = hl_layout_take(layout, 2 * edges, sizeof *search->order);
   search->found = hl_layout_take(layout, MOST_AT_EDGE * edges, sizeof *search->found);
@@ -146,7 +147,7 @@ static surface_seam *lay_out_seams(size_t seams, hl_layout *layout) {
   return hl_layout_take(layout, seams, sizeof(surface_seam));
 }
 
-/* A search among so many triangles. */
+/* Sets up a search with room for the edges of a number of triangles. */
 static seam_search search_of(surfaces *all, uint64_t triangles) {
   return (seam_search){.all = all, .edge_room = 3 * (triangles < MOST_SEAMED ? triangles : MOST_SEAMED)};
 }
@@ -162,7 +163,7 @@ void hl_surface_seams_count(uint64_t triangles, hl_layout *layout) {
 
 /* ---- all seams ---- */
 
-/* Copies the seams that were found, sorted by their triangles; those of one keep their order. */
+/* Copies the seams that were found, sorted by their triangles. The seams of a triangle keep their order. */
 static hl_status sort_seams(hl_context *context, const seam_search *search, hl_error *error) {
   surfaces *all = search->all;
   const size_t count = search->found_count;

@@ -1,9 +1,9 @@
 /* surface/late/surface_seams.h - corners: where large triangles of meshes that are not closed meet at an edge
  * and bend.
  *
- * Each triangle may have vertices of its own, or be of another mesh: what counts is where the edges' ends
- * are. In: placed triangles. Out: for each of them its neighbours at corners, of which fragments of a light's
- * view ask (seen_seams.h). */
+ * Two edges are the same edge where their ends lie in the same places: triangles that meet need not share
+ * vertices, nor be of one mesh. In: triangles in frame space. Out: for each triangle, its neighbours at
+ * corners, which fragments of a light's view need (seen_seams.h). */
 #ifndef HL_SURFACE_LATE_SURFACE_SEAMS_H
 #define HL_SURFACE_LATE_SURFACE_SEAMS_H
 
@@ -17,15 +17,15 @@ struct surface_seam {
   uint32_t ends[2];         /* of surfaces->positions; the triangle's own */
 };
 
-/* Counts what hl_surface_seams_create() takes at most for a number of triangles. */
+/* Counts the memory that hl_surface_seams_create() takes at most for a number of triangles. */
 void hl_surface_seams_count(uint64_t triangles, hl_layout *layout);
 
-/* Fills all->seams, sorted by their triangles; clusters have been made. A triangle is large where one of its
- * edges is longer than a 64th of the diagonal of a box around all clusters. */
+/* Fills all->seams, sorted by their triangles. Clusters must have been made. A triangle is large where one of
+ * its edges is longer than a 64th of the diagonal of a box around all clusters. */
 hl_status hl_surface_seams_create(hl_context *context, surfaces *all, hl_error *error);
 void hl_surface_seams_release(hl_context *context, surfaces *all);
 
-/* The seams of a triangle: *count of them, borrowed. */
+/* The seams of a triangle, borrowed. *count becomes their number. */
 const surface_seam *hl_surface_seams_of(const surfaces *all, uint32_t triangle, size_t *count);
 
 #endif

@@ -23,8 +23,8 @@ static bent_triangle bent_triangle_of(const surfaces *all, const surface_mesh *m
   return bent;
 }
 
-/* Derived: the weight of corner i grows by cross x edge / cross^2 along a way, where `edge` is opposite to
- * it, and the normal is the weighted sum of the corners' own. */
+/* Derived: along a way, the weight of corner i grows by cross x edge / cross^2, where `edge` is the edge
+ * opposite to the corner. The normal is the weighted sum of the corners' normals. */
 static double bend_along(const bent_triangle *bent, vec3 along) {
   vec3 turn = {0, 0, 0};
   double square = vec3_dot(bent->cross, bent->cross);
