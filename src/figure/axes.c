@@ -1,13 +1,13 @@
 /* figure/axes.c - the directions of the world: arrows at the lower right, or letters at the picture's edges.
  *
- * Where a volume's file tells the anatomy, directions have its letters: R or L for the body's right and left,
- * A and P for front and back, S and I for head and feet. */
+ * Where a volume's file says how a body lies, the letters are those of anatomy: R and L for the body's right
+ * and left, A and P for its front and back, S and I for the directions of its head and feet. */
 #include <string.h>
 
 #include "figure/overlay.h"
 #include "scene/geometry/camera.h"
 
-/* What the ends of the world's axes are called: [axis][0: the negative end, 1: the positive one]. */
+/* The names of the ends of the world's axes: [axis][end]; end 0 is the negative one, 1 the positive one. */
 typedef const char *axis_names[3][2];
 
 static const axis_names *names_of(hl_space space) {
@@ -23,7 +23,8 @@ static const axis_names *names_of(hl_space space) {
   }
 }
 
-/* The world's axis, turned into the picture: right, up, and towards the eye. */
+/* The direction of a world's axis as the picture shows it: its parts to the right, up, and towards the eye.
+ */
 static vec3 seen(const hl_map *map, int axis) {
   vec3 unit = {axis == 0, axis == 1, axis == 2};
   return (vec3){vec3_dot(unit, map->right), vec3_dot(unit, map->up), -vec3_dot(unit, map->forward)};
@@ -51,7 +52,7 @@ static void draw_arrows(const hl_ink *ink, const hl_overlay_place *place) {
   const double length = 2.1 * ink->size, room = length + 1.1 * ink->size;
   const double x = place->picture.left + place->picture.width - place->margin - room;
   const double y = place->picture.top + place->picture.height - place->margin - room;
-  int order[3] = {0, 1, 2}; /* the farthest first */
+  int order[3] = {0, 1, 2}; /* the axes, the one farthest from the eye first */
   for (int a = 0; a < 2; a++)
     for (int b = 0; b < 2; b++)
       if (seen(&place->map, order[b]).z > seen(&place->map, order[b + 1]).z) {
@@ -74,7 +75,8 @@ static void draw_arrows(const hl_ink *ink, const hl_overlay_place *place) {
 
 /* ---- letters ---- */
 
-/* The name of a direction of the picture: the axes that lead there by more than half, the greatest first. */
+/* Names a direction of the picture by one or two axes. Each has a part of at least 0.4 in the direction; the
+ * axis with the greater part comes first. */
 static void name_direction(const hl_overlay_place *place, const axis_names *names, vec3 way, char name[8]) {
   double part[3] = {way.x, way.y, way.z};
   name[0] = '\0';

@@ -1,8 +1,9 @@
 /* figure/bar.c - the scale bar: how long a length of the world is in the picture.
  *
- * Units are never invented: they are those of the volumes' files, or what the overlay says. Every visible
- * volume must agree on them, with the scale that the scene gives it. A perspective picture has a scale for
- * each depth: the bar holds at the one that the overlay states, and says so. */
+ * The unit is the one in the volumes' files, or the one that the overlay names; no unit is invented. All
+ * visible volumes must have the same unit, after the scales that the scene gives them. In a perspective
+ * picture the scale differs with depth: the bar is right at one depth, which the overlay chooses and the bar
+ * names. */
 #include <stdio.h>
 #include <string.h>
 
@@ -14,16 +15,16 @@ enum { LABEL_BYTES = 96 };
 
 /* The unit of the scene's lengths. */
 typedef struct bar_unit {
-  const char *name;    /* of a unit of the files */
-  const hl_unit *unit; /* null: a name that is not known */
-  double per_scene;    /* units of the files per unit of the scene */
+  const char *name;    /* the unit's name in the files */
+  const hl_unit *unit; /* null: the name is not known */
+  double per_scene;    /* lengths in the files' unit per length 1 of the scene */
 } bar_unit;
 
 static const char *name_of(const hl_scene_volume *volume) {
   return volume->name != NULL ? volume->name : volume->file != NULL ? volume->file : "volume";
 }
 
-/* Takes a volume's unit, or compares it with that of the volumes before. */
+/* Takes the unit of the first volume, and compares the units of the others with it. */
 static hl_status add_volume(const hl_overlay *overlay, const hl_scene_volume *volume, bar_unit *unit,
                             hl_error *error) {
   const char *name = overlay->world_unit != NULL ? overlay->world_unit : hl_volume_unit(volume->volume);
@@ -72,7 +73,7 @@ static hl_status find_scale(const hl_overlay_place *place, double *scale, hl_err
   return HL_OK;
 }
 
-/* The length of a unit that is written, in units of the files. */
+/* The length, in the files' unit, of the unit that the bar's text has. */
 static hl_status length_of(const hl_unit *written, const bar_unit *unit, double *length, hl_error *error) {
   if (written == unit->unit) *length = 1;
   else if (unit->unit != NULL) *length = written->metres / unit->unit->metres;
@@ -82,11 +83,11 @@ static hl_status length_of(const hl_unit *written, const bar_unit *unit, double 
   return HL_OK;
 }
 
-/* Chooses the bar's length, in units of the files, and writes it down. */
+/* Chooses the bar's length, in the files' unit, and writes the bar's text. */
 static hl_status choose_length(const hl_overlay *overlay, const bar_unit *unit, double longest,
                                double *length, char label[LABEL_BYTES], hl_error *error) {
   const hl_unit *written = unit->unit;
-  double in_files = 1; /* units of the files in a unit that is written */
+  double in_files = 1; /* the length, in the files' unit, of the unit that the text has */
   hl_status status = HL_OK;
   const char *name = overlay->scale_bar_unit;
   if (name != NULL) {
@@ -113,7 +114,7 @@ hl_status hl_overlay_bar(const hl_ink *ink, const hl_overlay_place *place, hl_er
   char label[LABEL_BYTES];
   hl_status status = find_unit(place, &unit, error);
   if (status == HL_OK) status = find_scale(place, &scale, error);
-  double file_unit = scale / unit.per_scene; /* points */
+  double file_unit = scale / unit.per_scene; /* length of the files' unit on the page, points */
   if (status == HL_OK)
     status = choose_length(place->overlay, &unit, place->picture.width / 4 / file_unit, &length, label,
                            error);

@@ -1,4 +1,4 @@
-/* figure/figure.c - the public functions of figures: defaults, checks, and the formats they are written in.
+/* figure/figure.c - the public functions of figures: defaults, checks, and writing to files.
  *
  * In: a figure with its pictures. Out: PDF and SVG from page.c as they are drawn; PNG and TIFF through the
  * pixels that page.c draws and the picture's own writers. */
@@ -13,7 +13,7 @@
 #include "figure/page.h"
 #include "text/plain.h"
 
-enum { MOST_PANELS = 256, MOST_SIDE_PIXELS = 32767 }; /* cairo's own greatest side */
+enum { MOST_PANELS = 256, MOST_SIDE_PIXELS = 32767 }; /* cairo draws no larger surfaces */
 
 void hl_overlay_defaults(hl_overlay *overlay) {
   if (overlay != NULL) *overlay = (hl_overlay){.struct_size = sizeof *overlay};
@@ -158,7 +158,7 @@ hl_status hl_figure_get_format(size_t index, hl_file_format *format) {
   return HL_OK;
 }
 
-/* The options of the picture that the figure's pixels are. */
+/* The options with which the figure's pixels are written as a picture. */
 static hl_image_write_options picture_options(const hl_figure *figure, const hl_image_write_options *given) {
   hl_image_write_options options;
   hl_image_write_options_defaults(&options);

@@ -1,9 +1,8 @@
 /* figure/ink.c - texts, lines and fills over a picture, through cairo and pango.
  *
- * Texts are laid out as plain text, never as markup. A halo in the opposite grey lies below each: texts are
- * read on dark and bright parts of a picture. In PDF letters stay letters, with their font; the halo is
- * paths.
- */
+ * Texts are laid out as plain text, never as markup. A halo in the opposite grey lies below each text, so
+ * that it can be read on dark and on bright parts of a picture. In a PDF the letters stay text in their font,
+ * and the halo is drawn as paths. */
 #define _GNU_SOURCE
 #include "figure/ink.h"
 
@@ -12,11 +11,11 @@
 #include "image/srgb.h"
 
 enum { MOST_BYTES = 2000 };
-static const double halo_width = 0.22, halo_alpha = 0.55; /* of the letters' size */
+/* Width of the halo, as a fraction of the letters' size; its opacity. */
+static const double halo_width = 0.22, halo_alpha = 0.55;
 
-/* A copy (g_free) without what is no text: control characters but line breaks, the marks that change the
- * direction of what follows (Unicode's bidirectional formatting), and bytes that are no UTF-8 become U+FFFD.
- */
+/* Returns a copy of a text (g_free()), in which U+FFFD stands for everything that is no plain text: control
+ * characters but line breaks, Unicode's marks for the direction of writing, and bytes that are no UTF-8. */
 static char *clean(const char *text) {
   char *whole = g_utf8_make_valid(text, (gssize)strnlen(text, MOST_BYTES));
   GString *made = g_string_new(NULL);
@@ -34,7 +33,7 @@ static PangoLayout *lay_out(const hl_ink *ink, const hl_line_of_text *line) {
   PangoLayout *layout = pango_cairo_create_layout(ink->cairo);
   PangoFontDescription *font = pango_font_description_new();
   cairo_font_options_t *unhinted =
-      cairo_font_options_create(); /* letters lie the same on paper and in pixels */
+      cairo_font_options_create(); /* places letters alike on paper and in pixels */
   cairo_font_options_set_hint_style(unhinted, CAIRO_HINT_STYLE_NONE);
   cairo_font_options_set_hint_metrics(unhinted, CAIRO_HINT_METRICS_OFF);
   cairo_font_options_set_antialias(unhinted, CAIRO_ANTIALIAS_GRAY);
@@ -102,7 +101,8 @@ void hl_ink_bar(const hl_ink *ink, hl_rectangle bar) {
   const double rim = ink->size * halo_width / 2;
   set_grey(ink->cairo, ink->halo, halo_alpha);
   cairo_rectangle(ink->cairo, bar.left - rim, bar.top - rim, bar.width + 2 * rim, bar.height + 2 * rim);
-  cairo_rectangle(ink->cairo, bar.left + bar.width, bar.top, -bar.width, bar.height); /* left out */
+  cairo_rectangle(ink->cairo, bar.left + bar.width, bar.top, -bar.width,
+                  bar.height); /* a rectangle drawn backwards leaves the bar out of the halo */
   cairo_fill(ink->cairo);
   set_grey(ink->cairo, ink->color, 1);
   cairo_rectangle(ink->cairo, bar.left, bar.top, bar.width, bar.height);

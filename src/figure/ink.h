@@ -1,4 +1,5 @@
-/* figure/ink.h - texts, lines and fills over a picture, readable on any ground: each has a halo. */
+/* figure/ink.h - draws texts, lines and fills over a picture. Each has a halo, so that it shows on any
+ * ground. */
 #ifndef HL_FIGURE_INK_H
 #define HL_FIGURE_INK_H
 
@@ -18,21 +19,22 @@ typedef struct hl_ink {
 typedef struct hl_line_of_text {
   const char *text;
   double x, y;             /* points */
-  double align_x, align_y; /* which part of the text lies there: 0 its left or top, 1 its right or bottom */
-  double scale;            /* of the letters' size; 0 counts as 1 */
+  double align_x, align_y; /* the part of the text that lies at (x, y): 0 its left or top edge, 1 its right or
+                              bottom edge */
+  double scale;            /* factor of the letters' size; 0 counts as 1 */
   bool bold;
-  bool paragraphs;  /* a line break begins a new line; else it is drawn as a sign */
-  double wide_most; /* points; a longer line ends in "..."; 0: as long as it is */
+  bool paragraphs;  /* a line break begins a new line; else it is drawn as a character */
+  double wide_most; /* greatest width of a line, points; a longer line ends in "..."; 0: any width */
 } hl_line_of_text;
 
 void hl_ink_text(const hl_ink *ink, const hl_line_of_text *line);
-/* The room that it takes, points. */
+/* The width and height that a text takes, points. */
 void hl_ink_measure(const hl_ink *ink, const hl_line_of_text *line, double *width, double *height);
 
 /* Fills a rectangle with the ink. */
 void hl_ink_bar(const hl_ink *ink, hl_rectangle bar);
 
-/* Strokes the surface's path, with its halo. width: points. */
+/* Draws a line along the current path, with a halo. width: points. */
 void hl_ink_stroke(const hl_ink *ink, double width);
 
 /* Sets a colour, linear RGB, as cairo's source. */

@@ -1,5 +1,5 @@
-/* figure/legend.c - what colours mean: for each visible volume its transfer function's colours over its
- * values, with their opacity, its isosurfaces, or the names of its labels.
+/* figure/legend.c - the legend, which says what colours mean. Each visible volume has a part: a strip with
+ * its transfer function's colours and opacity over its values, or rows for its isosurfaces or its labels.
  *
  * The strip shows the function's own colours, as a fully lit surface has them. Its range begins at the least
  * value with opacity and ends at the greatest. The curve beside the strip shows the opacity: it touches the
@@ -15,15 +15,15 @@
 
 enum { STEPS_BETWEEN_POINTS = 8, CURVE_STEPS = 256, TICKS_MOST = 6, NUMBER_BYTES = 40 };
 
-/* Sizes in sizes of letters. */
+/* Lengths, in units of the letters' size. */
 static const double row = 1.35, strip_width = 1.1, curve_width = 1.6, gap = 0.45, swatch = 0.9;
 
-/* The legend as it grows downwards. */
+/* The legend while it is drawn, from its top downwards. */
 typedef struct legend {
   const hl_ink *ink;
   const hl_overlay_place *place;
   double right, bottom; /* points */
-  double y;             /* of what comes next, points */
+  double y;             /* top of the next part, points */
   double strip_height;  /* points */
 } legend;
 
@@ -45,7 +45,7 @@ static size_t count_rows(const hl_scene_volume *volume) {
   return count;
 }
 
-/* The name above a volume's part; null: it has none. */
+/* The title of a volume's part of the legend; null: it has none. */
 static const char *title_of(const hl_overlay_place *place, const hl_scene_volume *volume, bool first) {
   if (first && place->overlay->legend_title != NULL) return place->overlay->legend_title;
   if (volume->name != NULL && volume->name[0] != '\0') return volume->name;
@@ -59,7 +59,7 @@ static const char *title_of(const hl_overlay_place *place, const hl_scene_volume
 
 /* ---- rows: a colour and a name ---- */
 
-/* A text that ends at the right margin, or begins at `left` where that is not negative. */
+/* The width of a row's text, points. */
 static double widest_row(const legend *made, const char *text) {
   double width, height;
   hl_ink_measure(made->ink, &(hl_line_of_text){.text = text}, &width, &height);
@@ -84,7 +84,7 @@ static void draw_row(legend *made, double left, const double color[3], const cha
   made->y += row * size;
 }
 
-/* What the n-th row of a volume shows; false past the last. */
+/* Finds the colour and the name that the n-th row of a volume shows. False: the volume has fewer rows. */
 static bool row_of(const hl_scene_volume *volume, size_t n, const double **color,
                    char text[NUMBER_BYTES * 4]) {
   const size_t counts[2] = {volume->label_count, volume->mask.label_count};
@@ -127,7 +127,7 @@ static void draw_rows(legend *made, const hl_scene_volume *volume) {
 
 /* ---- the strip ---- */
 
-/* From the strip's lower end at 0 to its upper one at 1. */
+/* Adds a colour to the strip's gradient, which runs from its lower end to its upper end. */
 static void add_stop(cairo_pattern_t *pattern, const double range[2], double value, const double color[3],
                      cairo_t *scratch) {
   double r, g, b, a;
@@ -136,7 +136,8 @@ static void add_stop(cairo_pattern_t *pattern, const double range[2], double val
   cairo_pattern_add_color_stop_rgb(pattern, (value - range[0]) / (range[1] - range[0]), r, g, b);
 }
 
-/* The function's colours between two neighbouring points: straight in linear light, so curved in sRGB. */
+/* Adds the function's colours between two neighbouring points. They are linear in light, so that in sRGB they
+ * need several stops. */
 static void add_stretch(cairo_pattern_t *pattern, const double range[2], const hl_color_point *from,
                         const hl_color_point *to, cairo_t *scratch) {
   const int steps = to->value > from->value ? STEPS_BETWEEN_POINTS : 1;
@@ -148,7 +149,7 @@ static void add_stretch(cairo_pattern_t *pattern, const double range[2], const h
   add_stop(pattern, range, to->value, to->color, scratch);
 }
 
-/* The colours from `bottom` up to `top`, both of the page. */
+/* The strip's gradient. bottom, top: places of its ends on the page. */
 static cairo_pattern_t *make_pattern(const hl_transfer_function *function, const double range[2],
                                      double bottom, double top, cairo_t *scratch) {
   cairo_pattern_t *pattern = cairo_pattern_create_linear(0, bottom, 0, top);
@@ -165,7 +166,7 @@ static cairo_pattern_t *make_pattern(const hl_transfer_function *function, const
   return pattern;
 }
 
-/* The opacity, leftwards from x. */
+/* Draws the curve of opacity, to the left of x. */
 static void draw_curve(const legend *made, const hl_transfer_function *function, const double range[2],
                        double x, double bottom, double top) {
   cairo_t *cairo = made->ink->cairo;
@@ -187,7 +188,7 @@ static void draw_curve(const legend *made, const hl_transfer_function *function,
   hl_ink_stroke(made->ink, 0.06 * size);
 }
 
-/* The least of 1, 2 and 5 times powers of ten that is at least this. */
+/* The least number of the form 1, 2 or 5 times a power of ten that is at least `least`. */
 static double round_step(double least) {
   double power = pow(10, floor(log10(least)));
   static const double steps[] = {1, 2, 5, 10};
@@ -204,7 +205,7 @@ static void write_number(double value, double step, const double range[2], char 
   else hl_plain_print(text, NUMBER_BYTES, "%.*f", decimals, value);
 }
 
-/* Numbers beside the strip, whose right edge is x; returns the room that they take, and draws where `draws`.
+/* Returns the width of the numbers beside the strip, and draws them if `draws` is set. x: their right edge.
  */
 static double draw_numbers(const legend *made, const double range[2], double x, double bottom, double top,
                            bool draws) {

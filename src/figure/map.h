@@ -16,17 +16,17 @@ typedef struct hl_rectangle {
 typedef struct hl_map {
   vec3 eye, right, up, forward;
   double center_x, center_y; /* points */
-  double scale; /* orthographic: points per unit of the world; perspective: the same at a depth of 1 */
+  double scale; /* points on the page per unit of the world; with a perspective camera at a depth of 1 */
   bool perspective;
   double target_depth; /* distance from the eye to the camera's target along the line of sight */
 } hl_map;
 
 hl_map hl_map_of(const hl_camera *camera, hl_rectangle picture);
 
-/* Points per unit of the world, at a depth where the camera is a perspective one. */
+/* Points on the page per unit of the world. depth: distance from the eye; of perspective cameras alone. */
 double hl_map_scale(const hl_map *map, double depth);
 
-/* The point of the page; false where it lies behind the eye. */
+/* Finds where a point of the world lies on the page. False: it lies behind the eye. */
 bool hl_map_point(const hl_map *map, vec3 world, double *x, double *y);
 
 #endif

@@ -1,5 +1,5 @@
-/* figure/overlay.c - draws what lies over one picture: annotations and the panel's letter here, the other
- * parts by their own files. */
+/* figure/overlay.c - draws the overlay of one picture. Annotations and the panel's letter are drawn here;
+ * each other part has a file of its own. */
 #include "figure/overlay.h"
 
 static hl_status draw_annotation(const hl_ink *ink, const hl_overlay_place *place, const hl_annotation *note,

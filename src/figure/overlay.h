@@ -1,4 +1,4 @@
-/* figure/overlay.h - what is drawn over one picture: its parts. */
+/* figure/overlay.h - the parts of the overlay, which is drawn over one picture. */
 #ifndef HL_FIGURE_OVERLAY_H
 #define HL_FIGURE_OVERLAY_H
 
@@ -6,20 +6,20 @@
 #include "figure/ink.h"
 #include "figure/map.h"
 
-/* One panel as its overlay is drawn. */
+/* The place of the picture over which an overlay is drawn. */
 typedef struct hl_overlay_place {
   const hl_overlay *overlay;
   const hl_scene_description *scene; /* null: none */
   hl_rectangle picture;              /* points */
-  double margin;                     /* from its edges, points */
-  hl_map map;                        /* of `scene` */
+  double margin;                     /* distance of the overlay from the picture's edges, points */
+  hl_map map;                        /* where points of `scene` lie on the page */
 } hl_overlay_place;
 
-/* Draws all of it. scene: may be null. */
+/* Draws the whole overlay. scene: may be null. */
 hl_status hl_overlay_draw(const hl_ink *ink, const hl_overlay *overlay, const hl_scene *scene,
                           hl_rectangle picture, hl_error *error);
 
-/* Its parts; each is drawn where the overlay has it. */
+/* Each of these draws one part, if the overlay has it. */
 hl_status hl_overlay_bar(const hl_ink *ink, const hl_overlay_place *place, hl_error *error);
 hl_status hl_overlay_legend(const hl_ink *ink, const hl_overlay_place *place, hl_error *error);
 hl_status hl_overlay_axes(const hl_ink *ink, const hl_overlay_place *place, hl_error *error);

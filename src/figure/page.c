@@ -1,8 +1,8 @@
 /* figure/page.c - draws a figure's panels, through cairo, on pixels, PDF or SVG.
  *
- * In: the figure, checked. Out: a picture, or the bytes of a file. On all three the unit of length is the
- * point; pictures are laid into their rectangles as 8-bit sRGB, and where their pixels and the page's agree
- * nothing is resampled. Cairo allocates its surfaces outside of the context's memory. */
+ * In: the figure, checked. Out: a picture, or the bytes of a file. The unit of length is always the
+ * point. Pictures are drawn into their rectangles as 8-bit sRGB; they are not resampled where their pixels
+ * and the page's agree. Cairo allocates its surfaces outside of the context's memory. */
 #include "figure/page.h"
 
 #include <cairo-pdf.h>
@@ -34,7 +34,8 @@ static void release_bytes(void *data) {
   hl_release(context, owned);
 }
 
-/* From R, G, B, A to cairo's word with alpha in its greatest byte, multiplied into the colours. */
+/* Turns a row of R, G, B, A into cairo's format: 32-bit words with alpha in the highest byte, and colours
+ * that are multiplied by alpha. */
 static void to_cairo(unsigned char *row, int width) {
   for (int x = 0; x < width; x++, row += 4) {
     uint32_t alpha = row[3], word = alpha << 24;
@@ -104,7 +105,9 @@ static hl_status draw_picture(hl_context *context, cairo_t *cairo, const hl_figu
   cairo_translate(cairo, place.left, place.top);
   if (!exact) cairo_scale(cairo, place.width / width, place.height / height);
   cairo_set_source_surface(cairo, surface, 0, 0);
-  if (pixels && !exact) cairo_pattern_set_extend(cairo_get_source(cairo), CAIRO_EXTEND_PAD); /* whole edges */
+  if (pixels && !exact)
+    cairo_pattern_set_extend(cairo_get_source(cairo),
+                             CAIRO_EXTEND_PAD); /* keeps the picture's edges opaque */
   cairo_pattern_set_filter(cairo_get_source(cairo), exact ? CAIRO_FILTER_NEAREST : CAIRO_FILTER_GOOD);
   cairo_rectangle(cairo, 0, 0, width, height);
   if (exact) cairo_set_antialias(cairo, CAIRO_ANTIALIAS_NONE);
@@ -118,7 +121,8 @@ static double luma(const double linear[3]) { /* BT.709 */
   return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];
 }
 
-/* White on a dark ground, black on a bright one; half of sRGB's scale is 0.214 of linear light. */
+/* Chooses white ink on a dark ground, and black ink on a bright one. The limit is the middle of sRGB's scale,
+ * which is 0.214 in linear light. */
 static hl_ink ink_for(cairo_t *cairo, const hl_figure *figure, const hl_figure_panel *panel) {
   const double *ground = figure->background;
   bool paper = figure->background_transparent != 0;

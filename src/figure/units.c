@@ -1,10 +1,10 @@
-/* figure/units.c - units of length: their names, and which suits a length. */
+/* figure/units.c - units of length: their names, and the choice of a unit for a length. */
 #include "figure/units.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Falling. "\u00b5" is the micro sign, "\u03bc" the Greek letter. */
+/* From the longest unit to the shortest. "\u00b5" is the micro sign, "\u03bc" the Greek letter. */
 static const hl_unit units[] = {
     {"Mpc", {"Mpc"}, 3.0856775814913673e22, 0},
     {"kpc", {"kpc"}, 3.0856775814913673e19, 0},

@@ -5,19 +5,19 @@
 #include <stddef.h>
 
 typedef struct hl_unit {
-  const char *symbol;   /* as a figure writes it */
-  const char *names[3]; /* as people and files write it; null after the last */
+  const char *symbol;   /* as figures write the unit */
+  const char *names[3]; /* as people and files write the unit; null after the last */
   double metres;
-  int chosen; /* non-zero: lengths without a stated unit may be given in it */
+  int chosen; /* non-zero: hl_unit_for() may choose this unit */
 } hl_unit;
 
-/* The unit with this name; null: it is no unit that is known. */
+/* The unit with this name; null: no known unit has it. */
 const hl_unit *hl_unit_find(const char *name);
 
-/* The unit in which a length is a number from 1 to 1000, where there is one. */
+/* The unit in which the number of a length lies from 1 to 1000, or comes closest to that. */
 const hl_unit *hl_unit_for(double metres);
 
-/* The greatest of 1, 2 and 5 times powers of ten that is at most `most`. */
+/* The greatest number of the form 1, 2 or 5 times a power of ten that is at most `most`. */
 double hl_round_length(double most);
 
 #endif

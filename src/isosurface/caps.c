@@ -1,5 +1,5 @@
-/* isosurface/caps.c - see caps.h: each face is laid out with triangles a voxel wide, and cut where the field
- * takes the surface's value, by the other faces, and by the box. */
+/* isosurface/caps.c - see caps.h. Each face is covered with triangles a voxel wide. They are cut where the
+ * field takes the surface's value, then by the other faces and by the box. */
 #include "isosurface/caps.h"
 
 #include <math.h>
@@ -9,20 +9,20 @@
 #include "grid/relevant.h"
 #include "isosurface/clip.h"
 
-/* Caps reach this far beyond the surface's inside, in voxels: the surface and the cap are cut from different
- * triangles, which deviate by less. */
+/* How far caps reach beyond the inside of the surface, in voxels. The surface and the cap are made of
+ * different triangles, whose edges lie apart by less than this; so no gap shows between them. */
 static const double OVERLAP = 0.03;
 
-/* A face in a space of its own, of which an affine map leads to index space: q[axis] is `height`, the other
- * two coordinates run from -1 to 1; of a sphere, q is brought to the length 1. */
+/* A face, given in a space of its own with coordinates q. On the face q[axis] is `height`, and the other two
+ * coordinates run from -1 to 1. For a sphere, these points q are then scaled to the length 1. */
 typedef struct cap_face {
   affine3 to_index, from_index;
   int axis;
   double height;
-  double
-      outward; /* 1: the normal points to where q[axis] rises, of a sphere away from its centre; -1: back */
+  double outward; /* 1: the normal points to where q[axis] rises, or away from a sphere's centre; -1: the
+                     other way */
   bool sphere;
-  size_t cut; /* which one of the grid's; cut_count: the box itself */
+  size_t cut; /* index of the grid's cut; cut_count: the face is one of the box */
 } cap_face;
 
 typedef struct capping {
@@ -30,8 +30,9 @@ typedef struct capping {
   const lattice *lattice;
   const cap_face *face;
   iso_triangles patch;
-  double *inside;   /* owned; [vertices]; how far the field is beyond the surface's value; stored units */
-  size_t across[2]; /* cells along the two coordinates */
+  double *inside;   /* owned; [vertices]; how far the field is beyond the surface's value; above 0 inside;
+                       stored units */
+  size_t across[2]; /* number of cells along the two coordinates */
 } capping;
 
 /* ---- a face's triangles ---- */
@@ -47,7 +48,7 @@ static vec3 point_on_face(const cap_face *face, double s, double t) {
   return affine3_apply(face->to_index, q);
 }
 
-/* The outward unit normal by index coordinates: q's gradient. */
+/* The outward unit normal in index coordinates: the direction of the gradient of q[axis], or of |q|. */
 static vec3 normal_of_face(const cap_face *face, vec3 point) {
   const vec3 q = face->sphere ? affine3_apply(face->from_index, point) : unit_of_axis(face->axis, 1);
   return vec3_scale(vec3_normalise(mat3_apply(mat3_transpose(face->from_index.linear), q)), face->outward);
@@ -71,7 +72,7 @@ static bool near_box(const grid *grid, vec3 point) {
   return true;
 }
 
-/* Far from the box nothing is inside. */
+/* Places a row of the patch's vertices. Vertices far from the box count as outside. */
 static void place_row(void *data, size_t row, int worker) {
   (void)worker;
   capping *cap = data;
@@ -87,8 +88,8 @@ static void place_row(void *data, size_t row, int worker) {
 
 /* ---- cut by the field ---- */
 
-/* Where the field takes the surface's value between a vertex inside and one outside, by bisection, and a
- * little further. */
+/* Adds a vertex a little beyond the place where the field takes the surface's value between a vertex inside
+ * and a vertex outside. The place is found by bisection. */
 static uint32_t cross_field(capping *cap, uint32_t in, uint32_t out) {
   enum { STEPS = 14 };
   const float *a = cap->patch.positions[in], *b = cap->patch.positions[out];
@@ -135,7 +136,8 @@ static void add_inside(capping *cap, const uint32_t corner[3]) {
   for (int i = 1; i + 1 < count; i++) add_triangle(&cap->patch, kept[0], kept[i], kept[i + 1]);
 }
 
-/* Calls for both triangles of all cells; their number is returned where `cap` is only counted. */
+/* Goes through both triangles of all cells, and adds their parts inside if `add` is set. Returns the number
+ * of triangles that the field cuts. */
 static size_t visit_cells(capping *cap, bool add) {
   size_t crossed = 0;
   const size_t row = cap->across[0] + 1;
@@ -158,7 +160,7 @@ static hl_status fail_cap(size_t vertices, hl_error *error) {
   return hl_fail_memory(error, vertices * 2 * sizeof(float[3]), "the faces of an isosurface");
 }
 
-/* Lays the patch out and cuts it by the field. */
+/* Covers the face with triangles, and cuts them by the field. */
 static hl_status make_patch(hl_pool *pool, capping *cap, hl_error *error) {
   iso_triangles *patch = &cap->patch;
   const size_t cells = cap->across[0] * cap->across[1];
@@ -185,7 +187,7 @@ static hl_status make_patch(hl_pool *pool, capping *cap, hl_error *error) {
 
 /* ---- joined to the surface ---- */
 
-/* The vertices that the patch's triangles use, each once, go behind the others. */
+/* Appends a patch to the surface: its triangles, and the vertices that they use, each once. */
 static hl_status append(hl_context *context, const iso_triangles *patch, iso_triangles *made,
                         hl_error *error) {
   if (patch->triangle_count == 0) return HL_OK;
@@ -218,7 +220,7 @@ static hl_status append(hl_context *context, const iso_triangles *patch, iso_tri
   return status;
 }
 
-/* What the box and the other cuts leave of a patch. */
+/* Cuts a patch by the box and by all cuts but its own. */
 static hl_status trim(hl_context *context, const grid *grid, size_t cut, iso_triangles *patch,
                       hl_error *error) {
   hl_status status = HL_OK;
@@ -296,7 +298,10 @@ static bool place_plane(const grid *grid, const cut_shape *shape, cap_face *face
 static hl_status cap_cut(hl_pool *pool, const lattice *lattice, size_t cut, iso_triangles *made,
                          hl_error *error) {
   const cut_shape *shape = &lattice->grid->cuts[cut];
-  const double away = shape->keep_inside ? 1 : -1; /* of what is left, from the shape's middle */
+  const double away =
+      shape->keep_inside
+          ? 1
+          : -1; /* 1: the outside of what is left points away from the shape's middle; -1: towards it */
   cap_face face = {.cut = cut, .from_index = shape->to_shape, .sphere = shape->type == HL_CUT_SPHERE};
   hl_status status = HL_OK;
   if (shape->type == HL_CUT_PLANE) {

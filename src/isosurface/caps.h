@@ -4,9 +4,9 @@
 
 #include "isosurface/triangles.h"
 
-/* Adds caps to triangles that are clipped and cut already: wherever a face of the box or of a cut runs
- * through the surface's inside. Faces of the box that are far out (grid->face_low, face_high), where another
- * volume goes on, get none. */
+/* Adds caps to an isosurface whose triangles have been clipped and cut already. A cap lies wherever a face of
+ * the box or of a cut runs through the inside of the surface. A face of the box behind which another volume
+ * goes on, which grid->face_low or face_high puts far out, gets no cap. */
 hl_status hl_iso_cap(hl_pool *pool, const lattice *lattice, iso_triangles *made, hl_error *error);
 
 /* The faces of the box that get caps. Bit 2 a is the lower face of axis a, bit 2 a + 1 the upper one. */

@@ -27,7 +27,8 @@ static double height(const cutting *cut, uint32_t vertex) {
   return 1 - vec3_dot(q, q);
 }
 
-/* How far along the edge from a to b the face lies: the root of |q + t d|^2 = 1 between 0 and 1. */
+/* Where the edge from a to b crosses the sphere, as a fraction of the edge: the root of |q + t d|^2 = 1
+ * between 0 and 1. */
 static double crossing_of_sphere(const cutting *cut, uint32_t a, uint32_t b) {
   vec3 q = affine3_apply(*cut->sphere, position_of(cut, a));
   vec3 d = vec3_subtract(affine3_apply(*cut->sphere, position_of(cut, b)), q);
@@ -37,7 +38,8 @@ static double crossing_of_sphere(const cutting *cut, uint32_t a, uint32_t b) {
   return fmin(fmax(t, 0), 1);
 }
 
-/* The vertex where the edge from a to b crosses the face; the same for both triangles beside the edge. */
+/* Adds the vertex where the edge from a to b crosses the face. Both triangles beside the edge get the same
+ * position. */
 static uint32_t cross_edge(cutting *cut, uint32_t a, uint32_t b) {
   if (a > b) {
     uint32_t kept = a;
@@ -121,7 +123,7 @@ static hl_status cut_all(cutting *cut, hl_error *error) {
   return HL_OK;
 }
 
-/* Whether some vertex lies on the other side. */
+/* Whether some vertex lies on the side that is removed. */
 static bool cuts(const cutting *cut) {
   for (size_t v = 0; v < cut->made->vertex_count; v++)
     if (height(cut, (uint32_t)v) < 0) return true;

@@ -1,8 +1,8 @@
-/* isosurface/cubes.h - how a surface cuts a cube of whose corners some lie within it (Lorensen and Cline,
- * "Marching Cubes", 1987).
+/* isosurface/cubes.h - how a surface cuts a cube, given which corners of the cube lie inside the surface
+ * (Lorensen and Cline, "Marching Cubes", 1987).
  *
- * Corner i of a cube lies at (i & 1, i >> 1 & 1, i >> 2). Edge 4 a + n runs along axis a; n tells where it
- * lies across the two other axes, the lower axis in bit 0. */
+ * Corner i of a cube lies at (i & 1, i >> 1 & 1, i >> 2). Edge 4 a + n runs along axis a; the bits
+ * of n are its coordinates along the two other axes, the lower axis in bit 0. */
 #ifndef HL_ISOSURFACE_CUBES_H
 #define HL_ISOSURFACE_CUBES_H
 
@@ -13,13 +13,15 @@ enum { CUBE_EDGES = 12, CUBE_PATTERNS = 256, CUBE_TRIANGLES = 10 };
 /* The corner at which an edge begins. */
 int hl_cube_edge_corner(int edge);
 
-/* The triangles of a pattern of corners: by edges, counter-clockwise as seen from outside. */
+/* The triangles of a pattern of corners. Each triangle is given by the three edges on which its vertices lie,
+ * counter-clockwise as seen from outside. */
 typedef struct cube_triangles {
   uint8_t count;
   uint8_t edge[CUBE_TRIANGLES][3];
 } cube_triangles;
 
-/* patterns: [CUBE_PATTERNS]; bit i of a pattern's number: corner i lies inside. */
+/* Fills the table of patterns, [CUBE_PATTERNS]. Bit i of a pattern's index is set where corner i lies inside.
+ */
 void hl_cube_patterns(cube_triangles *patterns);
 
 #endif

@@ -24,10 +24,10 @@ void hl_iso_triangles_release(hl_context *context, iso_triangles *triangles) {
 
 enum { EDGE_VOXELS = FIELD_TAPS + 2 };
 
-/* The field along an edge, from its beginning: the sums across the edge at the voxels of a row. */
+/* The field along an edge: the sums over the voxels across the edge, for each voxel of a row along it. */
 typedef struct edge_field {
   const kernel *kernel;
-  double start;  /* coordinate along the edge */
+  double start;  /* coordinate of the edge's beginning along the edge's axis */
   int32_t first; /* of the voxels */
   double sums[EDGE_VOXELS];
 } edge_field;
@@ -63,11 +63,11 @@ static double value_on_edge(const edge_field *field, double way) {
   return sum;
 }
 
-/* Vertices keep this way, in voxels, from the ends of their edges, so that no triangle is without an area. */
+/* The least distance of a vertex from the ends of its edge, in voxels, so that every triangle has an area. */
 static const double LEAST_WAY = 1.0 / 16384;
 
-/* Where the field takes the surface's value on an edge, as a way from its beginning: by false position
- * (Illinois; Dowell and Jarratt 1971). length: of the edge. */
+/* Returns how far from the beginning of an edge the field takes the surface's value. Found by false position
+ * (the Illinois method; Dowell and Jarratt 1971). length: of the edge. */
 static double find_crossing(const lattice *lattice, int axis, const double from[3], double length) {
   enum { MOST_STEPS = 24 };
   const edge_field field = field_of_edge(lattice, axis, from);
@@ -114,13 +114,14 @@ static void place_vertices(void *data, size_t index, int worker) {
 
 /* ---- cells ---- */
 
-/* A point of the lattice, of the eight bricks from one brick on. */
+/* A point of the lattice in one of the eight bricks around a cell. */
 typedef struct near_point {
   const lattice_brick *brick;
   int bit;
 } near_point;
 
-/* around: the bricks beside the cell's, as corner i of a cube has them. p: from 0 to SIDE. */
+/* Finds a point near a brick. around: the brick and its neighbours, in the order of a cube's corners. p:
+ * coordinates within the brick, from 0 to SIDE; SIDE lies in the next brick. */
 static near_point find_point(const lattice_brick *const around[8], const int p[3]) {
   int corner = (p[0] == SIDE) + 2 * (p[1] == SIDE) + 4 * (p[2] == SIDE);
   return (near_point){around[corner], p[0] % SIDE + SIDE * (p[1] % SIDE + SIDE * (p[2] % SIDE))};
@@ -140,7 +141,7 @@ static bool is_cell(const lattice *lattice, const lattice_brick *brick, const in
   return true;
 }
 
-/* The pattern of a cell's corners inside; 0: it is no cell of the lattice. */
+/* The pattern of the corners of a cell that lie inside; 0, too, where the lattice has no such cell. */
 static int pattern_of_cell(const lattice *lattice, const lattice_brick *const around[8], const int cell[3]) {
   int pattern = 0;
   if (!is_cell(lattice, around[0], cell)) return 0;
@@ -163,7 +164,7 @@ static uint32_t vertex_of_edge(const lattice_brick *const around[8], const int c
   return vertex + (uint32_t)__builtin_popcountll(before);
 }
 
-/* Cuts the cells of a brick; returns the number of triangles. triangles: null: counts only. */
+/* Cuts the cells of a brick into triangles, and returns their number. triangles: null to count them alone. */
 static size_t cut_cells(const extraction *job, size_t index, uint32_t (*triangles)[3]) {
   const lattice *lattice = job->lattice;
   const lattice_brick *around[8];
@@ -193,7 +194,7 @@ static void write_triangles(void *data, size_t index, int worker) {
   (void)cut_cells(job, index, job->made->triangles + job->lattice->bricks[index].triangle);
 }
 
-/* Numbers the bricks' vertices and triangles. */
+/* Gives each brick the numbers of its first vertex and of its first triangle. */
 static hl_status number_parts(extraction *job, hl_error *error) {
   size_t vertices = 0, triangles = 0;
   for (size_t b = 0; b < job->lattice->count; b++) {

@@ -1,5 +1,6 @@
-/* isosurface/isosurface.c - see isosurface.h: cells are cut, edges halved where the surface bends, triangles
- * cut at the clip box and at cuts, faces added there, and all of it brought to the world. */
+/* isosurface/isosurface.c - see isosurface.h. The cells of a lattice are cut into triangles. Edges are halved
+ * where the surface bends. The triangles are cut at the clip box and at cuts, and caps are added there. At
+ * last everything is moved to the world. */
 #include "isosurface/isosurface.h"
 
 #include <string.h>
@@ -8,7 +9,7 @@
 #include "isosurface/clip.h"
 #include "isosurface/triangles.h"
 
-/* The grid's index space to the world of the volume's file times axis_scale. */
+/* Maps the grid's index space to the world of the volume's file, scaled by axis_scale. */
 static affine3 placement_of(const hl_scene_volume *volume, const grid *grid) {
   affine3 placement = volume->volume->index_to_world;
   placement.offset = vec3_subtract(placement.offset, mat3_apply(placement.linear, vec3_of(grid->shift)));
@@ -39,7 +40,8 @@ static void move_vertices(void *data, size_t index, int worker) {
   }
 }
 
-/* Brings the triangles to the world; a mirroring placement turns them around. */
+/* Moves the triangles to the world. Where the map mirrors, the triangles' order of corners is turned round.
+ */
 static hl_status place(hl_pool *pool, const hl_scene_volume *volume, const grid *grid, iso_triangles *made,
                        hl_error *error) {
   move_job job = {.placement = placement_of(volume, grid), .made = made};

@@ -6,13 +6,15 @@
 #include "grid/grid.h"
 #include "mesh/mesh.h"
 
-/* The mesh of the value in the volume's box, in the world of the volume's own file times its axis_scale: the
- * rest of the volume's transform is the mesh's. Owned by the caller; null where the surface is empty. grid:
- * of the volume, for the kernel. */
+/* Makes the surface on which a volume's field has a value, within the volume's box. The mesh's positions are
+ * in the world of the volume's own file, scaled by the volume's axis_scale; the rest of the volume's
+ * transform is left to the mesh of the scene. grid: the volume's, made for the kernel. *mesh: owned by the
+ * caller; null where the surface is empty. */
 hl_status hl_isosurface_create(hl_pool *pool, const hl_scene_volume *volume, const grid *grid,
                                const kernel *kernel, double value, hl_mesh **mesh, hl_error *error);
 
-/* Surface i of a volume as a mesh of the scene, with the volume's transform and material. mesh: borrowed. */
+/* Describes isosurface i of a volume as a mesh of the scene, with the volume's transform and material. mesh:
+ * borrowed. */
 hl_scene_mesh hl_scene_mesh_of_iso(const hl_scene_volume *volume, size_t i, hl_mesh *mesh);
 
 #endif

@@ -23,8 +23,9 @@ const lattice_brick *hl_lattice_brick(const lattice *lattice, const int32_t at[3
 
 enum { CROSSED = 1, KEPT = 2 };
 
-/* Whether a brick's cells, which are those of the grid's brick, may hold the value. Voxels of interpolating
- * kernels are coefficients, of which the sum is bounded likewise. */
+/* Whether a brick's cells, which are those of the grid's brick, may hold the value. With an
+ * interpolating kernel the voxels are coefficients; the field is a mean of these, too, and has the same
+ * bounds. */
 static bool brick_crossed(const lattice *lattice, const int32_t at[3]) {
   const grid *grid = lattice->grid;
   float bounds[2];
@@ -34,7 +35,7 @@ static bool brick_crossed(const lattice *lattice, const int32_t at[3]) {
   return bounds[0] <= lattice->value && bounds[1] >= lattice->value;
 }
 
-/* Keeps a crossed brick, and those that hold points of its cells. */
+/* Keeps a crossed brick, and the bricks beside it that hold points of its cells. */
 static void keep_around(const lattice *lattice, const int32_t at[3], unsigned char *marks) {
   for (int corner = 0; corner < 8; corner++) {
     const int32_t beside[3] = {at[0] + (corner & 1), at[1] + (corner >> 1 & 1), at[2] + (corner >> 2)};
@@ -75,8 +76,8 @@ static void list_bricks(lattice *lattice, const unsigned char *marks) {
 
 enum { SIDE = HL_BRICK_CELLS, WINDOW = SIDE + 4 };
 
-/* The sums along one axis of a window: [SIDE] points of `count` lines, from WINDOW values each. Values lie
- * `step` apart, lines are [outer][inner] with `inner` neighbours. */
+/* Applies the weights along one axis of a window of values. from: [outer][WINDOW][inner]; to:
+ * [outer][SIDE][inner]. */
 static void weigh_axis(const double weight[SIDE][WINDOW], const double *from, int outer, int inner,
                        double *to) {
   for (int o = 0; o < outer; o++)
@@ -88,8 +89,8 @@ static void weigh_axis(const double weight[SIDE][WINDOW], const double *from, in
       }
 }
 
-/* The weights of the window's voxels for the brick's points along an axis; *first: the window's first voxel.
- */
+/* Finds the weights of the window's voxels for the brick's points along an axis. *first becomes the
+ * coordinate of the window's first voxel. */
 static void weights_of_axis(const lattice *lattice, int axis, int32_t brick, int32_t *first,
                             double weight[SIDE][WINDOW]) {
   int32_t last = lattice->points[axis] - 1;
@@ -127,8 +128,8 @@ static void find_inside(void *data, size_t index, int worker) {
 /* The points with the greatest coordinate along an axis. */
 static const uint64_t last_points[3] = {0x8888888888888888u, 0xf000f000f000f000u, 0xffff000000000000u};
 
-/* The points of a brick that lie within the lattice, but not in the last row along an axis: edges begin at
- * these. */
+/* The points of a brick at which edges along an axis begin: the points of the lattice but for the last one
+ * along the axis. */
 static uint64_t edge_points(const lattice *lattice, const lattice_brick *brick, int axis) {
   uint64_t points = 0;
   for (int p = 0; p < SIDE * SIDE * SIDE; p++) {

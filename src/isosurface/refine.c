@@ -2,8 +2,9 @@
  *
  * Over an edge e between the unit normals m and n the surface rises by about |e . (n - m)| / 8 (derived: on a
  * circle of radius r the normals' difference along e is |e| / r, and the arc rises by |e|^2 / (8 r) above its
- * chord). An edge is halved in both triangles beside it, so that there are no gaps. Lengths are the world's,
- * in the smallest edge of a voxel: in long voxels the index's would be many times as long along one axis. */
+ * chord). An edge is halved in both triangles beside it, so that there are no gaps. Lengths are the
+ * world's, in smallest edges of a voxel: where voxels are long, lengths in index space would differ from the
+ * world's. */
 #include <stdlib.h>
 
 #include "core/memory.h"
@@ -14,17 +15,20 @@
  * triangle it rises 4/3 as far. */
 static const double MOST_RISE = 0.014;
 
-/* The longest edge that is left whole however the surface bends: noise, whose surfaces bend within
- * a voxel, would be cut to dust. It rises by 0.014 where the radius is 5. */
+/* An edge of this length is left whole however much the surface bends. Otherwise noise, whose surfaces bend
+ * within a voxel, would be cut into countless triangles. The surface rises by 0.014 above such an edge where
+ * its radius is 5. */
 static const double LEAST_EDGE = 0.75;
 
 typedef struct halving {
   const lattice *lattice;
   iso_triangles *made;
-  uint64_t *edges; /* owned; [count]; the lesser vertex in the upper half; in rising order */
+  uint64_t *edges; /* owned; [count]; in rising order; an edge is the number of its lesser vertex in the upper
+                    * 32 bits, and of the other one in the lower */
   size_t count;
-  size_t first_vertex; /* of the middles */
-  mat3 ways, turns;    /* from index coordinates to the world's lengths; of normals, the inverse transpose */
+  size_t first_vertex; /* number of the first vertex that is an edge's middle */
+  mat3 ways, turns;    /* `ways` maps differences of index coordinates to the world; `turns`, its inverse
+                          transpose, maps normals */
   float (*normals)[3]; /* owned; [vertices before the middles]; the world's unit normals */
 } halving;
 
@@ -62,7 +66,8 @@ static int compare_keys(const void *a, const void *b) {
   return x < y ? -1 : x > y;
 }
 
-/* Lists the edges that are to be halved, each once. keys: room for three a triangle, or null: counts. */
+/* Lists the edges that are to be halved, and returns their number. keys: room for three edges a triangle;
+ * null to count them alone. */
 static size_t list_edges(const halving *job, uint64_t *keys) {
   const iso_triangles *made = job->made;
   size_t count = 0, kept = 0;
@@ -80,7 +85,7 @@ static size_t list_edges(const halving *job, uint64_t *keys) {
   return kept;
 }
 
-/* The number of an edge's middle; -1: the edge is whole. */
+/* The vertex in the middle of an edge; -1: the edge is left whole. */
 static int64_t middle_of(const halving *job, uint32_t a, uint32_t b) {
   if (!bends(job, a, b)) return -1;
   uint64_t key = key_of(a, b);
@@ -124,8 +129,8 @@ static void put(uint32_t (*triangles)[3], size_t *count, uint32_t a, uint32_t b,
   triangle[0] = a, triangle[1] = b, triangle[2] = c;
 }
 
-/* Writes the parts of a triangle whose edge from corner 0 to corner 1 is halved, and that from 2 to 0 is not,
- * unless all three are. */
+/* Writes the parts of a triangle. Its edge from corner 0 to corner 1 must be halved; its edge from corner 2
+ * to corner 0 must be whole, unless all three edges are halved. */
 static void put_parts(uint32_t (*triangles)[3], size_t *count, const uint32_t v[3], const int64_t m[3]) {
   uint32_t m0 = (uint32_t)m[0], m1 = (uint32_t)m[1], m2 = (uint32_t)m[2];
   if (m[1] < 0) {
@@ -180,7 +185,7 @@ static hl_status add_middles(hl_pool *pool, halving *job, hl_error *error) {
   return hl_lattice_run(pool, job->count, place_middle, job, error);
 }
 
-/* The triangles that are left when edges are halved. */
+/* The number of triangles when all listed edges are halved. */
 static size_t count_parts(const halving *job) {
   size_t count = job->made->triangle_count;
   for (size_t t = 0; t < job->made->triangle_count; t++)
@@ -205,7 +210,7 @@ static hl_status cut_triangles(halving *job, hl_error *error) {
   return HL_OK;
 }
 
-/* listed: edges, each of which may be listed more than once. */
+/* Halves the listed edges. listed: number of edges in the list, which may hold an edge more than once. */
 static hl_status halve(hl_pool *pool, halving *job, size_t listed, hl_error *error) {
   hl_context *context = job->lattice->context;
   job->edges = hl_allocate(context, listed, sizeof *job->edges);
@@ -217,8 +222,8 @@ static hl_status halve(hl_pool *pool, halving *job, size_t listed, hl_error *err
   return status;
 }
 
-/* Halves each edge that lies too far from the surface. *any: whether there were such edges, and room for the
- * triangles. */
+/* Halves each edge that lies too far from the surface. *any becomes false where there is no such edge, or no
+ * room for more triangles. */
 static hl_status halve_edges(hl_pool *pool, const lattice *lattice, iso_triangles *triangles, bool *any,
                              hl_error *error) {
   halving job = {.lattice = lattice, .made = triangles};
@@ -234,7 +239,8 @@ static hl_status halve_edges(hl_pool *pool, const lattice *lattice, iso_triangle
   if (job.normals == NULL) return hl_fail_memory(error, vertices * sizeof *job.normals, "an isosurface");
   hl_status status = hl_lattice_run(pool, (vertices + RUN_VERTICES - 1) / RUN_VERTICES, turn_normals, &job,
                                     error);
-  const size_t listed = status == HL_OK ? list_edges(&job, NULL) : 0; /* most edges are of two triangles */
+  const size_t listed = status == HL_OK ? list_edges(&job, NULL)
+                                        : 0; /* an edge between two triangles is listed twice */
   *any = listed > 0 && triangles->triangle_count + listed <= HL_LIMIT_TRIANGLES;
   if (*any) status = halve(pool, &job, listed, error);
   hl_release(lattice->context, job.normals);

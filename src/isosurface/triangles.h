@@ -1,5 +1,5 @@
-/* isosurface/triangles.h - the triangles of an isosurface while they are made: in index space, with the unit
- * normals of the field, which point to where the surface's inside is not. */
+/* isosurface/triangles.h - the triangles of an isosurface while they are made, in index space. Their normals
+ * are the field's, and point away from the inside. */
 #ifndef HL_ISOSURFACE_TRIANGLES_H
 #define HL_ISOSURFACE_TRIANGLES_H
 
@@ -12,7 +12,7 @@ typedef struct iso_triangles {
   size_t vertex_count, triangle_count;
 } iso_triangles;
 
-/* Cuts the lattice's cells. Release in any case. */
+/* Cuts the lattice's cells into triangles. Release them after a failure, too. */
 hl_status hl_iso_extract(hl_pool *pool, lattice *lattice, iso_triangles *made, hl_error *error);
 
 /* Halves the edges that lie far from the surface, and moves their middles onto it. */
