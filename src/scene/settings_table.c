@@ -17,8 +17,8 @@
 
 static const hl_setting_choice camera_types[] = {
     {"perspective", HL_CAMERA_PERSPECTIVE}, {"orthographic", HL_CAMERA_ORTHOGRAPHIC}, {NULL, 0}};
-#define HL_LIGHT_KIND(value, name) {#name, value},
-static const hl_setting_choice light_types[] = {HL_LIGHT_KINDS{NULL, 0}};
+#define CHOICE(with, value, name, settings) {#name, value},
+static const hl_setting_choice light_types[] = {HL_LIGHT_KINDS(CHOICE, 0){NULL, 0}};
 static const hl_setting_choice light_frames[] = {
     {"world", HL_LIGHT_FRAME_WORLD}, {"camera", HL_LIGHT_FRAME_CAMERA}, {NULL, 0}};
 static const hl_setting_choice falloffs[] = {
@@ -65,7 +65,9 @@ static const hl_setting_choice automatic_resolution[] = {{"auto", 0}, {NULL, 0}}
 
 #define ONE(type) (1u << (type))
 #define SHINING   (ONE(HL_SKY_UNIFORM) | ONE(HL_SKY_GRADIENT) | ONE(HL_SKY_IMAGE))
-#define PLACED    (ONE(HL_LIGHT_POINT) | ONE(HL_LIGHT_SPOT) | ONE(HL_LIGHT_RECT) | ONE(HL_LIGHT_DISK))
+/* The types of light that have a setting (light_kinds.h). */
+#define ONE_IF(with, value, name, settings) | ((settings) & (with) ? ONE(value) : 0)
+#define LIGHTS_WITH(setting)                (0u HL_LIGHT_KINDS(ONE_IF, setting))
 
 /* Parts that many rows have in common. */
 #define FIELD(structure, name) .field = #name, .offset = offsetof(structure, name)
@@ -128,32 +130,32 @@ static const hl_setting light_rows[] = {
     {.key = "frame", FIELD(hl_light, frame), A_CHOICE(light_frames), .optional = 1,
      .sentence = "The axes of the light's positions and directions: the world's, or the camera's (right, up, "
                  "towards the viewer; from its target), with which the light goes."},
-    {.key = "position", FIELD(hl_light, position), A_POINT, .only_for = PLACED,
+    {.key = "position", FIELD(hl_light, position), A_POINT, .only_for = LIGHTS_WITH(LIGHT_POSITION),
      .sentence = "The centre of the light."},
     {.key = "direction", FIELD(hl_light, direction), A_DIRECTION, .standard = {0, 0, -1},
-     .only_for = ONE(HL_LIGHT_DIRECTIONAL) | ONE(HL_LIGHT_SPOT), .option = "light",
+     .only_for = LIGHTS_WITH(LIGHT_DIRECTION), .option = "light",
      .sentence = "The way the light travels."},
     {.key = "angular_diameter_deg", FIELD(hl_light, angular_diameter_deg), .type = HL_SETTING_NUMBER,
-     .unit = "degrees", .high = 120, .only_for = ONE(HL_LIGHT_DIRECTIONAL), .option = "light-size",
+     .unit = "degrees", .high = 120, .only_for = LIGHTS_WITH(LIGHT_ANGULAR_DIAMETER), .option = "light-size",
      .sentence = "The diameter of the disk that the light comes from, as seen from the volumes; above 0 "
                  "its shadows are soft.",
      .mend = "give an angle in degrees from {low} (a sharp light) to {high}"},
-    {.key = "edge1", FIELD(hl_light, edge1), A_POINT, .standard = {1, 0, 0}, .only_for = ONE(HL_LIGHT_RECT),
+    {.key = "edge1", FIELD(hl_light, edge1), A_POINT, .standard = {1, 0, 0}, .only_for = LIGHTS_WITH(LIGHT_EDGES),
      .sentence = "One full edge of the parallelogram; of no length, the light is a line."},
-    {.key = "edge2", FIELD(hl_light, edge2), A_POINT, .standard = {0, 1, 0}, .only_for = ONE(HL_LIGHT_RECT),
+    {.key = "edge2", FIELD(hl_light, edge2), A_POINT, .standard = {0, 1, 0}, .only_for = LIGHTS_WITH(LIGHT_EDGES),
      .sentence = "The other full edge of the parallelogram, likewise."},
     {.key = "normal", FIELD(hl_light, normal), A_DIRECTION, .standard = {0, 0, -1},
-     .only_for = ONE(HL_LIGHT_DISK), .sentence = "The direction that the disk faces."},
+     .only_for = LIGHTS_WITH(LIGHT_NORMAL), .sentence = "The direction that the disk faces."},
     {.key = "opening_angle_deg", FIELD(hl_light, opening_angle_deg), .type = HL_SETTING_NUMBER,
-     .unit = "degrees", .low = 0.01, .high = 179, .standard = {40}, .only_for = ONE(HL_LIGHT_SPOT),
+     .unit = "degrees", .low = 0.01, .high = 179, .standard = {40}, .only_for = LIGHTS_WITH(LIGHT_CONE),
      .sentence = "The full angle of the cone, beyond which it is dark.",
      .mend = "give the cone's full angle in degrees, from {low} to {high}"},
     {.key = "falloff_angle_deg", FIELD(hl_light, falloff_angle_deg), .type = HL_SETTING_NUMBER,
-     .unit = "degrees", .high = 89.5, .standard = {5}, .only_for = ONE(HL_LIGHT_SPOT),
+     .unit = "degrees", .high = 89.5, .standard = {5}, .only_for = LIGHTS_WITH(LIGHT_CONE),
      .sentence = "The width of the smooth edge inside the cone, at most half the opening angle.",
      .mend = "give the width of the cone's smooth edge in degrees, from {low} to half the opening angle"},
     {.key = "radius", FIELD(hl_light, radius), .type = HL_SETTING_NUMBER, .unit = "world units",
-     .high = HL_LIMIT_LENGTH, .only_for = ONE(HL_LIGHT_POINT) | ONE(HL_LIGHT_SPOT) | ONE(HL_LIGHT_DISK),
+     .high = HL_LIMIT_LENGTH, .only_for = LIGHTS_WITH(LIGHT_RADIUS),
      .sentence = "The radius of the sphere or the disk; above 0 its shadows are soft.",
      .mend = "give a length in world units, {low} for a point"},
     {.key = "falloff", FIELD(hl_light, falloff), A_CHOICE(falloffs),

@@ -2,9 +2,9 @@
  * share. */
 #include "scene/light/light_kind.h"
 
-#define HL_LIGHT_KIND(value, name) [value] = &hl_light_kind_##name,
-static const light_kind *const kinds[] = {HL_LIGHT_KINDS};
-#undef HL_LIGHT_KIND
+#define HL_ENTRY(with, value, name, settings) [value] = &hl_light_kind_##name,
+static const light_kind *const kinds[] = {HL_LIGHT_KINDS(HL_ENTRY, 0)};
+#undef HL_ENTRY
 
 const light_kind *hl_light_kind(const hl_light *light) { return kinds[light->type]; }
 

@@ -62,8 +62,8 @@ vec3 hl_round_point(const light_shape *shape, vec3 facing, double a, double b);
 emission_plane hl_round_plane(const light_shape *shape, vec3 facing);
 
 /* The tables, one a file. */
-#define HL_LIGHT_KIND(value, name) extern const light_kind hl_light_kind_##name;
-HL_LIGHT_KINDS
-#undef HL_LIGHT_KIND
+#define HL_DECLARE(with, value, name, settings) extern const light_kind hl_light_kind_##name;
+HL_LIGHT_KINDS(HL_DECLARE, 0)
+#undef HL_DECLARE
 
 #endif

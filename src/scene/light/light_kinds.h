@@ -1,11 +1,30 @@
-/* scene/light/light_kinds.h - the registry of types of light: the enumerator, and the name that scene files
- * use. The file of a type "rect" is light/rect.c, its table hl_light_kind_rect (light_kind.h).
+/* scene/light/light_kinds.h - the registry of types of light: the enumerator, the name that scene files use,
+ * and the settings that lights of the type have beside those of all lights. The file of a type "rect" is
+ * light/rect.c, its table hl_light_kind_rect (light_kind.h). The build reads the names here.
  */
+#ifndef HL_SCENE_LIGHT_LIGHT_KINDS_H
+#define HL_SCENE_LIGHT_LIGHT_KINDS_H
+
+/* Settings that some types have (settings_table.c). */
+enum light_settings {
+  LIGHT_POSITION = 1,
+  LIGHT_DIRECTION = 2,
+  LIGHT_ANGULAR_DIAMETER = 4,
+  LIGHT_RADIUS = 8,
+  LIGHT_NORMAL = 16,
+  LIGHT_EDGES = 32,
+  LIGHT_CONE = 64
+};
+
+/* KIND: a macro of four arguments; `with` is passed on to it. */
 /* clang-format off */
-#define HL_LIGHT_KINDS                              \
-  HL_LIGHT_KIND(HL_LIGHT_DIRECTIONAL, directional)  \
-  HL_LIGHT_KIND(HL_LIGHT_POINT, point)              \
-  HL_LIGHT_KIND(HL_LIGHT_SPOT, spot)                \
-  HL_LIGHT_KIND(HL_LIGHT_RECT, rect)                \
-  HL_LIGHT_KIND(HL_LIGHT_DISK, disk)                \
-  HL_LIGHT_KIND(HL_LIGHT_POLYGON, polygon)
+#define HL_LIGHT_KINDS(KIND, with)                                                           \
+  KIND(with, HL_LIGHT_DIRECTIONAL, directional, LIGHT_DIRECTION | LIGHT_ANGULAR_DIAMETER)    \
+  KIND(with, HL_LIGHT_POINT, point, LIGHT_POSITION | LIGHT_RADIUS)                           \
+  KIND(with, HL_LIGHT_SPOT, spot, LIGHT_POSITION | LIGHT_DIRECTION | LIGHT_RADIUS | LIGHT_CONE) \
+  KIND(with, HL_LIGHT_RECT, rect, LIGHT_POSITION | LIGHT_EDGES)                              \
+  KIND(with, HL_LIGHT_DISK, disk, LIGHT_POSITION | LIGHT_NORMAL | LIGHT_RADIUS)              \
+  KIND(with, HL_LIGHT_POLYGON, polygon, 0)
+/* clang-format on */
+
+#endif
