@@ -115,8 +115,8 @@ static int visible_points_of_box(const frame *frame, const vec3 corner[8], vec3 
 
 int hl_frame_visible_points(const frame *frame, vec3 *points) {
   int count = 0;
-  for (int box = 0; box < frame->point_count / 8; box++)
-    count += visible_points_of_box(frame, frame->points + 8 * box, points + count);
+  for (int box = 0; box < frame->content.point_count / 8; box++)
+    count += visible_points_of_box(frame, frame->content.points + 8 * box, points + count);
   return count;
 }
 
@@ -131,8 +131,8 @@ static double pixel_at_content(const frame *frame, double middle_depth) {
   double nearest = INFINITY;
   vec3 start, forward;
   hl_view_ray(eye, eye->width / 2.0, eye->height / 2.0, &start, &forward);
-  for (int i = 0; i < frame->point_count; i++)
-    nearest = fmin(nearest, vec3_dot(forward, vec3_subtract(frame->points[i], eye->origin)));
+  for (int i = 0; i < frame->content.point_count; i++)
+    nearest = fmin(nearest, vec3_dot(forward, vec3_subtract(frame->content.points[i], eye->origin)));
   return edge * fmax(nearest, middle_depth / 3);
 }
 
@@ -150,13 +150,13 @@ static double box_volume(const vec3 corners[8]) {
 static vec3 content_middle(const frame *frame) {
   vec3 sum = {0, 0, 0};
   double volumes = 0;
-  for (int i = 0; i < frame->point_count; i += 8) {
-    double volume = box_volume(frame->points + i);
-    vec3 centre = vec3_scale(vec3_add(frame->points[i], frame->points[i + 7]), 0.5);
+  for (int i = 0; i < frame->content.point_count; i += 8) {
+    double volume = box_volume(frame->content.points + i);
+    vec3 centre = vec3_scale(vec3_add(frame->content.points[i], frame->content.points[i + 7]), 0.5);
     sum = vec3_add(sum, vec3_scale(centre, volume));
     volumes += volume;
   }
-  return frame->point_count == 0 ? sum : vec3_scale(sum, 1 / volumes);
+  return frame->content.point_count == 0 ? sum : vec3_scale(sum, 1 / volumes);
 }
 
 /* Sets eye_direction and the sizes of pixels at the content. Where the eye is outside the content, its
@@ -166,10 +166,10 @@ static void look(frame *frame) {
   hl_view_ray(&frame->eye, frame->eye.width / 2.0, frame->eye.height / 2.0, &start, &forward);
   forward = vec3_normalise(forward);
   frame->eye_direction = forward;
-  vec3 way = vec3_subtract(frame->middle, frame->eye.origin);
+  vec3 way = vec3_subtract(frame->content.middle, frame->eye.origin);
   double distance = vec3_length(way), radius = 0;
-  for (int i = 0; i < frame->point_count; i++)
-    radius = fmax(radius, vec3_length(vec3_subtract(frame->points[i], frame->middle)));
+  for (int i = 0; i < frame->content.point_count; i++)
+    radius = fmax(radius, vec3_length(vec3_subtract(frame->content.points[i], frame->content.middle)));
   if (frame->eye.perspective && distance > radius) {
     vec3 towards = vec3_normalise(way);
     if (vec3_dot(towards, forward) > 0.5) frame->eye_direction = vec3_normalise(vec3_add(towards, forward));
@@ -188,19 +188,19 @@ static int oversampling(const frame *frame, const hl_scene_description *scene) {
   int longer = scene->width > scene->height ? scene->width : scene->height,
       most = GREATEST_OVERSAMPLED_SIDE / longer;
   if (most > GREATEST_OVERSAMPLING) most = GREATEST_OVERSAMPLING;
-  double wanted = floor(frame->middle_pixel / frame->voxel + 0.5);
+  double wanted = floor(frame->middle_pixel / frame->content.voxel + 0.5);
   return wanted > most ? (most < 1 ? 1 : most) : wanted < 1 ? 1 : (int)wanted;
 }
 
 hl_status hl_frame_set_up_eye(frame *frame, const hl_scene_description *scene, hl_error *error) {
-  frame->middle = content_middle(frame);
+  frame->content.middle = content_middle(frame);
   for (frame->oversampling = 1;;) {
     frame->width = scene->width * frame->oversampling;
     frame->height = scene->height * frame->oversampling;
     hl_status status = hl_frame_eye(&scene->camera, frame->width, frame->height, &frame->eye, error);
     if (status != HL_OK) return status;
     look(frame);
-    int wanted = frame->oversampling > 1 || frame->point_count == 0 ? 1 : oversampling(frame, scene);
+    int wanted = frame->oversampling > 1 || frame->content.point_count == 0 ? 1 : oversampling(frame, scene);
     if (wanted == 1) return HL_OK;
     frame->oversampling = wanted;
   }

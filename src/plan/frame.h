@@ -12,19 +12,25 @@
 
 enum { FRAME_LIGHTS = MAXIMUM_SWEEP_LIGHTS, CONTENT_POINTS = 64 };
 
+/* What the picture shows: volumes and meshes. */
+typedef struct frame_content {
+  vec3 *points; /* corners of the boxes around the volumes' visible bricks and around the meshes; owned by
+                 * the plan; [point_count], eight for each box */
+  int point_count;
+  vec3 middle;
+  double voxel; /* the smallest edge of a voxel, frame units */
+} frame_content;
+
 typedef struct frame {
   int width, height; /* pixels: the picture's size times oversampling */
   int oversampling;  /* a pixel of the picture is the mean of oversampling x oversampling pixels of the
                       * frame */
   view eye;
   vec3 eye_direction;  /* e: unit, from the eye towards the content */
-  vec3 middle;         /* middle of the content */
   double pixel;        /* edge of an image pixel where the content is nearest, frame units */
   double middle_pixel; /* edge of an image pixel at the content's middle, frame units */
-  double voxel;        /* the smallest edge of a voxel, frame units */
   double spacing;      /* ds, frame units */
-  vec3 *points;        /* corners of the content of all grids; owned by the caller; [8 * grids] */
-  int point_count;
+  frame_content content;
   light_sectors sectors; /* the sectors of lights within the content */
   light_source *lights;  /* [light_count]; owned by the caller; sectors of a light follow each other */
   int light_count;

@@ -17,14 +17,14 @@ frame_volume hl_frame_volume(const framed_scene *framed, size_t index) {
                          .visible = scene->visible,
                          .casts_shadow = scene->casts_shadow,
                          .receives_shadow = scene->receives_shadow,
-                         .multiple_scattering = scene->multiple_scattering,
                          .is_cut = scene->cut_count > 0,
-                         .shading = scene->shading,
-                         .cut_shading = scene->cut_shading,
-                         .material = scene->material,
-                         .anisotropy = scene->anisotropy};
-  memcpy(volume.albedo, scene->albedo, sizeof volume.albedo);
-  memcpy(volume.attenuation_color, scene->attenuation_color, sizeof volume.attenuation_color);
+                         .look = {.shading = scene->shading,
+                                  .cut_shading = scene->cut_shading,
+                                  .material = scene->material,
+                                  .anisotropy = scene->anisotropy,
+                                  .multiple_scattering = scene->multiple_scattering}};
+  memcpy(volume.look.albedo, scene->albedo, sizeof volume.look.albedo);
+  memcpy(volume.look.attenuation_color, scene->attenuation_color, sizeof volume.look.attenuation_color);
   return volume;
 }
 
@@ -43,9 +43,6 @@ frame_light hl_frame_light(const framed_scene *framed, size_t index) {
 
 frame_mesh hl_frame_mesh(const framed_scene *framed, size_t index) {
   const hl_scene_mesh *scene = &framed->scene.meshes[index];
-  return (frame_mesh){.name = scene->name,
-                      .object = framed->mesh_objects[index],
-                      .look = hl_surface_look(scene),
-                      .triangle_count = scene->mesh->description.triangle_count,
-                      .sphere_count = scene->mesh->description.sphere_count};
+  return (frame_mesh){
+      .name = scene->name, .object = framed->mesh_objects[index], .look = hl_surface_look(scene)};
 }

@@ -10,6 +10,16 @@
 #include "plan/framed_scene.h"
 #include "surface/surfaces.h"
 
+/* How a volume's matter looks, and what it takes of light. */
+typedef struct volume_look {
+  hl_shading shading;
+  hl_cut_shading cut_shading;
+  hl_material material;
+  double anisotropy; /* anisotropy of the phase function */
+  double albedo[HL_CHANNELS], attenuation_color[HL_CHANNELS];
+  bool multiple_scattering;
+} volume_look;
+
 /* A volume of the frame. Its grid is the plan's grid of the same index. */
 typedef struct frame_volume {
   const char *name;                     /* borrowed; null: none */
@@ -21,12 +31,8 @@ typedef struct frame_volume {
   uint64_t version, tables_version; /* versions of the grid's voxels, and of everything that follows from the
                                      * transfer function; they rise with each change */
   int object;                       /* the volume's number in the layer of objects */
-  bool visible, casts_shadow, receives_shadow, multiple_scattering, is_cut;
-  hl_shading shading;
-  hl_cut_shading cut_shading;
-  hl_material material;
-  double anisotropy; /* anisotropy of the phase function */
-  double albedo[HL_CHANNELS], attenuation_color[HL_CHANNELS];
+  bool visible, casts_shadow, receives_shadow, is_cut;
+  volume_look look;
 } frame_volume;
 
 /* A light of the frame, as a whole. Its light_source, or the light_source of each of its sectors, says where
@@ -49,7 +55,6 @@ typedef struct frame_mesh {
   int object;       /* the mesh's number in the layer of objects; an isosurface has the number of its
                      * volume */
   surface_look look;
-  size_t triangle_count, sphere_count;
 } frame_mesh;
 
 /* framed: must live until the frame ends. The caller sets the volume's classifier, value beyond and

@@ -12,19 +12,19 @@ hl_status hl_frame_plan_create(hl_context *context, const framed_scene *framed, 
   const hl_scene_description *scene = &framed->scene;
   const size_t volumes = scene->volume_count, sources = LIGHT_SECTORS * scene->light_count;
   plan->settings = scene->render;
-  plan->width = scene->width;
-  plan->height = scene->height;
+  plan->picture.width = scene->width;
+  plan->picture.height = scene->height;
   plan->unit = framed->unit;
   memcpy(plan->ambient, scene->ambient, sizeof plan->ambient);
-  plan->frame.points = hl_allocate(context, (volumes + scene->mesh_count) * 8 + 1,
-                                   sizeof *plan->frame.points);
+  plan->frame.content.points = hl_allocate(context, (volumes + scene->mesh_count) * 8 + 1,
+                                           sizeof *plan->frame.content.points);
   plan->frame.lights = hl_allocate(context, sources, sizeof *plan->frame.lights);
   plan->lights = hl_allocate(context, scene->light_count, sizeof *plan->lights);
   plan->meshes = hl_allocate(context, scene->mesh_count, sizeof *plan->meshes);
   plan->volumes.grids = hl_allocate(context, volumes, sizeof *plan->volumes.grids);
   plan->volumes.list = hl_allocate(context, volumes, sizeof *plan->volumes.list);
   plan->sweeps.sheets = hl_allocate_zeroed(context, sources + 1, sizeof *plan->sweeps.sheets);
-  if (plan->frame.points == NULL || plan->frame.lights == NULL || plan->lights == NULL ||
+  if (plan->frame.content.points == NULL || plan->frame.lights == NULL || plan->lights == NULL ||
       plan->meshes == NULL || plan->volumes.grids == NULL || plan->volumes.list == NULL ||
       plan->sweeps.sheets == NULL)
     return hl_fail_memory(error, sources * sizeof *plan->sweeps.sheets, "the frame");
@@ -48,8 +48,8 @@ void hl_frame_plan_release(hl_context *context, frame_plan *plan) {
   hl_release(context, plan->meshes);
   hl_release(context, plan->lights);
   hl_release(context, plan->frame.lights);
-  hl_release(context, plan->frame.points);
-  hl_share_release(context, &plan->share);
+  hl_release(context, plan->frame.content.points);
+  hl_share_release(context, &plan->picture.share);
 }
 
 /* ---- the sweeps ---- */
@@ -72,9 +72,9 @@ hl_status hl_plan_sweeps(hl_context *context, frame_plan *plan, hl_error *error)
   plan_sweeps *sweeps = &plan->sweeps;
   int measuring = 0;
   sweeps->count = hl_frame_sweeps(&plan->frame, &plan->settings, sweeps->sheets);
-  if (hl_layers_measure(plan->layers)) measuring = choose_measuring_sweep(&plan->frame, sweeps);
-  plan->tiles_x = hl_tiles(plan->frame.width);
-  plan->tiles = (size_t)plan->tiles_x * (size_t)hl_tiles(plan->frame.height);
+  if (hl_layers_measure(plan->picture.layers)) measuring = choose_measuring_sweep(&plan->frame, sweeps);
+  plan->picture.tiles_x = hl_tiles(plan->frame.width);
+  plan->picture.tiles = (size_t)plan->picture.tiles_x * (size_t)hl_tiles(plan->frame.height);
   sweeps->list = hl_allocate(context, (size_t)sweeps->count, sizeof *sweeps->list);
   if (sweeps->list == NULL) return hl_fail_memory(error, sizeof *sweeps->list, "the frame");
   for (int s = 0; s < sweeps->count; s++)
@@ -89,7 +89,7 @@ hl_status hl_plan_sweeps(hl_context *context, frame_plan *plan, hl_error *error)
 static bool has_surfaces(const plan_volumes *volumes) {
   for (int v = 0; v < volumes->count; v++) {
     const frame_volume *volume = &volumes->list[v];
-    if (volume->visible && volume->receives_shadow && volume->shading == HL_SHADING_PHONG) return true;
+    if (volume->visible && volume->receives_shadow && volume->look.shading == HL_SHADING_PHONG) return true;
   }
   return false;
 }
@@ -103,17 +103,17 @@ static shadow_setup setup_of_light(hl_context *context, const frame_plan *plan, 
                         .emission = light->emission == NULL || light->emission->even ? NULL : light->emission,
                         .sheets = &sweep->geometry->sheets,
                         .eye = &frame->eye,
-                        .exchange = plan->share.exchange,
+                        .exchange = plan->picture.share.exchange,
                         .surfaces = has_surfaces(&plan->volumes),
                         .channels = plan->channels,
-                        .voxel = frame->voxel,
+                        .voxel = frame->content.voxel,
                         .pixel = frame->pixel,
                         .middle_pixel = frame->middle_pixel,
                         .picture_pixels = (size_t)frame->width * (size_t)frame->height,
                         .seen = plan->seen,
                         .seen_count = plan->seen_count,
-                        .content = frame->points,
-                        .content_count = frame->point_count};
+                        .content = frame->content.points,
+                        .content_count = frame->content.point_count};
 }
 
 static hl_status plan_light(hl_context *context, const frame_plan *plan, const sweep_plan *sweep,
@@ -127,7 +127,7 @@ static hl_status plan_light(hl_context *context, const frame_plan *plan, const s
 }
 
 static hl_status find_seen(hl_context *context, frame_plan *plan, hl_error *error) {
-  const size_t boxes = (size_t)plan->frame.point_count / 8;
+  const size_t boxes = (size_t)plan->frame.content.point_count / 8;
   plan->seen = hl_allocate(context, boxes * CONTENT_POINTS + 1, sizeof *plan->seen);
   if (plan->seen == NULL) return hl_fail_memory(error, sizeof *plan->seen, "the content's corners");
   plan->seen_count = hl_frame_visible_points(&plan->frame, plan->seen);

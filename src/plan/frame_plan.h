@@ -18,6 +18,15 @@
 #include "scatter/scatter.h"
 #include "shadow/shadow_method.h"
 
+/* The picture, and the part of it that is made. */
+typedef struct plan_picture {
+  int width, height;       /* pixels */
+  int tiles_x;             /* number of the frame's tiles in a row of tiles */
+  size_t tiles;            /* number of the frame's tiles */
+  picture_share share;     /* the part that is made */
+  const hl_layers *layers; /* borrowed; the layers that are wanted; null: none */
+} plan_picture;
+
 /* The volumes, and how their samples are made. */
 typedef struct plan_volumes {
   frame_volume *list; /* owned; [count] */
@@ -60,7 +69,7 @@ typedef struct plan_sweeps {
 
 typedef struct frame_plan {
   hl_render_settings settings; /* settings of the scene; its texts are not used */
-  int width, height;           /* size of the picture, pixels */
+  plan_picture picture;
   double unit;                 /* world length of 1 in frame space */
   double ambient[HL_CHANNELS]; /* light from everywhere, R, G, B */
   frame frame;                 /* the eye, the lights, the surfaces; its arrays are the plan's own */
@@ -71,12 +80,8 @@ typedef struct frame_plan {
   plan_volumes volumes;
   plan_fields fields;
   plan_sweeps sweeps;
-  picture_share share;     /* the part of the picture that is made */
-  const hl_layers *layers; /* borrowed; the layers that are wanted; null: none */
-  int channels;            /* number of channels of light attenuation: 1 or 3 */
-  int tiles_x;             /* of the picture's tiles */
-  size_t tiles;
-  vec3 *seen; /* owned; [seen_count]; corners of the content that the eye sees */
+  int channels; /* number of channels of light attenuation: 1 or 3 */
+  vec3 *seen;   /* owned; [seen_count]; corners of the content that the eye sees */
   int seen_count;
 } frame_plan;
 

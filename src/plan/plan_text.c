@@ -6,15 +6,17 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "surface/primitive.h"
 #include "text/plain_json.h"
 
 static json_t *pair(int first, int second) { return json_pack("[i, i]", first, second); }
 
 static json_t *picture_of(const frame_plan *plan) {
-  return json_pack("{s: o, s: i, s: o, s: I, s: i, s: i}", "size", pair(plan->width, plan->height),
-                   "oversampling", plan->frame.oversampling, "frame_size",
-                   pair(plan->frame.width, plan->frame.height), "tiles", (json_int_t)plan->tiles, "part",
-                   plan->share.part, "parts", plan->share.parts);
+  return json_pack("{s: o, s: i, s: o, s: I, s: i, s: i}", "size",
+                   pair(plan->picture.width, plan->picture.height), "oversampling", plan->frame.oversampling,
+                   "frame_size", pair(plan->frame.width, plan->frame.height), "tiles",
+                   (json_int_t)plan->picture.tiles, "part", plan->picture.share.part, "parts",
+                   plan->picture.share.parts);
 }
 
 static void add_name(json_t *to, const char *name) {
@@ -38,11 +40,13 @@ static json_t *whole_light_of(const frame_light *light) {
                    light->is_wide, "image", light->has_image);
 }
 
-static json_t *mesh_of(const frame_mesh *mesh) {
-  json_t *made = json_pack("{s: i, s: I, s: I, s: f, s: b, s: b}", "object", mesh->object, "triangles",
-                           (json_int_t)mesh->triangle_count, "spheres", (json_int_t)mesh->sphere_count,
-                           "opacity", mesh->look.opacity, "visible", mesh->look.visible, "casts_shadow",
-                           mesh->look.casts_shadow);
+/* placed: the same mesh among the frame's surfaces. */
+static json_t *mesh_of(const frame_mesh *mesh, const surface_mesh *placed) {
+  json_t *made = json_pack("{s: i, s: f, s: b, s: b}", "object", mesh->object, "opacity", mesh->look.opacity,
+                           "visible", mesh->look.visible, "casts_shadow", mesh->look.casts_shadow);
+  for (int k = 0; k < PRIMITIVE_KINDS; k++)
+    json_object_set_new(made, hl_primitive_kinds[k]->noun,
+                        json_integer((json_int_t)hl_primitive_kinds[k]->count(placed)));
   add_name(made, mesh->name);
   return made;
 }
@@ -83,7 +87,8 @@ static json_t *root_of(const frame_plan *plan) {
   json_t *volumes = json_array(), *lights = json_array(), *meshes = json_array(), *sweeps = json_array();
   for (int v = 0; v < plan->volumes.count; v++) json_array_append_new(volumes, volume_of(plan, v));
   for (int i = 0; i < plan->light_count; i++) json_array_append_new(lights, whole_light_of(&plan->lights[i]));
-  for (int m = 0; m < plan->mesh_count; m++) json_array_append_new(meshes, mesh_of(&plan->meshes[m]));
+  for (int m = 0; m < plan->mesh_count; m++)
+    json_array_append_new(meshes, mesh_of(&plan->meshes[m], &plan->frame.surfaces->meshes[m]));
   for (int s = 0; s < plan->sweeps.count; s++)
     json_array_append_new(sweeps, sweep_of(plan, &plan->sweeps.list[s]));
   return json_pack("{s: o, s: o, s: o, s: o, s: o, s: i, s: b, s: b}", "picture", picture_of(plan), "volumes",

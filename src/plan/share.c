@@ -50,7 +50,7 @@ static double brightness(const share_content *content, const light_source *sourc
   const frame_light *light = &content->lights[source->row];
   double color = (light->color[0] + light->color[1] + light->color[2]) * light->intensity;
   if (!light->is_inverse_square) return color;
-  vec3 way = vec3_subtract(source->position, content->frame->middle);
+  vec3 way = vec3_subtract(source->position, content->frame->content.middle);
   return color / fmax(vec3_dot(way, way), 1e-12);
 }
 

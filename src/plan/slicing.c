@@ -57,8 +57,8 @@ static bool rays_cross(const frame *frame, const light_source *source, vec3 h, d
     double off = acos(fmin(fmax(vec3_dot(source->direction, h), -1), 1));
     return source->shadows != HL_SHADOWS_SOFT || off + atan(source->shape.radius) < acos(least);
   }
-  for (int i = 0; i < frame->point_count; i++) {
-    vec3 way = vec3_subtract(frame->points[i], source->position);
+  for (int i = 0; i < frame->content.point_count; i++) {
+    vec3 way = vec3_subtract(frame->content.points[i], source->position);
     if (vec3_dot(way, h) <= least * vec3_length(way)) return false;
   }
   return true;
@@ -73,8 +73,8 @@ static vec3 middle_of_rays(const frame *frame, const light_source *source) {
   for (int step = 1; step <= STEPS; step++) {
     vec3 farthest = middle;
     double least = INFINITY;
-    for (int i = 0; i < frame->point_count; i++) {
-      vec3 way = vec3_normalise(vec3_subtract(frame->points[i], source->position));
+    for (int i = 0; i < frame->content.point_count; i++) {
+      vec3 way = vec3_normalise(vec3_subtract(frame->content.points[i], source->position));
       if (vec3_dot(way, middle) < least) {
         least = vec3_dot(way, middle);
         farthest = way;
@@ -150,7 +150,7 @@ void hl_frame_set_up_lights(frame *frame, const framed_scene *framed) {
   frame->light_count = 0;
   for (size_t i = 0; i < scene->light_count && !hl_is_maximum(&scene->render); i++) {
     const hl_light *light = &scene->lights[i];
-    light_source source = hl_light_source(light, &scene->render, frame->middle);
+    light_source source = hl_light_source(light, &scene->render, frame->content.middle);
     source.light_index = framed->order->lights[i];
     source.row = (int)i;
     source.of_sky = framed->sun_parts[i];
@@ -207,13 +207,13 @@ enum { GREATEST_SHEETS = 1 << 20 };
 /* Lays sheets over the whole content, with one more sheet on either side. */
 static void place_sheets(const frame *frame, sheet_stack *sheets) {
   double low = INFINITY, high = -INFINITY;
-  for (int i = 0; i < frame->point_count; i++) {
-    double height = vec3_dot(sheets->normal, frame->points[i]);
+  for (int i = 0; i < frame->content.point_count; i++) {
+    double height = vec3_dot(sheets->normal, frame->content.points[i]);
     low = fmin(low, height);
     high = fmax(high, height);
   }
   sheets->spacing = frame->spacing;
-  double count = frame->point_count == 0 ? 0 : ceil((high - low) / sheets->spacing) + 3;
+  double count = frame->content.point_count == 0 ? 0 : ceil((high - low) / sheets->spacing) + 3;
   sheets->count = count > GREATEST_SHEETS ? GREATEST_SHEETS + 1 : (int)count;
   sheets->first = (low + high) / 2 - (sheets->count - 1) * 0.5 * sheets->spacing;
 }

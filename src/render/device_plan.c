@@ -19,13 +19,13 @@ _Static_assert(offsetof(plan_rays, height) == sizeof(sheet_rays) && sizeof(plan_
 static const frame_volume *volume_of(const frame_plan *plan) { return &plan->volumes.list[0]; }
 
 static bool has_no_volume(const frame_plan *plan) {
-  return plan->volumes.count == 0 || plan->frame.point_count == 0;
+  return plan->volumes.count == 0 || plan->frame.content.point_count == 0;
 }
 static bool has_volumes(const frame_plan *plan) { return plan->volumes.count > 1; }
 static bool is_hidden(const frame_plan *plan) { return !volume_of(plan)->visible; }
 static bool is_maximum(const frame_plan *plan) { return hl_is_maximum(&plan->settings); }
-static bool has_layers(const frame_plan *plan) { return plan->layers != NULL; }
-static bool is_shared(const frame_plan *plan) { return plan->share.parts > 1; }
+static bool has_layers(const frame_plan *plan) { return plan->picture.layers != NULL; }
+static bool is_shared(const frame_plan *plan) { return plan->picture.share.parts > 1; }
 static bool has_surfaces(const frame_plan *plan) { return plan->frame.surfaces != NULL; }
 static bool has_sky(const frame_plan *plan) { return plan->fields.sky != NULL; }
 static bool scatters(const frame_plan *plan) { return plan->fields.scatters; }
@@ -52,7 +52,7 @@ static bool has_images(const frame_plan *plan) {
   return false;
 }
 static bool has_phase_tables(const frame_plan *plan) {
-  return hl_phase_table(plan->fields.phases, volume_of(plan)->anisotropy) != NULL;
+  return hl_phase_table(plan->fields.phases, volume_of(plan)->look.anisotropy) != NULL;
 }
 
 /* The reasons in the order in which they are tried: the first that applies is told. */
@@ -163,7 +163,7 @@ static void plan_material(const shade_volume *shade, const frame_volume *of, pla
   volume->voxel = shade->voxel;
   for (int c = 0; c < HL_CHANNELS; c++) {
     volume->cast[c] = shade->cast[c];
-    volume->weight[c] = of->casts_shadow ? (float)of->attenuation_color[c] : 0;
+    volume->weight[c] = of->casts_shadow ? (float)of->look.attenuation_color[c] : 0;
   }
 }
 
@@ -302,7 +302,7 @@ static int slabs_of_run(const sweep_task *task) {
   const int wanted = task->frame_plan->settings.slabs_at_once;
   int slabs = wanted > 0 ? wanted : SLABS_OF_RUN;
   const size_t sheet = floats_of_sheet(task) * sizeof(float),
-               slots = task->frame_plan->tiles * TILE_PIXELS * SLOT_BYTES;
+               slots = task->frame_plan->picture.tiles * TILE_PIXELS * SLOT_BYTES;
   if (slabs > SLABS_OF_RUN) slabs = SLABS_OF_RUN;
   while (slabs > 1 && (size_t)slabs * slots > SLOTS_BYTES) slabs--;
   while (slabs > 1 && (2 * (size_t)slabs + 1) * sheet > PLANES_BYTES) slabs--;
@@ -396,8 +396,8 @@ hl_status hl_plan_sweep(hl_context *context, const frame_plan *frame_plan, const
   plan->ring = 2 * slabs + 1;
   plan->width = task->frame_plan->frame.width;
   plan->height = task->frame_plan->frame.height;
-  plan->tiles_x = task->frame_plan->tiles_x;
-  plan->tiles = (int)task->frame_plan->tiles;
+  plan->tiles_x = task->frame_plan->picture.tiles_x;
+  plan->tiles = (int)task->frame_plan->picture.tiles;
   plan->light_count = task->plan->geometry->light_count;
   plan->spacing = job->spacing;
   plan->path = job->path;

@@ -34,7 +34,7 @@ static uint32_t uncovered_blocks(const int32_t shown_from[TILE_BLOCKS]) {
 
 /* The tile action: composites opacity alone. */
 static uint32_t cover_tile(const sweep *sweep, const tile_slab *slab) {
-  const hidden_search *search = sweep->action;
+  const hidden_search *search = sweep->act.data;
   sweep_counts *counts = &sweep->arrays.counts[slab->worker];
   int32_t *shown_from = search->shown_from + slab->tile * TILE_BLOCKS;
   uint32_t seen = slab->blocks & uncovered_blocks(shown_from);
@@ -87,7 +87,7 @@ static hl_status is_worth_while(const sweep *front, bool *worth, hl_error *error
  * so that the pixels they cover are counted. Otherwise it searches all other tiles. */
 static hl_status go_through(sweep *front, hidden_search *search, bool trying, hl_error *error) {
   search->trying = trying;
-  for (size_t tile = 0; tile < front->tiles; tile++)
+  for (size_t tile = 0; tile < front->frame_plan->picture.tiles; tile++)
     if (is_tried(front, tile) != trying) front->arrays.open[tile] = 0;
   return hl_sweep_run(front, error);
 }
@@ -111,7 +111,7 @@ static hl_status search_tiles(sweep *front, hidden_search *search, hl_error *err
 hl_status hl_find_hidden(const sweep_means *means, const frame_plan *frame_plan, const sweep_plan *plan,
                          float *pixels, int32_t **shown_from, hl_render_statistics *statistics,
                          hl_error *error) {
-  const size_t tiles = frame_plan->tiles;
+  const size_t tiles = frame_plan->picture.tiles;
   *shown_from = NULL;
   if (!plan->geometry->back_to_front) return HL_OK;
   *shown_from = hl_allocate_zeroed(means->context, tiles * TILE_BLOCKS, sizeof **shown_from);
@@ -123,9 +123,7 @@ hl_status hl_find_hidden(const sweep_means *means, const frame_plan *frame_plan,
   const sweep_target target = {.pixels = pixels};
   sweep front;
   hl_sweep_set_up(&front, means, frame_plan, &of_search, &target);
-  front.purpose = SWEEP_SEARCH;
-  front.act = cover_tile;
-  front.action = &search;
+  front.act = (sweep_act){SWEEP_SEARCH, cover_tile, &search};
   hl_status status = hl_sweep_begin(&front, NULL, NULL, error);
   if (status == HL_OK) status = search_tiles(&front, &search, error);
   if (status == HL_OK) hl_sweep_count(&front, statistics);

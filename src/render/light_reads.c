@@ -373,7 +373,7 @@ static void read_tiles(const reads_task *task) {
   const sweep *sweep = task->sweep;
   const bool surfaces_alone = task->buffers[0].source->sectors != NULL && sweep->content.volume_count == 0 &&
                               sweep->surfaces.image.of != NULL;
-  for (size_t tile = 0; tile < sweep->tiles; tile++) {
+  for (size_t tile = 0; tile < sweep->frame_plan->picture.tiles; tile++) {
     if (sweep->arrays.open[tile] == 0) continue;
     if (surfaces_alone) read_surfaces(task, tile);
     else read_tile(task, tile);

@@ -28,7 +28,7 @@ static size_t floats_of_tile(const maximum_values *maximum) {
 enum { SHOWN_ENTRIES = CLASSIFIER_ENTRIES + 2 };
 
 static maximum_values plan_values(const frame_plan *plan) {
-  return (maximum_values){.volume_count = visible_count(&plan->volumes), .tiles = plan->tiles};
+  return (maximum_values){.volume_count = visible_count(&plan->volumes), .tiles = plan->picture.tiles};
 }
 
 static void lay_out(maximum_values *maximum, hl_layout *layout) {
@@ -125,7 +125,7 @@ hl_status hl_maximum_create(hl_context *context, hl_pool *pool, const frame_plan
   hl_layout layout = {0};
   while (hl_layout_pass(&layout, context)) lay_out(maximum, &layout);
   if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "a maximum projection");
-  hl_pool_run(pool, of->tiles, clear_tile, maximum);
+  hl_pool_run(pool, of->picture.tiles, clear_tile, maximum);
   size_t rank = 0;
   for (int i = 0; i < of->volumes.count; i++)
     if (of->volumes.list[i].visible)

@@ -53,8 +53,9 @@ static hl_status add_surfaces(hl_renderer *renderer, const framed_scene *framed,
   if (status == HL_OK)
     status = hl_surfaces_update(renderer->context, renderer->pool, scene, &renderer->cache.surfaces, error);
   if (status != HL_OK || scene->mesh_count == 0) return status;
-  for (size_t i = 0; i < scene->mesh_count; i++, frame->point_count += 8)
-    hl_surface_corners(&renderer->cache.surfaces.meshes[i], frame->voxel, frame->points + frame->point_count);
+  for (size_t i = 0; i < scene->mesh_count; i++, frame->content.point_count += 8)
+    hl_surface_corners(&renderer->cache.surfaces.meshes[i], frame->content.voxel,
+                       frame->content.points + frame->content.point_count);
   frame->surfaces = &renderer->cache.surfaces;
   frame->contact = &renderer->cache.contact;
   return HL_OK;
@@ -94,7 +95,8 @@ static int attenuation_channels(const frame_plan *plan) {
   for (int i = 0; i < plan->light_count; i++)
     if (plan->lights[i].has_colored_image) return 3;
   for (int i = 0; i < plan->volumes.count; i++)
-    if (plan->volumes.list[i].casts_shadow && !hl_is_grey(plan->volumes.list[i].attenuation_color)) return 3;
+    if (plan->volumes.list[i].casts_shadow && !hl_is_grey(plan->volumes.list[i].look.attenuation_color))
+      return 3;
   for (int i = 0; i < plan->mesh_count; i++)
     if (plan->meshes[i].look.casts_shadow && !hl_is_grey(plan->meshes[i].look.attenuation_color)) return 3;
   return 1;
@@ -130,8 +132,8 @@ static hl_status check_sky_room(void *data, uint64_t bytes, hl_error *error) {
 
 static hl_status update_sky(hl_renderer *renderer, const hl_scene_description *scene, const frame_plan *plan,
                             uint64_t mark, hl_error *error) {
-  const frame_sky of = {scene, renderer->cache.prepared, plan->volumes.grids, &plan->frame,
-                        mark,  plan->share.exchange};
+  const frame_sky of = {scene, renderer->cache.prepared,    plan->volumes.grids, &plan->frame,
+                        mark,  plan->picture.share.exchange};
   const hot_functions *hot = hl_hot_functions(renderer->context->options.instruction_set);
   return hl_frame_sky_update(renderer->context, renderer->pool, hot, &of,
                              &(sky_room){check_sky_room, renderer}, &renderer->cache.sky, error);
@@ -166,11 +168,11 @@ static void place_volumes(const hl_renderer *renderer, const framed_scene *frame
     volumes->list[i].version = prepared->version;
     volumes->list[i].tables_version = prepared->tables_version;
     if (volumes->grids[i].relevant_count == 0) continue;
-    hl_frame_content(&volumes->grids[i], frame->points + frame->point_count);
-    frame->point_count += 8;
+    hl_frame_content(&volumes->grids[i], frame->content.points + frame->content.point_count);
+    frame->content.point_count += 8;
   }
   open_faces(scene, volumes->grids);
-  frame->voxel = hl_scene_smallest_edge(scene);
+  frame->content.voxel = hl_scene_smallest_edge(scene);
 }
 
 /* Places the eye and the lights in frame space. */
@@ -181,7 +183,7 @@ static hl_status place_eye_and_lights(const framed_scene *framed, frame_plan *pl
   if (status != HL_OK) return status;
   frame->spacing = fmin(scene->render.sheet_spacing,
                         hl_is_maximum(&scene->render) ? MAXIMUM_SPACING : GRID_MARGIN) *
-                   frame->voxel; /* at most the margin by which volumes continue beyond their faces */
+                   frame->content.voxel; /* at most the margin by which volumes continue beyond their faces */
   hl_frame_set_up_lights(frame, framed);
   for (int i = 0; i < plan->volumes.count; i++)
     if (rays_start_inside(frame, &plan->volumes.grids[i])) plan->volumes.grids[i].cut = true;
@@ -194,12 +196,13 @@ static hl_status share_picture(hl_renderer *renderer, frame_plan *plan, hl_error
   const share_content content = {&plan->frame, plan->lights, plan->volumes.grids, plan->volumes.count,
                                  &plan->sweeps.sheets[0].sheets};
   hl_layout counted = {0};
-  plan->share = (picture_share){.part = renderer->part,
-                                .parts = renderer->parts,
-                                .exchange = renderer->exchange.gather != NULL ? &renderer->exchange : NULL};
-  hl_share_count(plan->width, plan->height, renderer->parts, &counted);
+  plan->picture.share = (picture_share){
+      .part = renderer->part,
+      .parts = renderer->parts,
+      .exchange = renderer->exchange.gather != NULL ? &renderer->exchange : NULL};
+  hl_share_count(plan->picture.width, plan->picture.height, renderer->parts, &counted);
   hl_status status = hl_renderer_check_room(renderer, counted.most, error);
-  return status == HL_OK ? hl_share_create(renderer->context, &content, &plan->share, error) : status;
+  return status == HL_OK ? hl_share_create(renderer->context, &content, &plan->picture.share, error) : status;
 }
 
 /* Finds the light that does not travel along the sheets: light scattered more than once, and the sky's light.
@@ -220,7 +223,7 @@ static hl_status find_fields(hl_renderer *renderer, const framed_scene *framed, 
 hl_status hl_plan_frame(hl_renderer *renderer, const framed_scene *framed, const frame_request *request,
                         frame_plan *plan, hl_error *error) {
   hl_context *context = renderer->context;
-  plan->layers = request->layers;
+  plan->picture.layers = request->layers;
   hl_status status = hl_frame_plan_create(context, framed, plan, error);
   if (status != HL_OK) return status;
   place_volumes(renderer, framed, plan);

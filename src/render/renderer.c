@@ -176,7 +176,7 @@ static hl_status prepare_scene(hl_renderer *renderer, const frame_request *reque
 /* Runs all sweeps of a plan by a back end that is ready. */
 static hl_status run_plan(const backend *backend, hl_renderer *renderer, const frame_plan *plan,
                           frame_target *target, hl_render_statistics *statistics, hl_error *error) {
-  const int sweeps = plan->frame.point_count > 0 ? plan->sweeps.count : 0;
+  const int sweeps = plan->frame.content.point_count > 0 ? plan->sweeps.count : 0;
   hl_status status = HL_OK;
   for (int s = 0; s < sweeps && status == HL_OK; s++)
     status = backend->run(renderer, plan, s, target, statistics, error);

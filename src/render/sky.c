@@ -86,7 +86,7 @@ hl_status hl_frame_sky_update(hl_context *context, hl_pool *pool, const hot_func
   const hl_scene_description *scene = of->scene;
   bool same = false;
   if (scene->sky.type == HL_SKY_NONE || hl_is_maximum(&scene->render) || !hl_is_lit(scene) ||
-      of->frame->point_count == 0) {
+      of->frame->content.point_count == 0) {
     hl_sky_release(context, field);
     return HL_OK;
   }
@@ -107,9 +107,10 @@ hl_status hl_frame_sky_update(hl_context *context, hl_pool *pool, const hot_func
     surfaces[m] = surface_of(all, &all->meshes[m]);
   sky_content content = {
       .sky = &scene->sky,
-      .content = {matter, (int)scene->volume_count, surfaces, surface_count, of->frame->voxel},
+      .content = {matter, (int)scene->volume_count, surfaces, surface_count, of->frame->content.voxel},
       .colors = (const double(*)[3])colors,
-      .lattice = hl_field_lattice(of->frame->points, of->frame->point_count, of->frame->voxel, MOST_CELLS),
+      .lattice = hl_field_lattice(of->frame->content.points, of->frame->content.point_count,
+                                  of->frame->content.voxel, MOST_CELLS),
       .channels = channels_of(scene),
       .exchange = of->exchange};
   if (status == HL_OK) status = make(context, pool, hot, &content, room, field, error);

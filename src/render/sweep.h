@@ -151,8 +151,15 @@ typedef struct sweep_target {
  * search lights nothing (hidden.c). */
 typedef enum sweep_purpose { SWEEP_PICTURE, SWEEP_SEARCH } sweep_purpose;
 
+/* The purpose of a sweep, and what it does with a tile. */
+typedef struct sweep_act {
+  sweep_purpose purpose;
+  tile_action *run; /* steps 12 to 16, or what replaces them */
+  void *data;       /* of `run`; the caller's */
+} sweep_act;
+
 struct sweep {
-  /* hl_sweep_set_up() sets this member and the next ones, down to tiles_x */
+  /* hl_sweep_set_up() sets this member and the next ones, down to `act` */
   const frame_plan *frame_plan;
   const sweep_plan *plan;
   const sweep_sheets *geometry; /* the plan's */
@@ -160,12 +167,7 @@ struct sweep {
   const picture_share *share;   /* the part of the picture that this sweep shades */
   sheet_content content;
   sweep_target target;
-  sweep_purpose purpose;
-  tile_action *act; /* the tile action: steps 12 to 16, or the action that replaces them */
-  void *action;     /* data of act; the caller's */
-  int channels;     /* number of channels of light attenuation: 1 or 3 */
-  size_t tiles;     /* number of tiles of the picture */
-  int tiles_x;
+  sweep_act act;
   /* the views */
   view_sheets image;
   sweep_light lights[FRAME_LIGHTS];
@@ -233,7 +235,11 @@ void hl_sweep_attenuate(sweep *sweep, int light, const attenuate_job *job, size_
                         int worker); /* steps 7 to 11 and 17 */
 
 /* A tile's column and row. */
-static inline int hl_tile_x(const sweep *sweep, size_t tile) { return (int)(tile % (size_t)sweep->tiles_x); }
-static inline int hl_tile_y(const sweep *sweep, size_t tile) { return (int)(tile / (size_t)sweep->tiles_x); }
+static inline int hl_tile_x(const sweep *sweep, size_t tile) {
+  return (int)(tile % (size_t)sweep->frame_plan->picture.tiles_x);
+}
+static inline int hl_tile_y(const sweep *sweep, size_t tile) {
+  return (int)(tile / (size_t)sweep->frame_plan->picture.tiles_x);
+}
 
 #endif

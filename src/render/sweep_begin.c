@@ -15,7 +15,7 @@
 
 /* Blocks outside the picture and blocks of other parts are closed from the start. */
 void hl_sweep_open(sweep *sweep) {
-  for (size_t tile = 0; tile < sweep->tiles; tile++) {
+  for (size_t tile = 0; tile < sweep->frame_plan->picture.tiles; tile++) {
     uint32_t open = 0;
     int x0 = hl_tile_x(sweep, tile) * TILE, y0 = hl_tile_y(sweep, tile) * TILE;
     for (int block = 0; block < TILE_BLOCKS; block++) {
@@ -64,26 +64,24 @@ static void choose_stretch(sweep *sweep) {
 void hl_sweep_set_up(sweep *sweep, const sweep_means *means, const frame_plan *frame_plan,
                      const sweep_plan *plan, const sweep_target *target) {
   const plan_volumes *volumes = &frame_plan->volumes;
-  *sweep = (struct sweep){.frame_plan = frame_plan,
-                          .plan = plan,
-                          .geometry = plan->geometry,
-                          .frame = &frame_plan->frame,
-                          .share = &frame_plan->share,
-                          .content = {.context = means->context,
-                                      .pool = means->pool,
-                                      .reserve = means->reserve,
-                                      .hot = means->hot,
-                                      .sheets = &plan->geometry->sheets,
-                                      .volumes = volumes->list,
-                                      .grids = volumes->grids,
-                                      .volume_count = volumes->count,
-                                      .kernel = volumes->kernel,
-                                      .splat = volumes->splat},
-                          .target = *target,
-                          .act = hl_is_maximum(&frame_plan->settings) ? hl_maximum_tile : hl_light_tile,
-                          .channels = frame_plan->channels,
-                          .tiles = frame_plan->tiles,
-                          .tiles_x = frame_plan->tiles_x};
+  *sweep = (struct sweep){
+      .frame_plan = frame_plan,
+      .plan = plan,
+      .geometry = plan->geometry,
+      .frame = &frame_plan->frame,
+      .share = &frame_plan->picture.share,
+      .content = {.context = means->context,
+                  .pool = means->pool,
+                  .reserve = means->reserve,
+                  .hot = means->hot,
+                  .sheets = &plan->geometry->sheets,
+                  .volumes = volumes->list,
+                  .grids = volumes->grids,
+                  .volume_count = volumes->count,
+                  .kernel = volumes->kernel,
+                  .splat = volumes->splat},
+      .target = *target,
+      .act = {.run = hl_is_maximum(&frame_plan->settings) ? hl_maximum_tile : hl_light_tile}};
   for (int i = 0; i < plan->geometry->light_count; i++) {
     sweep->lights[i] = (sweep_light){.source = plan->lights[i].source, .shadow = plan->lights[i].shadow};
     sweep->lights[i].shadow.state = NULL; /* the plan has this state */
@@ -110,7 +108,7 @@ static void count_light(sweep *sweep, int index, sweeps_memory *memory) {
 
 /* The number of tiles of the picture and of all lights that are planned and cast shadows. */
 static size_t count_tasks(const sweep *sweep) {
-  size_t tasks = sweep->tiles;
+  size_t tasks = sweep->frame_plan->picture.tiles;
   for (int i = 0; i < sweep->geometry->light_count; i++)
     if (sweep->lights[i].shadow.method != NULL) tasks += hl_view_tiles(&sweep->lights[i].shadow.plan.view);
   return tasks;
@@ -119,7 +117,7 @@ static size_t count_tasks(const sweep *sweep) {
 static void lay_out(sweep *sweep, hl_layout *layout) {
   size_t threads = (size_t)hl_pool_threads(sweep->content.pool);
   size_t volumes = (size_t)sweep->content.volume_count, places = threads * volumes;
-  sweep->arrays.open = hl_layout_take(layout, sweep->tiles, sizeof *sweep->arrays.open);
+  sweep->arrays.open = hl_layout_take(layout, sweep->frame_plan->picture.tiles, sizeof *sweep->arrays.open);
   sweep->arrays.tasks = hl_layout_take(layout, count_tasks(sweep), sizeof *sweep->arrays.tasks);
   size_t stretch = (size_t)sweep->content.stretch, lights = (size_t)sweep->geometry->light_count;
   sweep->arrays.slab_shades = hl_layout_take(layout, stretch, sizeof *sweep->arrays.slab_shades);
@@ -136,7 +134,7 @@ void hl_sweep_count_memory(sweep *sweep, sweeps_memory *memory) {
   hl_layout *passing = &memory->passing;
   hl_view_sheets_count(&sweep->content, &sweep->frame->eye, PIXEL_TO_SPARE, passing);
   if (sweep->geometry->back_to_front)
-    hl_layout_take(passing, sweep->tiles * TILE_BLOCKS, sizeof *sweep->target.shown_from);
+    hl_layout_take(passing, sweep->frame_plan->picture.tiles * TILE_BLOCKS, sizeof *sweep->target.shown_from);
   for (int i = 0; i < sweep->geometry->light_count; i++) count_light(sweep, i, memory);
   lay_out(sweep, passing);
   hl_sweep_layers_count(sweep, passing);
@@ -151,7 +149,8 @@ static hl_status begin_light(sweep *sweep, int index, shadow_buffer *buffer, sha
                              hl_error *error) {
   const frame *frame = sweep->frame;
   const sheet_content *content = &sweep->content;
-  const texture_use use = {frame->points, frame->point_count, frame->middle, frame->middle_pixel};
+  const texture_use use = {frame->content.points, frame->content.point_count, frame->content.middle,
+                           frame->middle_pixel};
   const light_shadow *planned = &sweep->plan->lights[index].shadow;
   const shadow_means means = {content->pool, content->reserve, content->hot->shadow};
   sweep_light *light = &sweep->lights[index];
@@ -197,9 +196,10 @@ static double least_climb(const sweep *sweep, const light_source *source) {
   vec3 normal = sweep->geometry->sheets.normal;
   if (source->parallel) return vec3_dot(source->direction, normal);
   double least = 1;
-  for (int i = 0; i < sweep->frame->point_count; i++)
-    least = fmin(least,
-                 vec3_dot(vec3_normalise(vec3_subtract(sweep->frame->points[i], source->position)), normal));
+  for (int i = 0; i < sweep->frame->content.point_count; i++)
+    least = fmin(
+        least,
+        vec3_dot(vec3_normalise(vec3_subtract(sweep->frame->content.points[i], source->position)), normal));
   return least;
 }
 
@@ -283,7 +283,7 @@ void hl_sweep_count(const sweep *sweep, hl_render_statistics *statistics) {
     light += sweep->arrays.counts[i].seconds_light;
     composite += sweep->arrays.counts[i].seconds_composite;
   }
-  if (sweep->purpose == SWEEP_PICTURE) statistics->sheets += sweep->geometry->sheets.count;
+  if (sweep->act.purpose == SWEEP_PICTURE) statistics->sheets += sweep->geometry->sheets.count;
   statistics->seconds_sort += sweep->loop.times.seconds_sort;
   double all = fill + shade + light, share = all > 0 ? sweep->loop.times.seconds_tiles / all : 0;
   statistics->seconds_fill_image += fill * share;

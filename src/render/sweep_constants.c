@@ -58,7 +58,7 @@ static void set_up_cuts(const plan_volumes *volumes, sweep_constants *constants)
     shade->cuts = cut;
     shade->cut_count = (int)grid->cut_count;
     shade->light_cut_count = grid->cut_casts_shadow ? 0 : shade->cut_count;
-    shade->cut_shading = (int)volumes->list[g].cut_shading;
+    shade->cut_shading = (int)volumes->list[g].look.cut_shading;
     for (size_t i = 0; i < grid->cut_count; i++) set_up_cut(grid, &grid->cuts[i], cut++);
   }
 }
@@ -78,24 +78,24 @@ static void find_box_faces(const grid *grid, shade_volume *shade) {
 /* A volume's material and the numbers that follow from it. */
 static shade_volume material_of(const frame_volume *volume, const plan_fields *fields) {
   shade_volume shade = {
-      .phong = volume->shading == HL_SHADING_PHONG,
-      .lit = volume->shading != HL_SHADING_FLAT,
+      .phong = volume->look.shading == HL_SHADING_PHONG,
+      .lit = volume->look.shading != HL_SHADING_FLAT,
       .visible = volume->visible,
       .receives_shadow = volume->receives_shadow,
-      .ambient = (float)volume->material.ambient,
-      .diffuse = (float)volume->material.diffuse,
-      .specular = (float)volume->material.specular,
-      .shininess = (float)volume->material.shininess,
-      .anisotropy = (float)volume->anisotropy,
-      .phase_once = hl_phase_table(fields->phases, volume->anisotropy),
-      .phase_twice = hl_phase_table(fields->phases, volume->anisotropy * volume->anisotropy),
-      .multiple = volume->multiple_scattering};
+      .ambient = (float)volume->look.material.ambient,
+      .diffuse = (float)volume->look.material.diffuse,
+      .specular = (float)volume->look.material.specular,
+      .shininess = (float)volume->look.material.shininess,
+      .anisotropy = (float)volume->look.anisotropy,
+      .phase_once = hl_phase_table(fields->phases, volume->look.anisotropy),
+      .phase_twice = hl_phase_table(fields->phases, volume->look.anisotropy * volume->look.anisotropy),
+      .multiple = volume->look.multiple_scattering};
   for (int c = 0; c < HL_CHANNELS; c++) {
-    shade.albedo[c] = (float)volume->albedo[c];
-    shade.absorbs = shade.absorbs || volume->albedo[c] != 1;
-    shade.cast[c] = volume->casts_shadow ? (float)volume->attenuation_color[c] : 0;
+    shade.albedo[c] = (float)volume->look.albedo[c];
+    shade.absorbs = shade.absorbs || volume->look.albedo[c] != 1;
+    shade.cast[c] = volume->casts_shadow ? (float)volume->look.attenuation_color[c] : 0;
   }
-  shade.emission = shade.lit ? (float)volume->material.emission : 1;
+  shade.emission = shade.lit ? (float)volume->look.material.emission : 1;
   if (!shade.lit) shade.ambient = shade.receives_shadow = 0;
   return shade;
 }
@@ -131,9 +131,9 @@ static void set_up_volumes(const frame_plan *plan, const maximum_values *maximum
       shade->shown = (const float(*)[4])(maximum->shown + (size_t)shade->rank * (CLASSIFIER_ENTRIES + 2));
     }
     place_volume(grid, shade);
-    if (of->cut_shading != HL_CUT_SHADING_GRADIENT) find_box_faces(grid, shade);
+    if (of->look.cut_shading != HL_CUT_SHADING_GRADIENT) find_box_faces(grid, shade);
     shade->mask_faces = shade->phong && shade->classifier->mask.slopes != NULL &&
-                        of->cut_shading == HL_CUT_SHADING_FACE;
+                        of->look.cut_shading == HL_CUT_SHADING_FACE;
   }
   set_up_cuts(volumes, constants);
 }
@@ -151,7 +151,7 @@ static void set_up_light(const frame_plan *plan, const sweep_plan *sweep, int in
                          .sector = hl_sector_fraction(source->sectors, source->sector),
                          .number = index,
                          .parallel_row = source->parallel && whole->is_wide ? source->row : -1,
-                         .cone = hl_light_cone(source, plan->frame.middle, plan->frame.middle_pixel),
+                         .cone = hl_light_cone(source, plan->frame.content.middle, plan->frame.middle_pixel),
                          .nearest = plan->settings.shadow_lookup == HL_LOOKUP_NEAREST,
                          .cubic = from->shadow.plan.cubic};
   light->of_sky = (float)source->of_sky;

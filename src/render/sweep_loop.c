@@ -249,7 +249,7 @@ hl_status hl_sweep_run(sweep *sweep, hl_error *error) {
     }
     advance_lights(sweep, light);
     finish_picture(sweep);
-    if (sweep->purpose == SWEEP_PICTURE)
+    if (sweep->act.purpose == SWEEP_PICTURE)
       hl_progress(sweep->content.context, "render", (double)(picture.end - 1) / sheets);
     if (hl_pool_cancelled(sweep->content.pool))
       return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering");

@@ -130,7 +130,7 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, slab_place place, i
     volumes[count] = (attenuate_volume){
         .classifier = of->classifier,
         .blocks = slab.blocks,
-        .surface = of->shading == HL_SHADING_PHONG,
+        .surface = of->look.shading == HL_SHADING_PHONG,
         .voxel = sweep->constants.volumes[g].voxel,
         .before = slab.before,
         .density = slab.current,
@@ -142,7 +142,7 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, slab_place place, i
         .grid = &sweep->content.grids[g],
         .kernel = sweep->content.kernel,
         .to_index = sweep->constants.volumes[g].to_index};
-    for (int c = 0; c < HL_CHANNELS; c++) volumes[count].weight[c] = (float)of->attenuation_color[c];
+    for (int c = 0; c < HL_CHANNELS; c++) volumes[count].weight[c] = (float)of->look.attenuation_color[c];
     count++;
   }
   return count;

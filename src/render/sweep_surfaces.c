@@ -34,7 +34,7 @@ static hl_status make_fragments(sweep *sweep, const view *view, const sweep_ligh
 
 /* The number of arrays in passing for a thread: one for each light and channel. */
 static size_t passings(const sweep *sweep) {
-  return (size_t)sweep->geometry->light_count * (size_t)sweep->channels;
+  return (size_t)sweep->geometry->light_count * (size_t)sweep->frame_plan->channels;
 }
 
 /* Lays out the memory of each thread for tiles with fragments. */
@@ -76,7 +76,7 @@ bool hl_sweep_has_unseen(const sweep *sweep) {
 }
 
 hl_status hl_sweep_surfaces_begin(sweep *sweep, hl_error *error) {
-  if (sweep->frame->surfaces == NULL || sweep->purpose != SWEEP_PICTURE) return HL_OK;
+  if (sweep->frame->surfaces == NULL || sweep->act.purpose != SWEEP_PICTURE) return HL_OK;
   surface_state *state = &sweep->surfaces;
   hl_status status = make_room(sweep, error);
   if (status == HL_OK)
@@ -89,7 +89,7 @@ hl_status hl_sweep_surfaces_begin(sweep *sweep, hl_error *error) {
 hl_status hl_sweep_surfaces_begin_lights(sweep *sweep, hl_error *error) {
   surface_state *state = &sweep->surfaces;
   hl_status status = HL_OK;
-  if (sweep->frame->surfaces == NULL || sweep->purpose != SWEEP_PICTURE) return HL_OK;
+  if (sweep->frame->surfaces == NULL || sweep->act.purpose != SWEEP_PICTURE) return HL_OK;
   for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++) {
     sweep_light *light = &sweep->lights[i];
     if (light->shadow.method == NULL) continue;
@@ -173,17 +173,17 @@ static uint32_t act_behind(const sweep *sweep, const tile_slab *slab, slab_piece
   const fragments *unseen = &sweep->surfaces.unseen;
   near_fragments near = {.seen = hl_fragments_reached(&sweep->surfaces.image, slab->tile, first)};
   if (unseen->of != NULL) near.unseen = hl_fragments_reached(unseen, slab->tile, first);
-  if (!hl_near_surfaces_find(sweep, slab, &near, piece, passing)) return sweep->act(sweep, slab);
+  if (!hl_near_surfaces_find(sweep, slab, &near, piece, passing)) return sweep->act.run(sweep, slab);
   shade_job job = *slab->job;
   tile_slab behind = *slab;
   job.near_passing = (const float(*)[TILE_PIXELS])passing;
   job.near_u = (float)(slab->x * TILE), job.near_v = (float)(slab->y * TILE);
   behind.job = &job;
-  return sweep->act(sweep, &behind);
+  return sweep->act.run(sweep, &behind);
 }
 
 uint32_t hl_sweep_surfaces_beside(const sweep *sweep, const tile_slab *slab) {
-  if (sweep->surfaces.image.of == NULL) return sweep->act(sweep, slab);
+  if (sweep->surfaces.image.of == NULL) return sweep->act.run(sweep, slab);
   return act_behind(sweep, slab, (slab_piece){NULL, NULL});
 }
 

@@ -7,14 +7,15 @@
 
 /* ---- memory ---- */
 
-static size_t floats_of_sweep(const frame_plan *plan) { return plan->tiles * TILE_PIXELS * 4; }
+static size_t floats_of_sweep(const frame_plan *plan) { return plan->picture.tiles * TILE_PIXELS * 4; }
 
 /* Lays out the target's own pixels, or rows of tiles beside the caller's pixels. */
 static void lay_out_pixels(const hl_renderer *renderer, const frame_plan *plan, frame_target *target,
                            hl_layout *layout) {
   const size_t floats = TILE_PIXELS * 4 * sizeof(float), threads = (size_t)hl_pool_threads(renderer->pool);
-  if (target->in_place) target->tile_rows = hl_layout_take(layout, threads * (size_t)plan->tiles_x, floats);
-  else target->pixels = hl_layout_take(layout, (size_t)plan->sweeps.count * plan->tiles, floats);
+  if (target->in_place)
+    target->tile_rows = hl_layout_take(layout, threads * (size_t)plan->picture.tiles_x, floats);
+  else target->pixels = hl_layout_take(layout, (size_t)plan->sweeps.count * plan->picture.tiles, floats);
 }
 
 static hl_status take_pixels(hl_renderer *renderer, const frame_request *request, const frame_plan *plan,
@@ -32,8 +33,8 @@ static hl_status take_pixels(hl_renderer *renderer, const frame_request *request
 /* Whether sweeps composite into the caller's pixels. They do where one sweep fills these pixels exactly, in
  * whole tiles. */
 static bool is_in_place(const frame_request *request, const frame_plan *plan) {
-  const bool whole = plan->width % TILE == 0 && plan->height % TILE == 0 &&
-                     request->row_stride == 4 * (size_t)plan->width;
+  const bool whole = plan->picture.width % TILE == 0 && plan->picture.height % TILE == 0 &&
+                     request->row_stride == 4 * (size_t)plan->picture.width;
   return whole && plan->sweeps.count == 1 && plan->frame.oversampling == 1 &&
          (uintptr_t)request->pixels % 64 == 0;
 }
@@ -44,7 +45,7 @@ hl_status hl_frame_target_create(hl_renderer *renderer, const frame_request *req
   hl_layout counted = {0};
   target->in_place = is_in_place(request, plan);
   lay_out_pixels(renderer, plan, target, &counted);
-  hl_layer_pixels_count(plan->layers, &plan->frame, plan->tiles, &counted);
+  hl_layer_pixels_count(plan->picture.layers, &plan->frame, plan->picture.tiles, &counted);
   hl_maximum_count(plan, &counted);
   /* a block that one of several sweeps returns rarely fits the next sweep */
   reserve->keeps = plan->sweeps.count == 1;
@@ -53,8 +54,8 @@ hl_status hl_frame_target_create(hl_renderer *renderer, const frame_request *req
   if (status == HL_OK) status = take_pixels(renderer, request, plan, target, error);
   if (status != HL_OK) return status;
   hl_frame_target_clear(renderer, plan, target);
-  status = hl_layer_pixels_create(renderer->context, renderer->pool, plan->layers, &plan->frame, plan->tiles,
-                                  &target->layers, error);
+  status = hl_layer_pixels_create(renderer->context, renderer->pool, plan->picture.layers, &plan->frame,
+                                  plan->picture.tiles, &target->layers, error);
   if (status != HL_OK) return status;
   return hl_maximum_create(renderer->context, renderer->pool, plan, &target->maximum, error);
 }
@@ -82,21 +83,21 @@ static void write_picture(const frame_target *target, const frame_request *reque
                           hl_pool *pool) {
   const picture picture = {.tiles = target->pixels,
                            .sweeps = plan->sweeps.count,
-                           .tiles_x = (size_t)plan->tiles_x,
-                           .tiles_of_sweep = plan->tiles,
+                           .tiles_x = (size_t)plan->picture.tiles_x,
+                           .tiles_of_sweep = plan->picture.tiles,
                            .oversampling = plan->frame.oversampling,
                            .pixels = request->pixels,
                            .row_stride = request->row_stride,
-                           .width = plan->width,
-                           .height = plan->height};
+                           .width = plan->picture.width,
+                           .height = plan->picture.height};
   if (target->in_place) hl_picture_reorder(&picture, target->tile_rows, pool);
   else hl_picture_write(&picture, pool);
 }
 
 void hl_frame_target_write(hl_renderer *renderer, const frame_request *request, const frame_plan *plan,
                            frame_target *target) {
-  const layer_grid grid = {plan->width, plan->height, plan->frame.oversampling, (size_t)plan->tiles_x,
-                           (float)plan->unit};
+  const layer_grid grid = {plan->picture.width, plan->picture.height, plan->frame.oversampling,
+                           (size_t)plan->picture.tiles_x, (float)plan->unit};
   if (target->maximum.values != NULL)
     hl_maximum_color(&target->maximum, plan, renderer->pool, target->pixels);
   write_picture(target, request, plan, renderer->pool);

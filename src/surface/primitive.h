@@ -24,6 +24,7 @@ typedef struct hull_ball {
 } hull_ball;
 
 typedef struct primitive_kind {
+  const char *noun; /* what people call several of them */
   /* Whether primitives are flat between three corners, which all->triangles lists: they have one normal and
    * one plane, and clusters of them keep a copy of their vertices. */
   bool has_corners;

@@ -89,7 +89,8 @@ static bool parts(const surfaces *all, uint32_t primitive, const hull_ball *ball
   return lowest < (double)sphere[3] - least && farthest > (double)sphere[3] + least;
 }
 
-const primitive_kind hl_primitive_sphere = {.has_corners = false,
+const primitive_kind hl_primitive_sphere = {.noun = "spheres",
+                                            .has_corners = false,
                                             .raster = &hl_raster_sphere,
                                             .first = first_of,
                                             .count = count_of,

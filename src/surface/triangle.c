@@ -73,7 +73,8 @@ static bool parts(const surfaces *all, uint32_t primitive, const hull_ball *ball
   return lowest < -least && highest > least;
 }
 
-const primitive_kind hl_primitive_triangle = {.has_corners = true,
+const primitive_kind hl_primitive_triangle = {.noun = "triangles",
+                                              .has_corners = true,
                                               .raster = &hl_raster_triangle,
                                               .first = first_of,
                                               .count = count_of,

@@ -11,7 +11,9 @@
 
 /* The buffer is late by at most CLOSE times the sum of its pixel and the distance of sheets; its pixel is at
  * most three quarters of a voxel. The factor of two is for slanted rays. */
-double hl_contact_distance(const frame *frame) { return 2 * CLOSE * (0.75 * frame->voxel + frame->spacing); }
+double hl_contact_distance(const frame *frame) {
+  return 2 * CLOSE * (0.75 * frame->content.voxel + frame->spacing);
+}
 
 _Static_assert(LIGHT_POINTS_SIDE *LIGHT_POINTS_SIDE <= MOST_BUNDLED, "rays of a sample are one bundle");
 
@@ -290,7 +292,7 @@ typedef struct contact_search {
 
 /* Lowers the fraction of one light that passes to a sample. */
 static void set_passing(contact_search *search, int light, int sample, const double parts[HL_CHANNELS]) {
-  const int channels = search->sweep->channels;
+  const int channels = search->sweep->frame_plan->channels;
   for (int row = 0; row < search->sweep->geometry->light_count * channels && !search->found; row++)
     for (int k = 0; k < SURFACE_SAMPLES; k++) search->passing[row][k] = 1;
   search->found = true;

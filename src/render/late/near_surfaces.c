@@ -59,8 +59,8 @@ static void take(const sweep *sweep, const near_sample *sample, int light, doubl
   const fragment *f = sample->fragment;
   const double *color = sweep->frame->surfaces->meshes[f->mesh].look.attenuation_color;
   int at = hl_pixel_row(f->pixel) * TILE + hl_pixel_column(f->pixel);
-  for (int c = 0; c < sweep->channels; c++)
-    passing[light * sweep->channels + c][at] *= 1 - f->opacity * (float)(color[c] * part);
+  for (int c = 0; c < sweep->frame_plan->channels; c++)
+    passing[light * sweep->frame_plan->channels + c][at] *= 1 - f->opacity * (float)(color[c] * part);
 }
 
 /* Whether some volume may show something in a pixel's slab. */
@@ -102,7 +102,7 @@ static bool find_near(const sweep *sweep, const tile_slab *slab, fragment_range 
                         ? 0
                         : part_missed(sweep, light, &sample, job->sheet);
       if (part == 0) continue;
-      if (!any) fill_with_ones(passing, sweep->geometry->light_count * sweep->channels);
+      if (!any) fill_with_ones(passing, sweep->geometry->light_count * sweep->frame_plan->channels);
       any = true;
       take(sweep, &sample, light, part, passing);
     }
