@@ -48,7 +48,7 @@ typedef struct figure_job {
 
 /* Gives a panel the width of its place, in pixels, and the shape that it asks for. */
 static void size_panel(const figure_page *page, figure_panel *panel) {
-  int width = (int)fmax(1, round(panel->width / MILLIMETRES_PER_INCH * page->pixels_per_inch));
+  int width = (int)fmax(1, round(panel->place.width / MILLIMETRES_PER_INCH * page->pixels_per_inch));
   hl_scene_description shape;
   hl_scene_description_defaults(&shape);
   if (panel->scene != NULL) shape = *hl_scene_describe(panel->scene);
@@ -83,7 +83,7 @@ static int share(figure_job *job, figure_panel *panel) {
   const figure_page *page = &job->page;
   if (panel == page->panels || (!page->share_camera && !page->share_light && !page->share_function))
     return EXIT_CODE_OK;
-  if (panel->inside >= 0 && page->share_camera) return EXIT_CODE_OK; /* an inset has a camera of its own */
+  if (panel->inset.of >= 0 && page->share_camera) return EXIT_CODE_OK; /* an inset has a camera of its own */
   hl_scene_description description = *hl_scene_describe(panel->scene);
   hl_scene_volume *volumes = calloc(description.volume_count + 1, sizeof *volumes);
   if (volumes == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
@@ -113,7 +113,7 @@ static int read_options(figure_job *job, figure_panel *panel) {
   panel->values[RENDER_QUIET] = job->values[FIGURE_QUIET];
   exit_code = render_check_options(panel->values);
   if (exit_code == EXIT_CODE_OK) exit_code = render_overlay_read(panel->values, &panel->overlay);
-  if (exit_code == EXIT_CODE_OK && panel->overlay.overlay.scale_bar && panel->inside >= 0 &&
+  if (exit_code == EXIT_CODE_OK && panel->overlay.overlay.scale_bar && panel->inset.of >= 0 &&
       panel->values[RENDER_UNIT].given)
     panel->overlay.overlay.world_unit = panel->values[RENDER_UNIT].text;
   return exit_code;
@@ -122,12 +122,13 @@ static int read_options(figure_job *job, figure_panel *panel) {
 /* Places panels row by row, as wide as the page has room for; insets are placed with their panels. */
 static void place_widths(figure_page *page) {
   int outer = 0;
-  for (int p = 0; p < page->count; p++) outer += page->panels[p].inside < 0;
+  for (int p = 0; p < page->count; p++) outer += page->panels[p].inset.of < 0;
   if (page->columns == 0 || page->columns > outer) page->columns = outer;
   for (int p = 0; p < page->count; p++) {
     figure_panel *panel = &page->panels[p];
-    if (panel->inside >= 0) panel->width = panel->part * page->panels[panel->inside].width;
-    else panel->width = (page->width - (page->columns - 1) * page->gap) / page->columns;
+    if (panel->inset.of >= 0)
+      panel->place.width = panel->inset.part * page->panels[panel->inset.of].place.width;
+    else panel->place.width = (page->width - (page->columns - 1) * page->gap) / page->columns;
   }
 }
 
@@ -138,12 +139,16 @@ static double place_panels(figure_page *page) {
   for (int p = 0; p < page->count; p++) {
     figure_panel *panel = &page->panels[p];
     const hl_scene_description *scene = hl_scene_describe(panel->scene);
-    panel->height = panel->width * scene->height / scene->width;
-    if (panel->inside >= 0) {
-      const figure_panel *outer = &page->panels[panel->inside];
-      double rim = 0.02 * outer->width;
-      panel->left = panel->right ? outer->left + outer->width - panel->width - rim : outer->left + rim;
-      panel->top = panel->lower ? outer->top + outer->height - panel->height - rim : outer->top + rim;
+    panel->place.height = panel->place.width * scene->height / scene->width;
+    if (panel->inset.of >= 0) {
+      const figure_panel *outer = &page->panels[panel->inset.of];
+      double rim = 0.02 * outer->place.width;
+      panel->place.left = panel->inset.right
+                              ? outer->place.left + outer->place.width - panel->place.width - rim
+                              : outer->place.left + rim;
+      panel->place.top = panel->inset.lower
+                             ? outer->place.top + outer->place.height - panel->place.height - rim
+                             : outer->place.top + rim;
       continue;
     }
     if (column == page->columns) {
@@ -151,9 +156,9 @@ static double place_panels(figure_page *page) {
       high = 0;
       column = 0;
     }
-    panel->left = column++ * (panel->width + page->gap);
-    panel->top = top;
-    high = fmax(high, panel->height);
+    panel->place.left = column++ * (panel->place.width + page->gap);
+    panel->place.top = top;
+    high = fmax(high, panel->place.height);
   }
   return top + high;
 }
@@ -192,11 +197,11 @@ static int make_figure(figure_job *job, double height, hl_figure *figure, hl_fig
     const figure_panel *from = &page->panels[p];
     panels[p] = (hl_figure_panel){.image = from->image,
                                   .scene = from->scene,
-                                  .left = from->left,
-                                  .top = from->top,
-                                  .width = from->width,
-                                  .height = from->height,
-                                  .frame = from->inside >= 0,
+                                  .left = from->place.left,
+                                  .top = from->place.top,
+                                  .width = from->place.width,
+                                  .height = from->place.height,
+                                  .frame = from->inset.of >= 0,
                                   .overlay = from->overlay.overlay};
     panels[p].overlay.letter = from->letter;
   }

@@ -187,8 +187,8 @@ static bool read_length(const json_t *value, double *millimetres) {
 
 static int read_corner(const page_reading *reading, figure_panel *panel, const json_t *inset) {
   const json_t *part = json_object_get(inset, "part"), *corner = json_object_get(inset, "corner");
-  panel->part = part == NULL ? 0.35 : json_number_value(part);
-  if (!(panel->part > 0.02 && panel->part < 1))
+  panel->inset.part = part == NULL ? 0.35 : json_number_value(part);
+  if (!(panel->inset.part > 0.02 && panel->inset.part < 1))
     return fail(EXIT_CODE_INPUT, "%s: \"part\": an inset's width over its panel's, from 0.02 to 1",
                 reading->path);
   const char *text = corner == NULL ? "lower right" : json_string_value(corner);
@@ -197,8 +197,8 @@ static int read_corner(const page_reading *reading, figure_panel *panel, const j
   if (!good)
     return fail(EXIT_CODE_INPUT, "%s: \"corner\": give upper left, upper right, lower left or lower right",
                 reading->path);
-  panel->lower = text[0] == 'l';
-  panel->right = text[6] == 'r';
+  panel->inset.lower = text[0] == 'l';
+  panel->inset.right = text[6] == 'r';
   return EXIT_CODE_OK;
 }
 
@@ -245,7 +245,7 @@ static int add_panel(page_reading *reading, const json_t *given, const json_t *b
                 (int)FIGURE_MOST_PANELS);
   const int index = page->count++;
   figure_panel *panel = &page->panels[index];
-  panel->inside = inside;
+  panel->inset.of = inside;
   json_t *keys = join(below, given);
   if (keys == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
   int exit_code = inside >= 0 ? read_corner(reading, panel, given) : EXIT_CODE_OK;
@@ -269,7 +269,7 @@ static int add_panel(page_reading *reading, const json_t *given, const json_t *b
 static int add_letters(const page_reading *reading, const json_t *letters) {
   figure_page *page = reading->page;
   int outer = 0;
-  for (int p = 0; p < page->count; p++) outer += page->panels[p].inside < 0;
+  for (int p = 0; p < page->count; p++) outer += page->panels[p].inset.of < 0;
   char letter[2] = "a";
   if (json_is_string(letters) && strlen(json_string_value(letters)) == 1)
     letter[0] = json_string_value(letters)[0];
@@ -277,7 +277,7 @@ static int add_letters(const page_reading *reading, const json_t *letters) {
     return fail(EXIT_CODE_INPUT, "%s: \"letters\": give the first one, as \"A\", or false", reading->path);
   if (json_is_false(letters) || (letters == NULL && outer < 2)) return EXIT_CODE_OK;
   for (int p = 0; p < page->count; p++) {
-    if (page->panels[p].inside >= 0) continue;
+    if (page->panels[p].inset.of >= 0) continue;
     if (page->panels[p].letter == NULL) page->panels[p].letter = strdup(letter);
     letter[0]++;
   }

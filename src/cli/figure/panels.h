@@ -7,6 +7,18 @@
 
 enum { FIGURE_MOST_PANELS = 64 };
 
+/* Where an inset lies in another panel. */
+typedef struct figure_inset {
+  int of;            /* number of the panel that holds the inset; -1: the panel is no inset */
+  double part;       /* the inset's width over that panel's width */
+  bool right, lower; /* the corner of that panel */
+} figure_inset;
+
+/* A rectangle of the page; millimetres from its top left corner. */
+typedef struct figure_place {
+  double left, top, width, height;
+} figure_place;
+
 /* A picture: the command line that `halflight render` would get. */
 typedef struct figure_panel {
   cli_value values[RENDER_OPTION_COUNT]; /* `words` owns their texts */
@@ -15,15 +27,13 @@ typedef struct figure_panel {
   char *operands[MAXIMUM_OPERANDS + 1]; /* null after the last */
   char *letter;                         /* owned; null: none */
   double aspect;                        /* width over height; 0: the scene's */
-  int inside;                           /* the panel that this one is an inset of; -1: none */
-  double part;                          /* an inset's width over that panel's */
-  bool right, lower;                    /* the inset's corner */
+  figure_inset inset;
   bool bare;
   char size_text[RENDER_SIZE_TEXT]; /* text of --size */
   hl_scene *scene;                  /* owned */
   hl_image *image;                  /* owned */
   cli_overlay overlay;
-  double left, top, width, height; /* millimetres */
+  figure_place place;
 } figure_panel;
 
 typedef struct figure_page {

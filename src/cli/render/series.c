@@ -167,14 +167,14 @@ static int make_picture(series_job *job, hl_renderer *renderer, int number) {
   double began = clock_seconds();
   picture_path(job, number, path, sizeof path);
   if (is_made(job, number, path)) {
-    job->done++;
+    job->progress.done++;
     return EXIT_CODE_OK;
   }
   int exit_code = read_files_protect(&job->host.read, path, job->files[number]);
   if (exit_code == EXIT_CODE_OK) exit_code = series_scene(job, number, &scene);
   if (exit_code != EXIT_CODE_OK) {
     bool bad = job->bad[number];
-    job->failed += bad;
+    job->progress.failed += bad;
     return bad ? EXIT_CODE_OK : exit_code;
   }
   hl_status status = move(job, number, &scene, &error);
@@ -184,9 +184,9 @@ static int make_picture(series_job *job, hl_renderer *renderer, int number) {
   hl_scene_release(scene);
   if (status == HL_ERROR_CANCELLED) return EXIT_CODE_INTERRUPTED;
   if (status != HL_OK) return host_fail(&job->host, PHASE_RUN, status, &error);
-  job->done++;
-  job->rendered += !there;
-  if (!there) job->seconds += clock_seconds() - began;
+  job->progress.done++;
+  job->progress.rendered += !there;
+  if (!there) job->progress.seconds += clock_seconds() - began;
   return EXIT_CODE_OK;
 }
 
@@ -196,11 +196,12 @@ static int make_pictures(series_job *job) {
   bool quiet = job->host.quiet;
   if (hl_renderer_create(job->host.context, &renderer, &error) != HL_OK)
     return host_fail(&job->host, PHASE_SETUP, HL_ERROR_MEMORY, &error);
-  job->wanted = (job->count - job->part + job->parts - 1) / job->parts;
+  job->progress.wanted = (job->count - job->part + job->parts - 1) / job->parts;
   job->host.quiet = true; /* warnings were told with the first file */
   int exit_code = EXIT_CODE_OK;
   for (int n = job->part; n < job->count && exit_code == EXIT_CODE_OK; n += job->parts) {
-    frames_draw_bar(&job->host, job->done + job->failed, job->wanted, job->rendered, job->seconds);
+    frames_draw_bar(&job->host, job->progress.done + job->progress.failed, job->progress.wanted,
+                    job->progress.rendered, job->progress.seconds);
     exit_code = host_interrupted() ? EXIT_CODE_INTERRUPTED : make_picture(job, renderer, n);
   }
   hl_renderer_destroy(renderer);
@@ -208,12 +209,13 @@ static int make_pictures(series_job *job) {
   job->host.quiet = quiet;
   if (exit_code == EXIT_CODE_INTERRUPTED)
     return fail(exit_code, "interrupted with %d of %d pictures: the same command goes on from there",
-                job->done, job->wanted);
+                job->progress.done, job->progress.wanted);
   if (exit_code == EXIT_CODE_OK && !quiet)
-    say("%d pictures, %d of them rendered now, in %.3g s", job->done, job->rendered, job->seconds);
-  if (exit_code == EXIT_CODE_OK && job->failed > 0)
-    return fail(EXIT_CODE_FAILURE, "%d of %d files could not be read, and have no picture", job->failed,
-                job->wanted);
+    say("%d pictures, %d of them rendered now, in %.3g s", job->progress.done, job->progress.rendered,
+        job->progress.seconds);
+  if (exit_code == EXIT_CODE_OK && job->progress.failed > 0)
+    return fail(EXIT_CODE_FAILURE, "%d of %d files could not be read, and have no picture",
+                job->progress.failed, job->progress.wanted);
   return exit_code;
 }
 

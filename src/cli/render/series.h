@@ -5,6 +5,15 @@
 #include "film/film.h"
 #include "render.h"
 
+/* How far a series has come. */
+typedef struct series_progress {
+  int wanted;     /* number of pictures of this part of the series */
+  int done;       /* number of pictures that are there */
+  int rendered;   /* number of pictures that this run has rendered */
+  int failed;     /* number of files that cannot be read */
+  double seconds; /* for the rendered pictures */
+} series_progress;
+
 typedef struct series_job {
   cli_host host;
   cli_value values[RENDER_OPTION_COUNT]; /* --range is set by --range-of-all */
@@ -15,14 +24,13 @@ typedef struct series_job {
   int mesh_count;
   bool *bad; /* owned; [count]: cannot be read, and was told */
   int count, part, parts;
-  int first;                          /* the number of the file that the scene is of */
-  int wanted, done, rendered, failed; /* pictures of this part; files of this part that cannot be read */
-  double seconds;                     /* for the rendered pictures */
-  hl_scene *scene;                    /* owned; of the first file that can be read */
-  char size_text[RENDER_SIZE_TEXT];   /* text of --size, where --width sets it */
-  cli_overlay overlay;                /* owned; drawn over each picture */
-  const film_options *motion;         /* borrowed; the keys that move numbers from picture to picture; null:
-                                       * nothing moves */
+  int first; /* the number of the file that the scene is of */
+  series_progress progress;
+  hl_scene *scene;                  /* owned; of the first file that can be read */
+  char size_text[RENDER_SIZE_TEXT]; /* text of --size, where --width sets it */
+  cli_overlay overlay;              /* owned; drawn over each picture */
+  const film_options *motion;       /* borrowed; the keys that move numbers from picture to picture; null:
+                                     * nothing moves */
 } series_job;
 
 /* True if the text has one "%d" or "%04d", and no other '%' but "%%". */
