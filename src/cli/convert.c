@@ -36,26 +36,28 @@ static const cli_option convert_options[CONVERT_OPTION_COUNT] = {
                       .kind = OPTION_TEXT,
                       .argument = "AXIS=A:B",
                       .group = "Options",
-                      .help = "keep voxels A to B - 1 along AXIS, i, j or k, from 0;\n"
-                              "repeatable (i=10:200, k=:50, j=20:)",
+                      .help = "keep the voxels A to B - 1 along an axis i, j or k,\n"
+                              "counted from 0 (i=10:200, k=:50, j=20:); may be given\nagain for another axis",
                       .repeatable = true},
-    [CONVERT_SHRINK] =
-        {.name = "shrink",
-         .kind = OPTION_NUMBERS,
-         .argument = "N",
-         .help = "the means of boxes of N x N x N voxels; of a label map\nthe commonest label of each",
-         .count = 1,
-         .whole = true,
-         .low = 1,
-         .high = 65536},
-    [CONVERT_TYPE] = {.name = "type",
-                      .kind = OPTION_CHOICE,
-                      .argument = "TYPE",
-                      .help =
-                          "uint8, int8, ... uint64, int64, float16, float32 or\nfloat64; whole numbers are "
-                          "rounded (default: the volume's\nown, or the next that holds its values)",
-                      .choices = types},
-    INPUT_OPTIONS(CONVERT_ARRAY, "What of IN"),
+    [CONVERT_SHRINK] = {.name = "shrink",
+                        .kind = OPTION_NUMBERS,
+                        .argument = "N",
+                        .help = "make one voxel of each box of N x N x N voxels: their\nmean, or in a label "
+                                "map their commonest label",
+                        .count = 1,
+                        .whole = true,
+                        .low = 1,
+                        .high = 65536},
+    [CONVERT_TYPE] =
+        {.name = "type",
+         .kind = OPTION_CHOICE,
+         .argument = "TYPE",
+         .help =
+             "type of the voxels: uint8, int8, ... uint64, int64,\nfloat16, float32 or float64; values are "
+             "rounded to whole\nnumbers (default: the volume's own, or the next larger\none that "
+             "holds its values)",
+         .choices = types},
+    INPUT_OPTIONS(CONVERT_ARRAY, "What to read of IN"),
     [CONVERT_CHANNEL] = INPUT_OPTION_CHANNEL,
     [CONVERT_SPACING] = INPUT_OPTION_SPACING,
     [CONVERT_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY("How it runs"),
@@ -159,9 +161,11 @@ const cli_command convert_command = {
     .operand_count = 2,
     .summary = "write a volume in another format, type, part or resolution",
     .description =
-        "Writes the volume IN (any that render reads) to OUT: .nrrd, .nii, .nii.gz, .mha, .vti, .mrc,\n"
-        ".mrc.gz, or .raw and .raw.gz, whose names state size and type (x_256x256x128_uint8.raw). Values\n"
-        "and placement are kept; a warning says what OUT's format has no words for.",
+        "Writes the volume IN, of any format that render reads, to the file OUT: .nrrd, .nii, .nii.gz, "
+        ".mha,\n"
+        ".vti, .mrc, .mrc.gz, or .raw and .raw.gz, whose names state size and type "
+        "(x_256x256x128_uint8.raw).\n"
+        "Values and placement are kept. A warning names everything that OUT's format cannot store.",
     .options = convert_options,
     .option_count = CONVERT_OPTION_COUNT,
     .run = run_convert,

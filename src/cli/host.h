@@ -38,16 +38,16 @@ typedef struct cli_host_options {
 
 /* Rows of a subcommand's table of options, for what the context needs to know. heading: the group that begins
  * with the row, or null. */
-#define HOST_OPTION_DATA(heading)                                                                    \
-  {                                                                                                  \
-    .name = "data", .kind = OPTION_TEXT, .argument = "FOLDER", .group = (heading),                   \
-    .help = "of the files that scenes call data:NAME (default:\n$HALFLIGHT_DATA, or ../shared/data)" \
+#define HOST_OPTION_DATA(heading)                                                                           \
+  {                                                                                                         \
+    .name = "data", .kind = OPTION_TEXT, .argument = "FOLDER", .group = (heading),                          \
+    .help = "where the files are that scenes call data:NAME\n(default: $HALFLIGHT_DATA, or ../shared/data)" \
   }
-#define HOST_OPTION_THREADS(heading)                                                                         \
-  {                                                                                                          \
-    .name = "threads", .kind = OPTION_NUMBERS, .argument = "N", .group = (heading),                          \
-    .help = "0: one per processor (default)", .count = 1, .whole = true, .setting_kind = HL_SETTINGS_RENDER, \
-    .setting = "threads"                                                                                     \
+#define HOST_OPTION_THREADS(heading)                                                        \
+  {                                                                                         \
+    .name = "threads", .kind = OPTION_NUMBERS, .argument = "N", .group = (heading),         \
+    .help = "number of threads; 0: one per processor (default)", .count = 1, .whole = true, \
+    .setting_kind = HL_SETTINGS_RENDER, .setting = "threads"                                \
   }
 #define HOST_OPTION_MAX_MEMORY(heading)                                                        \
   {                                                                                            \

@@ -28,36 +28,39 @@ typedef struct cli_input {
 
 /* The rows of --array, --component, --time, --channel and --level in a subcommand's table of options;
  * heading: see cli_option.group. */
-#define INPUT_OPTION_ARRAY(heading)                                                                     \
-  {                                                                                                     \
-    .name = "array", .kind = OPTION_TEXT, .argument = "NAME", .group = (heading),                       \
-    .help = "of the file's arrays this one (default: the active\none, else the first of one component)" \
+#define INPUT_OPTION_ARRAY(heading)                                                                       \
+  {                                                                                                       \
+    .name = "array", .kind = OPTION_TEXT, .argument = "NAME", .group = (heading),                         \
+    .help =                                                                                               \
+        "the array of the file to read (default: the active one,\nelse the first one with one component)" \
   }
 #define INPUT_OPTION_COMPONENT                                                                              \
   {                                                                                                         \
     .name = "component", .kind = OPTION_NUMBERS, .argument = "N|WORD",                                      \
-    .help = "of several values per voxel, or volumes of a\nseries, this one, from 0; or their magnitude;\n" \
-            "or color: colours, opacity from alpha, if any;\nluminance: colours, opacity from luminance\n"  \
-            "(default: the only one; colours; of 2 or 3 the\nmagnitude, else 0)",                           \
+    .help =                                                                                                 \
+        "the component to read of voxels with several values,\nor the volume of a series, from 0; "         \
+        "magnitude: "                                                                                       \
+        "the length\nof the values as a vector; color: colours, with opacity\nfrom alpha if there is one; " \
+        "luminance: colours, with\nopacity from luminance (default: the only one; else\ncolours if they "   \
+        "are; "                                                                                             \
+        "else the magnitude of 2 or 3; else 0)",                                                            \
     .choices = input_components, .count = 1, .whole = true, .low = 0, .high = 1e9                           \
   }
-#define INPUT_OPTION_SERIES                                                                            \
-  {                                                                                                    \
-    .name = "series", .kind = OPTION_TEXT, .argument = "NAME",                                         \
-    .help = "of several DICOM series this one: its number, UID\nor description (default: the largest)" \
+#define INPUT_OPTION_SERIES                                                                   \
+  {                                                                                           \
+    .name = "series", .kind = OPTION_TEXT, .argument = "NAME",                                \
+    .help = "the DICOM series to read, by number, UID or description\n(default: the largest)" \
   }
 #define INPUT_OPTION_INDEX(word, text)                                                                  \
   {                                                                                                     \
     .name = (word), .kind = OPTION_NUMBERS, .argument = "N", .help = (text), .count = 1, .whole = true, \
     .low = 0, .high = 1e9                                                                               \
   }
-#define INPUT_OPTION_TIME INPUT_OPTION_INDEX("time", "of several time steps this one, from 0 (default: 0)")
-#define INPUT_OPTION_CHANNEL \
-  INPUT_OPTION_INDEX("channel", "of several channels this one, from 0 (default: 0)")
+#define INPUT_OPTION_TIME    INPUT_OPTION_INDEX("time", "the time step to read, from 0 (default: 0)")
+#define INPUT_OPTION_CHANNEL INPUT_OPTION_INDEX("channel", "the channel to read, from 0 (default: 0)")
 #define INPUT_OPTION_LEVEL                                                                                \
-  INPUT_OPTION_INDEX("level",                                                                             \
-                     "of several resolutions this one; 0 is the finest\n(default: the finest up to 2^30 " \
-                     "voxels that fits\ninto memory)")
+  INPUT_OPTION_INDEX("level", "the resolution to read; 0 is the finest (default: the\nfinest up to 2^30 " \
+                              "voxels that fits into memory)")
 #define INPUT_OPTION_SPACING                                                                          \
   {                                                                                                   \
     .name = "spacing", .kind = OPTION_NUMBERS, .argument = "SX,SY,SZ",                                \

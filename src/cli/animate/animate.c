@@ -49,29 +49,32 @@ static const cli_option animate_options[ANIMATE_OPTION_COUNT] = {
                         .group = "Options",
                         .help = ".mp4, .mov, .mkv, .webm or .gif, or a folder for numbered\n"
                                 "pictures (default: INPUT's name with .mp4)"},
-    [ANIMATE_PRESET] =
-        {.name = "preset",
-         .kind = OPTION_CHOICE,
-         .choices = presets,
-         .help = "a whole turn in four seconds; or the first light\nswept from left to right and back in "
-                 "two"},
+    [ANIMATE_PRESET] = {.name = "preset",
+                        .kind = OPTION_CHOICE,
+                        .choices = presets,
+                        .help = "turntable: the camera turns once, in four seconds;\nlight-sweep: the first "
+                                "light goes from left "
+                                "to right\nand back, in two seconds"},
     [ANIMATE_TURNTABLE] = COUNT_OPTION("turntable", "N",
                                        "turn once about the picture's vertical axis, in N frames"),
     [ANIMATE_KEY] = {.name = "key",
                      .kind = OPTION_TEXT,
                      .argument = "PATH=FRAME:VALUE,...",
-                     .help = "let a number of the scene go from value to value, as\n"
-                             "lights.0.intensity=0:1,48:3; camera.azimuth, .elevation,\n"
-                             ".roll (degrees) and .zoom (factor) turn the camera,\n"
-                             "lights.0.azimuth and .elevation a light, as --light;\n"
-                             "of several files FRAME is a file's number, from 0;\n"
-                             "may be given again",
+                     .help = "change a number of the scene from frame to frame:\n"
+                             "lights.0.intensity=0:1,48:3 goes from 1 in frame 0 to\n"
+                             "3 in frame 48. camera.azimuth, .elevation, .roll\n"
+                             "(degrees) and .zoom (factor) turn the camera;\n"
+                             "lights.0.azimuth and .elevation turn a light, as --light\n"
+                             "does. With several files FRAME is the number of a file,\n"
+                             "from 0. May be given again",
                      .repeatable = true},
-    [ANIMATE_EASE] = {.name = "ease",
-                      .kind = OPTION_CHOICE,
-                      .choices = easings,
-                      .help = "how --key goes from value to value (default linear);\nsmooth: slowly at both"},
-    [ANIMATE_FRAMES] = COUNT_OPTION("frames", "N", "length (default: the turn's, or up to the last FRAME)"),
+    [ANIMATE_EASE] =
+        {.name = "ease",
+         .kind = OPTION_CHOICE,
+         .choices = easings,
+         .help = "how --key goes from value to value (default linear);\nsmooth: it starts and ends slowly"},
+    [ANIMATE_FRAMES] = COUNT_OPTION(
+        "frames", "N", "number of frames (default: those of the turn, or up to\nthe last FRAME of --key)"),
     [ANIMATE_FPS] = {.name = "fps",
                      .kind = OPTION_NUMBERS,
                      .argument = "N",
@@ -79,9 +82,10 @@ static const cli_option animate_options[ANIMATE_OPTION_COUNT] = {
                      .count = 1,
                      .low = 0.1,
                      .high = 240},
-    [ANIMATE_KEEP_FRAMES] = {.name = "keep-frames",
-                             .kind = OPTION_SWITCH,
-                             .help = "leave the pictures beside the film, in its name with\n\"-frames\""},
+    [ANIMATE_KEEP_FRAMES] =
+        {.name = "keep-frames",
+         .kind = OPTION_SWITCH,
+         .help = "keep the pictures, in a folder beside the film, named\nlike it with \"-frames\""},
 };
 
 /* The options of `render` that say what is shown and how; the options about a single picture or its file are
@@ -378,12 +382,12 @@ const cli_command animate_command = {
     .operand_most = MAXIMUM_OPERANDS,
     .summary = "a film: a turn, or numbers of a scene that change",
     .description =
-        "Renders INPUT, as `halflight render` would with the same options, in frames in which the camera\n"
-        "turns and numbers of the scene change, and joins them to a film by ffmpeg's program; without it,\n"
-        "numbered pictures stay. A pattern of files in quotes ('flame_*.vti') is a film in which time "
+        "Renders INPUT as `halflight render` does, with the same options, frame by frame, while the camera\n"
+        "turns or numbers of the scene change. The program ffmpeg joins the pictures to a film; where it is\n"
+        "missing, numbered pictures are left. With a pattern of files in quotes ('flame_*.vti'), time "
         "passes\n"
-        "from file to file. A run that was stopped goes on where it was: pictures that are there already,\n"
-        "made of their frame's scene, are kept.",
+        "from file to file. A run that was stopped goes on: it keeps the pictures that are there, if their\n"
+        "scene is the same.",
     .options = animate_options,
     .option_count = ANIMATE_OPTION_COUNT,
     .shared = render_options,

@@ -30,7 +30,7 @@ static const cli_option bench_options[BENCH_OPTION_COUNT] = {
                       .kind = OPTION_NUMBERS,
                       .argument = "N",
                       .group = "Options",
-                      .help = "measured frames of each kind (default 9)",
+                      .help = "number of frames to measure of each kind (default 9)",
                       .count = 1,
                       .whole = true,
                       .low = 1,
@@ -56,17 +56,17 @@ static const cli_option bench_options[BENCH_OPTION_COUNT] = {
     [BENCH_TF] = {.name = "tf",
                   .kind = OPTION_TEXT,
                   .argument = "FILE|PRESET",
-                  .help = "transfer function of every volume, as for render"},
+                  .help = "transfer function of every volume, as in render"},
     [BENCH_SHEET_SPACING] = {.name = "sheet-spacing",
                              .kind = OPTION_NUMBERS,
                              .argument = "VOXELS",
-                             .help = "distance of sheets in smallest voxel edges",
+                             .help = "distance of sheets in smallest voxel edges (default:\nthe scene's)",
                              .count = 1,
                              .setting_kind = HL_SETTINGS_RENDER,
                              .setting = "sheet_spacing"},
     [BENCH_KERNEL] = {.name = "kernel",
                       .kind = OPTION_CHOICE,
-                      .help = "of each voxel",
+                      .help = "how values between voxels are found (default: the\nscene's)",
                       .setting_kind = HL_SETTINGS_RENDER,
                       .setting = "kernel"},
     [BENCH_RECONSTRUCTION] = {.name = "reconstruction",
@@ -75,13 +75,14 @@ static const cli_option bench_options[BENCH_OPTION_COUNT] = {
                               .setting_kind = HL_SETTINGS_RENDER,
                               .setting = "reconstruction"},
     [BENCH_THREADS] = HOST_OPTION_THREADS(NULL),
-    [BENCH_INSTRUCTION_SET] = {.name = "instruction-set",
-                               .kind = OPTION_CHOICE,
-                               .choices = instruction_set_choices,
-                               .help = "the best there is, unless given"},
+    [BENCH_INSTRUCTION_SET] =
+        {.name = "instruction-set",
+         .kind = OPTION_CHOICE,
+         .choices = instruction_set_choices,
+         .help = "any gives the same picture (default: the fastest that\nthe processor has)"},
     [BENCH_DEVICE] = HOST_OPTION_DEVICE,
     [BENCH_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),
-    [BENCH_JSON] = {.name = "json", .kind = OPTION_SWITCH, .help = "medians as JSON"},
+    [BENCH_JSON] = {.name = "json", .kind = OPTION_SWITCH, .help = "print the medians as JSON"},
 };
 
 /* One input being measured. */
@@ -406,9 +407,10 @@ const cli_command bench_command = {
     .operand_most = MAXIMUM_OPERANDS,
     .summary = "time frames without, with hard and with soft shadows",
     .description =
-        "Times frames of scenes or volumes (without INPUT: of a volume of its own) without shadows,\n"
-        "with hard ones and with each kind of soft ones, in turn, after a warm-up. Prints medians in\n"
-        "milliseconds, whole and by stage.",
+        "Times the frames of scenes or volumes; without INPUT, of a volume that it makes. After a warm-up,\n"
+        "frames without shadows, with hard shadows and with each kind of soft shadows take turns. Prints "
+        "the\n"
+        "median of each kind in milliseconds, for whole frames and for each of their stages.",
     .options = bench_options,
     .option_count = BENCH_OPTION_COUNT,
     .run = run_bench,

@@ -27,10 +27,10 @@ static const cli_option info_options[INFO_OPTION_COUNT] = {
     [INFO_JSON] = {.name = "json",
                    .kind = OPTION_SWITCH,
                    .group = "Options",
-                   .help = "as JSON, with 256 histogram bins"},
+                   .help = "print JSON, with 256 bins of the histogram"},
     [INFO_FORMATS] = {.name = "formats",
                       .kind = OPTION_SWITCH,
-                      .help = "in place of FILE: the formats that this program reads and writes"},
+                      .help = "without FILE: list the formats that this program reads\nand writes"},
     INPUT_OPTIONS(INFO_ARRAY, NULL),
     [INFO_CHANNEL] = INPUT_OPTION_CHANNEL,
     [INFO_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),
@@ -530,8 +530,10 @@ const cli_command info_command = {
     .summary = "show what a volume, a scene or a mesh file holds",
     .description =
         "Shows what a volume file holds: size, type, spacing, orientation, world box, range and histogram.\n"
-        "Of a scene, also one in a picture: how much of each kind it has, and the same of each volume.\n"
-        "Of a mesh file: triangles, spheres, lines, normals, colours and the box.",
+        "For a scene, or a picture that holds one, shows how many volumes, meshes and lights it has, and "
+        "the\n"
+        "same as above for each volume. For a mesh file, shows its numbers of triangles, spheres and lines,\n"
+        "whether it has normals and colours, and its box.",
     .options = info_options,
     .option_count = INFO_OPTION_COUNT,
     .run = run_info,

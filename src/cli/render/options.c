@@ -238,8 +238,8 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
          .high = INFINITY},
     [RENDER_RANGE_SCALE] = {.name = "range-scale",
                             .kind = OPTION_CHOICE,
-                            .help =
-                                "they spread over --range evenly, or evenly over\nthe values' logarithms"},
+                            .help = "linear: opacity and colours spread evenly over --range;\nlog: over the "
+                                    "logarithms of its values"},
     [RENDER_RANGE_OF_ALL] = {.name = "range-of-all",
                              .kind = OPTION_SWITCH,
                              .help = "for a series of files: --range from the least to the\ngreatest value "
@@ -420,12 +420,12 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
          .count = 1,
          .setting_kind = HL_SETTINGS_RENDER,
          .setting = "sheet_spacing"},
-    [RENDER_KERNEL] =
-        {.name = "kernel",
-         .kind = OPTION_CHOICE,
-         .help = "of each voxel (default bspline; of bare label maps\ndrawn by their numbers linear)",
-         .setting_kind = HL_SETTINGS_RENDER,
-         .setting = "kernel"},
+    [RENDER_KERNEL] = {.name = "kernel",
+                       .kind = OPTION_CHOICE,
+                       .help = "how values between voxels are found (default bspline;\nlinear for bare label "
+                               "maps drawn by their numbers)",
+                       .setting_kind = HL_SETTINGS_RENDER,
+                       .setting = "kernel"},
     [RENDER_RECONSTRUCTION] =
         {.name = "reconstruction",
          .kind = OPTION_CHOICE,
@@ -479,7 +479,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_DATA] = HOST_OPTION_DATA("Running"),
     [RENDER_PART] = FRAMES_OPTION_PART(
         NULL,
-        "of a series of files: every N-th one, from the K-th on,\nso that N runs "
+        "render every N-th file of a series, from the K-th on, so\nthat N runs "
         "share the work"),
     [RENDER_RANKS] = FRAMES_OPTION_RANKS,
     [RENDER_STRIPS] = {.name = "strips-over-ranks",

@@ -26,15 +26,15 @@ static const cli_option view_options[VIEW_OPTION_COUNT] = {
                    .kind = OPTION_NUMBERS,
                    .argument = "N",
                    .group = "Page",
-                   .help = "of 127.0.0.1, where it is served (default: a free one)",
+                   .help = "serve the page at this port of 127.0.0.1 (default: a\nfree one)",
                    .count = 1,
                    .whole = true,
                    .low = 1,
                    .high = 65535},
-    [VIEW_NO_BROWSER] = {.name = "no-browser",
-                         .kind = OPTION_SWITCH,
-                         .help =
-                             "only print the URL (default: open a browser too, where\nthere is a screen)"},
+    [VIEW_NO_BROWSER] =
+        {.name = "no-browser",
+         .kind = OPTION_SWITCH,
+         .help = "print the URL, and open no browser (default: one is\nopened where there is a screen)"},
 };
 
 /* The options of `render` that say what is shown and how; the options about a single picture or its file are
@@ -194,11 +194,11 @@ const cli_command view_command = {
     .operand_most = MAXIMUM_OPERANDS,
     .summary = "look at a scene or volumes in a browser: turn, light, colour",
     .description =
-        "Opens INPUT, as for render, in a page of the browser, and prints the page's URL on stdout. Turn "
-        "the\n"
-        "volume, drag the light, edit the transfer function; save the picture, the scene, or the command\n"
-        "that renders it. The page is served to this machine alone; Ctrl-C ends the viewer. Options of\n"
-        "render say what the page begins with.",
+        "Opens INPUT, which is the same as for render, in a page of the browser, and prints the page's URL\n"
+        "on stdout. In the page you turn the volume, drag the light and edit the transfer function, and "
+        "save\n"
+        "the picture, the scene, or the command that renders it. The options of render set what the page\n"
+        "shows first. The page is served to this machine alone. Ctrl-C ends the viewer.",
     .options = view_options,
     .option_count = VIEW_OPTION_COUNT,
     .shared = render_options,
