@@ -47,8 +47,8 @@ typedef struct hl_overlay {
   double
       scale_bar_depth; /* for a perspective camera, which has no one scale: the distance from the eye at which
                           the bar holds, in the scene's units, or HL_DEPTH_OF_TARGET; 0: the bar is refused */
-  int legend; /* non-zero: each visible volume's colours over its values, with their opacity, isosurfaces, or
-                 the names of its labels, at the right */
+  int legend; /* non-zero: at the right, a legend shows for each visible volume its colours and opacity over
+                 its values, its isosurfaces, or the names of its labels */
   const char *legend_title; /* of the first volume, instead of its name; with the values' unit; may be null */
   hl_axes axes;
   const hl_annotation *annotations; /* [annotation_count] */

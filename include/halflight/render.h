@@ -79,8 +79,8 @@ HL_API HL_WARN_UNUSED hl_status hl_renderer_share(hl_renderer *renderer, int par
 HL_API HL_WARN_UNUSED hl_status hl_renderer_share_over_ranks(hl_renderer *renderer, hl_ranks *ranks,
                                                              hl_error *error);
 
-/* What makes the renderer's frames from now on, in place of what its context names: as hl_context_options has
- * it; copied. Null: the context's again. The frames are the same. */
+/* Chooses the device that makes the renderer's next frames, in place of the one that its context names.
+ * device: as in hl_context_options; copied; null: the context's again. Pictures stay the same. */
 HL_API HL_WARN_UNUSED hl_status hl_renderer_use_device(hl_renderer *renderer, const char *device,
                                                        hl_error *error);
 

@@ -31,14 +31,14 @@ typedef enum hl_second_axis {
  * its matter has w times the extinction of its opacity. Where shapes overlap, extinctions add up and colours
  * are averaged by them. */
 
-/* A box: its weight is 1 inside; within `edge` of its border it rises from 0. */
+/* A box. Its weight is 1 inside and rises from 0 at its border over the width `edge`; or it is a Gaussian. */
 typedef struct hl_function_box {
   double low[2], high[2]; /* its corners belong to it */
   double color[3];        /* linear RGB */
   double opacity;         /* per unit_distance */
   double edge[2];         /* 0: hard; at most half of the box is edge */
-  double sigma; /* above 0: the weight is, in place of the edge's, a Gaussian around the box's middle with
-                   this standard deviation, of the box's sides, and 0 outside the box */
+  double sigma; /* above 0: `edge` is not used; the weight is a Gaussian around the box's middle, and 0
+                   outside the box. Its standard deviation is this fraction of the box's sides */
 } hl_function_box;
 
 /* A polygon, as of Kniss et al.: its weight falls, along straight lines, from the apex to 0 at the border. */

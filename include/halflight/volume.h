@@ -200,9 +200,10 @@ typedef struct hl_volume_field_error {
   size_t struct_size; /* set by the caller */
   double value;       /* data values; NaN: nothing could be compared, as in a mesh of one layer of cells */
   double of_range;    /* `value` as a part of the volume's range; NaN as `value` */
+  const char *kind;   /* "exact": some difference is as great as `value`; "bound": all may be smaller. A
+                         constant text */
   const char
-      *kind; /* "exact": `value` is the greatest difference; "bound": no difference is greater. Static */
-  const char *source; /* what the field was compared with, in words: "the means over the cells". Static */
+      *source; /* what the field was compared with, in words: "the means over the cells". A constant text */
 } hl_volume_field_error;
 
 /* Tells of a mesh of cells a bound of the difference between the field and the values that its cells

@@ -8,7 +8,7 @@
 #define MILLIMETRES_PER_INCH 25.4
 
 typedef struct cli_overlay {
-  hl_overlay overlay; /* its texts belong to the options, or are owned below */
+  hl_overlay overlay; /* its texts are borrowed from the options, or from the members below */
   hl_annotation notes[MAXIMUM_REPEATS];
   char *texts[MAXIMUM_REPEATS]; /* owned; of `notes` */
   char unit[40];                /* unit of --scale-bar */

@@ -4,9 +4,10 @@
 
 #include "host.h"
 
-/* Which of how many processes this is, as the launcher says that has started it. */
+/* The number of this process and the number of all processes, as their launcher (mpirun, srun) tells them in
+ * variables of the environment. */
 typedef struct launcher {
-  const char *rank_name, *size_name; /* names of variables of the environment */
+  const char *rank_name, *size_name; /* names of the variables */
   const char *rank, *size;           /* values of these variables, which must be checked */
   hl_mpi mpi;                        /* the library that its processes join by */
 } launcher;

@@ -52,7 +52,9 @@ typedef struct job {
   _Alignas(64) atomic_size_t done; /* the number of indices that workers have reported as finished */
 } job;
 
-enum { INDEX_BITS = 20 }; /* bits of a share's next index and of its end; longer jobs run in pieces */
+enum {
+  INDEX_BITS = 20
+}; /* number of bits of each index in a share's `range`; jobs with more indices run in pieces */
 static const uint64_t INDEX_MASK = ((uint64_t)1 << INDEX_BITS) - 1, ONE_OF_END = (uint64_t)1 << INDEX_BITS;
 
 typedef struct share {

@@ -115,9 +115,10 @@ typedef void field_opacity_function(const field_block *block, float depth[3][FIE
 
 /* A direction of the sky, as the slices at one end of an axis see it. */
 typedef struct sky_direction {
-  int32_t offset;     /* floats to the first of four cells of the slice before */
-  float weight[4];    /* weights of this cell, of the next one across, and of the two below them */
-  int link;           /* the number of the link to the first cell: 3 (1 + down) + 1 + across */
+  int32_t offset;  /* offset, in floats, from a cell to the first of the four cells of the slice before that
+                    * its  light comes from */
+  float weight[4]; /* weights of this cell, of the next one across, and of the two below them */
+  int link;        /* the number of the link to the first cell: 3 (1 + down) + 1 + across */
   float across, down; /* squares of the cells by which the light moves aside in a slice */
   int slope; /* the number of the first direction with the same `across` and `down`; mirrored directions pass
               * the same matter */

@@ -10,8 +10,8 @@
 #include "field/sky_field.h"
 #include "simd/lanes.h"
 
-/* The light that reaches sixteen samples: harmonics in the field's numbers, times the sum of the cells'
- * weights. */
+/* The light that reaches sixteen samples, as harmonics in the field's units. They are still to be divided by
+ * the sum of the weights of the cells around the sample. */
 typedef struct sky_rows {
   float of[LANES][2 * LANES]; /* [lane][FIELD_HARMONICS][channels]; set for the active lanes */
   lanes unit;                 /* 1 over the sum of the weights */

@@ -338,7 +338,7 @@ typedef struct store_rows {
   size_t row_floats, cell_floats, columns;
   size_t used;              /* number of used floats of a cell */
   float scale[MOST_FLOATS]; /* [used]; the factors that turn floats into numbers of 16 bits */
-  int place[MOST_FLOATS];   /* [used]; the index of each number among the cell's numbers */
+  int place[MOST_FLOATS];   /* [used]; the index among a cell's numbers at which each float is stored */
 } store_rows;
 
 static bool is_dark(const float *cell, size_t count) {

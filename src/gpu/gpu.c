@@ -189,7 +189,7 @@ static bool reserve(hl_gpu *gpu, enum buffer_use use, size_t bytes) {
   if (buffer->bytes >= bytes) return true;
   gpu->device.driver->release(&gpu->device, buffer);
   if (use >= BUFFER_PIXELS || use == BUFFER_RAYS)
-    bytes += bytes / 4; /* a turning camera needs a little more or less from frame to frame */
+    bytes += bytes / 4; /* while a camera turns, frames need slightly different sizes */
   return gpu->device.driver->allocate(&gpu->device, bytes, buffer);
 }
 

@@ -130,7 +130,8 @@ static bool load_opencl(void **library, char *problem) {
   return true;
 }
 
-/* The threads that drivers start go on running, so the drivers' code stays loaded. */
+/* Releases the table of functions. The library itself stays loaded, because drivers start threads that go on
+ * running in it. */
 static void unload_opencl(void *library) { free(library); }
 
 static int count_opencl(void *library) { return ((const opencl_library *)library)->device_count; }

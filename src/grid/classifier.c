@@ -48,7 +48,7 @@ static void integrate_colors(classifier *classifier) {
   }
 }
 
-/* Fills the colours, and the changes of their slopes at each entry. */
+/* Fills the table of colours, and at each entry how much the slope of the colours changes there. */
 static void fill_colors(const hl_transfer_function *function, double low, double high,
                         classifier *classifier) {
   double last[3][3]; /* the colours of entries n, n - 1 and n - 2; entry n is stored at n % 3 */

@@ -26,7 +26,7 @@ bool hl_relevant_bounds(const grid *grid, double margin, double low[3], double h
  * least one. */
 void hl_content_bounds(const grid *grid, double margin, double low[3], double high[3]);
 
-/* The distance outside the box of faces that cut nothing visible, in voxels. */
+/* A face that cuts nothing off is put this far outside of the grid, in voxels. */
 #define FACE_FAR_OUT 1e9f
 
 /* Moves the faces of a grid that touch the other grid's box far outside, so that they cut nothing off, as

@@ -42,8 +42,8 @@ typedef struct hl_data_analysis {
   double zeroed;       /* fraction of the voxels that have exactly the background's value */
   double filled;       /* fraction of the voxels beyond solid */
   double middle;       /* the commonest data value */
-  double lower, upper; /* differences from the middle, downwards and upwards, that hardly any voxel
-                        * exceeds */
+  double lower, upper; /* how far values lie below and above the middle at most, but for a few
+                        * voxels */
   double labels[HL_MOST_LABELS]; /* ascending data values, without the background */
   size_t label_count;
   double valleys[HL_MOST_MATERIALS - 1]; /* distances that divide materials, rising; [material_count - 1] */

@@ -31,9 +31,8 @@ typedef struct exposure {
   const hl_scene_volume *volume;
   cut_shape *cuts; /* owned; [volume->cut_count] */
   affine3 world_to_index;
-  vec3 right, up,
-      forward; /* the camera's axes; their lengths are half the picture's width and height at distance 1, and
-                * 1 */
+  vec3 right, up, forward; /* the camera's axes; `right` and `up` are as long as half the picture's width and
+                            * height at distance 1, `forward` is a unit vector */
   vec3 towards[MOST_LIGHTS]; /* unit vectors to the lights */
   double left;               /* fraction of the sky and of lights with shadows that reaches bright media */
   double step;               /* world units */

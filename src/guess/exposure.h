@@ -12,9 +12,10 @@ typedef struct hl_exposure {
   double thickness;
 } hl_exposure;
 
-/* Judges a picture of the first volume. left: the fraction of a light with shadows, and for media of the sky,
- * that reaches bright surfaces. empty: a value of the invisible surroundings, which tells the side that
- * surfaces face. Fails for lack of memory. */
+/* Estimates how bright a picture of the first volume is. left: the fraction that shadows leave, on bright
+ * surfaces, of the light of a light with shadows, and for media also of the sky's. empty: the data value of
+ * the invisible surroundings; surfaces face the side on which values are closer to it. Fails for lack of
+ * memory. */
 hl_status hl_scene_exposure(const hl_scene_description *scene, double empty, double left, hl_exposure *result,
                             hl_error *error);
 

@@ -149,8 +149,9 @@ static hl_status expose(const hl_look *look, const hl_data_analysis *analysis, h
   return status;
 }
 
-/* Cuts off holders of the object, as they show with the look `base`, which suits the volume. So the same part
- * is left with any look. planes: stay in use. */
+/* Gives a volume cuts that remove what holds the object. The holders are searched for as the look `base`
+ * shows them, which suits the volume, so that any look has the same cuts. planes: memory of the cuts, which
+ * must live as long as the volume's description. */
 static hl_status leave_holders_out(hl_context *context, const hl_look *base, const hl_data_analysis *analysis,
                                    hl_cut planes[HL_HOLDER_PLANES], hl_scene_volume *volume,
                                    hl_error *error) {

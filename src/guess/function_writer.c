@@ -16,7 +16,8 @@
 #define MEDIUM_DEPTH 5.0 /* optical depth of smoke across its own size */
 #define FINE         96  /* voxel edges across an object; the opacities of solid matter are chosen for it */
 
-/* Colours, in linear RGB, at the distances faint, solid, dense and top. */
+/* The colours of a function at four distances from the background: faint, solid, dense and top. Linear RGB.
+ */
 typedef struct palette {
   double rim[3], surface[3], dense[3], top[3];
 } palette;

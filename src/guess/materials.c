@@ -6,7 +6,7 @@
 /* A peak counts beside its neighbour where the valley between them is lower than this fraction of the lower
  * peak. */
 static const double DEEPEST = 0.35;
-/* A peak must also hold at least this fraction of the objects' voxels. */
+/* The least fraction of the objects' voxels that a peak holds. */
 static const double LEAST_SHARE = 0.03;
 
 enum { BINS = HL_HISTOGRAM_BINS, REACH = 4 /* number of bins to each side that smoothing takes in */ };

@@ -213,7 +213,7 @@ static double fraction_of(ply_type type, double value) {
   return fmin(fmax(value / most, 0), 1);
 }
 
-/* Sets a channel of a colour; role: from ROLE_COLOR on. */
+/* Sets one channel of a colour, which is linear RGB and alpha. role: ROLE_COLOR for red, and so on. */
 static void set_color(float color[4], int role, ply_type type, double value) {
   double fraction = fraction_of(type, value);
   bool linear = type >= PLY_F32 || role == ROLE_COLOR + 3;

@@ -64,7 +64,8 @@ static uint64_t key_of(const hl_particle_set *set, const uint32_t place[3]) {
   return key;
 }
 
-/* Finds the box of the places, and from the box the fixed point. */
+/* Counts the particles whose places are finite, and finds the box of the places. The box sets the units of
+ * fixed-point coordinates. */
 static hl_status find_units(const hl_particle_input *input, const char *subject, hl_particle_set *set,
                             hl_error *error) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, extent = 0;

@@ -112,8 +112,8 @@ static hl_status copy_arrays(hl_context *context, const hl_scene_description *sc
   return HL_OK;
 }
 
-/* What the scene found out about its lights and volumes, in the order of frames. The suns are the last
- * lights. */
+/* Copies what the scene knows of its lights and volumes, in the order of frames. In the scene, suns are the
+ * last lights. */
 static void copy_findings(const hl_scene *scene, framed_scene *framed) {
   const hl_scene_description *placed = &scene->placed;
   const int first_sun = (int)placed->light_count - scene->suns.count;

@@ -23,7 +23,8 @@ typedef struct framed_scene {
   double *sun_parts;     /* owned; [light_count]; the fraction of a light that a medium takes, where the light
                           * is a sun of the sky; else 0 */
   uint64_t *plane_marks; /* owned; [volume_count]; of the content of functions of two numbers */
-  double unit;           /* world length of 1 in frame space: the smallest voxel edge is from 1 to 2 */
+  double unit; /* length in the world of 1 in frame space; in frame space the smallest voxel edge is 1 to 2
+                  long */
 } framed_scene;
 
 /* scene: borrowed. */

@@ -114,7 +114,8 @@ static bool serve(hl_ranks *ranks) {
 
 static void *run_server(void *data) {
   hl_ranks *ranks = data;
-  prctl(PR_SET_TIMERSLACK, 1000UL, 0UL, 0UL, 0UL); /* pauses last as long as asked, not up to 50 us longer */
+  prctl(PR_SET_TIMERSLACK, 1000UL, 0UL, 0UL,
+        0UL); /* by default the system may let each pause last 50 us longer */
   for (int asked = 0; !atomic_load(&ranks->server->stopped);) {
     asked = serve(ranks) ? 0 : asked + (asked < INT32_MAX);
     if (asked > 0) hl_ranks_pause(asked);

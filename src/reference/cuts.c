@@ -54,7 +54,7 @@ bool hl_reference_mesh_left(const hl_scene_description *scene, const hl_scene_me
   return true;
 }
 
-/* The lesser of `next` and a crossing, if the crossing comes after `after`. */
+/* Returns `crossing` where it lies between `after` and `next`, else `next`. */
 static double sooner(double crossing, double after, double next) {
   return crossing > after && crossing < next ? crossing : next;
 }

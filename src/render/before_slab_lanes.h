@@ -16,7 +16,7 @@
 enum { NEAR_PIXELS = 4 };
 typedef struct near_pixels {
   lanes u[NEAR_PIXELS], v[NEAR_PIXELS]; /* from the sample to each pixel; in pixels */
-  lanes3 along_u, along_v;              /* one pixel along u and along v, on the sheet; frame space */
+  lanes3 along_u, along_v;              /* steps of one pixel along u and along v on the sheet; frame space */
 } near_pixels;
 
 /* A light as a slab's samples see it. */

@@ -55,7 +55,7 @@ LANES_INLINE void pack_way(const lanes_packing *packing, const block_density *fr
   into->there = 1;
 }
 
-/* Gives a slab of its own to a block in which all pixels may show something. */
+/* Packs a block of which all pixels may show something: it takes a packed slab for itself. */
 LANES_INLINE void keep_block(packed_tile *tile, const block_slab *block, const block_density *ways,
                              int patch_count, block_density *densities, packed_block *packed) {
   int s = add_slab(tile, patch_count, densities);

@@ -17,7 +17,7 @@
  * digits. */
 static const float LEAST_PART_OF_SHOWN = 0x1p-12f;
 
-/* K for red, green and blue, and T, at a coordinate of the tables. */
+/* Looks up K for red, green and blue, and T, in that order, at a coordinate of the tables. */
 LANES_INLINE void shown_below(const classifier *classifier, lanes x, lanes sums[4]) {
   table_coordinate at = split_coordinate(x);
   lanes a[4], b[4];

@@ -396,7 +396,7 @@ static void fill_sheets(patch_bundle *b) {
   for (int i = 1; i <= b->slabs; i += 2) fill_sheet(b, i, beside_visible(b, i), 0);
 }
 
-/* Fills a bundle of a patch in more blocks. Returns the number of filled pixels. */
+/* Fills a patch in the slabs of a bundle, in the blocks `more`. Returns the number of filled pixels. */
 static uint64_t fill_bundle(const view_sheets *sheets, slab_place place, uint32_t more, patch_run *run) {
   int slab = place.sheet - 1 - run->first;
   patch_bundle b = {.sheets = sheets,

@@ -334,7 +334,7 @@ static hl_status mark_planes(hl_scene *scene, hl_error *error) {
   return HL_OK;
 }
 
-/* Whether suns of the sky's image are lights: they cast shadows as the scene's lights do. */
+/* Whether bright spots of the sky's image become lights of the scene (suns). They need shadows. */
 static bool has_suns(const hl_scene_description *d) {
   return d->sky.suns && d->sky.strength > 0 && d->render.shadows != HL_SHADOWS_OFF &&
          d->render.slicing == HL_SLICING_HALF_VECTOR && d->render.compositing == HL_COMPOSITING_LIGHT;

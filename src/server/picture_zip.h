@@ -8,7 +8,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-enum { PICTURE_ZIP_MOST = 65535 }; /* the most pictures of a zip archive without extensions */
+enum { PICTURE_ZIP_MOST = 65535 }; /* number of files that a zip archive can hold without ZIP64 */
 
 typedef struct picture_zip_entry {
   uint32_t at, length, checksum;

@@ -52,13 +52,13 @@ typedef struct server_options {
   hl_status (*open)(void *files_data, const server_file *file, hl_scene **scene, hl_error *error);
   /* Makes one scene of an open scene and a scene that is added to it. */
   hl_status (*join)(void *files_data, hl_scene *base, hl_scene *added, hl_scene **scene, hl_error *error);
-  void *files_data;           /* data for `open` and `join` */
-  uint64_t most_upload_bytes; /* the most bytes of a dropped file; 0: no limit */
-  int port;                   /* 0: any free port */
-  bool (*token)(int port,
-                char token[33]); /* the token of the URL, 32 hexadecimal digits, kept for `port`: called when
-                                  * the port is this viewer's. Null, or false: the token is random */
-  bool (*stopped)(void);         /* called some times a second; true ends server_run() */
+  void *files_data;                        /* data for `open` and `join` */
+  uint64_t most_upload_bytes;              /* the most bytes of a dropped file; 0: no limit */
+  int port;                                /* 0: any free port */
+  bool (*token)(int port, char token[33]); /* sets the token of the URL, 32 hexadecimal digits, to the one
+                                            * that was kept for this port; called once the server has the
+                                            * port. Where it is null or returns false, the token is random */
+  bool (*stopped)(void);                   /* called some times a second; true ends server_run() */
   void *user_data;
   void (*ready)(void *user_data, const char *url); /* called once, as soon as the server answers requests */
   void (*visited)(void *user_data); /* called once after `ready`, by another thread, when a browser has loaded

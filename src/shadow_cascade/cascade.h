@@ -87,11 +87,11 @@ typedef struct cascade_level {
   double owed[2]; /* variance that the sum is blurred too much already, along rows and columns; pixels of the
                      buffer squared */
   bool renewed;   /* the sum must be made again */
-  cascade_field scratch; /* for sums from farther levels; not on level 0 */
-  cascade_field mean[2]
-                    [HL_CHANNELS]; /* with an emission image: one group's absorbed and thin light, averaged */
-  cascade_box *boxes;              /* owned; [tiles_x], then [tiles_y] */
-  field_pixel *memory;             /* the shadow_memory's */
+  cascade_field scratch;              /* for sums from farther levels; not on level 0 */
+  cascade_field mean[2][HL_CHANNELS]; /* for lights with an emission image: one group's absorbed and thin
+                                         light, averaged */
+  cascade_box *boxes;                 /* owned; [tiles_x], then [tiles_y] */
+  field_pixel *memory;                /* the shadow_memory's */
   size_t planes;
   unsigned char *flags; /* owned */
 } cascade_level;
@@ -112,7 +112,8 @@ typedef struct cascade_exchange {
 typedef struct soft_cascade {
   bool begun; /* its memory holds more than zeros */
   bool parallel;
-  double rate; /* parallel: omega per height; else L in units of a pixel at distance 1 */
+  double rate; /* how fast penumbrae widen: for parallel light omega per height; for near light L, in pixels
+                  of the buffer at distance 1 */
   double light_height;
   double widest;                        /* of the light's widths along the buffer's axes */
   double least_fraction;                /* the smaller width as a fraction of the greater */

@@ -268,8 +268,8 @@ static void find_reads(soft_cascade *cascade, const occupancy *occupancy, const 
   hl_cascade_reads_find(&cascade->reads, occupancy, shadow->needed_until, sheet, last);
 }
 
-/* The reach of the blur and resampling from one group's sum to the next group's level, pixels of the buffer.
- */
+/* How many pixels of the buffer the blur and the resampling reach, which bring one group's sum to the level
+ * of the next group. */
 static int reach_of(const cascade_level *level, double variance, const cascade_level *next) {
   double own = variance * level->greatest_fraction / ((double)level->scale * level->scale);
   return (hl_blur_box_of_variance(own).reach + 1) * level->scale +
@@ -436,7 +436,8 @@ static void advance_cascade(light_shadow *shadow, const occupancy *occupancy, in
 
 /* ---- the method ---- */
 
-/* Sets how far samples have faded from the second planes to the buffer. */
+/* Sets how much the samples of a slab read of the buffer, and how much of its second planes: these alone at a
+ * chunk's beginning, the buffer alone after the length of a chunk. */
 static void before_shading(light_shadow *shadow, int sheet, shadow_lookup *lookup) {
   const soft_cascade *cascade = shadow->state;
   double middle = slab_omega(cascade, shadow->setup.sheets, sheet);

@@ -36,8 +36,8 @@ typedef struct cascade_sum {
   const cascade_field *b;        /* null for zeros where a is not coarser than to */
   const cascade_level *level;    /* level of `to` */
   const cascade_field *to;
-  int reach; /* `to` is computed within this many pixels of the buffer around tiles that are read;
-                READ_EVERYWHERE: in all tiles */
+  int reach; /* `to` is computed in the tiles that are read, and this many pixels of the buffer around
+                them; READ_EVERYWHERE: in all tiles */
 } cascade_sum;
 void hl_cascade_add(const cascade_crew *crew, const cascade_sum *sum);
 

@@ -15,9 +15,9 @@ typedef struct edge {
   int64_t least, greatest; /* the least and the greatest offset */
 } edge;
 
-/* Sets the edge from a to b. Inside is to its left where y points down and x to the right, or to its right,
- * as the caller's order of corners says. A sample on an edge belongs to the triangle on one side only: the
- * edge in the opposite direction gets 1 less. */
+/* Sets the edge from a to b. With y down and x to the right, the inside is to its left or to its right, as
+ * the caller's order of corners says. A sample on an edge belongs to the triangle on one of its sides only:
+ * the function of the edge is less by 1 if the edge runs the other way. */
 static void set_edge(edge *e, int64_t ax, int64_t ay, int64_t bx, int64_t by) {
   int64_t dx = bx - ax, dy = by - ay;
   bool owns = dy > 0 || (dy == 0 && dx < 0);

@@ -33,8 +33,8 @@ typedef struct fragments_source {
   bool of_light; /* a light's view sees the meshes that cast shadows; other views see the visible meshes */
   bool unseen;   /* the eye's view sees only meshes that are not visible and cast shadows. No fragment hides
                   * another, and opacities are parts of a pixel */
-  double delay;  /* pixels of the view: a fragment counts from the height that its surface's plane has this
-                  * far away, so that a surface does not darken itself where buffers are interpolated */
+  double delay;  /* pixels of the view: a fragment takes light from the height that its surface's plane has
+                  * this far away. So a surface does not darken itself where look-ups interpolate */
   /* Pixels of the view: a fragment of a light's view fills all slabs that its surface's plane crosses within
    * this distance, so that rays of other directions than the view's find no gap between pixels of a slanted
    * surface; 0: it fills one slab. */

@@ -8,8 +8,9 @@
 
 enum { LEAST_A_TASK = 1 << 8, MOST_TASKS = 32 };
 
-/* A cluster that touches more tiles is taken apart. Views see the vertices of clusters with corners together;
- * other clusters are taken apart where they touch more than one tile. */
+/* The greatest number of tiles that a cluster of primitives with corners may touch and stay whole; views
+ * project its vertices together. Primitives of other clusters are listed one by one, and so are all clusters
+ * without corners that touch more than one tile. */
 enum { MOST_TILES_TOGETHER = 9 };
 
 /* The tiles that a primitive touches, the last ones included; none where x0 is greater than x1. */

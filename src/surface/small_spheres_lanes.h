@@ -123,7 +123,7 @@ LANES_INLINE void find_boxes(const small_view *small, const eight_rays *rays, do
                     (dots(rays->start, rays->start) > rays->radius * rays->radius * 1.05);
 }
 
-/* The quadratic functions of sphere_coverage.c about (u, v). */
+/* Finds the coefficients c of the quadratic functions of sphere_coverage.c, in offsets from (u, v). */
 LANES_INLINE void find_quadratics(const eight_rays *rays, eight_doubles u, eight_doubles v,
                                   eight_doubles c[6]) {
   eight_doubles m = discriminants(rays, u, v), e = discriminants(rays, u + 1.0, v),

@@ -28,8 +28,8 @@ typedef struct hl_exact {
   atomic_int failure; /* the system's error number if there was no room for the numbers, else 0 */
   _Atomic(void *)
       numbers;     /* owned; [count], of the type; zeros at first; null until a float rounds a number */
-  atomic_int file; /* owned; the same numbers in a file, which has holes where nothing was noted; -1 if there
-                    * is none */
+  atomic_int file; /* owned; a file that holds the same numbers in place of memory, with holes where nothing
+                    * was noted; -1: there is none */
 } hl_exact;
 
 void hl_exact_begin(hl_context *context, hl_voxel_type type, size_t count, hl_exact_place place,

@@ -76,7 +76,8 @@ static void take_values(const hl_volume *volume, float *line, float *values, flo
     }
 }
 
-/* Where there are voxels that are not finite: what the finite ones have of each sum. */
+/* Divides each sum by the weight that finite voxels have in it. For volumes in which some voxels are not
+ * finite. */
 static void weigh(const hl_volume *volume, float *line, float *values, const float *share) {
   const size_t row = volume->dimension[0];
   for (size_t k = 0, n = 0; k < volume->dimension[2]; k++)
@@ -88,7 +89,7 @@ static void weigh(const hl_volume *volume, float *line, float *values, const flo
     }
 }
 
-/* The grid of a volume, and what its file tells of its world. */
+/* Makes a volume of the smoothed values, with the grid of the first one and its place in the world. */
 static hl_status adopt(const hl_volume *volume, float *values, hl_volume **smoothed, hl_error *error) {
   hl_volume_description d = hl_volume_own_grid(volume);
   d.type = HL_VOXEL_F32;

@@ -9,7 +9,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* 1 if this build's products and sums are rounded once, which engines may refuse relaxed SIMD. */
+/* 1 if a product and a sum are rounded once, together, as pictures need. With relaxed SIMD, engines may
+ * choose to round twice; then it is 0. */
 int web_fuses(void);
 
 /* Makes the context, before all other calls. mebibytes: of memory at most. */

@@ -42,7 +42,8 @@ static bool leads_out(const char *text) {
   return false;
 }
 
-/* Options that no panel has: the page decides, or they are about the run. */
+/* Whether an option must not be given for a panel: the page sets it for all panels, or it concerns the whole
+ * run. */
 static bool is_of_the_page(int which) {
   static const int kept[] = {RENDER_OUTPUT,      RENDER_FORMAT, RENDER_SIZE,        RENDER_DEPTH,
                              RENDER_NO_METADATA, RENDER_LAYERS, RENDER_WIDTH,       RENDER_DPI,

@@ -23,7 +23,8 @@ static double read_width(const char *text) {
   return width >= 1 && width <= 5000 ? width : 0;
 }
 
-/* "auto", "50um" or "5", and where the bar holds, "@target" or "@300". */
+/* Reads the value of --scale-bar: a length ("auto", "50um" or "5"), and the depth at which the bar is right
+ * ("@target" or "@300"). */
 static int read_scale_bar(const cli_value *value, cli_overlay *made) {
   char text[80];
   snprintf(text, sizeof text, "%s", value->text);

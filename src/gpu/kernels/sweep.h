@@ -306,7 +306,7 @@ DEVICE int is_lit(const light_pixel *pixel) {
   return lit;
 }
 
-/* The number of the light to which a tile belongs, among the tiles of all lights. */
+/* The light that a tile belongs to. tile: its index among the tiles of all lights. */
 DEVICE int light_of_tile(GLOBAL const device_sweep *plan, int tile) {
   int light = 0;
   for (int i = 0; i < plan->light_count; i++)

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What uselocale() gives back: how to return to the locale before. */
+/* The value that uselocale() returns. Given to a later call, it restores the locale that was set before. */
 typedef struct kept_locale {
   int mode; /* whether the thread had a locale of its own */
   char name[];

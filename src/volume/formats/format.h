@@ -54,9 +54,10 @@ hl_status hl_arrays_choose(hl_load_request *request, const char *path, int activ
 
 /* Chooses the component to read, and sets it in the payload, whose `components` and `block` must be known.
  * The choice is the wanted component, else the only one, else the magnitude of vectors of two or three
- * components, else the first component. is_series: components are time steps. The time steps of a channel are
- * together; the payload has the channels that request->selection says, or one. The first is read by default.
- * Refuses a time, a channel or a level that request->selection does not have. */
+ * components, else the first component. is_series: components are time steps, and the time steps of a
+ * channel follow each other. The payload has as many channels as request->selection says, or one. By default
+ * the first time step of the first channel is read. Refuses a time, a channel or a level that
+ * request->selection does not have. */
 hl_status hl_component_choose(hl_load_request *request, const char *path, bool is_series, hl_payload *payload,
                               hl_error *error);
 

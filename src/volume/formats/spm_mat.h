@@ -5,9 +5,9 @@
 #include "core/error.h"
 #include "volume/volume.h"
 
-/* Reads the place of the volume whose header has this path, and puts axes and origin into the grid (x to the
- * right, y to the front, z up). False, with the grid as it was, if there is no such file, or none that is
- * read; of the latter, a warning tells. */
+/* Reads the .mat file beside a volume's header, and sets the axes and the origin of the volume's grid (x to
+ * the right, y to the front, z up). Returns false, and leaves the grid as it is, where there is no such file.
+ * A file that cannot be read is left out, too, with a warning. */
 bool hl_spm_mat_place(hl_context *context, const char *header_path, hl_volume_description *grid);
 
 #endif

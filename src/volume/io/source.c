@@ -1,5 +1,5 @@
-/* volume/io/source.c - bytes at any position of a file (by pread), of memory, of a part of either, or of
- * deflated data, which are inflated as far as needed, and kept. */
+/* volume/io/source.c - reads bytes at any position of a file (by pread), of memory, or of a part of either.
+ * Deflated data are inflated up to the last byte that is asked for, and the inflated bytes are kept. */
 #define _GNU_SOURCE
 #include "volume/io/source.h"
 

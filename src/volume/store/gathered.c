@@ -35,8 +35,8 @@ static void pack_numbers(const gathering *g, const hl_box *slice, unsigned char 
   }
 }
 
-/* Packs a slice of this rank's block. Where ranks send numbers and this rank's floats round none, its floats
- * are the numbers. */
+/* Packs a slice of this rank's block for the other ranks. In an exact gathering, ranks send the file's own
+ * numbers. A rank whose floats are these numbers, unrounded, makes them of its floats. */
 static void pack(const gathering *g, const hl_box *slice) {
   const size_t count = slice->count[0] * slice->count[1];
   if (g->exact && has_numbers(g->own)) {

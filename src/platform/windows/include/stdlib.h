@@ -7,7 +7,7 @@
 /* The absolute name, with '/'. resolved: [PATH_MAX], or null for a block of malloc(). */
 char *realpath(const char *path, char *resolved);
 char *hl_posix_mkdtemp(char *path);
-/* The value in UTF-8, which stays until the process ends. */
+/* The value of a variable of the environment in UTF-8. The text stays valid until the process ends. */
 char *hl_posix_getenv(const char *name);
 #define mkdtemp hl_posix_mkdtemp
 #define getenv  hl_posix_getenv

@@ -99,7 +99,8 @@ static hl_status read_chunk_names(const hl_zarr_reading *r, const json_t *encodi
   return read_separator(r, configured(encoding, "separator"), plain ? '/' : '.');
 }
 
-/* Reads shards: with them the chunks of the chunk grid are files of several inner chunks. */
+/* Reads the codec of a sharded array. There, each chunk of the chunk grid is a shard: a file that holds
+ * several inner chunks. */
 static hl_status read_shards(const hl_zarr_reading *r, const json_t *codec) {
   hl_zarr_array *array = r->array;
   uint64_t outer[HL_ZARR_AXES_MOST];
