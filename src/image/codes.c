@@ -3,7 +3,7 @@
  * In: linear premultiplied floats, a linear background. Out: RGB over the background or, with
  * background_transparent, unassociated RGBA.
  *
- * Exposure, tone (tone.h), compositing and alpha division are done in linear light; the curve is applied last
+ * Exposure, tone, compositing and alpha division are done in linear light; the curve is applied last
  * (srgb.h).
  *
  * Eight bits are too few for smooth dark gradients such as penumbras: rounding draws visible contours, 10
@@ -17,11 +17,11 @@
  * rounded, so that a flat background stays flat. 16-bit codes are rounded. */
 #include "image/codes.h"
 
+#include <float.h>
 #include <string.h>
 
 #include "core/door.h"
 #include "image/format.h"
-#include "image/tone.h"
 
 /* The 8 x 8 ordered (Bayer) pattern: the bits of x ^ y and y, interlaced and mirrored, give each of 0..63
  * once. Offsets in codes, -63/128 .. 63/128. */
@@ -49,11 +49,36 @@ static bool is_empty(const float pixel[4]) {
   return pixel[0] == 0 && pixel[1] == 0 && pixel[2] == 0 && pixel[3] == 0;
 }
 
+/* ---- how bright light fits into the range of a PNG ---- */
+
+#define SHOULDER 0.6f /* light up to SHOULDER is left unchanged; the sRGB code of SHOULDER is 203 of 255 */
+
+/* Maps light x from the value s on. Derived: the hyperbola that leaves the line f(x) = x at s with slope 1
+ * and comes near 1 for endless light is f(x) = 1 - d^2 / (x - s + d), d = 1 - s: f(s) = s, f'(x) = d^2 / (x -
+ * s + d)^2. Twice the light of white, 1, comes to 0.911, four times to 0.958. */
+static float shoulder(float x) {
+  const float rest = 1 - SHOULDER;
+  return x > SHOULDER ? 1 - rest * rest / (x - SHOULDER + rest) : x;
+}
+
+/* The factor on light's red, green and blue. One factor serves all three, so that the hue stays. light:
+ * linear, after the exposure. */
+static float tone_factor(hl_tone tone, const float light[3]) {
+  if (tone != HL_TONE_FILMIC) return 1;
+  float brightest = light[0] > light[1] ? light[0] : light[1];
+  if (light[2] > brightest) brightest = light[2];
+  if (!(brightest > SHOULDER)) return 1;
+  if (brightest > FLT_MAX) brightest = FLT_MAX;
+  return shoulder(brightest) / brightest;
+}
+
 /* The factor on a pixel's light: the exposure times the tone factor of light this bright. */
 static float factor_of(const hl_codes *codes, const float pixel[4]) {
   const float light[3] = {pixel[0] * codes->exposure, pixel[1] * codes->exposure, pixel[2] * codes->exposure};
-  return codes->exposure * hl_tone_factor(codes->tone, light);
+  return codes->exposure * tone_factor(codes->tone, light);
 }
+
+/* ---- codes ---- */
 
 /* The linear value, before encoding, of channel c of a pixel. factor: the factor on the pixel's light. */
 static float stored_value(const hl_codes *codes, const float pixel[4], float factor, int c) {
