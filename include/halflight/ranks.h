@@ -44,8 +44,8 @@ HL_API int hl_ranks_size(const hl_ranks *ranks); /* 1 for null */
  * picture. */
 HL_API void hl_ranks_sum(hl_ranks *ranks, float *values, size_t count);
 
-/* Bytes of voxels that this rank has got from others so far, the requests that took, and the seconds that its
- * threads have waited for them. Each may be null. */
+/* Tells how much this rank has received of other ranks' voxels so far: the bytes, the number of requests for
+ * them, and the seconds that its threads have waited. Each pointer may be null. */
 HL_API void hl_ranks_traffic(const hl_ranks *ranks, uint64_t *bytes, uint64_t *requests, double *seconds);
 
 /* From now on volumes of 1 MiB or more that are loaded through the context of `ranks` lie over the ranks:

@@ -31,7 +31,8 @@ typedef struct hl_cell_affine {
 /* Of a shape that hl_cell_shape_ready() completed. values: of its corners. */
 void hl_cell_affine_of(const hl_cell_shape *shape, const double values[8], hl_cell_affine *affine);
 
-/* The volume of the cell; of a hexahedron that of its map at the middle. */
+/* The volume of a cell. For a hexahedron it is estimated by the determinant of the map's derivative in its
+ * middle. */
 double hl_cell_volume(const hl_cell_shape *shape);
 
 #endif

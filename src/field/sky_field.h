@@ -26,9 +26,9 @@ static inline int hl_sky_place(int harmonic) {
 
 /* The sky's light that samples look up. */
 typedef struct sky_light {
-  /* [z][y][x][SKY_CELL], rows row_numbers apart: FIELD_HARMONICS x channels harmonics, with a harmonic's
-   * channels beside each other, at hl_sky_place(). Zero where nothing visible is near. Null: there is no
-   * sky. */
+  /* [z][y][x][SKY_CELL]; a row has row_numbers numbers. A cell has FIELD_HARMONICS x channels harmonics at
+   * the indices of hl_sky_place(), the channels of a harmonic beside each other. It is zero where nothing
+   * visible is near. Null: there is no sky. */
   const int16_t *cells;
   size_t row_numbers; /* numbers of 16 bits from row to row */
   int32_t count[3];

@@ -36,8 +36,8 @@ LANES_INLINE lanes distance_to_shape(const run_cut *cut, lanes3 at, const float 
                    (lanes_abs(at.z) - 1.0f) * scale[2]);
 }
 
-/* Light may come into a box that is kept through one face close to another one, so that each of its faces is
- * looked at. */
+/* Tests all faces of a cut that may be near. Into a box whose inside is left, light may come through one face
+ * close to another one, so that the nearest face is not enough. */
 LANES_INLINE lanes skin_of_cut(const run_cut *cut, lanes3 from, lanes3 to, float voxel) {
   const float scale[3] = {1.0f / (cut->size[0] * voxel), 1.0f / (cut->size[1] * voxel),
                           1.0f / (cut->size[2] * voxel)};

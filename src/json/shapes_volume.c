@@ -99,8 +99,8 @@ static bool says(const char *text, const json_t *root) {
   return same;
 }
 
-/* An integer in place of a real number that is one; null: `value` stays. A page that reads a scene and writes
- * it again turns 5.0 to 5: both are to be the same text. */
+/* Returns an integer in place of a real number without a fraction; null for any other value. A page that
+ * reads a scene and writes it again turns 5.0 into 5, and both must become the same text. */
 static json_t *whole_of(const json_t *value) {
   const double most = 9007199254740992.0; /* 2^53 */
   double number = json_real_value(value);

@@ -59,7 +59,7 @@ LANES_INLINE lanes row_of_cap(const phase_table *table, float size, const light_
   lanes twice = lanes_fma(way.x * spread[3], way.y, way.z * (way.x * spread[4] + way.y * spread[5]));
   lanes wide = (spread[0] + spread[1] + spread[2]) - (along + twice * 2.0f) * inverse;
   lanes h = lanes_sqrt(lanes_max(lanes_fma(wide, inverse, lanes_set(1.0f)), lanes_set(1.0f)));
-  float most = 1 / ((1 - size) * (1 - size)); /* the cap's s^2 over the least one, by c = 4 / (1 + h) - 1 */
+  float most = 1 / ((1 - size) * (1 - size)); /* 1 over the least s^2; the cap's cosine is 4 / (1 + h) - 1 */
   lanes ratio = lanes_line(1.0f / (h + 1.0f), -8 * size * most, (1 + size) * (1 + size) * most);
   return row_of_ratio(table, ratio);
 }

@@ -19,9 +19,10 @@ typedef struct attenuate_volume {
   float voxel;                /* the smallest edge of its voxels; frame units */
   float weight[HL_CHANNELS];  /* relative extinction of R, G, B */
   int uncut;                  /* the box does not cut the slab here */
-  const slab_run *faces;      /* the run of the slab where a face is near that is a surface; else null */
-  int slab;                   /* the slab's number in its run */
-  const grid *grid;           /* with gradient opacity: the grid whose gradient counts */
+  const slab_run
+      *faces; /* where a face of a cut that is lit as a surface is near: the run of the slab; else null */
+  int slab;   /* the slab's number in its run */
+  const grid *grid; /* with gradient opacity: the grid whose gradient counts */
   const kernel *kernel;
   const float (*to_index)[4]; /* frame space to index space */
 } attenuate_volume;

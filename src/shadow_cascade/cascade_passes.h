@@ -31,9 +31,9 @@ typedef struct cascade_blur {
  * alone is on a level twice as coarse. */
 typedef struct cascade_sum {
   const cascade_level *level_a;  /* level of a and thin */
-  const cascade_field *a, *thin; /* a: null for zeros where b is coarser than to; thin: null for zeros */
-  const cascade_level *level_b;  /* null where b is */
-  const cascade_field *b;        /* null for zeros where a is not coarser than to */
+  const cascade_field *a, *thin; /* a: null: zeros; only where b is coarser than `to`. thin: null: zeros */
+  const cascade_level *level_b;  /* level of b; null where b is null */
+  const cascade_field *b;        /* null: zeros; only where a is not coarser than `to` */
   const cascade_level *level;    /* level of `to` */
   const cascade_field *to;
   int reach; /* `to` is computed in the tiles that are read, and this many pixels of the buffer around

@@ -147,8 +147,8 @@ static void copy_back(void *data, size_t index, int worker) {
   }
 }
 
-/* Convolves the planes of one kind; those of the other kinds stay. last: the tiles' lit blocks are found
- * again, too. */
+/* Convolves the planes of one kind, and leaves planes of other kinds as they are. last: these are the last
+ * planes of the sheet, so that the lit blocks of tiles are found again. */
 static void convolve_planes(const soft_paper *soft, convolution *task, shadow_plane kind, bool last,
                             hl_pool *pool) {
   size_t rows = (size_t)task->buffer->tiles_y;

@@ -79,7 +79,7 @@ typedef struct occupancy_source {
   int grid_count;
   const view *view;
   const sheet_stack *sheets;
-  double spare; /* pixels; the member of occupancy with this name, at least PIXEL_TO_SPARE */
+  double spare; /* becomes the occupancy's `spare`; pixels, at least PIXEL_TO_SPARE */
 } occupancy_source;
 
 /* Fills an empty occupancy. Call hl_occupancy_release() even after a failure. */

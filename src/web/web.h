@@ -37,7 +37,8 @@ int web_frame(size_t length, const char *format, int depth, int metadata, int mo
  * of what is open; of_mask: 1, the label map that masks it; blend: an hl_blend; interpolate: 0 or 1. */
 int web_slice(int number, int of_mask, int blend, int interpolate);
 
-/* Answer: how deep lies what the middle pixel of the text's scene shows, as middle_depth() tells it. */
+/* Answer: the depth of what the middle pixel of a picture of the text's scene shows, as middle_depth() writes
+ * it. */
 int web_depth(size_t length);
 
 /* Owned by this side, until the next call that can fail. */

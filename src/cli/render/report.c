@@ -78,7 +78,7 @@ static bool is_maximum(const hl_scene_description *description) {
   return description->render.compositing == HL_COMPOSITING_MAXIMUM;
 }
 
-/* What this process got of the volumes that lie over the ranks. */
+/* Prints how many voxels this process has received from other ranks, of volumes that lie over the ranks. */
 static void print_traffic(json_writer *json, const hl_ranks *ranks) {
   uint64_t bytes, requests;
   double seconds;

@@ -20,7 +20,7 @@ typedef struct series_job {
   const char *pattern;                   /* pattern of OUT, with one %d */
   char **files;                          /* owned; [count]: volumes, or meshes where there is no volume */
   bool of_meshes;                        /* the files are meshes */
-  char *meshes[MAXIMUM_OPERANDS + 1];    /* borrowed; null after the last: meshes in every picture */
+  char *meshes[MAXIMUM_OPERANDS + 1];    /* borrowed; meshes that are in every picture; null after the last */
   int mesh_count;
   bool *bad; /* owned; [count]: cannot be read, and was told */
   int count, part, parts;

@@ -51,8 +51,8 @@ static int add(glob_t *found, const char *path) {
   return 0;
 }
 
-/* path: [PATH_MAX]; the part of the pattern that is found so far, of `length` characters: a folder with its
- * '/', or nothing. */
+/* Adds the files in a folder that a pattern names. path: [PATH_MAX]; the folder with its '/', or "" for the
+ * current one; it has `length` characters, and is changed. */
 static int find(char *path, size_t length, const char *pattern, glob_t *found);
 
 /* Goes on with a name in the folder `path`. rest: the pattern behind it, from its '/' on; "" at its end. */

@@ -242,8 +242,8 @@ static hl_status make_threads(reading *r, size_t voxels, hl_error *error) {
   return r->spaces != NULL && r->others != NULL ? HL_OK : hl_fail_memory(error, 1000, "threads");
 }
 
-/* Looks for padding in the middle slice. Integers that become floats only after all are read need memory for
- * both at once. */
+/* Looks for padding in the middle slice. A volume with padding is read as floats from the start: turning all
+ * its integers into floats afterwards would need memory for both at once. */
 static hl_status find_padding(reading *r, hl_error *error) {
   if (r->as_floats || r->as_colors || isnan(r->padding[0])) return HL_OK;
   size_t middle = r->stack->place_count / 2, bytes = r->slice_voxels * r->voxel_bytes;

@@ -1,4 +1,4 @@
-/* platform/windows/include/sys/prctl.h - Linux's <sys/prctl.h>: a wish that is not heard. */
+/* platform/windows/include/sys/prctl.h - Linux's <sys/prctl.h>. prctl() does nothing here. */
 #ifndef HL_PLATFORM_WINDOWS_SYS_PRCTL_H
 #define HL_PLATFORM_WINDOWS_SYS_PRCTL_H
 
