@@ -59,12 +59,24 @@ typedef struct primitive_kind {
   bool (*parts)(const surfaces *all, uint32_t primitive, const hull_ball *balls, int count, double least);
 } primitive_kind;
 
-extern const primitive_kind hl_primitive_triangle, hl_primitive_sphere;
+/* The registry of kinds, in the order of their primitives' numbers. A kind "sphere" has the table
+ * hl_primitive_sphere in sphere.c, and the table hl_raster_sphere in sphere_raster.c. The build reads the
+ * names here. */
+/* clang-format off */
+#define HL_PRIMITIVES     \
+  HL_PRIMITIVE(triangle)  \
+  HL_PRIMITIVE(sphere)
+/* clang-format on */
 
-/* All kinds, in the order of their primitives' numbers. */
-enum { PRIMITIVE_KINDS = 2 };
-static const primitive_kind *const hl_primitive_kinds[PRIMITIVE_KINDS] = {&hl_primitive_triangle,
-                                                                          &hl_primitive_sphere};
+#define HL_PRIMITIVE(name) PRIMITIVE_##name,
+enum primitive_number { HL_PRIMITIVES PRIMITIVE_KINDS };
+#undef HL_PRIMITIVE
+#define HL_PRIMITIVE(name) extern const primitive_kind hl_primitive_##name;
+HL_PRIMITIVES
+#undef HL_PRIMITIVE
+#define HL_PRIMITIVE(name) &hl_primitive_##name,
+static const primitive_kind *const hl_primitive_kinds[PRIMITIVE_KINDS] = {HL_PRIMITIVES};
+#undef HL_PRIMITIVE
 
 /* The table of a primitive's kind. */
 static inline const primitive_kind *hl_primitive_kind(const surfaces *all, uint32_t primitive) {

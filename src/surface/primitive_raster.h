@@ -36,6 +36,9 @@ struct primitive_raster {
   double (*height)(const sheet_stack *sheets, const shown_surface *shown, double u, double v);
 };
 
-extern const primitive_raster hl_raster_triangle, hl_raster_sphere;
+/* The tables, one a file (primitive.h). */
+#define HL_PRIMITIVE(name) extern const primitive_raster hl_raster_##name;
+HL_PRIMITIVES
+#undef HL_PRIMITIVE
 
 #endif
