@@ -128,7 +128,8 @@ HL_API HL_WARN_UNUSED hl_status hl_transfer_function_spread(hl_context *context,
                                                             const double old[2], const double range[2],
                                                             hl_range_scale scale, hl_transfer_function *to,
                                                             hl_error *error);
-/* As hl_transfer_function_colormap(), over range[0] to range[1] by a scale. */
+/* The same as hl_transfer_function_colormap(), but the colours spread over the values from range[0] to
+ * range[1], evenly or by their logarithms. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_colormap_scaled(hl_context *context, const char *name,
                                                                      const double range[2],
                                                                      hl_range_scale scale,

@@ -122,9 +122,9 @@ static void shade_light(const reference *all, const reference_sample *at, const 
                        arrived->incoming[c];
 }
 
-/* The place where a surface's matter begins, along the normal from a sample in it. Values fall by the
- * gradient's length per unit of length, down to values that show nothing. The place is at most 8 voxels away,
- * and at the sample itself behind the face of a cut. */
+/* The place where a surface's matter begins, along the normal from a sample in it. Values fall
+ * along it by the gradient's length per unit of length, until they show nothing. The place is at most 8
+ * voxels away. Behind the face of a cut, it is the sample's own place. */
 static vec3 outside_of_surface(const reference_sample *at, const surface *here, double behind_face) {
   const reference_volume *volume = at->volume;
   double empty = volume->empty_value, outside = empty,

@@ -34,11 +34,11 @@ typedef struct read_buffer {
   double length[3];  /* of the rows, without their last numbers */
   int32_t *until;    /* [tiles_y][tiles_x] */
   int tiles_x, tiles_y;
-  const struct read_buffer *moves; /* The buffer by whose pixels look-ups at surfaces move away from the
-                                    * surfaces: the light's first. Null: there are no surfaces. */
+  const struct read_buffer *moves; /* The light's first buffer: look-ups at surfaces move away from the
+                                    * surfaces by lengths measured in its pixels. Null: no surfaces. */
 } read_buffer;
 
-/* (w, w u, w v) */
+/* The place (w, w u, w v) of a point in a buffer. */
 static vec3 place_in(const read_buffer *buffer, vec3 point) {
   double place[3];
   for (int i = 0; i < 3; i++)

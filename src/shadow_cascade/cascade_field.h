@@ -81,9 +81,10 @@ enum { GREATEST_EDGE = 16 };
  * group. Inside of opaque surfaces the group at the end hides all that is before it. */
 typedef struct absorbed_job {
   const float *absorbed_at_start; /* rows stride apart */
-  const float *now;               /* rows stride_now apart; pixels up to `edge` beside a tile are read */
-  float *moment; /* sum of each slab's absorbed light times its position in the chunk; is cleared */
-  float length;  /* of the chunk */
+  const float *now; /* transmittance at the chunk's end, or marks of surfaces; rows stride_now apart; has
+                     * pixels up to `edge` beside a tile */
+  float *moment;    /* sum of each slab's absorbed light times its position in the chunk; is cleared */
+  float length;     /* of the chunk */
   const field_pixel *before; /* rows stride apart; what the groups before the chunk absorbed; null: unknown */
   field_pixel *start_absorbed, *start_thin; /* rows stride apart; raised */
   field_pixel *end_absorbed, *end_thin;     /* rows stride apart; written */
