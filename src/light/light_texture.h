@@ -31,8 +31,8 @@ typedef struct light_texture {
                     * 0: the ray does not pass the screen's plane */
   float sharpness[2]; /* along u and v: number of the picture's pixels that one pixel of the image covers, at
                        * least 1 */
-  float beyond[4];    /* parallel light: maps frame space to the distance from the screen along the rays; for
-                       * near    light w gives it */
+  float beyond[4];    /* for parallel light: maps frame space to the distance from the screen along the rays.
+                       * Near    light has this distance in w */
   int parallel;
   float first; /* 1 / square of the distance (near light: of 1 - Zs / Z) for which level 0 is blurred. Level l
                 * is for 2^l times this square, and has 2^l times the variance */

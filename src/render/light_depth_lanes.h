@@ -119,7 +119,8 @@ LANES_INLINE ways_in_box find_ways(const block_slab *slab, block_density *densit
 typedef struct light_depths {
   lanes enter[HL_CHANNELS], more[HL_CHANNELS]; /* where the eye's rays enter the matter, and what the depth
                                                   gains until they leave it */
-  lanes near[HL_CHANNELS][NEAR_PIXELS]; /* near a face: from the face to the near pixels on the first sheet */
+  lanes near[HL_CHANNELS][NEAR_PIXELS]; /* near a face: optical depths from the face to the near pixels on the
+                                           first sheet */
   lanes_int face;                       /* lanes near a face of a box */
   lanes beside;                         /* near a face: how much the face counts, 0 to 1 */
   /* Near a face: as enter and more, but for the light's way before the slab. */

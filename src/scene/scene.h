@@ -23,10 +23,10 @@ struct hl_scene {
                                        the sky, whose image lacks them, the scene's cuts in its volumes, and
                                        volumes of occupancy in place of label maps, lattices (label/mask.h) in
                                        place of masks; owns its array of lights */
-  sky_suns suns;                    /* of the sky, where they are lights: placed.sky.suns tells */
-  placed_cuts cut;                  /* the placed description's volumes, where the scene has cuts */
-  drawn_labels drawn;               /* the volumes of occupancy and the lattices */
-  scene_order order;                /* in which frames take the placed description's lists */
+  sky_suns suns;         /* suns of the sky; used where placed.sky.suns is set: there they are lights */
+  placed_cuts cut;       /* the placed description's volumes, where the scene has cuts */
+  drawn_labels drawn;    /* the volumes of occupancy and the lattices */
+  scene_order order;     /* in which frames take the placed description's lists */
   uint64_t *plane_marks; /* owned; [placed.volume_count]; of the content of functions of two numbers,
                             0 where there is none; for keys of kept results */
   char *field_errors;    /* owned; of its volumes, as JSON (field_errors.c); null if none is known */
