@@ -117,7 +117,7 @@ static active_part find_active(const builder *b, int level, const hl_lattice_box
 
 /* ---- assembling ---- */
 
-/* The floats of scratch memory that hold the bytes of find_active(). */
+/* The number of floats of scratch memory that find_active() needs for its bytes. */
 static size_t mask_floats(const hl_lattice_box *box) {
   const hl_lattice_box cells = cells_of(box);
   return hl_lattice_points(&cells) / sizeof(float) + 1;

@@ -277,8 +277,8 @@ static void advance_paper(light_shadow *shadow, const occupancy *occupancy, int 
 
 /* ---- what a part needs ---- */
 
-/* Raises a tile's value to those of its neighbours less `less`, of the four in the order of rows before it,
- * or of the four after it. */
+/* Raises a tile's value to the greatest value of four neighbours, less the edge of a tile. sign: 1 for the
+ * neighbours before the tile in the order of rows, -1 for the neighbours after it. */
 static void raise_tile(const shadow_buffer *buffer, int32_t *far, int x, int y, int sign) {
   static const int beside[4][2] = {{-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
   int32_t *tile = &far[(ptrdiff_t)y * buffer->tiles_x + x];
@@ -290,7 +290,7 @@ static void raise_tile(const shadow_buffer *buffer, int32_t *far, int x, int y, 
   }
 }
 
-/* The greatest value of a tile's neighbours, all eight. */
+/* The greatest value of a tile's eight neighbours. */
 static int32_t greatest_beside(const shadow_buffer *buffer, const int32_t *far, int x, int y) {
   int32_t greatest = -TILE;
   for (int v = y > 0 ? y - 1 : 0; v <= y + 1 && v < buffer->tiles_y; v++)
