@@ -88,30 +88,8 @@ static const cli_option animate_options[ANIMATE_OPTION_COUNT] = {
          .help = "keep the pictures, in a folder beside the film, named\nlike it with \"-frames\""},
 };
 
-/* The options of `render` that say what is shown and how; the options about a single picture or its file are
- * not among them. */
-static bool has_render_option(size_t row) {
-  switch ((enum render_option)row) {
-    case RENDER_OUTPUT:
-    case RENDER_FORMAT:
-    case RENDER_DEPTH:
-    case RENDER_LAYERS:
-    case RENDER_VIEWS:
-    case RENDER_WIDTH:
-    case RENDER_DPI:
-    case RENDER_REFERENCE:
-    case RENDER_LIGHT_POINTS:
-    case RENDER_STEP:
-    case RENDER_PATHS:
-    case RENDER_RAYS:
-    case RENDER_STRIPS:
-    case RENDER_VOLUME:
-    case RENDER_PRINT_SCENE:
-    case RENDER_PRINT_PLAN:
-    case RENDER_JSON: return false;
-    default: return true;
-  }
-}
+/* The options of `render` that say what is shown and how. */
+static bool has_render_option(size_t row) { return !render_is_of_picture((enum render_option)row); }
 
 /* One run. */
 typedef struct animate_job {

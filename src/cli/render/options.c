@@ -510,6 +510,29 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_QUIET] = {.name = "quiet", .kind = OPTION_SWITCH, .help = "nothing on standard error but errors"},
 };
 
+bool render_is_of_picture(enum render_option which) {
+  switch (which) {
+    case RENDER_OUTPUT:
+    case RENDER_FORMAT:
+    case RENDER_DEPTH:
+    case RENDER_LAYERS:
+    case RENDER_VIEWS:
+    case RENDER_WIDTH:
+    case RENDER_DPI:
+    case RENDER_REFERENCE:
+    case RENDER_LIGHT_POINTS:
+    case RENDER_STEP:
+    case RENDER_PATHS:
+    case RENDER_RAYS:
+    case RENDER_STRIPS:
+    case RENDER_VOLUME:
+    case RENDER_PRINT_SCENE:
+    case RENDER_PRINT_PLAN:
+    case RENDER_JSON: return true;
+    default: return false;
+  }
+}
+
 /* Exposure, tone and depth are for pictures on a screen. */
 static int check_linear_output(const cli_value *values, bool named) {
   static const int of_png[] = {RENDER_EXPOSURE, RENDER_TONE, RENDER_DEPTH};

@@ -105,6 +105,10 @@ extern const cli_choice instruction_set_choices[];
 
 extern const cli_option render_options[RENDER_OPTION_COUNT];
 
+/* Whether an option is about a single picture or its file. Commands that show INPUT otherwise do not have it.
+ */
+bool render_is_of_picture(enum render_option which);
+
 /* Whether the operands or the options ask for a picture of each of several files; makes these pictures.
  * motion: what moves from file to file (film/film.h); its context, scene and frames are not used; null:
  * nothing. */

@@ -37,19 +37,11 @@ static const cli_option view_options[VIEW_OPTION_COUNT] = {
          .help = "print the URL, and open no browser (default: one is\nopened where there is a screen)"},
 };
 
-/* The options of `render` that say what is shown and how; the options about a single picture or its file are
- * not among them. */
+/* The options of `render` that say what is shown and how, but for those that the page sets by itself. */
 static bool has_render_option(size_t row) {
   switch ((enum render_option)row) {
-    case RENDER_OUTPUT:
-    case RENDER_FORMAT:
-    case RENDER_SIZE: /* the page's own */
-    case RENDER_DEPTH:
+    case RENDER_SIZE:
     case RENDER_NO_METADATA:
-    case RENDER_LAYERS:
-    case RENDER_VIEWS:
-    case RENDER_WIDTH:
-    case RENDER_DPI:
     case RENDER_SCALE_BAR:
     case RENDER_UNIT:
     case RENDER_LEGEND:
@@ -57,19 +49,9 @@ static bool has_render_option(size_t row) {
     case RENDER_ANNOTATE:
     case RENDER_FONT_SIZE:
     case RENDER_RANGE_OF_ALL:
-    case RENDER_REFERENCE:
-    case RENDER_LIGHT_POINTS:
-    case RENDER_STEP:
-    case RENDER_PATHS:
-    case RENDER_RAYS:
     case RENDER_PART:
-    case RENDER_RANKS:
-    case RENDER_STRIPS:
-    case RENDER_VOLUME:
-    case RENDER_PRINT_SCENE:
-    case RENDER_PRINT_PLAN:
-    case RENDER_JSON: return false;
-    default: return true;
+    case RENDER_RANKS: return false;
+    default: return !render_is_of_picture((enum render_option)row);
   }
 }
 
