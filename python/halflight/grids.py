@@ -117,9 +117,10 @@ def _structured_cells(size: Sequence[int]) -> Any:
 
 def of_vtk(source: Any) -> tuple[Cells, str | None] | None:
     """The cells of an unstructured or curvilinear grid of VTK and PyVista, with the active scalars' name; None for anything else."""
-    unstructured = hasattr(source, "GetCellTypesArray") and hasattr(source, "GetCells")
-    curvilinear = hasattr(source, "GetPoints") and hasattr(source, "GetDimensions") and not hasattr(source, "GetSpacing")
-    if not (unstructured or curvilinear) or not hasattr(source, "GetPointData"):
+    # By its class: from VTK 9.5 on images and rectilinear grids, too, have methods that return points and cells.
+    is_a = getattr(source, "IsA", lambda _: False)
+    curvilinear = is_a("vtkStructuredGrid")
+    if not (curvilinear or is_a("vtkUnstructuredGrid")):
         return None
     from vtkmodules.util.numpy_support import vtk_to_numpy
 

@@ -226,7 +226,9 @@ def _take_data(taken: _Taken, actor: Any, data: Any, matrix: np.ndarray[Any, Any
         _put_radii(taken, surface, prop, matrix)
     look: dict[str, Any] = {**_material(prop), "opacity": prop.GetOpacity()}
     words: dict[str, Any] = {"scalars": False}
-    smooth = prop.GetInterpolation() != 0 and surface.GetPointData().GetNormals() is not None
+    # VTK makes a tube's normals itself; a polygon has one of its own where the data have none.
+    round_tubes = surface.GetNumberOfLines() > 0 and surface.GetNumberOfPolys() == 0
+    smooth = round_tubes or (prop.GetInterpolation() != 0 and surface.GetPointData().GetNormals() is not None)
     if mapped is None:
         look["color"] = taken.color(prop.GetDiffuseColor() if color is None else color).tolist()
     else:

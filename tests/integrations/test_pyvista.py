@@ -29,6 +29,11 @@ def silhouette(codes):
     return abs(codes[..., :3].astype(int) - codes[0, 0, :3].astype(int)).max(axis=-1) > 12
 
 
+def inner(mask):
+    """What of the mask has the mask around it: not its edges, which Halflight mixes with the background and VTK does not."""
+    return mask & np.all([np.roll(mask, (y, x), (0, 1)) for y in (-1, 0, 1) for x in (-1, 0, 1)], axis=0)
+
+
 def compare(made, name=None, pictures=None, brightness=0.05, **words):
     """Silhouettes within a pixel, and the mean brightness of what both show."""
     host = host_pixels(made)
@@ -95,10 +100,33 @@ def test_points_lines_and_wires():
     made.add_mesh(pyvista.Sphere(radius=0.5, center=(0, 1.5, 0), theta_resolution=8, phi_resolution=8), style="wireframe", color="steelblue",
                   line_width=4, render_lines_as_tubes=True)
     compare(made)
-    # VTK lights a flat line as if all of it were turned to the eye as far as it goes; of a tube only the middle is.
+
+
+@pytest.mark.parametrize("background", ["black", "white"])
+def test_wires_are_as_bright_as_vtk_s(background):
+    """Away from the wires' edges."""
+    for tubes, ratio in ((True, 1), (False, 0.93)):
+        made = plotter()
+        made.set_background(background)
+        made.add_mesh(pyvista.Sphere(theta_resolution=8, phi_resolution=8), style="wireframe", color="steelblue", line_width=4, render_lines_as_tubes=tubes)
+        host, codes = host_pixels(made), made.halflight(shading="display").to_srgb8()
+        check_silhouettes(silhouette(host), silhouette(codes))
+        both = inner(silhouette(host) & silhouette(codes))
+        # VTK lights a flat line as if all of it were turned to the eye as far as it goes; of a tube only the middle is.
+        assert both.sum() > 8000 and codes[both][:, :3].mean() == pytest.approx(ratio * host[both].mean(), rel=0.02)
+
+
+@pytest.mark.parametrize("way", [(1, 0, 0), (0, 1, 0)])
+def test_tubes_are_round(way):
+    """The light across a tube is VTK's, pixel by pixel: of a tube with flat sides neighbours are alike or far apart."""
     made = plotter()
-    made.add_mesh(pyvista.Sphere(theta_resolution=8, phi_resolution=8), style="wireframe", color="steelblue", line_width=4)
-    compare(made, brightness=0.15)
+    made.set_background("black")
+    made.add_mesh(pyvista.Line(-np.array(way), way), color="white", line_width=16, render_lines_as_tubes=True)
+    made.camera_position = [(0, 0, 6), (0, 0, 0), (0, 1, 0)]
+    host, codes = (picture[150, :, 0] if way[1] else picture[:, 200, 0] for picture in (host_pixels(made), made.halflight(shading="display").to_srgb8()))
+    shown = np.flatnonzero(host)
+    assert len(shown) == 16
+    assert abs(host[shown[3:-3]].astype(int) - codes[shown[3:-3]]).max() <= 2
 
 
 def blob():

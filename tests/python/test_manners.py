@@ -21,6 +21,14 @@ def slow():
                  soft_method="sublights", light_samples=8, shadows="soft")
 
 
+@pytest.fixture(autouse=True)
+def interruptible():
+    """SIGINT raises KeyboardInterrupt, even where a shell has started the tests in its background: it ignores the signal there."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 def test_ctrl_c_stops_a_render_and_leaves_the_renderer_usable(slow, small):
     renderer = Renderer()
     expected = np.asarray(Renderer().render(small))
