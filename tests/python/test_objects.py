@@ -233,8 +233,9 @@ def test_import_loads_little_and_needs_numpy_alone():
     added = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout.split()
     others = {name.partition(".")[0] for name in added} - set(sys.stdlib_module_names)
     assert others <= {"halflight", "_cffi_backend"}
-    foreign = [name for name in added if not name.startswith("halflight")]
-    assert len(foreign) < 40  # modules; numpy brings above a hundred
+    # What of the standard library takes long to load; versions of NumPy differ in which small modules they bring.
+    slow = {"asyncio", "concurrent", "ctypes", "difflib", "email", "html", "http", "logging", "multiprocessing", "pdb", "socket", "sqlite3", "ssl", "unittest", "xml", "zipfile"}
+    assert not slow & {name.partition(".")[0] for name in added}
 
 
 def write_channels(folder):
