@@ -93,17 +93,20 @@ static int64_t middle_of(const halving *job, uint32_t a, uint32_t b) {
   return found != NULL ? (int64_t)(job->first_vertex + (size_t)(found - job->edges)) : -1;
 }
 
-/* Moves a point onto the surface along the field's slope (Newton), at most `reach` away. */
-static vec3 move_to_surface(const lattice *lattice, vec3 start, double reach, vec3 *slope) {
+/* Moves a point of index space onto the surface along the field's slope in the world (Newton), at most
+ * `reach` of the world's lengths away: in long voxels a middle moves by more of the short edges than its edge
+ * has of the long ones. */
+static vec3 move_to_surface(const halving *job, vec3 start, double reach) {
   enum { STEPS = 4 };
-  vec3 at = start;
+  const lattice *lattice = job->lattice;
+  vec3 at = start, slope;
   for (int step = 0; step < STEPS; step++) {
-    double off = lattice->value - hl_field_value_and_slope(lattice->grid, lattice->kernel, at, slope);
-    double steep = vec3_dot(*slope, *slope);
+    double off = lattice->value - hl_field_value_and_slope(lattice->grid, lattice->kernel, at, &slope);
+    const vec3 in_world = mat3_apply(job->turns, slope);
+    double steep = vec3_dot(in_world, in_world);
     if (!(steep > 0)) return start;
-    vec3 moved = vec3_add(at, vec3_scale(*slope, off / steep));
-    if (!(vec3_length(vec3_subtract(moved, start)) <= reach)) return start;
-    at = moved;
+    at = vec3_add(at, mat3_apply(mat3_transpose(job->turns), vec3_scale(in_world, off / steep)));
+    if (!(vec3_length(mat3_apply(job->ways, vec3_subtract(at, start))) <= reach)) return start;
   }
   return at;
 }
@@ -116,7 +119,7 @@ static void place_middle(void *data, size_t index, int worker) {
               *b = made->positions[job->edges[index] & UINT32_MAX];
   vec3 from = {a[0], a[1], a[2]}, to = {b[0], b[1], b[2]}, slope;
   vec3 middle = vec3_scale(vec3_add(from, to), 0.5);
-  middle = move_to_surface(job->lattice, middle, vec3_length(vec3_subtract(to, from)) / 2, &slope);
+  middle = move_to_surface(job, middle, vec3_length(mat3_apply(job->ways, vec3_subtract(to, from))) / 2);
   (void)hl_field_value_and_slope(job->lattice->grid, job->lattice->kernel, middle, &slope);
   vec3_store(made->positions[job->first_vertex + index], middle);
   vec3_store(made->normals[job->first_vertex + index], hl_iso_normal(job->lattice, slope));
@@ -232,8 +235,11 @@ static hl_status halve_edges(hl_pool *pool, const lattice *lattice, iso_triangle
   *any = false;
   if (!mat3_invert(placed, &inverse)) return HL_OK; /* refused when the grid was made */
   const double voxel = mat3_shortest_column(placed);
-  for (int row = 0; row < 3; row++) job.ways.row[row] = vec3_scale(placed.row[row], 1 / voxel);
-  job.turns = mat3_transpose(inverse);
+  const mat3 turned = mat3_transpose(inverse);
+  for (int row = 0; row < 3; row++) {
+    job.ways.row[row] = vec3_scale(placed.row[row], 1 / voxel);
+    job.turns.row[row] = vec3_scale(turned.row[row], voxel);
+  }
   const size_t vertices = triangles->vertex_count;
   job.normals = hl_allocate(lattice->context, vertices, sizeof *job.normals);
   if (job.normals == NULL) return hl_fail_memory(error, vertices * sizeof *job.normals, "an isosurface");
