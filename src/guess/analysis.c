@@ -96,20 +96,16 @@ static bool has_one_body(const distances *d, double low, double high) {
   return most > 0.4 * sum;
 }
 
-/* Finds the thresholds and measures of the objects, relative to the sample's range. d: the distances to one
- * side of the background. */
-static void find_thresholds(const distances *d, const float *border, size_t border_count,
-                            hl_data_analysis *a) {
-  a->top = fmax(hl_quantile(d->values, d->count, 0.9999), 1e-9);
-  a->solid = hl_threshold_otsu(d->values, d->count, -1);
-  a->faint = fmin(hl_threshold_cross_entropy(d->values, d->count, FLOOR * a->top), a->solid);
+/* A distance that the noise of the grid's border hardly reaches; most of the border is background. */
+static double border_noise(const float *border, size_t count) {
+  if (count == 0) return 0;
+  double middle = hl_quantile(border, count, 0.5), upper = hl_quantile(border, count, 0.75);
+  return middle + 6 * (upper - middle); /* 3.5 sigma of one-sided Gaussian noise */
+}
+
+/* Measures the objects between the thresholds faint and solid. */
+static void measure_objects(const distances *d, hl_data_analysis *a) {
   a->dense = hl_threshold_otsu(d->values, d->count, a->solid);
-  /* most of the border is background, so objects begin above its noise */
-  if (border_count > 0) {
-    double middle = hl_quantile(border, border_count, 0.5), upper = hl_quantile(border, border_count, 0.75);
-    a->faint = fmax(a->faint, middle + 6 * (upper - middle)); /* 3.5 sigma of one-sided Gaussian noise */
-  }
-  a->faint = fmin(fmax(a->faint, 0.3 * a->solid), 0.8 * a->solid);
   size_t sure = 0, dense = 0;
   for (size_t n = d->count; n > 0 && (double)d->values[n - 1] > a->solid; n--, sure++)
     dense += (double)d->values[n - 1] > a->dense;
@@ -121,6 +117,16 @@ static void find_thresholds(const distances *d, const float *border, size_t bord
   a->filled = (double)sure / (double)d->count;
   a->mean = beyond > 0 ? sum / (double)beyond : a->top;
   a->depth = (double)beyond;
+}
+
+/* Finds the thresholds and measures of the objects, relative to the sample's range. d: the distances to one
+ * side of the background. noise: the border's. */
+static void find_thresholds(const distances *d, double noise, hl_data_analysis *a) {
+  a->top = fmax(hl_quantile(d->values, d->count, 0.9999), 1e-9);
+  a->solid = hl_threshold_otsu(d->values, d->count, -1);
+  a->faint = fmin(hl_threshold_cross_entropy(d->values, d->count, FLOOR * a->top), a->solid);
+  a->faint = fmin(fmax(fmax(a->faint, noise), 0.3 * a->solid), 0.8 * a->solid);
+  measure_objects(d, a);
 }
 
 /* True if more than three tenths of the border are not background: the grid lies within its matter. */
@@ -233,7 +239,7 @@ static hl_status find_two_sided(const hl_sample *sample, distances *d, hl_data_a
     d->values[n] = (float)fabs((double)sample->values[n] - a->background);
   if (!hl_sort(sample->context, d->values, d->count))
     return hl_fail_memory(error, d->count * sizeof(float), "a volume's sample");
-  find_thresholds(d, NULL, 0, a);
+  find_thresholds(d, 0, a);
   double strong = hl_quantile(d->values, d->count, 1 - LOBES);
   if (!(strong > a->solid)) return HL_OK;
   a->faint *= strong / a->solid;
@@ -277,12 +283,15 @@ static hl_status analyse_values(const hl_volume *volume, const hl_sample *sample
     a->zeroed = exact_share(sample, a->background);
     measure(sample->values, sample->count, a->background, a->direction, d.values);
     measure(sample->border, sample->border_count, a->background, a->direction, memory + d.count);
-    find_thresholds(&d, memory + d.count, sample->border_count, a);
+    double noise = border_noise(memory + d.count, sample->border_count);
+    find_thresholds(&d, noise, a);
     bool falling = false;
     status = falls_off(volume, sample, &d, a, &falling, error);
     a->kind = kind_of(volume, sample, &d, falling, a);
     if (a->kind == HL_DATA_SURFACES && !(flow && !s.signs))
       a->vessels = hl_data_find_vessels(volume, sample, d.values, a);
+    if (a->kind == HL_DATA_SURFACES && a->vessels == 0 && hl_data_find_rim(volume, sample, noise, a))
+      measure_objects(&d, a);
   }
   if (flow && !s.signs) a->kind = HL_DATA_FLOW;
   if (logarithms) a->kind = HL_DATA_PARTICLES;

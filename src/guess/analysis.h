@@ -62,6 +62,12 @@ void hl_data_find_materials(const hl_volume *volume, hl_data_analysis *analysis)
 double hl_data_find_vessels(const hl_volume *volume, const hl_sample *sample, const float *distances,
                             const hl_data_analysis *analysis);
 
+/* Moves the thresholds faint and solid of scanned objects down to the rim of their outer matter where they
+ * cut through that matter, as they do where skin is much darker than what it covers. Returns whether it moved
+ * them. All distances are relative. noise: a distance that the noise around the objects hardly reaches. */
+bool hl_data_find_rim(const hl_volume *volume, const hl_sample *sample, double noise,
+                      hl_data_analysis *analysis);
+
 /* True if the values can be Hounsfield units: they reach from air to matter denser than water. */
 static inline bool hl_is_hounsfield(const hl_volume *volume) {
   return volume->minimum <= -500 && volume->minimum >= -10000 && volume->maximum >= 300;

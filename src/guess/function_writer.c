@@ -80,16 +80,32 @@ void hl_write_brain(hl_function_writer *w) {
   write_solid(w, &brain);
 }
 
+/* Adds a thin shell around a distance. crossing: the optical depth of the shell for a line that crosses it
+ * where the field falls from its top to nothing within half an object. around: the optical depth of matter
+ * beside the shell across the object. */
+static void add_shell(hl_function_writer *w, double distance, double half_width, double crossing,
+                      double around) {
+  const hl_data_analysis *a = w->analysis;
+  double peak = 2 * crossing * a->top /
+                half_width; /* derived: the shell is half_width / (2 top) objects thick */
+  hl_add_opacity(w, distance - half_width, hl_opacity_for(a, around));
+  hl_add_opacity(w, distance, hl_opacity_for(a, around + peak));
+  hl_add_opacity(w, distance + half_width, hl_opacity_for(a, around));
+}
+
+/* Writes a field as two clear shells around a core that is opaque, within thin matter: the shells'
+ * reflections tell its shape, and the core is seen through them. */
 void hl_write_field(hl_function_writer *w) {
   const hl_data_analysis *a = w->analysis;
-  double ramp = a->solid - a->faint, top = fmax(a->top, a->solid * 1.001);
+  double ramp = a->solid - a->faint, top = fmax(a->top, a->solid * 1.001), way = top - a->solid,
+         core = a->solid + 0.35 * way, half = fmin(fmin(0.03 * top, 0.25 * ramp), 0.15 * way);
   hl_add_opacity(w, a->faint, 0);
-  hl_add_opacity(w, a->faint + 0.15 * ramp, hl_opacity_for(a, 0.8));
-  hl_add_opacity(w, a->faint + 0.7 * ramp, hl_opacity_for(a, 1.2));
-  hl_add_opacity(w, a->solid, hl_opacity_for(a, 2.5));
-  hl_add_opacity(w, a->solid + 0.25 * (top - a->solid), hl_opacity_for(a, 15));
+  add_shell(w, a->faint + 0.35 * ramp, half, 0.12, 0.3);
+  add_shell(w, a->solid, half, 0.3, 0.6);
+  hl_add_opacity(w, core - half, hl_opacity_for(a, 1.5));
+  hl_add_opacity(w, core, hl_opacity_for(a, 80));
   hl_add_opacity(w, top, hl_opacity_for(a, 80));
-  hl_add_colormap(w, "plasma", a->faint, a->solid + 0.6 * (top - a->solid), 0.25, 0.92);
+  hl_add_colormap(w, "plasma", a->faint, a->solid + 0.6 * way, 0.3, 0.92);
 }
 
 /* Writes the function for particles. Their densities extend over many powers of ten, so the values are

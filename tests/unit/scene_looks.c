@@ -191,6 +191,70 @@ static void strong_lobes_alone_are_seen(void **state) {
   hl_context_destroy(context);
 }
 
+static double cloud_of_charge(int i, int j, int k) {
+  return 100 * exp(-pow(distance(i, j, k, 24, 24, 24) / 9, 2));
+}
+
+/* A field shows an opaque core through thin shells that let more than two fifths of its light pass. */
+static void fields_show_a_core_through_shells(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  hl_transfer_function f;
+  hl_data_analysis a;
+  fill(cloud_of_charge);
+  hl_volume *volume = make_volume(context, N, values);
+  assert_int_equal(hl_data_analyse(volume, &a, NULL), HL_OK);
+  assert_int_equal(a.kind, HL_DATA_FIELD);
+  assert_int_equal(hl_transfer_function_automatic(context, volume, &f, NULL), HL_OK);
+  double core = a.background + a.solid + 0.35 * (a.top - a.solid), clear = 1;
+  const double step = 0.05; /* voxels */
+  for (double x = 0; x < 24; x += step) {
+    double value = 100 * exp(-pow((24 - x) / 9, 2));
+    if (value > core - 0.04 * a.top) break;
+    clear *= pow(1 - hl_transfer_function_opacity(&f, value), step);
+  }
+  assert_true(clear > 0.4 && clear < 0.9);
+  assert_true(hl_transfer_function_opacity(&f, core) > 0.8 && hl_transfer_function_opacity(&f, 100) > 0.8);
+  double shell = hl_transfer_function_opacity(&f, a.background + a.solid);
+  for (int side = -1; side <= 1; side += 2)
+    assert_true(shell > 3 * hl_transfer_function_opacity(&f, a.background + a.solid + side * 0.04 * a.top));
+  hl_transfer_function_release(context, &f);
+  hl_volume_release(volume);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+/* A bright inside under skin that is a third as bright, both noisy. */
+static double dark_skin(int i, int j, int k) {
+  double r = distance(i, j, k, 24, 24, 24), skin = 22 / (1 + exp((r - 21) / 0.4)),
+         inside = 50 / (1 + exp((r - 16) / 0.4));
+  return 2 + skin + inside + 3 * noise(i, j, k) + (r < 21 ? 24 * noise(k, i, j) : 0);
+}
+
+/* The surface lies where dark skin begins, and not where the skin's noise crosses a value of the skin. */
+static void dark_skin_is_whole(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  hl_transfer_function f;
+  fill(dark_skin);
+  hl_volume *volume = make_volume(context, N, values);
+  assert_int_equal(hl_transfer_function_automatic(context, volume, &f, NULL), HL_OK);
+  int skin = 0, whole = 0, air = 0;
+  for (int v = 0; v < COUNT; v++) {
+    double r = distance(v % N, v / N % N, v / N / N, 24, 24, 24),
+           opacity = hl_transfer_function_opacity(&f, (double)values[v]);
+    skin += r > 17 && r < 20;
+    whole += r > 17 && r < 20 && opacity > 0.5;
+    air += r > 23 && opacity > 0.01;
+  }
+  assert_true(whole > 0.9 * skin);
+  assert_int_equal(air, 0);
+  hl_transfer_function_release(context, &f);
+  hl_volume_release(volume);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 /* The opacity of a ball of a noisy material where it surely is matter. */
 static double opacity_of_ball(hl_context *context, double radius) {
   hl_transfer_function f;
@@ -557,6 +621,8 @@ int main(void) {
       cmocka_unit_test(kinds_are_told_apart),
       cmocka_unit_test(angiograms_show_vessels),
       cmocka_unit_test(strong_lobes_alone_are_seen),
+      cmocka_unit_test(fields_show_a_core_through_shells),
+      cmocka_unit_test(dark_skin_is_whole),
       cmocka_unit_test(coarse_matter_is_as_opaque),
       cmocka_unit_test(skin_is_for_bodies),
       cmocka_unit_test(labels_have_colors_of_their_own),

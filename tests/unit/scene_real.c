@@ -18,7 +18,7 @@ static const struct {
             {"cranium_mha/cranium.mha", HL_DATA_SURFACES, 0.15, true},
             {"engine/engine.nrrd", HL_DATA_SURFACES, 0.12, false},
             {"fuel/fuel_64x64x64_uint8.raw", HL_DATA_FIELD, 0.01, false},
-            {"headmr_mhd/HeadMRVolume.mhd", HL_DATA_SURFACES, 0.05, false},
+            {"headmr_mhd/HeadMRVolume.mhd", HL_DATA_SURFACES, 0.12, false},
             {"hydrogen_orbital/hydrogen.vti", HL_DATA_FIELD, 0.01, false},
             {"hipip_signed/hipip_signed_64x64x64_int16.nrrd", HL_DATA_SIGNED, 0.12, false},
             {"ironprot/ironProt.vtk", HL_DATA_FIELD, 0.01, false},
