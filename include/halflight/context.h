@@ -70,6 +70,12 @@ typedef enum hl_mpi {
   HL_MPI_MPICH = 2
 } hl_mpi;
 
+/* A file that was brought from a server. */
+typedef struct hl_fetched_file {
+  int descriptor; /* open for reading, at any position; -1: the server has no such file */
+  uint64_t size;  /* bytes; what follows them in the descriptor's file is not read */
+} hl_fetched_file;
+
 /* All callbacks may be null (a default is used) and receive user_data. They may be called
  * from the thread that called into the library only, except allocate and release, which may be
  * called from any of its threads. They may call the library, but not with the renderer whose frame is under
@@ -99,6 +105,14 @@ typedef struct hl_context_options {
                        size_t *byte_count, hl_error *error);
   /* Takes the bytes of `convert` back. */
   void (*converted)(void *user_data, const void *bytes, size_t byte_count);
+  /* Asked for files of a Zarr store on a server, where a volume's file is a URL, "http://..." or
+   * "https://...": brings `count` files, by their names in the store ("0/c/1/2/3"), of `most` bytes each at
+   * most. files: [count], whose descriptors the library closes, also after a failure. A file that the server
+   * does not have is one of the store's absent files; every other fault must be an error. The callback
+   * decides which URLs it may ask: a scene's text can name any. Null (default): URLs are refused. The library
+   * asks no network itself. */
+  hl_status (*fetch)(void *user_data, const char *url, const char *const *names, size_t count, uint64_t most,
+                     hl_fetched_file *files, hl_error *error);
   /* A folder for scratch files, on a disk; copied; null (default): none. A volume file of one component whose
    * voxels and a renderer's tables of them would be more than memory_limit is read into a scratch file there,
    * of 1.15 times the voxels' bytes, and rendered from it. The file has no name. Parts of it are in memory

@@ -148,7 +148,8 @@ static int run_convert(const cli_value *values, char **operands) {
   cli_host_options host_options = {.quiet = values[CONVERT_QUIET].given,
                                    .progress = true,
                                    .subject = base_name(operands[0]),
-                                   .memory_limit = values[CONVERT_MAX_MEMORY].bytes};
+                                   .memory_limit = values[CONVERT_MAX_MEMORY].bytes,
+                                   .operands = operands};
   exit_code = host_open(&host_options, &host);
   if (exit_code == EXIT_CODE_OK) exit_code = convert(&host, values, operands, &options);
   host_close(&host);

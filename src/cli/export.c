@@ -129,7 +129,8 @@ static int run_export(const cli_value *values, char **operands) {
                                    .progress = true,
                                    .subject = base_name(operands[0]),
                                    .memory_limit = values[EXPORT_MAX_MEMORY].bytes,
-                                   .data_folder = values[EXPORT_DATA].text};
+                                   .data_folder = values[EXPORT_DATA].text,
+                                   .operands = operands};
   if (exit_code == EXIT_CODE_OK) {
     exit_code = host_open(&host_options, &job.host);
     if (exit_code == EXIT_CODE_OK) exit_code = export_scene(&job);

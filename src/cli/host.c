@@ -9,6 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "fetch/fetch.h"
 #include "openvdb.h"
 #include "platform/paths.h"
 
@@ -81,6 +82,25 @@ static hl_status on_convert(void *user_data, const char *format, const char *pat
   const cli_host *host = user_data;
   if (strcmp(format, "OpenVDB") != 0) return HL_ERROR_UNSUPPORTED;
   return openvdb_convert(path, host->memory_limit, on_cancelled, user_data, bytes, byte_count, error);
+}
+
+/* Brings files of a store that the command line names. What a file names is not asked for. */
+static hl_status on_fetch(void *user_data, const char *url, const char *const *names, size_t count,
+                          uint64_t most, hl_fetched_file *files, hl_error *error) {
+  const uint64_t copies_limit = (uint64_t)4 << 30;
+  const cli_host *host = user_data;
+  const fetcher f = {host->copies_folder, copies_limit, on_cancelled, user_data};
+  bool named = false;
+  for (char *const *operand = host->operands; operand != NULL && *operand != NULL; operand++)
+    named = named || strcmp(*operand, url) == 0;
+  if (named && host->copies_folder[0] != '\0') return fetch_files(&f, url, names, count, most, files, error);
+  snprintf(
+      error->message, sizeof error->message,
+      named
+          ? "%.400s: no place for copies of a server's files: set HOME, or XDG_CACHE_HOME to a folder"
+          : "%.400s: a URL in a file: servers are asked for INPUTs of the command line alone: give it there",
+      url);
+  return named ? HL_ERROR_IO : HL_ERROR_UNSUPPORTED;
 }
 
 static void on_converted(void *user_data, const void *bytes, size_t byte_count) {
@@ -156,6 +176,7 @@ int host_open(const cli_host_options *options, cli_host *host) {
   context_options.progress = on_progress;
   context_options.cancelled = on_cancelled;
   context_options.reads = on_reads;
+  context_options.fetch = on_fetch;
   context_options.convert = on_convert;
   context_options.converted = on_converted;
   context_options.memory_limit = host->memory_limit;
@@ -165,6 +186,9 @@ int host_open(const cli_host_options *options, cli_host *host) {
   context_options.data_folder = choose_data_folder(options->data_folder);
   char cache_folder[1024];
   choose_cache_folder(cache_folder, sizeof cache_folder);
+  host->operands = options->operands;
+  if (cache_folder[0] != '\0')
+    snprintf(host->copies_folder, sizeof host->copies_folder, "%s/servers", cache_folder);
   context_options.device = options->device;
   context_options.cache_folder = cache_folder[0] != '\0' ? cache_folder : NULL;
   hl_error error = {0};

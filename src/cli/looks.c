@@ -226,7 +226,8 @@ static int run_looks(const cli_value *values, char **operands) {
                                    .progress = true,
                                    .subject = base_name(operands[0]),
                                    .memory_limit = values[LOOKS_MAX_MEMORY].bytes,
-                                   .device = values[LOOKS_DEVICE].text};
+                                   .device = values[LOOKS_DEVICE].text,
+                                   .operands = operands};
   if (exit_code == EXIT_CODE_OK) {
     exit_code = host_open(&host_options, &job.host);
     if (exit_code == EXIT_CODE_OK) exit_code = make_and_write(&job);

@@ -23,6 +23,10 @@ const char *base_name(const char *path) {
   return slash != NULL ? slash + 1 : path;
 }
 
+bool is_url(const char *input) {
+  return strncmp(input, "http://", 7) == 0 || strncmp(input, "https://", 8) == 0;
+}
+
 bool has_extension(const char *path, const char *extension) {
   size_t length = strlen(path), extension_length = strlen(extension);
   return length > extension_length && strcasecmp(path + length - extension_length, extension) == 0;
@@ -91,6 +95,13 @@ hl_status output_scene_text(hl_context *context, const hl_scene *scene, const ch
 
 char *output_default_name(const char *input, const char *extension) {
   char folder[PATH_MAX];
+  char url[PATH_MAX];
+  if (is_url(input)) {
+    size_t length = strcspn(input, "?");
+    while (length > 0 && input[length - 1] == '/') length--;
+    snprintf(url, sizeof url, "%.*s", (int)length, input);
+    input = url;
+  }
   const char *base = base_name(input);
   bool unnamed = base[0] == 0 || strcmp(base, ".") == 0 || strcmp(base, "..") == 0; /* of a folder */
   if (unnamed && realpath(input, folder) != NULL && folder[1] != 0) base = base_name(folder);

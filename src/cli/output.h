@@ -11,6 +11,9 @@
 /* The part of a path after its last slash. */
 const char *base_name(const char *path);
 
+/* Whether an INPUT is a URL of a store on a server. */
+bool is_url(const char *input);
+
 /* True if path ends in extension (".png"), in upper or lower case, and has something before it. */
 bool has_extension(const char *path, const char *extension);
 
@@ -29,8 +32,8 @@ int output_to_stdout(const unsigned char *bytes, size_t length);
 hl_status output_scene_text(hl_context *context, const hl_scene *scene, const char *path, char **text,
                             hl_error *error);
 
-/* "head.png", in the current folder, for "scans/head.nii.gz" and ".png"; owned by the caller (free), null
- * without memory. */
+/* "head.png", in the current folder, for "scans/head.nii.gz" and ".png"; of a URL without its query. Owned by
+ * the caller (free), null without memory. */
 char *output_default_name(const char *input, const char *extension);
 
 /* ---- files that the run has read: it must write over none of them ---- */

@@ -193,6 +193,25 @@ static hl_status load_folder(const char *path, hl_load_request *request, hl_volu
   return status;
 }
 
+/* Reads a store on a server. Without the caller's wish, its level is the one that a picture of this size
+ * shows. */
+static hl_status load_from_server(const char *url, hl_load_request *request, hl_volume **volume,
+                                  hl_error *error) {
+  enum { PIXELS = 512 };
+  hl_bundle bundle;
+  bool claimed = false;
+  if (request->pixels == 0) request->pixels = PIXELS;
+  hl_status status = hl_bundle_open_server(request->context, url, &bundle, error);
+  for (int n = 0; hl_formats[n] != NULL && status == HL_OK && !claimed; n++)
+    if (hl_formats[n]->load_bundle != NULL && hl_formats[n]->finds_by_name)
+      status = hl_formats[n]->load_bundle(&bundle, request, &claimed, volume, error);
+  if (status == HL_OK && !claimed)
+    status = hl_fail(error, HL_ERROR_INPUT,
+                     "%s: the server has no Zarr store there: download other files, and give them", url);
+  hl_bundle_close(&bundle);
+  return status;
+}
+
 static hl_status load_archive(hl_stream *stream, hl_load_request *request, hl_volume **volume,
                               hl_error *error) {
   hl_bundle bundle = {.context = request->context};
@@ -349,8 +368,11 @@ hl_status hl_volume_load_with(hl_context *context, const char *path, const hl_vo
                              .selection = {1, 1, 1, 0, 0, 0}};
   memcpy(request.spacing, options->spacing, sizeof request.spacing);
   hl_stream *stream = NULL;
-  if (options->bytes == NULL && hl_file_kind(context, path) == 'd') {
-    status = finish(&request, path, load_folder(path, &request, volume, error), volume, error);
+  bool on_server = options->bytes == NULL && hl_path_is_url(path) && !hl_is_confined(context);
+  if (on_server || (options->bytes == NULL && hl_file_kind(context, path) == 'd')) {
+    status = on_server ? load_from_server(path, &request, volume, error)
+                       : load_folder(path, &request, volume, error);
+    status = finish(&request, path, status, volume, error);
     if (status == HL_OK) turn_into(context, path, options->space, *volume);
     return status;
   }

@@ -330,7 +330,8 @@ static int run_animate(const cli_value *values, char **operands) {
                               .memory_limit = render[RENDER_MAX_MEMORY].bytes,
                               .device = render[RENDER_DEVICE].text,
                               .instruction_set = (hl_instruction_set)render[RENDER_INSTRUCTION_SET].choice,
-                              .data_folder = render[RENDER_DATA].text};
+                              .data_folder = render[RENDER_DATA].text,
+                              .operands = operands};
   int exit_code = frames_read_part(&render[RENDER_PART], &render[RENDER_RANKS], &job.part, &job.parts);
   if (exit_code == EXIT_CODE_OK) exit_code = render_check_options(render);
   if (exit_code == EXIT_CODE_OK) exit_code = render_overlay_read(render, &job.overlay);

@@ -381,7 +381,8 @@ static int run_bench(const cli_value *values, char **operands) {
                               .subject = operands[0] != NULL ? operands[0] : "built-in",
                               .memory_limit = values[BENCH_MAX_MEMORY].bytes,
                               .device = values[BENCH_DEVICE].text,
-                              .instruction_set = (hl_instruction_set)values[BENCH_INSTRUCTION_SET].choice};
+                              .instruction_set = (hl_instruction_set)values[BENCH_INSTRUCTION_SET].choice,
+                              .operands = operands};
   int exit_code = host_open(&options, &host);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   bench_result results[MAXIMUM_OPERANDS + 1] = {0};

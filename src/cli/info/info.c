@@ -505,7 +505,8 @@ static int run_info(const cli_value *values, char **operands) {
   if (operands[0] == NULL)
     return fail(EXIT_CODE_USAGE, "info needs FILE or --formats: see 'halflight help info'");
   cli_host host;
-  cli_host_options options = {.memory_limit = values[INFO_MAX_MEMORY].bytes, .subject = operands[0]};
+  cli_host_options options = {
+      .memory_limit = values[INFO_MAX_MEMORY].bytes, .subject = operands[0], .operands = operands};
   int exit_code = host_open(&options, &host);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   if (is_mesh_file(host.context, operands[0])) {

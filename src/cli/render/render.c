@@ -92,7 +92,8 @@ static int job_open(render_job *job) {
                               .data_folder = values[RENDER_DATA].text,
                               .device = values[RENDER_DEVICE].text,
                               .instruction_set = (hl_instruction_set)values[RENDER_INSTRUCTION_SET].choice,
-                              .mpi = launcher_mpi()};
+                              .mpi = launcher_mpi(),
+                              .operands = job->inputs};
   exit_code = host_open(&options, &job->host);
   int over_ranks = values[RENDER_VOLUME].given ? RENDER_VOLUME : RENDER_STRIPS;
   if (exit_code == EXIT_CODE_OK && values[over_ranks].given)

@@ -239,7 +239,8 @@ int render_series(const cli_value *values, char **operands, const film_options *
                               .memory_limit = values[RENDER_MAX_MEMORY].bytes,
                               .data_folder = values[RENDER_DATA].text,
                               .device = values[RENDER_DEVICE].text,
-                              .instruction_set = (hl_instruction_set)values[RENDER_INSTRUCTION_SET].choice};
+                              .instruction_set = (hl_instruction_set)values[RENDER_INSTRUCTION_SET].choice,
+                              .operands = operands};
   if (exit_code == EXIT_CODE_OK) {
     exit_code = host_open(&options, &job->host);
     if (exit_code == EXIT_CODE_OK) exit_code = series_find_files(job, operands);

@@ -17,7 +17,9 @@ enum { MOST_LABEL_LAYERS = 64 };
 
 /* ---- names ---- */
 
-static bool is_pattern(const char *path) { return strpbrk(path, "*?[") != NULL && access(path, F_OK) != 0; }
+static bool is_pattern(const char *path) {
+  return strpbrk(path, "*?[") != NULL && !is_url(path) && access(path, F_OK) != 0;
+}
 
 /* True if the text has one "%d" or "%04d", and no other '%' but "%%". */
 bool series_has_number(const char *text) {

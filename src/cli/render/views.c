@@ -215,7 +215,8 @@ int render_views(const cli_value *values, char **operands) {
                               .memory_limit = values[RENDER_MAX_MEMORY].bytes,
                               .data_folder = values[RENDER_DATA].text,
                               .device = values[RENDER_DEVICE].text,
-                              .instruction_set = (hl_instruction_set)values[RENDER_INSTRUCTION_SET].choice};
+                              .instruction_set = (hl_instruction_set)values[RENDER_INSTRUCTION_SET].choice,
+                              .operands = operands};
   int exit_code = check_options(job);
   if (exit_code == EXIT_CODE_OK) {
     exit_code = host_open(&options, &job->host);

@@ -121,6 +121,9 @@ typedef struct hl_format {
    * asked next. */
   hl_status (*load_bundle)(hl_bundle *bundle, hl_load_request *request, bool *claimed, hl_volume **volume,
                            hl_error *error);
+
+  /* Whether load_bundle finds its files by their names, without a list of them, and so on servers, too. */
+  bool finds_by_name;
 } hl_format;
 
 /* All formats, in the order in which a file is offered to them (formats.h); null past the last. */

@@ -32,6 +32,7 @@ void hl_bundle_close(hl_bundle *bundle) {
   hl_release(bundle->context, bundle->entries);
   hl_release(bundle->context, bundle->path);
   if (bundle->is_open) close(bundle->folder);
+  hl_brought_release(bundle);
   *bundle = (hl_bundle){.context = bundle->context};
 }
 
@@ -163,7 +164,7 @@ hl_status hl_bundle_entry_open(const hl_bundle *bundle, const hl_bundle_entry *e
 /* ---- a file of a known name ---- */
 
 hl_status hl_bundle_find_ready(hl_bundle *bundle, hl_error *error) {
-  if (bundle->is_archive || bundle->is_open) return HL_OK;
+  if (bundle->is_archive || bundle->is_open || hl_bundle_is_on_server(bundle)) return HL_OK;
   hl_status status = hl_folder_open(bundle->context, bundle->path, &bundle->folder, error);
   bundle->is_open = status == HL_OK;
   return status;
@@ -182,6 +183,7 @@ hl_status hl_bundle_find(const hl_bundle *bundle, const char *name, bool quiet, 
   struct stat about;
   *source = NULL;
   if (bundle->is_archive) return find_in_archive(bundle, name, quiet, source, error);
+  if (hl_bundle_is_on_server(bundle)) return hl_brought_find(bundle, name, source, error);
   if (!is_inside(bundle, name, &about)) return HL_OK;
   char *path = hl_path_join(bundle->context, bundle->path, name);
   if (path == NULL) return hl_fail_memory(error, PATH_MAX, "a path");

@@ -1,4 +1,4 @@
-/* volume/io/bundle.h - many files as one input: a folder, or a zip archive.
+/* volume/io/bundle.h - many files as one input: a folder, a zip archive, or a store on a server.
  *
  * A folder's files are the files in it and in the folders below it, down to a greatest depth and up to a
  * greatest number. Symbolic links to folders, and links to files outside, are not followed. */
@@ -16,6 +16,9 @@ typedef struct hl_bundle_entry {
 
 typedef struct hl_bundle hl_bundle;
 
+/* The files of a store that were brought from a server (bundle_server.c). */
+typedef struct hl_brought hl_brought;
+
 struct hl_bundle {
   hl_context *context;
   char *path; /* owned; path of the folder or the archive */
@@ -28,6 +31,7 @@ struct hl_bundle {
   hl_bundle_entry *entries; /* owned; [count], sorted by name; a folder's entries are found by
                              * hl_bundle_list() */
   size_t count, capacity;
+  hl_brought *brought; /* owned; of a store on a server; else null */
   size_t links_passed; /* symbolic links that lead out of the folder or to folders */
   /* Opens an entry of an archive; see hl_bundle_entry_open(). */
   hl_status (*open_entry)(const hl_bundle *bundle, const hl_bundle_entry *entry, bool quiet,
@@ -54,11 +58,28 @@ void hl_bundle_sort(hl_bundle *bundle);
 hl_status hl_bundle_entry_open(const hl_bundle *bundle, const hl_bundle_entry *entry, bool quiet,
                                hl_source **source, hl_error *error);
 
+/* Makes a bundle of a store on a server, whose files are found by their names alone. */
+hl_status hl_bundle_open_server(hl_context *context, const char *url, hl_bundle *bundle, hl_error *error);
+static inline bool hl_bundle_is_on_server(const hl_bundle *bundle) { return bundle->brought != NULL; }
+/* Whether hl_bundle_find() knows this file of a server, or its absence, without asking the server. */
+bool hl_bundle_has_brought(const hl_bundle *bundle, const char *name);
+/* Brings files of a server that are not brought yet, of `most` bytes each at most, all at once. Only the
+ * caller's thread may call it. */
+hl_status hl_bundle_bring(const hl_bundle *bundle, const char *const *names, size_t count, uint64_t most,
+                          hl_error *error);
+/* The number of files that were brought so far; forgets those that were brought after the first `count`, of
+ * which no source may be open. */
+size_t hl_bundle_brought_count(const hl_bundle *bundle);
+void hl_bundle_forget(const hl_bundle *bundle, size_t count);
+/* hl_bundle_find() and hl_bundle_close() of a store on a server. */
+hl_status hl_brought_find(const hl_bundle *bundle, const char *name, hl_source **source, hl_error *error);
+void hl_brought_release(hl_bundle *bundle);
+
 /* Prepares hl_bundle_find(), which may then be called from several threads. */
 hl_status hl_bundle_find_ready(hl_bundle *bundle, hl_error *error);
 
-/* Opens the file of a name (relative, with '/'), which need not be listed. *source is null if there is no
- * such file, or if a link leads out of the folder. */
+/* Opens the file of a name (relative, with '/'), which need not be listed; of a store on a server, one that
+ * was brought. *source is null if there is no such file, or if a link leads out of the folder. */
 hl_status hl_bundle_find(const hl_bundle *bundle, const char *name, bool quiet, hl_source **source,
                          hl_error *error);
 

@@ -18,6 +18,7 @@ struct hl_source {
   hl_context *context;
   char *path;                  /* owned */
   int descriptor;              /* a file's descriptor, else -1 */
+  bool is_borrowed;            /* whether the descriptor is the caller's */
   const unsigned char *memory; /* borrowed; [size]; may be null */
   uint64_t size;
   unsigned char *window; /* owned; for files: the bytes [window_begin, + window_length) */
@@ -53,11 +54,16 @@ void hl_source_close(hl_source *source) {
   if (source == NULL) return;
   hl_source_close(source->below);
   if (source->zlib.state != NULL) inflateEnd(&source->zlib);
-  if (source->descriptor >= 0) close(source->descriptor);
+  if (source->descriptor >= 0 && !source->is_borrowed) close(source->descriptor);
   hl_release(source->context, source->inflated);
   hl_release(source->context, source->window);
   hl_release(source->context, source->path);
   hl_release(source->context, source);
+}
+
+static hl_status make_window(hl_source *source, hl_error *error) {
+  source->window = hl_allocate(source->context, HL_SOURCE_WINDOW_BYTES, 1);
+  return source->window != NULL ? HL_OK : hl_fail_memory(error, HL_SOURCE_WINDOW_BYTES, source->path);
 }
 
 static hl_status begin_file(hl_source *source, bool quiet, hl_error *error) {
@@ -70,14 +76,27 @@ static hl_status begin_file(hl_source *source, bool quiet, hl_error *error) {
     return hl_fail(error, HL_ERROR_IO, "%s: cannot open: %s", source->path, strerror(errno));
   if (!S_ISREG(about.st_mode)) return hl_fail(error, HL_ERROR_IO, "%s: is not a regular file", source->path);
   source->size = about.st_size > 0 ? (uint64_t)about.st_size : 0;
-  source->window = hl_allocate(source->context, HL_SOURCE_WINDOW_BYTES, 1);
-  return source->window != NULL ? HL_OK : hl_fail_memory(error, HL_SOURCE_WINDOW_BYTES, source->path);
+  return make_window(source, error);
 }
 
 hl_status hl_source_open(hl_context *context, const char *path, bool quiet, hl_source **source,
                          hl_error *error) {
   hl_status status = make(context, path, source, error);
   if (status == HL_OK) status = begin_file(*source, quiet, error);
+  if (status == HL_OK) return HL_OK;
+  hl_source_close(*source);
+  *source = NULL;
+  return status;
+}
+
+hl_status hl_source_of_descriptor(hl_context *context, const char *path, int descriptor, uint64_t size,
+                                  hl_source **source, hl_error *error) {
+  hl_status status = make(context, path, source, error);
+  if (status != HL_OK) return status;
+  (*source)->descriptor = descriptor;
+  (*source)->is_borrowed = true;
+  (*source)->size = size;
+  status = make_window(*source, error);
   if (status == HL_OK) return HL_OK;
   hl_source_close(*source);
   *source = NULL;

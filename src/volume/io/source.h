@@ -17,6 +17,10 @@ typedef struct hl_source hl_source;
  * caller's, which may not call it, and for files that were opened before. */
 hl_status hl_source_open(hl_context *context, const char *path, bool quiet, hl_source **source,
                          hl_error *error);
+/* Opens the first `size` bytes of a descriptor's file. The descriptor stays the caller's, and must stay open
+ * as long as the source. */
+hl_status hl_source_of_descriptor(hl_context *context, const char *path, int descriptor, uint64_t size,
+                                  hl_source **source, hl_error *error);
 /* Opens memory. path: the name in error lines. The bytes must outlive the source. */
 hl_status hl_source_of_memory(hl_context *context, const char *path, const void *bytes, size_t count,
                               hl_source **source, hl_error *error);

@@ -256,14 +256,24 @@ static hl_status read_packed(hl_zarr_unpacker *u, hl_source *source, uint64_t of
              : status;
 }
 
+/* The bytes of a chunk before packing. */
+static size_t unpacked_bytes(const hl_zarr_array *array) {
+  return filtered_bytes(array) + 4 * (size_t)array->codecs.inner_checks;
+}
+
+uint64_t hl_zarr_chunk_most(const hl_zarr_array *array) {
+  enum { SLACK = 1 << 20 }; /* packing makes no data larger by more than this */
+  uint64_t unpacked = unpacked_bytes(array);
+  return array->codecs.compressor == HL_ZARR_RAW ? unpacked : 2 * unpacked + SLACK;
+}
+
 hl_status hl_zarr_chunk_read(hl_zarr_unpacker *u, hl_source *source, uint64_t offset, uint64_t length,
                              const unsigned char **voxels, hl_error *error) {
-  enum { SLACK = 1 << 20 }; /* packing makes no data larger by more than this */
   const hl_zarr_codecs *codecs = &u->array->codecs;
   bool is_raw = codecs->compressor == HL_ZARR_RAW;
-  packed_bytes packed = {.unpacked = filtered_bytes(u->array) + 4 * (size_t)codecs->inner_checks};
+  packed_bytes packed = {.unpacked = unpacked_bytes(u->array)};
   u->unpacked = packed.unpacked;
-  if (is_raw ? length != packed.unpacked : length > 2 * (uint64_t)packed.unpacked + SLACK)
+  if (is_raw ? length != packed.unpacked : length > hl_zarr_chunk_most(u->array))
     return hl_fail(error, HL_ERROR_INPUT, "%s: a chunk of %llu bytes, its voxels have %zu: it is damaged",
                    hl_source_path(source), (unsigned long long)length, packed.unpacked);
   hl_status status = read_packed(u, source, offset, (size_t)length, error);

@@ -18,6 +18,9 @@ typedef struct hl_zarr_unpacker {
   void *zstd;              /* owned; zstd's own memory */
 } hl_zarr_unpacker;
 
+/* The most bytes that an array's chunk has in a file; longer ones are refused. */
+uint64_t hl_zarr_chunk_most(const hl_zarr_array *array);
+
 void hl_zarr_unpacker_release(hl_zarr_unpacker *unpacker);
 
 /* Reads `length` bytes of the source from `offset` on and unpacks them. *voxels: [array->chunk_bytes], valid

@@ -122,12 +122,25 @@ static hl_status read_level(const hl_bundle *bundle, const char *folder, const j
              : status;
 }
 
+/* Brings the metadata of all levels from a server, at once. Levels without a proper path are left to
+ * read_level(). */
+static hl_status bring_levels(const hl_bundle *bundle, const char *folder, const json_t *datasets,
+                              hl_error *error) {
+  char folders[HL_ZARR_LEVELS_MOST][HL_ZARR_PATH_BYTES];
+  size_t count = 0;
+  for (size_t n = 0; n < json_array_size(datasets) && count < HL_ZARR_LEVELS_MOST; n++) {
+    const char *path = json_string_value(json_object_get(json_array_get(datasets, n), "path"));
+    count += path != NULL && hl_zarr_join(folders[count], folder, path);
+  }
+  return hl_zarr_metadata_bring(bundle, folders, count, error);
+}
+
 static hl_status read_levels(const hl_bundle *bundle, const char *folder, const json_t *multiscale,
                              hl_zarr_image *image, hl_error *error) {
   const json_t *datasets = json_object_get(multiscale, "datasets");
   double unit[3];
   bool told = false;
-  hl_status status = HL_OK;
+  hl_status status = bring_levels(bundle, folder, datasets, error);
   for (int n = 0; n < image->level_count && status == HL_OK; n++) {
     hl_zarr_level *level = &image->levels[n];
     const json_t *dataset = json_array_get(datasets, (size_t)n);

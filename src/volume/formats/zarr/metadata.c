@@ -45,13 +45,38 @@ bool hl_zarr_join(char joined[HL_ZARR_PATH_BYTES], const char *folder, const cha
   return true;
 }
 
+/* ---- files of metadata ---- */
+
+enum { METADATA_NAMES = 4, METADATA_PATH_BYTES = HL_ZARR_PATH_BYTES + 32 };
+
+hl_status hl_zarr_metadata_bring(const hl_bundle *bundle, const char (*folders)[HL_ZARR_PATH_BYTES],
+                                 size_t count, hl_error *error) {
+  static const char *const names[METADATA_NAMES] = {"zarr.json", ".zgroup", ".zarray", ".zattrs"};
+  if (!hl_bundle_is_on_server(bundle)) return HL_OK;
+  size_t files = count * METADATA_NAMES;
+  char(*paths)[METADATA_PATH_BYTES] = hl_allocate(bundle->context, files, sizeof *paths);
+  const char **list = hl_allocate(bundle->context, files, sizeof *list);
+  hl_status status = paths != NULL && list != NULL ? HL_OK
+                                                   : hl_fail_memory(error, files * sizeof *paths, "paths");
+  for (size_t n = 0; n < files && status == HL_OK; n++) {
+    snprintf(paths[n], sizeof *paths, "%s%s", folders[n / METADATA_NAMES], names[n % METADATA_NAMES]);
+    list[n] = paths[n];
+  }
+  if (status == HL_OK) status = hl_bundle_bring(bundle, list, files, HL_ZARR_METADATA_BYTES_MOST, error);
+  hl_release(bundle->context, list);
+  hl_release(bundle->context, paths);
+  return status;
+}
+
 static hl_status read_text(const hl_bundle *bundle, const char *folder, const char *name, char **text,
                            size_t *length, hl_error *error) {
-  char path[HL_ZARR_PATH_BYTES + 32];
+  char path[METADATA_PATH_BYTES], place[1][HL_ZARR_PATH_BYTES];
   hl_source *source = NULL;
   snprintf(path, sizeof path, "%s%s", folder, name);
+  snprintf(place[0], sizeof place[0], "%s", folder);
   *text = NULL;
-  hl_status status = hl_bundle_find(bundle, path, false, &source, error);
+  hl_status status = hl_zarr_metadata_bring(bundle, place, 1, error);
+  if (status == HL_OK) status = hl_bundle_find(bundle, path, false, &source, error);
   if (status != HL_OK || source == NULL) return status;
   uint64_t size = hl_source_size(source);
   if (size > HL_ZARR_METADATA_BYTES_MOST) {

@@ -8,6 +8,11 @@
 
 enum { HL_ZARR_PATH_BYTES = 512, HL_ZARR_METADATA_BYTES_MOST = 4 << 20 };
 
+/* Brings all metadata of the groups or arrays in `count` folders from a server, at once. Elsewhere, does
+ * nothing. */
+hl_status hl_zarr_metadata_bring(const hl_bundle *bundle, const char (*folders)[HL_ZARR_PATH_BYTES],
+                                 size_t count, hl_error *error);
+
 /* Reads the JSON object in the file folder + name. *object is null if there is no such file, else owned by
  * the caller (json_decref). */
 hl_status hl_zarr_metadata_read(const hl_bundle *bundle, const char *folder, const char *name,

@@ -41,6 +41,7 @@ typedef struct reading {
   uint64_t size[3];            /* size of the volume */
   uint64_t files[3], inner[3]; /* along i, j, k: number of files, and number of chunks in each file */
   uint64_t parts;              /* number of all parts */
+  uint64_t first;              /* the first part of those that are being read */
   size_t
       stride[HL_ZARR_AXES_MOST]; /* along the array's axes: bytes from a voxel to the next one in a chunk */
   unsigned char fill[4];         /* the fill value in stored form */
@@ -233,7 +234,7 @@ static hl_status read_part(void *data, size_t number, int index, hl_error *error
   part p;
   uint64_t offset, length = 0;
   const unsigned char *chunk = NULL;
-  if (!place_part(r, number, &p)) return HL_OK;
+  if (!place_part(r, r->first + number, &p)) return HL_OK;
   uint64_t slice = r->size[0] * r->size[1];
   if (!hl_destination_wants(r->to, p.begin[2] * slice, p.count[2] * slice)) {
     /* Another rank knows whether the chunk exists. */
@@ -247,6 +248,79 @@ static hl_status read_part(void *data, size_t number, int index, hl_error *error
     atomic_fetch_add_explicit(&r->found, 1, memory_order_relaxed);
   }
   if (status == HL_OK) put(r, w, &p, chunk);
+  return status;
+}
+
+/* ---- files on a server ---- */
+
+enum { FILES_AT_A_TIME = 64 };
+
+/* The greatest length of a file; more would not be read. */
+static uint64_t longest_file(const hl_zarr_array *array) {
+  uint64_t chunk = hl_zarr_chunk_most(array) + 16, length;
+  return __builtin_mul_overflow(chunk, array->chunks_in_shard, &length) ? UINT64_MAX : length + 64;
+}
+
+/* Whether any voxel of a file is kept. number: the file's first part. place: one of its parts. */
+static bool wants_file(const reading *r, uint64_t number, part *place) {
+  uint64_t slice = r->size[0] * r->size[1], inner = r->inner[0] * r->inner[1] * r->inner[2];
+  for (uint64_t n = 0; n < inner; n++)
+    if (place_part(r, number + n, place) &&
+        hl_destination_wants(r->to, place->begin[2] * slice, place->count[2] * slice))
+      return true;
+  return false;
+}
+
+/* Brings the files of `count` parts from r->first on, by their names with this separator. again: only those
+ * that the server does not have by their names with the array's separator. */
+static hl_status bring_files(const reading *r, uint64_t count, char separator, bool again, hl_error *error) {
+  uint64_t inner = r->inner[0] * r->inner[1] * r->inner[2];
+  const char *names[FILES_AT_A_TIME];
+  size_t wanted = 0;
+  char(*keys)[KEY_BYTES] = hl_allocate(r->bundle->context, FILES_AT_A_TIME, sizeof *keys);
+  hl_status status = keys != NULL ? HL_OK : hl_fail_memory(error, FILES_AT_A_TIME * sizeof *keys, "names");
+  for (uint64_t n = 0; n < count && status == HL_OK; n += inner) {
+    part place;
+    hl_source *known = NULL;
+    if (!wants_file(r, r->first + n, &place)) continue;
+    name_file(r->array, &place, r->array->separator, keys[wanted]);
+    if (again) status = hl_bundle_find(r->bundle, keys[wanted], true, &known, error);
+    hl_source_close(known);
+    if (known != NULL) continue;
+    name_file(r->array, &place, separator, keys[wanted]);
+    names[wanted] = keys[wanted];
+    wanted++;
+  }
+  if (status == HL_OK) status = hl_bundle_bring(r->bundle, names, wanted, longest_file(r->array), error);
+  hl_release(r->bundle->context, keys);
+  return status;
+}
+
+static void close_files(const reading *r, int workers) {
+  for (int n = 0; n < workers; n++) {
+    hl_source_close(r->workers[n].source);
+    r->workers[n].source = NULL;
+    r->workers[n].key[0] = 0;
+  }
+}
+
+/* Brings some files at a time, and reads their parts. */
+static hl_status read_from_server(reading *r, hl_pool *pool, hl_error *error) {
+  const hl_zarr_array *array = r->array;
+  uint64_t step = FILES_AT_A_TIME * r->inner[0] * r->inner[1] * r->inner[2];
+  size_t known = hl_bundle_brought_count(r->bundle);
+  hl_status status = HL_OK;
+  for (; r->first < r->parts && status == HL_OK; r->first += step) {
+    uint64_t count = r->parts - r->first < step ? r->parts - r->first : step;
+    status = bring_files(r, count, array->separator, false, error);
+    if (status == HL_OK && array->separator_untold && array->rank > 1)
+      status = bring_files(r, count, '/', true, error);
+    if (status == HL_OK)
+      status = hl_parallel_read(r->bundle->context, pool, r->bundle->path, (size_t)count, read_part, r,
+                                error);
+    close_files(r, hl_pool_threads(pool));
+    hl_bundle_forget(r->bundle, known);
+  }
   return status;
 }
 
@@ -284,7 +358,9 @@ static hl_status read_parts(reading *r, hl_pool *pool, hl_error *error) {
       status = hl_fail_memory(error, row_bytes, r->bundle->path);
   }
   if (status == HL_OK)
-    status = hl_parallel_read(context, pool, r->bundle->path, (size_t)r->parts, read_part, r, error);
+    status = hl_bundle_is_on_server(r->bundle)
+                 ? read_from_server(r, pool, error)
+                 : hl_parallel_read(context, pool, r->bundle->path, (size_t)r->parts, read_part, r, error);
   for (size_t n = 0; n < threads; n++) {
     hl_zarr_unpacker_release(&r->workers[n].unpacker);
     hl_source_close(r->workers[n].source);

@@ -1,4 +1,4 @@
-/* volume/formats/zarr/zarr.c - Zarr arrays and OME-Zarr images, in folders and zip archives.
+/* volume/formats/zarr/zarr.c - Zarr arrays and OME-Zarr images, in folders and zip archives, and on servers.
  *
  * The steps are in zarr/: metadata.c reads JSON files, array_read.c an array's metadata, image.c OME-Zarr's
  * axes and levels, series.c lists the images of a collection, voxels.c and chunk.c read the voxels. */
@@ -44,10 +44,12 @@ static bool find_root_of_archive(const hl_bundle *bundle, char folder[HL_ZARR_PA
 
 static hl_status find_root(hl_bundle *bundle, char folder[HL_ZARR_PATH_BYTES], bool *found, hl_error *error) {
   static const char *const markers[] = {"zarr.json", ".zgroup", ".zarray", ".zattrs"};
+  static const char root[1][HL_ZARR_PATH_BYTES] = {""};
   hl_status status = hl_bundle_find_ready(bundle, error);
   folder[0] = 0;
   *found = false;
   if (bundle->is_archive) *found = find_root_of_archive(bundle, folder);
+  if (status == HL_OK) status = hl_zarr_metadata_bring(bundle, root, 1, error);
   for (int n = 0; n < 4 && status == HL_OK && !*found && !bundle->is_archive; n++) {
     hl_source *source = NULL;
     status = hl_bundle_find(bundle, markers[n], true, &source, error);
@@ -232,6 +234,12 @@ static hl_status load_group(const hl_bundle *bundle, const char *folder, hl_load
   char path[HL_ZARR_PATH_BYTES];
   hl_zarr_array array;
   bool found = false;
+  if (hl_bundle_is_on_server(bundle))
+    return hl_fail(
+        error, HL_ERROR_UNSUPPORTED,
+        "%s: a Zarr group without an OME-Zarr image, and a server does not list its arrays: give the "
+        "URL of one of them",
+        bundle->path);
   hl_status status = list_arrays(bundle, folder, request, error);
   if (status == HL_OK && request->array_count == 0)
     return hl_fail(error, HL_ERROR_INPUT,
@@ -293,4 +301,4 @@ static hl_status load_bundle(hl_bundle *bundle, hl_load_request *request, bool *
   return status == HL_OK && *claimed ? load_node(bundle, folder, 0, request, volume, error) : status;
 }
 
-const hl_format hl_format_zarr = {.name = "OME-Zarr", .load_bundle = load_bundle};
+const hl_format hl_format_zarr = {.name = "OME-Zarr", .load_bundle = load_bundle, .finds_by_name = true};

@@ -1,0 +1,173 @@
+/* fetch/copies.c - see copies.h. */
+#define _GNU_SOURCE
+#include "copies.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#define MARK     "\nhalflight-copy 1\n"
+#define NEW_NAME "new-"
+
+/* The lines after the bytes: MARK, the URL, the condition, the number of bytes, the length of these lines. */
+enum { LENGTH_DIGITS = 8, LINES_MOST = FETCH_URL_BYTES + FETCH_CONDITION_BYTES + 64 };
+
+static hl_status fail(hl_error *error, const char *path) {
+  snprintf(error->message, sizeof error->message, "%.800s: the folder of copies: %s", path, strerror(errno));
+  return HL_ERROR_IO;
+}
+
+/* The name of a URL's copy: two hashes FNV-1a (Fowler, Noll, Vo) of 64 bits with different beginnings. The
+ * URL in the copy tells whether two URLs have one name. */
+static void copy_path(const char *folder, const char *url, char path[COPIES_PATH_BYTES]) {
+  uint64_t hash[2] = {0xcbf29ce484222325u, 0x9e3779b97f4a7c15u};
+  for (int h = 0; h < 2; h++)
+    for (const char *c = url; *c != '\0'; c++) hash[h] = (hash[h] ^ (unsigned char)*c) * 0x100000001b3u;
+  snprintf(path, COPIES_PATH_BYTES, "%.4000s/%016" PRIx64 "%016" PRIx64, folder, hash[0], hash[1]);
+}
+
+/* ---- one copy ---- */
+
+/* Reads the lines at the end of a copy. False if they are another URL's, or if the copy is cut short. */
+static bool read_lines(int descriptor, const char *url, uint64_t *size, char *condition) {
+  struct stat about;
+  char lines[LINES_MOST + 1], expected[LINES_MOST];
+  if (fstat(descriptor, &about) != 0 || !S_ISREG(about.st_mode) || about.st_size < LENGTH_DIGITS)
+    return false;
+  char digits[LENGTH_DIGITS + 1] = "";
+  if (pread(descriptor, digits, LENGTH_DIGITS, about.st_size - LENGTH_DIGITS) != LENGTH_DIGITS) return false;
+  long length = strtol(digits, NULL, 10);
+  if (length < LENGTH_DIGITS || length > LINES_MOST || length > about.st_size) return false;
+  if (pread(descriptor, lines, (size_t)length, about.st_size - length) != length) return false;
+  lines[length] = '\0';
+  int begun = snprintf(expected, sizeof expected, MARK "%s\n", url);
+  if (begun >= (int)sizeof expected || strncmp(lines, expected, (size_t)begun) != 0) return false;
+  char *line = lines + begun, *end = strchr(line, '\n');
+  if (end == NULL || end - line >= FETCH_CONDITION_BYTES) return false;
+  *end = '\0';
+  *size = strtoull(end + 1, NULL, 10);
+  snprintf(condition, FETCH_CONDITION_BYTES, "%s", line);
+  return *size == (uint64_t)(about.st_size - length);
+}
+
+void copies_find(const char *folder, const char *url, hl_fetched_file *file, char *condition) {
+  char path[COPIES_PATH_BYTES];
+  copy_path(folder, url, path);
+  condition[0] = '\0';
+  *file = (hl_fetched_file){open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW), 0};
+  if (file->descriptor < 0 || read_lines(file->descriptor, url, &file->size, condition)) return;
+  close(file->descriptor);
+  *file = (hl_fetched_file){-1, 0};
+}
+
+void copies_touch(const char *folder, const char *url) {
+  char path[COPIES_PATH_BYTES];
+  copy_path(folder, url, path);
+  utimensat(AT_FDCWD, path, NULL, 0);
+}
+
+hl_status copies_begin(const char *folder, char *path, hl_error *error) {
+  snprintf(path, COPIES_PATH_BYTES, "%.4000s/" NEW_NAME "XXXXXX", folder);
+  int descriptor = mkstemp(path);
+  if (descriptor < 0) return fail(error, folder);
+  close(descriptor);
+  return HL_OK;
+}
+
+/* Appends the lines. */
+static bool write_lines(int descriptor, const char *url, const char *condition, uint64_t size) {
+  char lines[LINES_MOST + LENGTH_DIGITS + 1];
+  int length = snprintf(lines, LINES_MOST, MARK "%s\n%s\n%" PRIu64 "\n", url, condition, size);
+  if (length >= LINES_MOST) return false;
+  length += snprintf(lines + length, LENGTH_DIGITS + 1, "%0*d", LENGTH_DIGITS, length + LENGTH_DIGITS);
+  return pwrite(descriptor, lines, (size_t)length, (off_t)size) == length;
+}
+
+hl_status copies_keep(const char *folder, const char *url, const char *condition, const char *path,
+                      hl_fetched_file *file, hl_error *error) {
+  char kept[COPIES_PATH_BYTES];
+  struct stat about;
+  copy_path(folder, url, kept);
+  *file = (hl_fetched_file){open(path, O_RDWR | O_CLOEXEC | O_NOFOLLOW), 0};
+  bool sound = file->descriptor >= 0 && fstat(file->descriptor, &about) == 0;
+  if (sound) file->size = (uint64_t)about.st_size;
+  sound = sound && write_lines(file->descriptor, url, condition, file->size) && rename(path, kept) == 0;
+  if (sound) return HL_OK;
+  fail(error, folder);
+  if (file->descriptor >= 0) close(file->descriptor);
+  *file = (hl_fetched_file){-1, 0};
+  return HL_ERROR_IO;
+}
+
+/* ---- the folder ---- */
+
+typedef struct old_copy {
+  char name[48];
+  uint64_t bytes;
+  time_t used;
+} old_copy;
+
+static int by_use(const void *a, const void *b) {
+  const old_copy *first = a, *second = b;
+  return first->used < second->used ? -1 : first->used > second->used ? 1 : strcmp(first->name, second->name);
+}
+
+/* Appends a file of the folder to the list; removes what a run left behind that ended a day ago. */
+static bool note(int folder, const char *name, old_copy **list, size_t *count, size_t *capacity) {
+  enum { DAY = 86400 };
+  struct stat about;
+  if (name[0] == '.' || strlen(name) >= sizeof(*list)->name) return true;
+  if (fstatat(folder, name, &about, AT_SYMLINK_NOFOLLOW) != 0 || !S_ISREG(about.st_mode)) return true;
+  if (strncmp(name, NEW_NAME, strlen(NEW_NAME)) == 0) {
+    if (time(NULL) - about.st_mtime > DAY) unlinkat(folder, name, 0);
+    return true;
+  }
+  if (*count == *capacity) {
+    size_t more = 2 * *capacity + 256;
+    old_copy *larger = realloc(*list, more * sizeof **list);
+    if (larger == NULL) return false;
+    *list = larger;
+    *capacity = more;
+  }
+  old_copy *copy = &(*list)[(*count)++];
+  *copy = (old_copy){.bytes = (uint64_t)about.st_size, .used = about.st_mtime};
+  strcpy(copy->name, name);
+  return true;
+}
+
+/* Removes the oldest copies beyond the limit. */
+static void trim(DIR *folder, uint64_t limit) {
+  old_copy *list = NULL;
+  size_t count = 0, capacity = 0;
+  uint64_t bytes = 0;
+  bool room = true;
+  for (struct dirent *entry; room && (entry = readdir(folder)) != NULL;)
+    room = note(dirfd(folder), entry->d_name, &list, &count, &capacity);
+  for (size_t n = 0; n < count; n++) bytes += list[n].bytes;
+  if (count > 0) qsort(list, count, sizeof *list, by_use);
+  for (size_t n = 0; n < count && bytes > limit; n++)
+    if (unlinkat(dirfd(folder), list[n].name, 0) == 0) bytes -= list[n].bytes;
+  free(list);
+}
+
+hl_status copies_open(const char *folder, uint64_t limit, hl_error *error) {
+  char parent[COPIES_PATH_BYTES];
+  snprintf(parent, sizeof parent, "%s", folder);
+  char *slash = strrchr(parent, '/');
+  if (slash != NULL) *slash = '\0';
+  if (slash != NULL && parent[0] != '\0') mkdir(parent, 0700); /* it may be there */
+  mkdir(folder, 0700);
+  DIR *opened = opendir(folder);
+  if (opened == NULL) return fail(error, folder);
+  trim(opened, limit);
+  closedir(opened);
+  return HL_OK;
+}

@@ -1,0 +1,28 @@
+/* fetch/curl.h - one run of the program curl, which makes many transfers at a time. */
+#ifndef HL_FETCH_CURL_H
+#define HL_FETCH_CURL_H
+
+#include "fetcher.h"
+
+enum { FETCH_URL_BYTES = 4096, FETCH_CONDITION_BYTES = 300, FETCH_SAID_BYTES = 160 };
+
+/* Some of curl's exit codes (curl's manual, "EXIT CODES"). */
+enum { CURL_TOO_LONG = 63 };
+
+typedef struct curl_transfer {
+  char url[FETCH_URL_BYTES];             /* printable ASCII */
+  const char *output;                    /* borrowed; the file that curl writes to */
+  char condition[FETCH_CONDITION_BYTES]; /* a line of the request's header, by which the server finds out
+                                          * whether its file has changed; "" for none */
+  /* Results. */
+  int problem; /* curl's exit code for this transfer; -1 if curl ended before */
+  int answer;  /* the server's status code; 0 without an answer */
+  char next_condition[FETCH_CONDITION_BYTES]; /* the condition for the next request; "" if there is none */
+  char said[FETCH_SAID_BYTES];                /* curl's words about the problem */
+} curl_transfer;
+
+/* Makes the transfers. most: the most bytes of each file. Fails if there is no curl or the run is cancelled;
+ * problems of transfers are among their results. */
+hl_status curl_run(const fetcher *f, curl_transfer *transfers, size_t count, uint64_t most, hl_error *error);
+
+#endif

@@ -1,0 +1,206 @@
+/* fetch/fetch.c - brings files of a store: asks the server for each, also for those of which there is a copy,
+ * and asks again where a transfer failed in a way that may pass.
+ *
+ * The server answers 304 where the copy is still its file. It answers 404 or 410 where there is no file. Any
+ * other end than a whole file is an error, because a store means something by a file that is not there. */
+#define _GNU_SOURCE
+#include "fetch.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "copies.h"
+#include "curl.h"
+
+enum { TRIES = 4 };
+
+/* A file that is wanted. */
+typedef struct wanted {
+  const char *name;
+  curl_transfer transfer;
+  char path[COPIES_PATH_BYTES]; /* the file that curl writes to; "" if there is none */
+  hl_fetched_file copy;         /* the copy from before; {-1, 0} if there is none */
+  bool done;
+} wanted;
+
+typedef struct fetching {
+  const fetcher *f;
+  const char *url;
+  uint64_t most;
+  wanted *files; /* owned; [count] */
+  size_t count;
+  hl_error *error;
+} fetching;
+
+/* ---- URLs ---- */
+
+static bool is_unreserved(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+         (c != '\0' && strchr("-._~/", c) != NULL);
+}
+
+/* Whether a URL can go into curl's list as it is. */
+static bool is_plain(const char *url) {
+  for (const char *c = url; *c != '\0'; c++)
+    if ((unsigned char)*c <= ' ' || (unsigned char)*c > '~' || *c == '"' || *c == '\\' || *c == '#')
+      return false;
+  return true;
+}
+
+/* Appends a name to the store's URL, before the URL's query. All but letters, digits, "-._~" and '/' is
+ * escaped (RFC 3986, section 2.1). */
+static bool join_url(const char *url, const char *name, char joined[FETCH_URL_BYTES]) {
+  size_t base = strcspn(url, "?"), length;
+  const char *query = url + base;
+  while (base > 0 && url[base - 1] == '/') base--;
+  length = (size_t)snprintf(joined, FETCH_URL_BYTES, "%.*s/", (int)base, url);
+  for (const char *c = name; *c != '\0' && length + 4 < FETCH_URL_BYTES; c++)
+    length += (size_t)snprintf(joined + length, FETCH_URL_BYTES - length, is_unreserved(*c) ? "%c" : "%%%02X",
+                               (unsigned char)*c);
+  if (length + strlen(query) + 4 >= FETCH_URL_BYTES) return false;
+  strcpy(joined + length, query);
+  return true;
+}
+
+/* Fails with a line that begins with the file's URL, without its query, which may be a secret. */
+static hl_status fail(const fetching *t, const char *name, const char *what) {
+  size_t base = strcspn(t->url, "?");
+  while (base > 0 && t->url[base - 1] == '/') base--;
+  snprintf(t->error->message, sizeof t->error->message, "%.*s%s%.200s: %.400s", base < 300 ? (int)base : 300,
+           t->url, name[0] != '\0' ? "/" : "", name, what);
+  return HL_ERROR_IO;
+}
+
+/* ---- transfers ---- */
+
+static hl_status begin(fetching *t, wanted *file) {
+  if (!is_plain(t->url) || !join_url(t->url, file->name, file->transfer.url))
+    return fail(t, file->name, "no URL: give one of printable ASCII characters, others as %XX");
+  copies_find(t->f->folder, file->transfer.url, &file->copy, file->transfer.condition);
+  hl_status status = copies_begin(t->f->folder, file->path, t->error);
+  if (status != HL_OK) file->path[0] = '\0';
+  file->transfer.output = file->path;
+  return status;
+}
+
+/* Whether a transfer that ended in this way may succeed later. */
+static bool may_pass(const curl_transfer *transfer) {
+  if (transfer->problem == CURL_TOO_LONG) return false;
+  return transfer->problem != 0 || transfer->answer == 408 || transfer->answer == 429 ||
+         transfer->answer >= 500;
+}
+
+static hl_status fail_transfer(const fetching *t, const wanted *file, bool tried_again) {
+  const curl_transfer *transfer = &file->transfer;
+  char what[400];
+  if (transfer->problem == CURL_TOO_LONG)
+    snprintf(what, sizeof what, "the server has a file of more than %llu bytes, the most that it can have",
+             (unsigned long long)t->most);
+  else if (transfer->problem != 0)
+    snprintf(what, sizeof what, "it does not arrive, after %d tries: %.200s", TRIES, transfer->said);
+  else
+    snprintf(what, sizeof what, "the server answers %d%s%s", transfer->answer,
+             tried_again ? ", also when asked again" : "",
+             transfer->answer == 401 || transfer->answer == 403
+                 ? ": it wants a permission, or has no such file and does not say so"
+                 : "");
+  return fail(t, file->name, what);
+}
+
+/* Takes the result of a transfer: the file is brought, absent, or to be asked for again. */
+static hl_status take(fetching *t, wanted *file, hl_fetched_file *result) {
+  curl_transfer *transfer = &file->transfer;
+  bool whole = transfer->problem == 0;
+  if (whole && transfer->answer == 304 && file->copy.descriptor >= 0) {
+    *result = file->copy;
+    file->copy = (hl_fetched_file){-1, 0};
+    copies_touch(t->f->folder, transfer->url);
+    file->done = true;
+  } else if (whole && transfer->answer == 200) {
+    hl_status status = copies_keep(t->f->folder, transfer->url, transfer->next_condition, file->path, result,
+                                   t->error);
+    if (status != HL_OK) return status;
+    file->path[0] = '\0';
+    file->done = true;
+  } else if (whole && (transfer->answer == 404 || transfer->answer == 410)) {
+    file->done = true;
+  } else if (!may_pass(transfer)) {
+    return fail_transfer(t, file, false);
+  }
+  return HL_OK;
+}
+
+/* Runs curl on all files that are not done. */
+static hl_status run(fetching *t, hl_fetched_file *results) {
+  curl_transfer *transfers = calloc(t->count, sizeof *transfers);
+  size_t count = 0;
+  hl_status problem = HL_OK;
+  if (transfers == NULL) return fail(t, "", "out of memory");
+  for (size_t n = 0; n < t->count; n++) {
+    if (t->files[n].done) continue;
+    transfers[count++] = t->files[n].transfer;
+    if (truncate(t->files[n].path, 0) != 0)
+      problem = fail(t, t->files[n].name, "its copy cannot be made anew");
+  }
+  hl_status status = problem != HL_OK ? problem : curl_run(t->f, transfers, count, t->most, t->error);
+  count = 0;
+  for (size_t n = 0; n < t->count && status == HL_OK; n++) {
+    if (t->files[n].done) continue;
+    t->files[n].transfer = transfers[count++];
+    status = take(t, &t->files[n], &results[n]);
+  }
+  free(transfers);
+  return status;
+}
+
+static const wanted *first_pending(const fetching *t) {
+  for (size_t n = 0; n < t->count; n++)
+    if (!t->files[n].done) return &t->files[n];
+  return NULL;
+}
+
+/* Waits before the next try, longer each time. */
+static hl_status pause_before(const fetching *t, int tries) {
+  const struct timespec step = {.tv_nsec = 10000000};
+  for (int n = 0; n < 25 << (tries - 1); n++) {
+    if (t->f->cancelled != NULL && t->f->cancelled(t->f->user_data)) {
+      fail(t, "", "cancelled");
+      return HL_ERROR_CANCELLED;
+    }
+    nanosleep(&step, NULL);
+  }
+  return HL_OK;
+}
+
+static hl_status run_tries(fetching *t, hl_fetched_file *results) {
+  hl_status status = HL_OK;
+  for (int tries = 0; tries < TRIES && status == HL_OK && first_pending(t) != NULL; tries++) {
+    if (tries > 0) status = pause_before(t, tries);
+    if (status == HL_OK) status = run(t, results);
+  }
+  const wanted *left = first_pending(t);
+  return status == HL_OK && left != NULL ? fail_transfer(t, left, true) : status;
+}
+
+hl_status fetch_files(const fetcher *f, const char *url, const char *const *names, size_t count,
+                      uint64_t most, hl_fetched_file *files, hl_error *error) {
+  fetching t = {.f = f, .url = url, .most = most, .count = count, .error = error};
+  for (size_t n = 0; n < count; n++) files[n] = (hl_fetched_file){-1, 0};
+  hl_status status = copies_open(f->folder, f->limit, error);
+  if (status != HL_OK) return status;
+  t.files = calloc(count, sizeof *t.files);
+  if (t.files == NULL) return fail(&t, "", "out of memory");
+  for (size_t n = 0; n < count; n++) t.files[n].name = names[n], t.files[n].copy.descriptor = -1;
+  for (size_t n = 0; n < count && status == HL_OK; n++) status = begin(&t, &t.files[n]);
+  if (status == HL_OK) status = run_tries(&t, files);
+  for (size_t n = 0; n < count; n++) {
+    if (t.files[n].copy.descriptor >= 0) close(t.files[n].copy.descriptor);
+    if (t.files[n].path[0] != '\0') unlink(t.files[n].path);
+  }
+  free(t.files);
+  return status;
+}

@@ -1,0 +1,15 @@
+/* fetch/fetch.h - files of a store on a web server, by way of the program curl and of a folder of copies.
+ *
+ * In: the store's URL and names in it. Out: descriptors of copies. A copy is used again only if the server
+ * says that its file has not changed since. */
+#ifndef HL_FETCH_FETCH_H
+#define HL_FETCH_FETCH_H
+
+#include "fetcher.h"
+
+/* Brings files: what hl_context_options.fetch is to do. Descriptors are the caller's, also after a failure,
+ * where those of files that were not brought are -1. */
+hl_status fetch_files(const fetcher *f, const char *url, const char *const *names, size_t count,
+                      uint64_t most, hl_fetched_file *files, hl_error *error);
+
+#endif
