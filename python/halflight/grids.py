@@ -9,7 +9,7 @@ import numpy as np
 
 from ._library import context, ffi, lib, made
 
-__all__ = ["Cells", "Patches", "of_vtk"]
+__all__ = ["Cells", "Patches"]
 
 
 def _pointer(kind: str, values: Any, dtype: str) -> tuple[Any, Any]:
@@ -105,37 +105,3 @@ class Patches:
             row.values = ffi.cast("const float *", values.__array_interface__["data"][0])
         description.patches, description.patch_count = rows, len(patches)
         return made(lib.hl_volume_create_amr, "hl_volume", lib.hl_volume_release, context, description)
-
-
-def _structured_cells(size: Sequence[int]) -> Any:
-    """The hexahedra of a grid of points [z][y][x]: (cells, 8)."""
-    number = np.arange(size[0] * size[1] * size[2]).reshape(size[::-1])
-    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
-    parts = [number[z : size[2] - 1 + z, y : size[1] - 1 + y, x : size[0] - 1 + x].ravel() for x, y, z in corners]
-    return np.stack(parts, 1)
-
-
-def of_vtk(source: Any) -> tuple[Cells, str | None] | None:
-    """The cells of an unstructured or curvilinear grid of VTK and PyVista, with the active scalars' name; None for anything else."""
-    # By its class: from VTK 9.5 on images and rectilinear grids, too, have methods that return points and cells.
-    is_a = getattr(source, "IsA", lambda _: False)
-    curvilinear = is_a("vtkStructuredGrid")
-    if not (curvilinear or is_a("vtkUnstructuredGrid")):
-        return None
-    from vtkmodules.util.numpy_support import vtk_to_numpy
-
-    scalars = source.GetPointData().GetScalars() or source.GetCellData().GetScalars()
-    if scalars is None:
-        raise ValueError(f"{type(source).__name__} has no active scalars: set them, or give arrays to Volume.from_cells()")
-    values = vtk_to_numpy(scalars)
-    if values.ndim > 1:
-        raise ValueError(f"the active scalars have {values.shape[1]} components: give one of them to Volume.from_cells()")
-    points = vtk_to_numpy(source.GetPoints().GetData())
-    if curvilinear:
-        size = [0, 0, 0]
-        source.GetDimensions(size)
-        return Cells(points, _structured_cells(size), 12, values), scalars.GetName()
-    cells = source.GetCells()
-    corners, starts = vtk_to_numpy(cells.GetConnectivityArray()), vtk_to_numpy(cells.GetOffsetsArray())
-    flat = np.insert(corners.astype(np.int64), starts[:-1].astype(np.int64), np.diff(starts))
-    return Cells(points, flat, vtk_to_numpy(source.GetCellTypesArray()), values), scalars.GetName()

@@ -8,7 +8,7 @@ from typing import Any, Literal, Unpack
 
 import numpy as np
 
-from . import _settings, arrays, cuts, grids, isosurface, mask, neighbours, pieces
+from . import _settings, arrays, cuts, grids, isosurface, mask, neighbours, pieces, vtk_grids
 from ._library import call, context, ffi, lib, made, text_of
 from ._words import check_keywords, choice
 from .keywords import MaterialSettings, VolumeSettings
@@ -294,8 +294,9 @@ class Volume:
                     raise TypeError(f"{word} is for arrays: a file says it itself")
             self._load(os.fspath(source), place["spacing"], axes or "zyx", chosen)
             return
-        name = chosen.pop("array", None) if hasattr(source, "data_vars") else None
-        mesh = None if isinstance(source, np.ndarray) else grids.of_vtk(source)
+        is_grid = not isinstance(source, np.ndarray) and vtk_grids.is_grid(source)
+        name = chosen.pop("array", None) if hasattr(source, "data_vars") or is_grid else None
+        mesh = vtk_grids.of_vtk(source, name) if is_grid else None
         if mesh is not None:
             source = mesh[0]
             if mesh[1] is not None:

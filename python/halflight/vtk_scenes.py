@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from . import colors, grids
+from . import colors, grids, vtk_grids
 from ._library import warn
 from .camera import Camera
 from .lights import Directional, Light, Point, Spot
@@ -286,7 +286,7 @@ def _take_volume(taken: _Taken, actor: Any, matrix: np.ndarray[Any, Any]) -> Non
     if mapper is None:
         return
     mapper.Update()
-    mesh = grids.of_vtk(mapper.GetInputDataObject(0, 0))
+    mesh = vtk_grids.of_vtk(mapper.GetInputDataObject(0, 0))
     image = _regular(mapper.GetInputDataObject(0, 0)) if mesh is None else None
     function = TransferFunction.from_vtk(prop)
     if taken.display:
