@@ -114,25 +114,29 @@ static hl_status copy_arrays(hl_context *context, const hl_scene_description *sc
 
 /* Copies what the scene knows of its lights and volumes, in the order of frames. In the scene, suns are the
  * last lights. */
-static void copy_findings(const hl_scene *scene, framed_scene *framed) {
-  const hl_scene_description *placed = &scene->placed;
-  const int first_sun = (int)placed->light_count - scene->suns.count;
-  for (size_t i = 0; i < placed->light_count; i++)
-    if (scene->order.lights[i] >= first_sun)
-      framed->sun_parts[i] = hl_sun_part_of_media(&scene->suns.suns[scene->order.lights[i] - first_sun]);
-  for (size_t i = 0; i < placed->volume_count; i++)
-    framed->plane_marks[i] = scene->plane_marks[scene->order.volumes[i]];
+static void copy_findings(const hl_scene *scene, const drawn_scene *drawn, framed_scene *framed) {
+  const hl_scene_description *d = &drawn->description;
+  const scene_order *order = &drawn->order;
+  const int first_sun = (int)d->light_count - scene->suns.count;
+  for (size_t i = 0; i < d->light_count; i++)
+    if (order->lights[i] >= first_sun)
+      framed->sun_parts[i] = hl_sun_part_of_media(&scene->suns.suns[order->lights[i] - first_sun]);
+  for (size_t i = 0; i < d->volume_count; i++) framed->plane_marks[i] = drawn->plane_marks[order->volumes[i]];
 }
 
 hl_status hl_framed_scene_create(hl_context *context, const hl_scene *from, framed_scene *framed,
                                  hl_error *error) {
-  const hl_scene_description *scene = &from->placed;
-  const scene_order *order = &from->order;
+  const drawn_scene *drawn;
+  *framed = (framed_scene){.order = NULL};
+  hl_status status = hl_scene_draw(from, &drawn, error);
+  if (status != HL_OK) return status;
+  const hl_scene_description *scene = &drawn->description;
+  const scene_order *order = &drawn->order;
   const hl_frame_space space = hl_scene_frame_space(scene);
   *framed = (framed_scene){.scene = *scene, .order = order, .unit = space.unit};
-  hl_status status = copy_arrays(context, scene, framed, error);
+  status = copy_arrays(context, scene, framed, error);
   if (status != HL_OK) return status;
-  copy_findings(from, framed);
+  copy_findings(from, drawn, framed);
   double(*vertices)[3] = framed->vertices;
   hl_opacity_point *gradients = framed->gradients;
   hl_cut *cuts = framed->cuts;

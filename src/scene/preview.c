@@ -17,6 +17,7 @@ enum { MOST_LEVELS = 3, LEAST_VOXELS = 64 * 64 * 64 };
 /* A volume, and copies of it from fine to coarse. */
 typedef struct levels {
   hl_volume *volume;               /* retained */
+  hl_coarser_kind kind;            /* what the copies are made of */
   hl_volume *coarser[MOST_LEVELS]; /* retained; [count] */
   size_t count;
 } levels;
@@ -37,26 +38,39 @@ void hl_preview_destroy(hl_preview *preview) {
   hl_release(preview->context, preview);
 }
 
-static bool can_be_coarser(const hl_scene_volume *volume) {
-  const hl_volume *v = volume->volume;
-  return volume->label_count == 0 && v->colors == NULL && (v->pages == NULL || v->pages->blocks == NULL);
+static bool can_be_coarser(const hl_volume *v, hl_coarser_kind kind) {
+  if (v->colors != NULL || (v->pages != NULL && v->pages->blocks != NULL)) return false;
+  return kind == HL_COARSER_MEANS || (v->bricks == NULL && !hl_volume_is_exact(v));
+}
+
+static hl_coarser_kind kind_of(const hl_scene_volume *volume) {
+  return volume->label_count > 0 ? HL_COARSER_LABELS : HL_COARSER_MEANS;
 }
 
 static hl_status make_levels(levels *l, hl_error *error) {
   const hl_volume *last = l->volume;
   hl_status status = HL_OK;
   while (status == HL_OK && l->count < MOST_LEVELS && hl_volume_voxel_count(last) >= LEAST_VOXELS) {
-    status = hl_volume_make_coarser(last, &l->coarser[l->count], error);
+    status = hl_volume_make_coarser(last, l->kind, &l->coarser[l->count], error);
     if (status == HL_OK) last = l->coarser[l->count++];
   }
   return status;
 }
 
-static const levels *levels_of(const hl_preview *preview, const hl_scene_volume *volume) {
-  if (!can_be_coarser(volume)) return NULL;
+static const levels *levels_of(const hl_preview *preview, const hl_volume *volume, hl_coarser_kind kind) {
   for (size_t v = 0; v < preview->count; v++)
-    if (preview->volumes[v].volume == volume->volume) return &preview->volumes[v];
+    if (preview->volumes[v].volume == volume && preview->volumes[v].kind == kind) return &preview->volumes[v];
   return NULL;
+}
+
+/* Adds a volume with its copies, if it can have any and has none yet. */
+static hl_status add_levels(hl_preview *preview, hl_volume *volume, hl_coarser_kind kind, hl_error *error) {
+  if (!can_be_coarser(volume, kind) || levels_of(preview, volume, kind) != NULL) return HL_OK;
+  levels *l = &preview->volumes[preview->count++];
+  l->volume = volume;
+  l->kind = kind;
+  hl_volume_retain(volume);
+  return make_levels(l, error);
 }
 
 hl_status hl_preview_create(hl_context *context, const hl_scene *scene, hl_preview **preview,
@@ -66,44 +80,50 @@ hl_status hl_preview_create(hl_context *context, const hl_scene *scene, hl_previ
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_preview_create: null context, scene or preview");
   *preview = NULL;
   const hl_scene_description *d = &scene->description;
-  hl_preview *made = hl_allocate_zeroed(context, 1, sizeof *made + d->volume_count * sizeof(levels));
+  enum { MAPS = 2 }; /* a volume and its mask */
+  hl_preview *made = hl_allocate_zeroed(context, 1, sizeof *made + MAPS * d->volume_count * sizeof(levels));
   if (made == NULL) return hl_fail_memory(error, sizeof *made, "a preview");
   made->context = context;
   hl_status status = HL_OK;
   for (size_t v = 0; v < d->volume_count && status == HL_OK; v++) {
     const hl_scene_volume *volume = &d->volumes[v];
-    if (!can_be_coarser(volume) || levels_of(made, volume) != NULL) continue;
-    levels *l = &made->volumes[made->count++];
-    l->volume = volume->volume;
-    hl_volume_retain(l->volume);
-    status = make_levels(l, error);
+    status = add_levels(made, volume->volume, kind_of(volume), error);
+    if (status == HL_OK && volume->mask.volume != NULL)
+      status = add_levels(made, volume->mask.volume, HL_COARSER_LABELS, error);
   }
   if (status == HL_OK) *preview = made;
   else hl_preview_destroy(made);
   return status;
 }
 
-/* The smallest edge of one volume's voxels in the scene. */
-static double edge_of(const hl_scene_volume *volume) {
+/* The smallest edge of a map's voxels in the scene, where the map lies as the volume does. */
+static double edge_of(const hl_scene_volume *volume, hl_volume *map) {
+  hl_scene_volume placed = *volume;
   hl_scene_description alone;
+  placed.volume = map;
   hl_scene_description_defaults(&alone);
-  alone.volumes = volume;
+  alone.volumes = &placed;
   alone.volume_count = 1;
   return hl_scene_smallest_edge(&alone);
 }
 
-/* Gives the volume its coarsest copy whose voxels are about as long as the sheets are apart. False: the
- * volume stays as it is. */
+/* The coarsest copy of a volume or of its mask whose voxels are about as long as the sheets are apart; null:
+ * it stays as it is. */
+static hl_volume *copy_for(const hl_preview *preview, const hl_scene_volume *volume, const hl_volume *map,
+                           hl_coarser_kind kind, double apart) {
+  const levels *l = levels_of(preview, map, kind);
+  for (size_t n = l != NULL ? l->count : 0; n > 0; n--)
+    if (edge_of(volume, l->coarser[n - 1]) <= apart * sqrt(2)) return l->coarser[n - 1];
+  return NULL;
+}
+
+/* Gives a volume and its mask their copies. False: both stay as they are. */
 static bool replace(const hl_preview *preview, hl_scene_volume *volume, double apart) {
-  const levels *l = levels_of(preview, volume);
-  for (size_t n = l != NULL ? l->count : 0; n > 0; n--) {
-    hl_scene_volume coarse = *volume;
-    coarse.volume = l->coarser[n - 1];
-    if (edge_of(&coarse) > apart * sqrt(2)) continue;
-    volume->volume = coarse.volume;
-    return true;
-  }
-  return false;
+  hl_volume *copy = copy_for(preview, volume, volume->volume, kind_of(volume), apart);
+  hl_volume *mask = copy_for(preview, volume, volume->mask.volume, HL_COARSER_LABELS, apart);
+  if (copy != NULL) volume->volume = copy;
+  if (mask != NULL) volume->mask.volume = mask;
+  return copy != NULL || mask != NULL;
 }
 
 hl_status hl_preview_scene(const hl_preview *preview, hl_scene *scene, hl_scene **quick, hl_error *error) {

@@ -101,10 +101,8 @@ static void destroy(hl_scene *scene) {
   for (size_t m = 0; m < d->mesh_count; m++) release_mesh(context, (hl_scene_mesh *)&d->meshes[m]);
   hl_release(context, (void *)d->meshes);
   hl_release(context, (void *)d->cuts);
-  hl_scene_order_release(context, &scene->order);
-  hl_release(context, scene->plane_marks);
+  hl_drawn_scene_destroy(context, scene->drawn);
   hl_release(context, scene->field_errors);
-  hl_drawn_labels_release(context, &scene->placed, &scene->drawn);
   hl_placed_cuts_release(context, &scene->cut);
   hl_placed_lights_release(context, &scene->placed);
   hl_suns_release(context, &scene->suns);
@@ -322,18 +320,6 @@ static hl_status copy_sky(hl_scene *scene, const hl_sky *from, hl_error *error) 
                       &to->pixels, &to->file, error);
 }
 
-/* After the placed volumes. */
-static hl_status mark_planes(hl_scene *scene, hl_error *error) {
-  const hl_scene_description *placed = &scene->placed;
-  scene->plane_marks = hl_allocate_zeroed(scene->context, placed->volume_count, sizeof *scene->plane_marks);
-  if (scene->plane_marks == NULL)
-    return hl_fail_memory(error, sizeof *scene->plane_marks, "a scene's volumes");
-  for (size_t v = 0; v < placed->volume_count; v++)
-    if (hl_has_plane(&placed->volumes[v].transfer_function))
-      scene->plane_marks[v] = hl_plane_mark(&placed->volumes[v].transfer_function.plane);
-  return HL_OK;
-}
-
 /* Whether bright spots of the sky's image become lights of the scene (suns). They need shadows. */
 static bool has_suns(const hl_scene_description *d) {
   return d->sky.suns && d->sky.strength > 0 && d->render.shadows != HL_SHADOWS_OFF &&
@@ -390,18 +376,21 @@ hl_status hl_scene_create(hl_context *context, const hl_scene_description *descr
   if (status == HL_OK)
     status = hl_lights_place(context, &made->description, &made->suns, &made->placed, error);
   if (status == HL_OK) status = hl_cuts_place(context, &made->placed, &made->cut, error);
-  if (status == HL_OK) status = hl_labels_draw(context, &made->placed, &made->drawn, error);
-  if (status == HL_OK) status = mark_planes(made, error);
   if (status == HL_OK)
     status = hl_field_errors_write(context, &made->description, &made->field_errors, error);
-  if (status == HL_OK)
-    status = hl_scene_order_find(context, &made->description, &made->placed, &made->order, error);
+  if (status == HL_OK) made->drawn = hl_drawn_scene_create(context);
+  if (status == HL_OK && made->drawn == NULL) status = hl_fail_memory(error, sizeof *made->drawn, "a scene");
   if (status != HL_OK) {
     destroy(made);
     return status;
   }
   *scene = made;
   return HL_OK;
+}
+
+hl_status hl_scene_draw(const hl_scene *scene, const drawn_scene **drawn, hl_error *error) {
+  *drawn = scene->drawn;
+  return hl_drawn_scene_make(scene->context, &scene->description, &scene->placed, scene->drawn, error);
 }
 
 const hl_scene_description *hl_scene_describe(const hl_scene *scene) {

@@ -6,32 +6,31 @@
 
 #include <halflight/scene.h>
 
+#include "scene/drawn_scene.h"
 #include "scene/function/transfer_function.h"
 #include "scene/geometry/camera.h"
 #include "scene/geometry/cut.h"
 #include "scene/geometry/placement.h"
-#include "scene/label/draw_labels.h"
 #include "scene/light/suns.h"
-#include "scene/order.h"
 #include "volume/volume.h"
 
 struct hl_scene {
   hl_context *context;
   atomic_int references;
   hl_scene_description description; /* its arrays and texts are owned by the scene */
-  hl_scene_description placed;      /* the same for rendering: all lights in the world, after them the suns of
-                                       the sky, whose image lacks them, the scene's cuts in its volumes, and
-                                       volumes of occupancy in place of label maps, lattices (label/mask.h) in
-                                       place of masks; owns its array of lights */
-  sky_suns suns;         /* suns of the sky; used where placed.sky.suns is set: there they are lights */
-  placed_cuts cut;       /* the placed description's volumes, where the scene has cuts */
-  drawn_labels drawn;    /* the volumes of occupancy and the lattices */
-  scene_order order;     /* in which frames take the placed description's lists */
-  uint64_t *plane_marks; /* owned; [placed.volume_count]; of the content of functions of two numbers,
-                            0 where there is none; for keys of kept results */
-  char *field_errors;    /* owned; of its volumes, as JSON (field_errors.c); null if none is known */
-  uint64_t sky_mark;     /* of the pixels of the sky's image; for keys of kept results */
+  hl_scene_description placed;      /* the same with all lights in the world, after them the suns of the sky,
+                                       whose image lacks them, and with the scene's cuts in its volumes; owns
+                                       its array of lights */
+  sky_suns suns;      /* suns of the sky; used where placed.sky.suns is set: there they are lights */
+  placed_cuts cut;    /* the placed description's volumes, where the scene has cuts */
+  drawn_scene *drawn; /* owned; what frames draw of the scene; null until a frame asks for it */
+  char *field_errors; /* owned; of its volumes, as JSON (field_errors.c); null if none is known */
+  uint64_t sky_mark;  /* of the pixels of the sky's image; for keys of kept results */
 };
+
+/* Makes what frames draw of the scene, unless it was made before (hl_drawn_scene_make()). *drawn is the
+ * scene's own. */
+hl_status hl_scene_draw(const hl_scene *scene, const drawn_scene **drawn, hl_error *error);
 
 /* Writes how far the fields of the volumes are from their sources, as a JSON array with an object for each
  * volume of which it is known. *text is owned by the caller (hl_release); null if it is known of none. */

@@ -12,13 +12,19 @@
 static const double ALIKE =
     1.5; /* axes with steps up to this factor beyond the shortest are halved together */
 
+enum {
+  MOST_ROWS = 4,
+  MOST_VALUES = 2 * MOST_ROWS
+}; /* of the volume, in a row and a voxel of the coarser one */
+
 typedef struct coarsening {
   const hl_volume *volume;
-  size_t factor[3];    /* 1 or 2 */
-  size_t dimension[3]; /* of the coarser volume */
-  void *row;           /* owned; a row of stored values of a volume with pages */
-  double *sums;        /* owned; [dimension[0]]; sums of stored values */
-  uint32_t *counts;    /* owned; [dimension[0]]; number of finite values in each sum */
+  hl_coarser_kind kind;
+  size_t factor[3];      /* 1 or 2 */
+  size_t dimension[3];   /* of the coarser volume */
+  unsigned char *voxels; /* [dimension[2]][dimension[1]][dimension[0]]; stored values of the coarser volume */
+  unsigned char *stored; /* owned; [threads][volume's row]; for rows of a volume with pages */
+  float *numbers;        /* owned; [threads][MOST_ROWS][volume's row] */
 } coarsening;
 
 static double step_length(const hl_volume *volume, int axis) {
@@ -34,37 +40,80 @@ static void choose_factors(coarsening *c) {
   }
 }
 
-static void add_row(coarsening *c, size_t j, size_t k) {
-  const hl_volume *volume = c->volume;
-  const void *row = hl_volume_row_in(volume, j, k, c->row);
-  for (size_t i = 0; i < volume->dimension[0]; i++) {
-    double value = hl_stored_number(volume->storage, row, i);
-    if (!isfinite(value)) continue;
-    c->sums[i / c->factor[0]] += value;
-    c->counts[i / c->factor[0]]++;
+/* Reads a row of stored values as floats, which hold all of them exactly. stored: room for a row. */
+static void read_row(const hl_volume *volume, size_t j, size_t k, void *stored, float *numbers) {
+  const void *row = hl_volume_row_in(volume, j, k, stored);
+  const size_t count = volume->dimension[0];
+  switch (volume->storage) {
+    case HL_STORAGE_U8:
+      for (size_t i = 0; i < count; i++) numbers[i] = ((const uint8_t *)row)[i];
+      break;
+    case HL_STORAGE_U16:
+      for (size_t i = 0; i < count; i++) numbers[i] = ((const uint16_t *)row)[i];
+      break;
+    case HL_STORAGE_F32: memcpy(numbers, row, count * sizeof *numbers); break;
   }
 }
 
-/* Row (j, k) of the coarser volume. */
-static void make_row(coarsening *c, size_t j, size_t k, void *to) {
-  size_t count = c->dimension[0];
-  memset(c->sums, 0, count * sizeof *c->sums);
-  memset(c->counts, 0, count * sizeof *c->counts);
-  for (size_t z = k * c->factor[2]; z < (k + 1) * c->factor[2] && z < c->volume->dimension[2]; z++)
-    for (size_t y = j * c->factor[1]; y < (j + 1) * c->factor[1] && y < c->volume->dimension[1]; y++)
-      add_row(c, y, z);
-  for (size_t i = 0; i < count; i++) {
-    double mean = c->counts[i] > 0 ? c->sums[i] / c->counts[i] : NAN;
-    switch (c->volume->storage) {
-      case HL_STORAGE_U8: ((uint8_t *)to)[i] = (uint8_t)(mean + 0.5); break;
-      case HL_STORAGE_U16: ((uint16_t *)to)[i] = (uint16_t)(mean + 0.5); break;
-      case HL_STORAGE_F32: ((float *)to)[i] = (float)mean; break;
+/* The mean of finite values; NAN where there are none. */
+static double mean_of(const float *values, size_t count) {
+  double sum = 0;
+  for (size_t n = 0; n < count; n++) sum += (double)values[n];
+  return count > 0 ? sum / (double)count : (double)NAN;
+}
+
+/* The value that most of the values have, and of equally common ones the first; NAN where there are none. */
+static double commonest_of(const float *values, size_t count) {
+  size_t best = 0, most = 0;
+  for (size_t n = 0; n + most < count; n++) {
+    size_t equal = 0;
+    for (size_t m = n; m < count; m++) equal += values[m] == values[n];
+    if (equal > most) best = n;
+    if (equal > most) most = equal;
+  }
+  return count > 0 ? (double)values[best] : (double)NAN;
+}
+
+/* Collects the finite values of the voxels that voxel i of the coarser row takes the place of. */
+static size_t collect(const coarsening *c, const float *rows, size_t row_count, size_t i,
+                      float values[MOST_VALUES]) {
+  const size_t width = c->volume->dimension[0], first = i * c->factor[0];
+  size_t count = 0;
+  for (size_t r = 0; r < row_count; r++)
+    for (size_t at = first; at < first + c->factor[0] && at < width; at++)
+      if (isfinite(rows[r * width + at])) values[count++] = rows[r * width + at];
+  return count;
+}
+
+/* Stores row (j, k) of the coarser volume. */
+static void make_row(const coarsening *c, size_t j, size_t k, int worker) {
+  const hl_volume *volume = c->volume;
+  const size_t width = volume->dimension[0], bytes = hl_storage_bytes(volume->storage);
+  float *rows = c->numbers + (size_t)worker * MOST_ROWS * width;
+  size_t row_count = 0;
+  for (size_t z = k * c->factor[2]; z < (k + 1) * c->factor[2] && z < volume->dimension[2]; z++)
+    for (size_t y = j * c->factor[1]; y < (j + 1) * c->factor[1] && y < volume->dimension[1]; y++)
+      read_row(volume, y, z, c->stored + (size_t)worker * width * bytes, rows + row_count++ * width);
+  unsigned char *to = c->voxels + (k * c->dimension[1] + j) * c->dimension[0] * bytes;
+  for (size_t i = 0; i < c->dimension[0]; i++) {
+    float values[MOST_VALUES];
+    const size_t count = collect(c, rows, row_count, i, values);
+    const double merged = c->kind == HL_COARSER_LABELS ? commonest_of(values, count) : mean_of(values, count);
+    switch (volume->storage) {
+      case HL_STORAGE_U8: to[i] = (uint8_t)(merged + 0.5); break;
+      case HL_STORAGE_U16: ((uint16_t *)to)[i] = (uint16_t)(merged + 0.5); break;
+      case HL_STORAGE_F32: ((float *)to)[i] = (float)merged; break;
     }
   }
 }
 
-/* The coarser grid: a voxel lies in the middle of the voxels whose mean it is. Where the volume ends before
- * that, the voxel lies as if all voxels were there. */
+static void make_slice(void *data, size_t k, int worker) {
+  const coarsening *c = data;
+  for (size_t j = 0; j < c->dimension[1]; j++) make_row(c, j, k, worker);
+}
+
+/* The coarser grid: a voxel lies in the middle of the voxels whose place it takes. Where the volume ends
+ * before that, the voxel lies as if all voxels were there. */
 static void place(const coarsening *c, hl_volume_description *d) {
   static const hl_voxel_type types[] = {
       [HL_STORAGE_U8] = HL_VOXEL_U8, [HL_STORAGE_U16] = HL_VOXEL_U16, [HL_STORAGE_F32] = HL_VOXEL_F32};
@@ -85,17 +134,6 @@ static void place(const coarsening *c, hl_volume_description *d) {
   d->space = volume->space;
 }
 
-static hl_status average(coarsening *c, unsigned char *voxels, hl_error *error) {
-  size_t row_bytes = c->dimension[0] * hl_storage_bytes(c->volume->storage);
-  for (size_t k = 0; k < c->dimension[2]; k++) {
-    if (hl_cancelled(c->volume->context))
-      return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while a coarser volume was made");
-    for (size_t j = 0; j < c->dimension[1]; j++)
-      make_row(c, j, k, voxels + (k * c->dimension[1] + j) * row_bytes);
-  }
-  return HL_OK;
-}
-
 /* What surrounds the content, and what the file tells of its world, stay. */
 static void inherit(const hl_volume *volume, hl_volume *made) {
   made->unit = volume->unit;
@@ -106,51 +144,52 @@ static void inherit(const hl_volume *volume, hl_volume *made) {
 }
 
 /* The coarser field has no finest level (bricks/coarser.h). */
-static hl_status coarsen_bricks(const coarsening *c, hl_volume **coarser, hl_error *error) {
+static hl_status coarsen_bricks(const coarsening *c, hl_pool *pool, hl_volume **coarser, hl_error *error) {
   hl_context *context = c->volume->context;
   hl_volume_description description;
   hl_bricks bricks = {.shift = 0};
-  hl_pool *pool = NULL;
   place(c, &description);
-  hl_status status = hl_pool_create(context, 0, &pool, error);
-  if (status == HL_OK)
-    status = hl_bricks_make_coarser(context, pool, c->volume->bricks, "a coarser volume", &bricks, error);
-  hl_pool_destroy(pool);
+  hl_status status = hl_bricks_make_coarser(context, pool, c->volume->bricks, "a coarser volume", &bricks,
+                                            error);
   return status == HL_OK
              ? hl_volume_take_bricks(context, &bricks, &description, "a coarser volume", coarser, error)
              : status;
 }
 
-static hl_status coarsen_voxels(coarsening *c, hl_volume **coarser, hl_error *error) {
+static hl_status coarsen_voxels(coarsening *c, hl_pool *pool, hl_volume **coarser, hl_error *error) {
   const hl_volume *volume = c->volume;
   hl_context *context = volume->context;
-  size_t bytes = hl_storage_bytes(volume->storage), rows = c->dimension[1] * c->dimension[2];
-  unsigned char *voxels = hl_allocate(context, c->dimension[0] * rows, bytes);
-  c->row = volume->pages != NULL ? hl_allocate(context, volume->dimension[0], bytes) : NULL;
-  c->sums = hl_allocate(context, c->dimension[0], sizeof *c->sums);
-  c->counts = hl_allocate(context, c->dimension[0], sizeof *c->counts);
-  bool whole = voxels != NULL && (volume->pages == NULL || c->row != NULL) && c->sums != NULL &&
-               c->counts != NULL;
-  hl_status status = whole ? average(c, voxels, error)
-                           : hl_fail_memory(error, c->dimension[0] * rows * bytes, "a coarser volume");
-  hl_release(context, c->row);
-  hl_release(context, c->sums);
-  hl_release(context, c->counts);
+  const size_t bytes = hl_storage_bytes(volume->storage), threads = (size_t)hl_pool_threads(pool);
+  const size_t count = c->dimension[0] * c->dimension[1] * c->dimension[2];
+  c->voxels = hl_allocate(context, count, bytes);
+  c->stored = hl_allocate(context, threads * volume->dimension[0], bytes);
+  c->numbers = hl_allocate(context, threads * MOST_ROWS * volume->dimension[0], sizeof *c->numbers);
+  const bool whole = c->voxels != NULL && c->stored != NULL && c->numbers != NULL;
+  hl_status status = whole ? HL_OK : hl_fail_memory(error, count * bytes, "a coarser volume");
+  if (status == HL_OK) hl_pool_run(pool, c->dimension[2], make_slice, c);
+  if (status == HL_OK) status = hl_pool_check(pool, "making a coarser volume", error);
+  hl_release(context, c->stored);
+  hl_release(context, c->numbers);
   if (status != HL_OK) {
-    hl_release(context, voxels);
+    hl_release(context, c->voxels);
     return status;
   }
   hl_volume_description description;
   place(c, &description);
-  return hl_volume_adopt(context, &description, "a coarser volume", voxels, coarser, error);
+  return hl_volume_adopt(context, &description, "a coarser volume", c->voxels, coarser, error);
 }
 
-hl_status hl_volume_make_coarser(const hl_volume *volume, hl_volume **coarser, hl_error *error) {
-  coarsening c = {.volume = volume};
+hl_status hl_volume_make_coarser(const hl_volume *volume, hl_coarser_kind kind, hl_volume **coarser,
+                                 hl_error *error) {
+  coarsening c = {.volume = volume, .kind = kind};
+  hl_pool *pool = NULL;
   *coarser = NULL;
   choose_factors(&c);
-  hl_status status = volume->bricks != NULL ? coarsen_bricks(&c, coarser, error)
-                                            : coarsen_voxels(&c, coarser, error);
+  hl_status status = hl_pool_create(volume->context, 0, &pool, error);
+  if (status == HL_OK)
+    status = volume->bricks != NULL ? coarsen_bricks(&c, pool, coarser, error)
+                                    : coarsen_voxels(&c, pool, coarser, error);
+  hl_pool_destroy(pool);
   if (status == HL_OK) inherit(volume, *coarser);
   return status;
 }

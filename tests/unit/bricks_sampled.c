@@ -164,7 +164,7 @@ static void test_coarser(void **state) {
     grid.type = HL_VOXEL_F32;
     for (int a = 0; a < 3; a++) grid.dimensions[a] = SIDE, bench.bricks.origin[a] = 0.5;
     assert_int_equal(hl_volume_take_bricks(bench.context, &bench.bricks, &grid, "test", &fine, NULL), HL_OK);
-    assert_int_equal(hl_volume_make_coarser(fine, &coarse, NULL), HL_OK);
+    assert_int_equal(hl_volume_make_coarser(fine, HL_COARSER_MEANS, &coarse, NULL), HL_OK);
     assert_true(coarse->bricks->levels == 3 && coarse->bricks->slots <= slots);
     for (size_t k = 4; k < SIDE / 2 - 4; k++)
       for (size_t j = 4; j < SIDE / 2 - 4; j++)

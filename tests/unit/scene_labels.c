@@ -5,6 +5,7 @@
 
 #include "scene/function/transfer_function.h"
 #include "scene/label/label_table.h"
+#include "scene/scene.h"
 #include "scene_parts.h"
 
 static char path[] = "/tmp/halflight-labels-XXXXXX.seg.nrrd";
@@ -208,6 +209,52 @@ static void numbers_of_labels_are_whole(void **state) {
   hl_context_destroy(context);
 }
 
+/* A scene makes the fields of its labels for its first frame, once: to be described costs no field. */
+static void fields_are_made_for_the_first_frame(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  write_segmentation(1);
+  hl_scene *scene = NULL;
+  const drawn_scene *first, *second;
+  char text[200];
+  snprintf(text, sizeof text,
+           "{\"halflight\": 1, \"volumes\": [{\"file\": \"%s\", \"labels\": [{\"value\": 4}]}]}", path);
+  assert_int_equal(hl_scene_from_json(context, text, strlen(text), NULL, "s", &scene, NULL), HL_OK);
+  hl_volume *map = hl_scene_describe(scene)->volumes[0].volume;
+  assert_false(scene->drawn->made);
+  assert_null(map->shelf); /* where fields of the map are kept */
+  assert_int_equal(hl_scene_draw(scene, &first, NULL), HL_OK);
+  assert_non_null(map->shelf);
+  assert_ptr_not_equal(first->description.volumes[0].volume, map);
+  const hl_volume *field = first->description.volumes[0].volume;
+  assert_int_equal(hl_scene_draw(scene, &second, NULL), HL_OK);
+  assert_ptr_equal(second->description.volumes[0].volume, field);
+  hl_scene_release(scene);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+/* What can only be known by the fields, the first frame tells; the next one tells it again. */
+static void labels_without_voxels_are_told(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  write_segmentation(1);
+  hl_scene *scene = NULL;
+  char text[200];
+  snprintf(text, sizeof text,
+           "{\"halflight\": 1, \"volumes\": [{\"file\": \"%s\", \"labels\": [{\"value\": 9}]}]}", path);
+  assert_int_equal(hl_scene_from_json(context, text, strlen(text), NULL, "s", &scene, NULL), HL_OK);
+  for (int n = 0; n < 2; n++) {
+    const drawn_scene *drawn;
+    hl_error error = {0};
+    assert_int_equal(hl_scene_draw(scene, &drawn, &error), HL_ERROR_INPUT);
+    assert_string_equal(error.message, "/volumes: no label that is visible has voxels: show others");
+  }
+  hl_scene_release(scene);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(segmentations_name_their_labels),
@@ -217,6 +264,8 @@ int main(void) {
       cmocka_unit_test(wrong_tables_are_refused),
       cmocka_unit_test(scenes_keep_their_labels),
       cmocka_unit_test(numbers_of_labels_are_whole),
+      cmocka_unit_test(fields_are_made_for_the_first_frame),
+      cmocka_unit_test(labels_without_voxels_are_told),
   };
   return cmocka_run_group_tests(tests, make_file, remove_file);
 }

@@ -30,7 +30,7 @@ static hl_volume *make(const size_t size[3], double thick) {
 static void voxels_are_means(void **state) {
   (void)state;
   hl_volume *fine = make((const size_t[3]){5, 4, 6}, 1), *coarse = NULL;
-  assert_int_equal(hl_volume_make_coarser(fine, &coarse, NULL), HL_OK);
+  assert_int_equal(hl_volume_make_coarser(fine, HL_COARSER_MEANS, &coarse, NULL), HL_OK);
   hl_volume_info info = {.struct_size = sizeof info};
   assert_int_equal(hl_volume_get_info(coarse, &info), HL_OK);
   assert_int_equal(info.dimensions[0], 3);
@@ -48,8 +48,8 @@ static void voxels_are_means(void **state) {
 static void long_axes_stay(void **state) {
   (void)state;
   hl_volume *fine = make((const size_t[3]){8, 8, 4}, 3), *coarse = NULL, *coarser = NULL;
-  assert_int_equal(hl_volume_make_coarser(fine, &coarse, NULL), HL_OK);
-  assert_int_equal(hl_volume_make_coarser(coarse, &coarser, NULL), HL_OK);
+  assert_int_equal(hl_volume_make_coarser(fine, HL_COARSER_MEANS, &coarse, NULL), HL_OK);
+  assert_int_equal(hl_volume_make_coarser(coarse, HL_COARSER_MEANS, &coarser, NULL), HL_OK);
   assert_int_equal(coarse->dimension[2], 4);  /* voxels of 2 x 2 x 3 */
   assert_int_equal(coarser->dimension[2], 4); /* of 4 x 4 x 3: now the third is the short one */
   assert_int_equal(coarse->dimension[0], 4);
@@ -70,7 +70,7 @@ static void numbers_that_are_none_are_left_out(void **state) {
   d.voxels = values;
   hl_volume *fine = NULL, *coarse = NULL;
   assert_int_equal(hl_volume_create(context, &d, &fine, NULL), HL_OK);
-  assert_int_equal(hl_volume_make_coarser(fine, &coarse, NULL), HL_OK);
+  assert_int_equal(hl_volume_make_coarser(fine, HL_COARSER_MEANS, &coarse, NULL), HL_OK);
   assert_float_equal(hl_volume_value(coarse, 0, 0, 0), (1 + 4 * 3) / 5.0, 1e-6);
   assert_float_equal(hl_volume_value(coarse, 1, 0, 0), 3, 0);
   hl_volume_release(coarse);
@@ -135,6 +135,74 @@ static void labels_stay(void **state) {
   hl_volume_release(volume);
 }
 
+/* Of eight voxels the label that most of them have, and of equally common ones the first; no mean, which
+ * would be another label. */
+static void labels_are_the_commonest(void **state) {
+  (void)state;
+  hl_volume_description d;
+  hl_volume_description_defaults(&d);
+  const uint8_t values[16] = {0, 9, 9, 9, 9, 0, 2, 2, 9, 2, 2, 9, 7, 7, 2, 2};
+  for (int a = 0; a < 3; a++) d.dimensions[a] = a == 0 ? 4 : 2;
+  d.type = HL_VOXEL_U8;
+  d.voxels = values;
+  hl_volume *fine = NULL, *coarse = NULL;
+  assert_int_equal(hl_volume_create(context, &d, &fine, NULL), HL_OK);
+  assert_int_equal(hl_volume_make_coarser(fine, HL_COARSER_LABELS, &coarse, NULL), HL_OK);
+  assert_float_equal(hl_volume_value(coarse, 0, 0, 0), 9, 0); /* 0 9 9 0 9 2 7 7 */
+  assert_float_equal(hl_volume_value(coarse, 1, 0, 0), 2, 0); /* 9 9 2 2 2 9 2 2 */
+  hl_volume_release(coarse);
+  hl_volume_release(fine);
+}
+
+/* A box of label 1 beside a box of label 5. */
+static hl_volume *two_boxes(void) {
+  hl_volume_description d;
+  hl_volume_description_defaults(&d);
+  uint8_t *values = calloc(1, 64 * 64 * 64);
+  for (int n = 0; n < 64 * 64 * 64; n++) {
+    const int x = n % 64, y = n / 64 % 64, z = n / 64 / 64;
+    if (x >= 8 && x < 56 && y >= 8 && y < 56 && z >= 8 && z < 56) values[n] = x < 32 ? 1 : 5;
+  }
+  for (int a = 0; a < 3; a++) d.dimensions[a] = 64;
+  d.type = HL_VOXEL_U8;
+  d.voxels = values;
+  hl_volume *map = NULL;
+  assert_int_equal(hl_volume_create(context, &d, &map, NULL), HL_OK);
+  free(values);
+  return map;
+}
+
+static void maps_and_masks_have_copies(void **state) {
+  (void)state;
+  static const hl_label labels[] = {{.value = 1, .color = {1, 0, 0}, .opacity = 1, .visible = 1}};
+  for (int masked = 0; masked < 2; masked++) {
+    hl_volume *map = two_boxes(), *small = make((const size_t[3]){32, 32, 32}, 2);
+    hl_scene *first = scene_of(masked ? small : map, 4), *scene = NULL, *quick = NULL;
+    hl_scene_description d = *hl_scene_describe(first);
+    hl_scene_volume volume = d.volumes[0];
+    volume.labels = masked ? NULL : labels;
+    volume.label_count = masked ? 0 : 1;
+    if (masked) volume.mask = (hl_mask){.volume = map, .labels = labels, .label_count = 1};
+    d.volumes = &volume;
+    assert_int_equal(hl_scene_create(context, &d, &scene, NULL), HL_OK);
+    hl_preview *preview = NULL;
+    assert_int_equal(hl_preview_create(context, scene, &preview, NULL), HL_OK);
+    assert_int_equal(hl_preview_scene(preview, scene, &quick, NULL), HL_OK);
+    const hl_scene_volume *copied = &hl_scene_describe(quick)->volumes[0];
+    const hl_volume *copy = masked ? copied->mask.volume : copied->volume;
+    assert_int_equal(copy->dimension[0], 32);
+    assert_float_equal(hl_volume_value(copy, 15, 15, 15), 1, 0);
+    assert_float_equal(hl_volume_value(copy, 16, 15, 15), 5, 0);
+    assert_true(!masked || copied->volume == small); /* it is too small for copies */
+    hl_scene_release(quick);
+    hl_scene_release(scene);
+    hl_scene_release(first);
+    hl_preview_destroy(preview);
+    hl_volume_release(small);
+    hl_volume_release(map);
+  }
+}
+
 static void null_is_refused(void **state) {
   (void)state;
   hl_error error = {0};
@@ -164,6 +232,8 @@ int main(void) {
       cmocka_unit_test(numbers_that_are_none_are_left_out),
       cmocka_unit_test(copies_suit_the_sheets),
       cmocka_unit_test(labels_stay),
+      cmocka_unit_test(labels_are_the_commonest),
+      cmocka_unit_test(maps_and_masks_have_copies),
       cmocka_unit_test(null_is_refused),
   };
   return cmocka_run_group_tests(tests, begin, end);

@@ -1,0 +1,40 @@
+/* scene/drawn_scene.h - what frames draw of a scene, made when the first frame asks for it.
+ *
+ * Label maps and masks are drawn by smooth fields, which take long to make for large maps. Scenes are also
+ * made to be composed, written and described, or to be shown at a coarser resolution first. So a scene makes
+ * these fields not with itself, but for its first frame, and keeps them. */
+#ifndef HL_SCENE_DRAWN_SCENE_H
+#define HL_SCENE_DRAWN_SCENE_H
+
+#include <pthread.h>
+#include <stdbool.h>
+
+#include <halflight/scene.h>
+
+#include "core/error.h"
+#include "scene/label/draw_labels.h"
+#include "scene/order.h"
+
+typedef struct drawn_scene {
+  pthread_mutex_t lock; /* held while the rest is made */
+  bool made;
+  hl_scene_description description; /* the placed description, with volumes of occupancy in place of label
+                                       maps and lattices (label/mask.h) in place of masks */
+  drawn_labels labels;              /* the volumes of occupancy and the lattices */
+  scene_order order;                /* in which frames take the description's lists */
+  uint64_t *plane_marks; /* owned; [volume_count]; of the content of functions of two numbers, 0 where there
+                            is none; for keys of kept results */
+} drawn_scene;
+
+/* A place for what is drawn, still empty, owned by the caller (hl_drawn_scene_destroy); null if memory is
+ * short. */
+drawn_scene *hl_drawn_scene_create(hl_context *context);
+void hl_drawn_scene_destroy(hl_context *context, drawn_scene *drawn); /* null is allowed */
+
+/* Makes what frames draw, unless it was made before. given: the description as it was given; placed: the same
+ * with lights and cuts in their places. Any number of threads may call it: one makes it, and the others wait.
+ * After a failure the next call tries again. */
+hl_status hl_drawn_scene_make(hl_context *context, const hl_scene_description *given,
+                              const hl_scene_description *placed, drawn_scene *drawn, hl_error *error);
+
+#endif
