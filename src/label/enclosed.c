@@ -1,22 +1,10 @@
-/* label/enclosed.c - see enclosed.h.
- *
- * Voxels that the surface may cross are cut into small parts. A part's share of the volume is computed as if
- * the surface were a plane within the part. The parts are small enough for this even where the surface is a
- * ball of three voxels. */
+/* label/enclosed.c - see enclosed.h. */
 #include "label/enclosed.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { PARTS = 4 }; /* parts of a voxel along each axis */
-enum { TAPS = 5 };  /* number of coefficients along an axis on which the parts of a voxel depend */
-
-/* Sums over a slice: VOLUME, in voxels; FALL, the rate at which the volume falls as the level rises; SLOPES,
- * the gradients' lengths at the surface; SURFACE_PARTS, the number of parts in SLOPES. */
-enum { VOLUME, FALL, SLOPES, SURFACE_PARTS };
-
-/* Gradients, per part of a voxel, count as at least this length. */
-static const float LEAST_GRADIENT = 0.05f / PARTS;
+enum { PARTS = HL_VOXEL_PARTS, TAPS = HL_VOXEL_TAPS };
 
 typedef struct measuring {
   label_enclosed *enclosed;
@@ -54,56 +42,6 @@ static void find_window(const label_field *field, size_t x, size_t y, size_t z,
     }
 }
 
-/* Computes the field at the middles of a voxel's parts. */
-static void find_parts(const float weights[PARTS][TAPS], const float window[TAPS][TAPS][TAPS],
-                       float parts[PARTS][PARTS][PARTS]) {
-  float rows[TAPS][TAPS][PARTS], planes[TAPS][PARTS][PARTS];
-  memset(rows, 0, sizeof rows);
-  memset(planes, 0, sizeof planes);
-  memset(parts, 0, sizeof(float[PARTS][PARTS][PARTS]));
-  for (int k = 0; k < TAPS; k++)
-    for (int j = 0; j < TAPS; j++)
-      for (int tap = 0; tap < TAPS; tap++)
-        for (int i = 0; i < PARTS; i++) rows[k][j][i] += weights[i][tap] * window[k][j][tap];
-  for (int k = 0; k < TAPS; k++)
-    for (int j = 0; j < PARTS; j++)
-      for (int tap = 0; tap < TAPS; tap++)
-        for (int i = 0; i < PARTS; i++) planes[k][j][i] += weights[j][tap] * rows[k][tap][i];
-  for (int k = 0; k < PARTS; k++)
-    for (int tap = 0; tap < TAPS; tap++)
-      for (int j = 0; j < PARTS; j++)
-        for (int i = 0; i < PARTS; i++) parts[k][j][i] += weights[k][tap] * planes[tap][j][i];
-}
-
-/* The difference of neighbouring parts at `at` in a line of parts that lie `step` apart. At the line's ends
- * it is one-sided. */
-static float difference(const float *parts, int at, int step) {
-  const float *here = parts + at * step;
-  if (at == 0) return here[step] - here[0];
-  if (at == PARTS - 1) return here[0] - here[-step];
-  return 0.5f * (here[step] - here[-step]);
-}
-
-/* Adds up the measures of the parts of a voxel. Derived: near a plane with the gradient g, per part, the
- * part's share above the level t is (f - t) / g + 1/2, clamped to [0, 1]. */
-static void measure_parts(const float *parts, float level, double *measures) {
-  enum { ROW = PARTS, PLANE = PARTS * PARTS };
-  static const double SHARE = 1.0 / (PARTS * PARTS * PARTS);
-  for (int n = 0; n < PARTS * PARTS * PARTS; n++) {
-    const int i = n % PARTS, j = n / PARTS % PARTS, k = n / PLANE;
-    const float dx = difference(parts + n - i, i, 1), dy = difference(parts + n - j * ROW, j, ROW),
-                dz = difference(parts + n - k * PLANE, k, PLANE);
-    float gradient = sqrtf(dx * dx + dy * dy + dz * dz);
-    if (gradient < LEAST_GRADIENT) gradient = LEAST_GRADIENT;
-    const float share = (parts[n] - level) / gradient + 0.5f;
-    measures[VOLUME] += share <= 0 ? 0 : share >= 1 ? SHARE : SHARE * (double)share;
-    if (!(share > 0 && share < 1)) continue;
-    measures[FALL] += SHARE / (double)gradient;
-    measures[SLOPES] += PARTS * (double)gradient;
-    measures[SURFACE_PARTS]++;
-  }
-}
-
 /* Marks the voxels of a row that the surface may cross. room: space for a row and two values. Returns how
  * many of the unmarked voxels are above the level. */
 static int32_t find_crossed(const label_enclosed *enclosed, size_t y, size_t z, float *room, float *crossed) {
@@ -121,13 +59,13 @@ static int32_t find_crossed(const label_enclosed *enclosed, size_t y, size_t z, 
 static void measure_row(const measuring *job, size_t y, size_t z, float *lines, double *measures) {
   const label_field *field = job->enclosed->field;
   float *crossed = lines + field->size[0] + 2;
-  measures[VOLUME] += find_crossed(job->enclosed, y, z, lines, crossed);
+  measures[HL_ENCLOSED_VOLUME] += find_crossed(job->enclosed, y, z, lines, crossed);
   for (size_t x = 0; x < field->size[0]; x++) {
     if (crossed[x] == 0) continue;
-    float window[TAPS][TAPS][TAPS], parts[PARTS][PARTS][PARTS];
+    float window[TAPS][TAPS][TAPS];
     find_window(field, x, y, z, window);
-    find_parts(job->weights, (const float(*)[TAPS][TAPS])window, parts);
-    measure_parts(&parts[0][0][0], job->enclosed->level, measures);
+    field->functions->measure_voxel(job->weights, (const float(*)[TAPS][TAPS])window, job->enclosed->level,
+                                    measures);
   }
 }
 
@@ -153,9 +91,10 @@ void hl_label_enclose(hl_pool *pool, label_enclosed *enclosed) {
     hl_pool_run(pool, enclosed->field->size[2], measure_slice, &job);
     for (size_t z = 0; z < enclosed->field->size[2]; z++)
       for (int m = 0; m < HL_ENCLOSED_MEASURES; m++) sum[m] += enclosed->measures[z][m];
-    if (!(sum[FALL] > 0)) return;
-    enclosed->slope = sum[SLOPES] / sum[SURFACE_PARTS];
-    const double level = (double)enclosed->level + (sum[VOLUME] - enclosed->wanted) / sum[FALL];
+    if (!(sum[HL_ENCLOSED_FALL] > 0)) return;
+    enclosed->slope = sum[HL_ENCLOSED_SLOPES] / sum[HL_ENCLOSED_SURFACE_PARTS];
+    const double level = (double)enclosed->level +
+                         (sum[HL_ENCLOSED_VOLUME] - enclosed->wanted) / sum[HL_ENCLOSED_FALL];
     enclosed->level = (float)fmin(fmax(level, 0.5 - FARTHEST), 0.5 + FARTHEST);
   }
 }

@@ -4,8 +4,6 @@
 
 #include "label/filter.h"
 
-enum { HL_ENCLOSED_MEASURES = 4 };
-
 /* A field whose enclosed volume is measured. */
 typedef struct label_enclosed {
   const label_field *field;                 /* holds the coefficients of the B-spline */

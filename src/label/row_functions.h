@@ -1,5 +1,6 @@
-/* label/row_functions.h - the functions on rows of a field that take most of the time of smoothing labels.
- * They are compiled once for each instruction set (row_sets.c), and all versions give the same bytes. */
+/* label/row_functions.h - the functions on rows and voxels of a field that take most of the time of smoothing
+ * labels. They are compiled once for each instruction set (row_sets.c), and all versions give the same bytes.
+ */
 #ifndef HL_LABEL_ROW_FUNCTIONS_H
 #define HL_LABEL_ROW_FUNCTIONS_H
 
@@ -10,6 +11,22 @@
 
 /* HL_FILTER_REACH rows on either side of the middle one enter the longest filter. */
 enum { HL_FILTER_REACH = 7, HL_FILTER_ROWS = 2 * HL_FILTER_REACH + 1 };
+
+/* Voxels that the surface may cross are measured in HL_VOXEL_PARTS parts along each axis. A part's share of
+ * the volume is computed as if the surface were a plane within the part. The parts are small enough for this
+ * even where the surface is a ball of three voxels. The parts of a voxel depend on HL_VOXEL_TAPS coefficients
+ * along an axis. */
+enum { HL_VOXEL_PARTS = 4, HL_VOXEL_TAPS = 5 };
+
+/* Sums over voxels: VOLUME, in voxels; FALL, the rate at which the volume falls as the level rises; SLOPES,
+ * the gradients' lengths at the surface; SURFACE_PARTS, the number of parts in SLOPES. */
+enum {
+  HL_ENCLOSED_VOLUME,
+  HL_ENCLOSED_FALL,
+  HL_ENCLOSED_SLOPES,
+  HL_ENCLOSED_SURFACE_PARTS,
+  HL_ENCLOSED_MEASURES
+};
 
 /* A row of a field and its neighbours, [count]. At the field's ends the row itself takes the place of a
  * neighbour that is missing. */
@@ -27,6 +44,11 @@ typedef struct label_row_functions {
   /* Sets the elements of `crossed` to 1 for voxels that the surface at `level` may cross, and to 0 for the
    * others. Returns how many of the others are above the level. crossed: [count]; overlaps nothing. */
   int32_t (*find_crossed)(const row_neighbours *rows, size_t count, float level, float *crossed);
+  /* Adds a voxel that the surface at `level` may cross to the measures, [HL_ENCLOSED_MEASURES]. weights: of
+   * the coefficients at the parts' middles; window: the coefficients around the voxel, [z][y][x]. */
+  void (*measure_voxel)(const float weights[HL_VOXEL_PARTS][HL_VOXEL_TAPS],
+                        const float window[HL_VOXEL_TAPS][HL_VOXEL_TAPS][HL_VOXEL_TAPS], float level,
+                        double *measures);
 } label_row_functions;
 
 const label_row_functions *hl_label_row_functions(hl_instruction_set set);

@@ -1,6 +1,11 @@
 /* label/row_sets.c - see row_functions.h; HL_LABEL_ROWS names the table of an instruction set. */
 #include "label/row_functions.h"
 
+#include <math.h>
+#include <string.h>
+
+enum { PARTS = HL_VOXEL_PARTS, TAPS = HL_VOXEL_TAPS, ALL_PARTS = PARTS * PARTS * PARTS };
+
 /* Inlined once for each reach, so that the compiler knows the reach. */
 static inline __attribute__((always_inline)) void add_rows(const float *taps, int reach,
                                                            const float *const rows[HL_FILTER_ROWS],
@@ -38,5 +43,77 @@ static int32_t find_crossed(const row_neighbours *rows, size_t count, float leve
   return whole;
 }
 
+/* ---- voxels that the surface may cross ---- */
+
+/* Computes the field at the middles of a voxel's parts. */
+static void find_parts(const float weights[PARTS][TAPS], const float window[TAPS][TAPS][TAPS],
+                       float parts[PARTS][PARTS][PARTS]) {
+  float rows[TAPS][TAPS][PARTS], planes[TAPS][PARTS][PARTS];
+  memset(rows, 0, sizeof rows);
+  memset(planes, 0, sizeof planes);
+  memset(parts, 0, sizeof(float[PARTS][PARTS][PARTS]));
+  for (int k = 0; k < TAPS; k++)
+    for (int j = 0; j < TAPS; j++)
+      for (int tap = 0; tap < TAPS; tap++)
+        for (int i = 0; i < PARTS; i++) rows[k][j][i] += weights[i][tap] * window[k][j][tap];
+  for (int k = 0; k < TAPS; k++)
+    for (int j = 0; j < PARTS; j++)
+      for (int tap = 0; tap < TAPS; tap++)
+        for (int i = 0; i < PARTS; i++) planes[k][j][i] += weights[j][tap] * rows[k][tap][i];
+  for (int k = 0; k < PARTS; k++)
+    for (int tap = 0; tap < TAPS; tap++)
+      for (int j = 0; j < PARTS; j++)
+        for (int i = 0; i < PARTS; i++) parts[k][j][i] += weights[k][tap] * planes[tap][j][i];
+}
+
+/* Differences of neighbouring parts along a line of PARTS rows of `width` values; at the line's ends they are
+ * one-sided. Inlined, so that the compiler knows the width. */
+static inline __attribute__((always_inline)) void find_differences(const float *rows, int width,
+                                                                   float *restrict differences) {
+  for (int n = 0; n < width; n++) {
+    differences[n] = rows[width + n] - rows[n];
+    differences[(PARTS - 1) * width + n] = rows[(PARTS - 1) * width + n] - rows[(PARTS - 2) * width + n];
+  }
+  for (int at = 1; at < PARTS - 1; at++)
+    for (int n = 0; n < width; n++)
+      differences[at * width + n] = 0.5f * (rows[(at + 1) * width + n] - rows[(at - 1) * width + n]);
+}
+
+/* Gradients, per part of a voxel, count as at least this length. */
+static const float LEAST_GRADIENT = 0.05f / PARTS;
+
+/* The lengths of the gradients at the parts, and the parts' shares above the level. Derived: near a plane
+ * with the gradient g, per part, the part's share above the level t is (f - t) / g + 1/2, clamped to [0, 1]
+ * where it is summed. */
+static void find_shares(const float *parts, float level, float *restrict gradients, float *restrict shares) {
+  float dx[ALL_PARTS], dy[ALL_PARTS], dz[ALL_PARTS];
+  for (int row = 0; row < ALL_PARTS; row += PARTS) find_differences(parts + row, 1, dx + row);
+  for (int plane = 0; plane < ALL_PARTS; plane += PARTS * PARTS)
+    find_differences(parts + plane, PARTS, dy + plane);
+  find_differences(parts, PARTS * PARTS, dz);
+  for (int n = 0; n < ALL_PARTS; n++) {
+    const float gradient = sqrtf(dx[n] * dx[n] + dy[n] * dy[n] + dz[n] * dz[n]);
+    gradients[n] = gradient < LEAST_GRADIENT ? LEAST_GRADIENT : gradient;
+    shares[n] = (parts[n] - level) / gradients[n] + 0.5f;
+  }
+}
+
+/* The measures are added part by part, so that sums are the same with all instruction sets. */
+static void measure_voxel(const float weights[PARTS][TAPS], const float window[TAPS][TAPS][TAPS], float level,
+                          double *measures) {
+  static const double SHARE = 1.0 / ALL_PARTS;
+  float parts[PARTS][PARTS][PARTS], gradients[ALL_PARTS], shares[ALL_PARTS];
+  find_parts(weights, window, parts);
+  find_shares(&parts[0][0][0], level, gradients, shares);
+  for (int n = 0; n < ALL_PARTS; n++) {
+    const float share = shares[n];
+    measures[HL_ENCLOSED_VOLUME] += share <= 0 ? 0 : share >= 1 ? SHARE : SHARE * (double)share;
+    if (!(share > 0 && share < 1)) continue;
+    measures[HL_ENCLOSED_FALL] += SHARE / (double)gradients[n];
+    measures[HL_ENCLOSED_SLOPES] += PARTS * (double)gradients[n];
+    measures[HL_ENCLOSED_SURFACE_PARTS]++;
+  }
+}
+
 extern const label_row_functions HL_LABEL_ROWS;
-const label_row_functions HL_LABEL_ROWS = {weigh, find_crossed};
+const label_row_functions HL_LABEL_ROWS = {weigh, find_crossed, measure_voxel};
