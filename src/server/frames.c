@@ -13,6 +13,7 @@
 #include <time.h>
 
 #include "parts.h"
+#include "start/joined.h"
 
 /* The frame that this thread works on. */
 static _Thread_local struct {
@@ -448,7 +449,7 @@ void answer_join(server *s, const frame_request *request, long long with, const 
   hl_status status = read_scene(s, request->opened, request->text, request->length, &base, &error);
   server_opened *added = opened_enter(s, with);
   if (status == HL_OK && added != NULL)
-    status = s->options.join(s->options.files_data, base, added->scene, &joined, &error);
+    status = join_scenes(s->options.context, base, added->scene, &joined, &error);
   if (added != NULL) opened_leave(s, added);
   opened_close(s, with);
   hl_scene_release(base);

@@ -50,9 +50,7 @@ typedef struct server_options {
   const char *title;  /* the input's name, for the page's title */
   const char *folder; /* absolute path; pages may open files below it; null: they may open none */
   hl_status (*open)(void *files_data, const server_file *file, hl_scene **scene, hl_error *error);
-  /* Makes one scene of an open scene and a scene that is added to it. */
-  hl_status (*join)(void *files_data, hl_scene *base, hl_scene *added, hl_scene **scene, hl_error *error);
-  void *files_data;                        /* data for `open` and `join` */
+  void *files_data;                        /* data for `open` */
   uint64_t most_upload_bytes;              /* the most bytes of a dropped file; 0: no limit */
   int port;                                /* 0: any free port */
   bool (*token)(int port, char token[33]); /* sets the token of the URL, 32 hexadecimal digits, to the one

@@ -52,13 +52,6 @@ static void on_ready(void *user_data, const char *url) {
   pthread_mutex_unlock(&lock);
 }
 
-/* As the program does. */
-static hl_status on_join(void *files_data, hl_scene *base, hl_scene *added, hl_scene **scene,
-                         hl_error *error) {
-  hl_scene *both[] = {base, added};
-  return hl_scene_join(files_data, both, 2, scene, error);
-}
-
 static hl_status on_open(void *user_data, const server_file *file, hl_scene **scene, hl_error *error) {
   (void)user_data;
   hl_volume *volume = NULL;
@@ -89,7 +82,6 @@ static void *serve(void *data) {
                            .title = "v.nrrd",
                            .folder = fuzz_folder(),
                            .open = on_open,
-                           .join = on_join,
                            .files_data = context,
                            .most_upload_bytes = 1 << 20,
                            .stopped = never,

@@ -134,15 +134,6 @@ int render_check_options(const cli_value *values);
 
 /* Parts operands into meshes, by their names, and others; both lists end with null. */
 void render_part_meshes(hl_context *context, char **operands, char **meshes, char **others);
-/* Loads one mesh, in the colour of the index-th; the caller releases mesh->mesh. */
-hl_status render_load_mesh(hl_context *context, const char *path, size_t index, hl_scene_mesh *mesh,
-                           hl_error *error);
-/* Adds meshes to a scene; *scene null: makes one for them. bare: the camera frames them too. */
-hl_status render_join_meshes(hl_context *context, const hl_scene_mesh *added, size_t count, bool bare,
-                             hl_scene **scene, hl_error *error);
-/* Moves the scene's camera along its direction and zooms so that all that there is now fits into the picture.
- */
-hl_status render_frame_anew(hl_scene_description *description, hl_error *error);
 /* Loads meshes and adds them to a scene, in the colours from `first` on; *scene null: makes one for them.
  * bare: the camera frames them too. */
 int render_add_meshes(cli_host *host, char *const *paths, size_t first, bool bare, hl_scene **scene);

@@ -12,6 +12,7 @@
 #include "cli/frames.h"
 #include "cli/input.h"
 #include "series.h"
+#include "start/joined.h"
 
 enum { MOST_LABEL_LAYERS = 64 };
 
@@ -278,7 +279,7 @@ static int label_scene(series_job *job, int number, hl_scene **scene) {
 static int mesh_scene(series_job *job, int number, hl_scene **scene) {
   hl_scene_mesh mesh = hl_scene_describe(job->scene)->meshes[0], own;
   hl_error error = {0};
-  hl_status status = render_load_mesh(job->host.context, job->files[number], 0, &own, &error);
+  hl_status status = load_mesh(job->host.context, job->files[number], 0, &own, &error);
   mesh.mesh = own.mesh;
   mesh.file = own.file;
   memcpy(mesh.color, own.color, sizeof mesh.color);

@@ -6,11 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <halflight/compose.h>
-
 #include "cli/input.h"
 #include "cli/output.h"
-#include "cli/render/render.h"
+#include "start/joined.h"
 
 /* ---- names ---- */
 
@@ -100,9 +98,9 @@ static hl_status for_volume(hl_context *context, const server_file *file, const 
 static hl_status for_mesh(hl_context *context, const server_file *file, const char *path, hl_scene **scene,
                           hl_error *error) {
   hl_scene_mesh mesh;
-  hl_status status = render_load_mesh(file->confined, file->name, 0, &mesh, error);
+  hl_status status = load_mesh(file->confined, file->name, 0, &mesh, error);
   mesh.file = path;
-  if (status == HL_OK) status = render_join_meshes(context, &mesh, 1, true, scene, error);
+  if (status == HL_OK) status = join_meshes(context, &mesh, 1, true, scene, error);
   hl_mesh_release(mesh.mesh);
   return status;
 }
@@ -123,67 +121,5 @@ hl_status view_open_file(void *user_data, const server_file *file, hl_scene **sc
   hl_status status = is_mesh_file(file->confined, file->name) ? for_mesh(context, file, path, scene, error)
                                                               : for_volume(context, file, path, scene, error);
   free(path);
-  return status;
-}
-
-/* ---- files that are added ---- */
-
-/* Adds meshes. A mesh that has the first of the colours for meshes gets the next colour. */
-static hl_status join_meshes(hl_context *context, const hl_scene_mesh *meshes, size_t count, hl_scene **scene,
-                             hl_error *error) {
-  const size_t before = hl_scene_describe(*scene)->mesh_count;
-  double first[3];
-  hl_surface_color(0, first);
-  hl_scene_mesh *added = malloc(count * sizeof *added + 1);
-  if (added == NULL) {
-    snprintf(error->message, sizeof error->message, "out of memory for %zu meshes", count);
-    return HL_ERROR_MEMORY;
-  }
-  for (size_t m = 0; m < count; m++) {
-    added[m] = meshes[m];
-    if (memcmp(added[m].color, first, sizeof first) == 0) hl_surface_color(before + m, added[m].color);
-  }
-  hl_status status = render_join_meshes(context, added, count, true, scene, error);
-  free(added);
-  return status;
-}
-
-/* The volumes of both, with the light and all other settings of the first. */
-static hl_status join_volumes(hl_context *context, hl_scene *base, hl_scene *added, hl_scene **scene,
-                              hl_error *error) {
-  const hl_scene_description *before = hl_scene_describe(base);
-  hl_scene *both[] = {base, added}, *made = NULL;
-  if (before->volume_count > 0) {
-    hl_status status = hl_scene_join(context, both, 2, &made, error);
-    if (status != HL_OK) return status;
-  }
-  hl_scene_description description = *hl_scene_describe(made != NULL ? made : added);
-  hl_scene_description joined = *before;
-  joined.volumes = description.volumes;
-  joined.volume_count = description.volume_count;
-  joined.render.sheet_spacing = description.render.sheet_spacing;
-  hl_status status = render_frame_anew(&joined, error);
-  if (status == HL_OK) status = hl_scene_create(context, &joined, scene, error);
-  hl_scene_release(made);
-  return status;
-}
-
-hl_status view_join(void *user_data, hl_scene *base, hl_scene *added, hl_scene **scene, hl_error *error) {
-  hl_context *context = user_data;
-  const hl_scene_description *d = hl_scene_describe(added);
-  hl_status status = HL_OK;
-  *scene = NULL;
-  if (hl_scene_describe(base)->render.compositing == HL_COMPOSITING_MAXIMUM && d->mesh_count > 0) {
-    snprintf(error->message, sizeof error->message,
-             "a maximum projection shows no meshes: choose another look first");
-    return HL_ERROR_INPUT;
-  }
-  if (d->volume_count > 0) status = join_volumes(context, base, added, scene, error);
-  else hl_scene_retain(*scene = base);
-  if (status == HL_OK && d->mesh_count > 0)
-    status = join_meshes(context, d->meshes, d->mesh_count, scene, error);
-  if (status == HL_OK) return HL_OK;
-  hl_scene_release(*scene);
-  *scene = NULL;
   return status;
 }

@@ -1,5 +1,5 @@
-/* cli/view/files.h - the scenes of the viewer: names of their files that hold in any folder, files that pages
- * open, and files that pages add to an open scene. */
+/* cli/view/files.h - the scenes of the viewer: names of their files that hold in any folder, and files that
+ * pages open. */
 #ifndef HL_CLI_VIEW_FILES_H
 #define HL_CLI_VIEW_FILES_H
 
@@ -11,10 +11,5 @@ hl_status view_name_absolutely(hl_context *context, const char *folder, hl_scene
 
 /* The scene of a file: a scene, a mesh or a volume. context: a hl_context, of the scene. */
 hl_status view_open_file(void *context, const server_file *file, hl_scene **scene, hl_error *error);
-
-/* Makes one scene of two: the volumes and meshes of the first scene, and after them the volumes and meshes of
- * the second. Light, background and settings come from the first scene; its camera keeps its direction and
- * frames all. context: a hl_context, of the new scene. */
-hl_status view_join(void *context, hl_scene *base, hl_scene *added, hl_scene **scene, hl_error *error);
 
 #endif

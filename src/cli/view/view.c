@@ -142,7 +142,6 @@ static int run_view(const cli_value *values, char **inputs) {
                              .title = title,
                              .folder = getcwd(folder, sizeof folder),
                              .open = view_open_file,
-                             .join = view_join,
                              .files_data = job.host.context,
                              .most_upload_bytes = job.host.memory_limit,
                              .port = port,
