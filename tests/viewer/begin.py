@@ -223,7 +223,10 @@ def cuts_of_the_program(browser, url):
     browser.problems.clear()  # the page before has lost its viewer
     cuts = scene_of(browser)["volumes"][0]["cuts"]
     resize(browser, 820, 600)
-    check(browser.run("(({ scrollWidth, clientWidth }) => scrollWidth <= clientWidth)(document.querySelector('.note'))"), "the button shows all of its text on a tablet")
+    check(browser.run("""(() => {
+      const note = document.querySelector('.note'), range = document.createRange(), { paddingLeft, paddingRight } = getComputedStyle(note);
+      range.selectNodeContents(note);
+      return range.getBoundingClientRect().width <= note.clientWidth - parseFloat(paddingLeft) - parseFloat(paddingRight) + 0.01; })()"""), "the button shows all of its text on a tablet")
     resize(browser, 900, 600)
     rest(browser)
     note = "document.querySelector('.note')"

@@ -281,6 +281,51 @@ def joined(viewer, scene):
     request(viewer, "POST", "leave", page="join", opened=both["opened"])
 
 
+def reloaded(browser):
+    """Reloads the page once it has kept its state."""
+    kept = "JSON.stringify(JSON.parse(sessionStorage.getItem('halflight-session') ?? '{}').scene) === JSON.stringify(halflight.store.scene)"
+    browser.wait(kept)
+    browser.run("window.old = true; 0")
+    browser.call("Page.reload")
+    browser.wait("window.old === undefined && globalThis.halflight !== undefined")
+    rest(browser)
+
+
+def undone_and_redone(browser):
+    """Undo goes on to what was done before a file was added, redo brings the file back, and another one can be added in its place."""
+    has_meshes = "(halflight.store.scene.meshes ?? []).length"
+    browser.run("document.getElementById('undo').focus(); document.getElementById('undo').click()")
+    rest(browser)
+    check(scene_of(browser)["meshes"][0].get("visible", True) is True and browser.run(has_meshes) == 1, "the mesh is shown again")
+    browser.run("document.getElementById('undo').click()")
+    check(browser.run(has_meshes) == 0 and scene_of(browser)["render"]["shadows"] == "hard", "undo takes the added mesh away")
+    check(browser.run("document.activeElement.id") == "undo", "the focus stays")
+    check(browser.run("[...document.querySelectorAll('.section')].find((e) => e.firstElementChild.textContent === 'Meshes').hidden"), "and its panel")
+    equals_render(browser, "without")
+    browser.run("document.getElementById('undo').click()")
+    check(scene_of(browser)["render"]["shadows"] != "hard" and browser.run("halflight.store.canUndo") is False, "undo goes on before it")
+    reloaded(browser)
+    check(browser.run(has_meshes) == 0 and browser.run("halflight.store.canRedo") is True, "a reload keeps what is undone")
+    for _ in range(2):
+        browser.run("document.getElementById('redo').click()")
+        rest(browser)
+    check(browser.run(has_meshes) == 1 and browser.run("halflight.start.scene.meshes.length") == 1, "redo brings the mesh back")
+    equals_render(browser, "again")
+    browser.run("document.getElementById('undo').click()")
+    rest(browser)
+    open_section(browser, "Open")
+    browser.wait("[...document.querySelectorAll('.files button')].some((b) => b.textContent === 'second.nrrd')")
+    set_control(browser, "Add to what is open", "", section="Open")
+    press(browser, "second.nrrd")
+    browser.wait("halflight.store.scene.volumes.length === 2")
+    equals_render(browser, "other")
+    reloaded(browser)
+    check(browser.run("halflight.store.scene.volumes.length === 2 && halflight.start.volumes.length === 2") and browser.run(has_meshes) == 0, "another file takes the place of the one that is undone")
+    browser.run("document.getElementById('undo').click()")
+    check(browser.run("halflight.store.scene.volumes.length === 1 && document.querySelector('.chooser').hidden"), "a volume is taken away, too")
+    equals_render(browser, "single")
+
+
 def several_files(browser, url):
     """Files are added from the list, and several are dropped at once; a reload brings them back; the panel of meshes changes them."""
     browser.run("sessionStorage.clear()")
@@ -306,6 +351,7 @@ def several_files(browser, url):
     browser.wait("window.old === undefined && document.getElementById('title')?.textContent === 'first.nrrd + triangle.obj'")
     rest(browser)
     check(scene_of(browser)["meshes"][0]["visible"] is False, "a reload goes on with both")
+    undone_and_redone(browser)
     browser.run("""(() => {
       const data = new DataTransfer(), bytes = Uint8Array.from(atob(%s), (c) => c.charCodeAt(0));
       data.items.add(new File([bytes], 'one.nrrd'));

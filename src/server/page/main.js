@@ -2,7 +2,7 @@
 
 import { HttpChannel } from "./http_channel.js";
 import { isLink } from "./link.js";
-import { filesOf, keepSession, keptSession, restoreFrom } from "./session.js";
+import { isOfOpen, keepSession, keptSession, restoreFrom } from "./session.js";
 import { mount } from "./viewer.js";
 
 let channel = null, shown = { source: null, keeping: null };
@@ -10,15 +10,19 @@ let channel = null, shown = { source: null, keeping: null };
 // Shows the open scene, and replaces the viewer before. source: the path by which it was opened; kept: a
 // session to go on with.
 function show(start, source = null, kept = null) {
+  const focused = document.activeElement?.id;
   globalThis.halflight?.end();
   shown.keeping?.abort();
-  if (channel?.opened !== start.opened) channel?.leave();
-  channel = new HttpChannel(start.opened, source);
+  if (channel?.opened !== start.opened) {
+    channel?.leave();
+    channel = new HttpChannel(start.opened, source);
+  }
   shown = { source, keeping: new AbortController() };
   document.title = `${start.title} · Halflight`;
   const viewer = mount(document.body, channel, start, { keyboard: document, reopen: show, source, kept, restore: (file) => restoreFrom(file, viewer, channel, reopen), startAfresh: () => show(start, source) });
   globalThis.halflight = viewer; // for the console, and for tests
   keepSession(viewer.store, start, source, shown.keeping.signal);
+  if (focused) document.getElementById(focused)?.focus();
   followAddress();
   return viewer;
 }
@@ -36,7 +40,7 @@ function followAddress() {
 // or is another file.
 async function reopen(session) {
   const opened = session.source === null ? null : await channel.open(session.source);
-  if (opened === null || filesOf(opened.scene) !== filesOf(session.scene)) return false;
+  if (opened === null || !isOfOpen(session.scene, opened)) return false;
   show(opened, session.source, session);
   return true;
 }
@@ -48,12 +52,12 @@ async function begin() {
   if (kept?.source) {
     try {
       const start = await first.open(kept.source);
-      if (filesOf(start.scene) === filesOf(kept.scene)) return show(start, kept.source, kept);
+      if (isOfOpen(kept.scene, start)) return show(start, kept.source, kept);
     } catch (error) {
       return show(await first.start()).report(`${kept.title} cannot be opened again: ${error.message}`);
     }
   }
-  const start = await first.start(), goesOn = kept !== null && filesOf(start.scene) === filesOf(kept.scene);
+  const start = await first.start(), goesOn = kept !== null && isOfOpen(kept.scene, start);
   return show(start, null, goesOn ? kept : null);
 }
 

@@ -1,5 +1,6 @@
-// The panel that opens another file: a list of the folder in which the viewer was started, and files that are
-// dropped anywhere on the viewer. It is there only where the channel can open files, so not in notebooks.
+// The panel that opens another file: a list of the folder in which the viewer was started, or a chooser where there is
+// no server, and files that are dropped anywhere on the viewer. It is there only where files can be opened, so not in
+// notebooks.
 
 import { button, make, section, toggle } from "./controls.js";
 
@@ -8,19 +9,22 @@ const ASK_EVERY = 250; // milliseconds between questions for the progress of rea
 const size = (bytes) => (bytes < 1 << 20 ? `${Math.ceil(bytes / 1024)} KiB` : `${Math.round(bytes / (1 << 20))} MiB`);
 
 // The source by which a page opens both files when it is loaded again; null where one of them was dropped.
-function sourceOfBoth({ source, start }, added) {
-  const own = source ?? (start.opened === 0 ? "" : null);
+function sourceOfBoth({ store, start }, added) {
+  const own = store.source ?? (start.opened === 0 ? "" : null);
   return own === null || added === null ? null : [own, added].flat();
 }
 
 export function openPanel(viewer) {
   const { store, start, channel, report, failed, reopen, root } = viewer;
   const { element, body } = section("Open", false);
-  element.hidden = !channel.open;
+  element.hidden = !channel.open && !viewer.choose;
   const list = make("ul", { class: "files", "aria-label": "Files and folders" }), bar = make("progress", { max: 1, hidden: true, "aria-label": "Reading the file" });
   const where = make("p", { class: "facts" });
   let adds = false;
   const add = toggle({ label: "Add to what is open", get: () => adds, set: (on) => { adds = on; } });
+  const chooser = make("input", { type: "file", multiple: true, "aria-label": "Files to open", hidden: !viewer.choose, onchange: () => {
+    if (chooser.files.length > 0) viewer.choose([...chooser.files]);
+  } });
 
   async function show(at) {
     try {
@@ -54,7 +58,7 @@ export function openPanel(viewer) {
       const opened = await open();
       if (!added) return reopen(opened, path);
       const both = await channel.add(store.scene, opened, start.title);
-      return reopen(both, sourceOfBoth(viewer, path), { scene: both.scene, marks: store.marks, page: store.page, history: null });
+      return reopen(both, sourceOfBoth(viewer, path), { scene: both.scene, marks: store.marks, page: store.page, history: store.historyBefore });
     } catch (error) {
       failed(error);
     } finally {
@@ -79,7 +83,7 @@ export function openPanel(viewer) {
     });
     element.addEventListener("toggle", () => { if (element.open && list.childElementCount === 0) show(""); });
   }
-  add.element.hidden = !channel.add;
-  body.append(add.element, where, bar, list);
+  body.append(add.element, chooser, where, bar, list);
+  viewer.adds = () => adds;
   return { element, update: () => {} };
 }

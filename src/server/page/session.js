@@ -8,9 +8,9 @@ const KEY = "halflight-session", VERSION = 1;
 const KEEP_AFTER = 300; // milliseconds without a change
 
 // source: the path, or the list of paths, that the viewer's own list has opened; null for the scene that the
-// viewer began with.
+// viewer began with. own: those of them that the scene is of, where the last ones are undone.
 export const sessionOf = (store, { title }, source) =>
-  ({ halflight_session: VERSION, title, source, scene: store.scene, marks: store.marks, page: store.page });
+  ({ halflight_session: VERSION, title, source, own: store.source, scene: store.scene, marks: store.marks, page: store.page });
 
 // A path, or a list of paths that are opened together.
 const isSource = (source) => [source].flat().every((path) => typeof path === "string");
@@ -18,15 +18,36 @@ const isSource = (source) => [source].flat().every((path) => typeof path === "st
 // A session; the parts on which the page relies are checked. Null: the object is no session.
 export function readSession(object) {
   if (object === null || typeof object !== "object" || object.halflight_session !== VERSION || typeof object.scene?.camera !== "object") return null;
-  const { source = null, title = "", scene, page = {} } = object, marks = Array.isArray(object.marks) ? object.marks.filter(isMark) : [];
+  const { source = null, own = null, title = "", scene, page = {} } = object, marks = Array.isArray(object.marks) ? object.marks.filter(isMark) : [];
   const known = typeof page === "object" && page !== null && !Array.isArray(page) ? page : {};
-  return { source: isSource(source) ? source : null, title: String(title), scene, marks, page: known };
+  return { source: isSource(source) ? source : null, own: isSource(own) ? own : null, title: String(title), scene, marks, page: known };
 }
 
-// The names of the files that a scene is made of.
-export const filesOf = (scene) => JSON.stringify([
+// The names of the files that a scene is made of, as texts: of the volumes, and of the meshes.
+const namesOf = (scene) => [
   (scene.volumes ?? []).map(({ file, shapes, array, component, series, time, channel, level, mask }) => [file, shapes, array, component, series, time, channel, level, mask?.file]),
-  (scene.meshes ?? []).map(({ file }) => file ?? "")]);
+  (scene.meshes ?? []).map(({ file }) => file ?? "")].map((names) => names.map((name) => JSON.stringify(name)));
+
+const begins = (names, all) => names.every((name, n) => name === all[n]);
+
+export const isOfSameFiles = (scene, other) => {
+  const [names, others] = [namesOf(scene), namesOf(other)];
+  return names.every((kind, k) => kind.length === others[k].length && begins(kind, others[k]));
+};
+
+// Whether a scene is of what is open: of all of it, or of what was open before the last files were added.
+export const isOfOpen = (scene, { scene: whole }) => {
+  const [names, all] = [namesOf(scene), namesOf(whole)];
+  return names.flat().length > 0 && names.every((kind, k) => begins(kind, all[k]));
+};
+
+// What is open as it was when the scene had no further files.
+export function startOf(scene, start) {
+  const volumes = scene.volumes?.length ?? 0, meshes = scene.meshes?.length ?? 0, first = start.scene;
+  if ((first.volumes?.length ?? 0) === volumes && (first.meshes?.length ?? 0) === meshes) return start;
+  const { meshes: all, ...rest } = first;
+  return { ...start, volumes: start.volumes.slice(0, volumes), scene: { ...rest, volumes: first.volumes.slice(0, volumes), ...(meshes > 0 ? { meshes: all.slice(0, meshes) } : {}) } };
+}
 
 // Keeps the session in the tab. Where there is no room for all of it, it is kept without its history.
 function keep(store, start, source) {
@@ -81,7 +102,7 @@ export async function restoreFrom(file, { store, start }, channel, reopen = () =
   }
   const session = readSession(object), scene = session?.scene ?? object;
   if (session === null && object?.halflight === undefined) throw new Error(`${file.name} is neither a session nor a scene`);
-  if (filesOf(scene) === filesOf(store.scene)) store.replace({ ...session, scene: await channel.completeScene(scene) });
+  if (isOfOpen(scene, start)) store.replace({ ...session, source: session?.own ?? store.source, scene: await channel.completeScene(scene) });
   else if (session === null) return "other";
   else if (!(await reopen(session))) throw new Error(`the session is of ${session.title}, and ${start.title} is open: open that first`);
   return "opened";

@@ -7,9 +7,9 @@ import { reshaped } from "./camera.js";
 const MOST_STEPS = 100; // the most steps that can be undone, for each history
 const UNREMEMBERED = ["camera", "size", "time", "page"]; // changes that are no steps of the main history
 
-// The part of the scene that is undone: everything but the camera and the picture's size.
-function lasting({ scene: { camera, image: { width, height, ...image }, ...rest }, marks }) {
-  return { rest, image, marks };
+// What is undone: everything of the scene but the camera and the picture's size, the marks, and what the scene's files were opened by.
+function lasting({ scene: { camera, image: { width, height, ...image }, ...rest }, marks, source }) {
+  return { rest, image, marks, source };
 }
 
 const isSame = (a, b) => Object.keys({ ...a, ...b }).every((key) => a[key] === b[key]);
@@ -26,11 +26,12 @@ export class Store {
   #lastCamera = -1; // number of the gesture in which the camera was last moved
 
   // marks: a person's measures and texts (marks.js). page: settings that are no part of pictures: layout,
-  // crosshair, bookmarks.
-  constructor(scene, { marks = [], page = {}, history = null } = {}) {
+  // crosshair, bookmarks. source: by which the scene's files are opened (http_channel.js, open()), or null.
+  constructor(scene, { marks = [], page = {}, history = null, source = null } = {}) {
     this.scene = { volumes: [], ...scene }; // a scene may consist of meshes only
     this.marks = marks;
     this.page = page;
+    this.source = source;
     if (history !== null) [this.#undo, this.#redo, this.#undoCamera, this.#redoCamera] = history;
   }
 
@@ -93,7 +94,7 @@ export class Store {
   }
 
   // Replaces everything, as one step, by a session or a scene that was opened. The picture keeps its size.
-  replace({ scene, marks = this.marks, page = this.page }) {
+  replace({ scene, marks = this.marks, page = this.page, source = this.source }) {
     const { width, height } = this.scene.image;
     this.beginGesture();
     this.#remember("replace");
@@ -101,6 +102,7 @@ export class Store {
     this.scene = { volumes: [], ...scene, camera: reshaped(scene.camera, scene.image, { width, height }), image: { ...scene.image, width, height } };
     this.marks = marks;
     this.page = page;
+    this.source = source;
     this.endGesture();
     this.#tell("history");
   }
@@ -144,6 +146,11 @@ export class Store {
   get canRedo() { return this.#redo.length > 0; }
   get canUndoCamera() { return this.#undoCamera.length > 0; }
   get canRedoCamera() { return this.#redoCamera.length > 0; }
+  // The history of a store that takes the place of this one, as its next step.
+  get historyBefore() {
+    const further = (steps, step) => [...steps, step].slice(-MOST_STEPS);
+    return [further(this.#undo, lasting(this)), [], further(this.#undoCamera, this.#view()), []];
+  }
   get history() { return [this.#undo, this.#redo, this.#undoCamera, this.#redoCamera]; }
 
   undo() { this.#step(this.#undo, this.#redo); }
@@ -153,9 +160,10 @@ export class Store {
 
   #step(from, to) {
     if (from.length === 0) return;
-    const now = lasting(this), { rest, image, marks } = from.pop();
+    const now = lasting(this), { rest, image, marks, source } = from.pop();
     to.push(now);
     this.marks = marks;
+    this.source = source ?? null;
     this.#last = { name: "", gesture: -1 };
     // A step of marks only leaves the scene, and so its picture.
     if (!isSame(rest, now.rest) || !isSame(image, now.image)) {

@@ -23,6 +23,7 @@ import { openPanel } from "./open_panel.js";
 import { Overlay } from "./overlay.js";
 import { Pointer } from "./pointer.js";
 import { Probe } from "./probe.js";
+import { isOfSameFiles, startOf } from "./session.js";
 import { helpSheet, installShortcuts } from "./shortcuts.js";
 import { sessionPanel } from "./session_panel.js";
 import { skyPanel } from "./sky_panel.js";
@@ -175,18 +176,30 @@ function revealIn(root) {
   };
 }
 
+// Where undo or redo reaches a scene of fewer or more of the files that are open, another viewer takes this one's place.
+function followFiles(store, whole, source, reopen) {
+  let before = store.scene;
+  store.listen((scene, name) => {
+    const same = name !== "history" || isOfSameFiles(scene, before);
+    before = scene;
+    if (!same) reopen(whole, source, { scene, marks: store.marks, page: store.page, history: store.history, own: store.source });
+  });
+}
+
 // Fills an empty element with a viewer. channel: the way to ask for pictures (http_channel.js). start: the
-// open scene (start.json). keyboard: the element or document whose keys are used. reopen(start, source,
+// open scene (start.json), of whose files kept.scene may have the first ones alone. keyboard: the element or document whose keys are used. reopen(start, source,
 // kept): called when a person opens another file. source: the path by which the present file was opened.
 // kept: a session (session.js) to go on with. restore(file): opens a session or a scene. startAfresh():
-// forgets all changes. address: the part of a link before its end. Returns { store, start, frames, overlay,
-// probe, slices, marking, report, end }; end() stops all of it.
-export function mount(element, channel, start, { keyboard = element, reopen = () => {}, source = null, kept = null, restore = null, startAfresh = () => {}, address = "" } = {}) {
+// forgets all changes. choose(files): opens files of a chooser, or adds them where adds() says so; null: there is no
+// chooser. address: the part of a link before its end. Returns { store, start, frames, overlay, probe, slices, marking,
+// report, adds, end }; end() stops all of it.
+export function mount(element, channel, whole, { keyboard = element, reopen = () => {}, source = null, kept = null, restore = null, startAfresh = () => {}, choose = null, address = "" } = {}) {
   element.innerHTML = MARKUP;
   const root = element.firstElementChild, find = (id) => root.querySelector(`#${id}`);
   const ended = new AbortController();
-  const store = new Store(kept?.scene ?? start.scene, kept ?? {}), report = messageBox(find("message"));
-  const viewer = { store, start, channel, smallPicture: smallPictures(channel), report, reopen, root, find, source, startAfresh, copy: copier(report, start.title), current: { volume: 0, light: 0 }, address, atRest: [], frames: () => frames };
+  const start = startOf(kept?.scene ?? whole.scene, whole);
+  const store = new Store(kept?.scene ?? start.scene, { ...kept, source: kept?.own ?? source }), report = messageBox(find("message"));
+  const viewer = { store, start, channel, smallPicture: smallPictures(channel), report, reopen, root, find, source, startAfresh, choose, copy: copier(report, start.title), current: { volume: 0, light: 0 }, address, atRest: [], frames: () => frames };
   const connection = watchConnection(find("view"), channel, report, () => { frames.move(); viewer.slices.update(); });
   viewer.failed = connection.failed;
   if (restore !== null) viewer.openSession = (file) => openSession(file, restore, viewer);
@@ -231,11 +244,12 @@ export function mount(element, channel, start, { keyboard = element, reopen = ()
   helpSheet(find("help"), installShortcuts(store, { target: keyboard, signal: ended.signal }, find("view"), actions, nearestOf(start)));
   const buttons = { undo: () => store.undo(), redo: () => store.redo(), "show-help": actions.help, theme: actions.theme, "show-lights": actions.lights, reset: actions.reset, probe: actions.probe, sidebar: actions.sidebar, full: actions.full, open: () => reveal("Open"), save: () => reveal("Save") };
   for (const [id, action] of Object.entries(buttons)) find(id).addEventListener("click", action);
-  find("open").hidden = !channel.open;
+  find("open").hidden = !channel.open && choose === null;
   viewer.overlay.showsLights = true;
+  followFiles(store, whole, source, reopen);
   viewer.slices.update();
   update();
   if (kept === null && !matchMedia("(prefers-reduced-motion: reduce)").matches) frames.animate(sweptLight, SWEEP_TIME);
   else frames.move();
-  return { store, start, frames, overlay: viewer.overlay, probe: viewer.probe, slices: viewer.slices, marking: viewer.marking, report, upload: viewer.upload, followLink: viewer.followLink, end: () => { ended.abort(); frames.end(); status.end(); connection.end(); } };
+  return { store, start: whole, frames, overlay: viewer.overlay, probe: viewer.probe, slices: viewer.slices, marking: viewer.marking, report, adds: viewer.adds, upload: viewer.upload, followLink: viewer.followLink, end: () => { ended.abort(); frames.end(); status.end(); connection.end(); } };
 }
