@@ -11,6 +11,7 @@
 
 #include "simd/lanes.h"
 #include "start/composed.h"
+#include "start/joined.h"
 #include "start/places.h"
 #include "start/start.h"
 
@@ -106,24 +107,33 @@ static bool ends_in(const char *text, const char *ending) {
   return length >= end && strcmp(text + length - end, ending) == 0;
 }
 
-static hl_status load(const char *path, hl_scene **scene, hl_error *error) {
+static hl_status load_alone(const char *path, hl_scene **scene, hl_error *error) {
   hl_volume *volume = NULL;
+  hl_scene_mesh mesh;
+  *scene = NULL;
   if (ends_in(path, ".json")) return hl_scene_load(web.context, path, scene, error);
+  if (hl_mesh_reads_name(path) && !hl_volume_reads_cells(web.context, path)) {
+    hl_status status = load_mesh(web.context, path, 0, &mesh, error);
+    if (status == HL_OK) status = join_meshes(web.context, &mesh, 1, true, scene, error);
+    hl_mesh_release(mesh.mesh);
+    return status;
+  }
   hl_status status = hl_volume_load(web.context, path, &volume, error);
   if (status == HL_OK) status = hl_scene_for_volume(web.context, volume, path, scene, error);
   hl_volume_release(volume);
   return status;
 }
 
-int web_open(const char *title) {
-  hl_error error = {0};
-  hl_scene *scene = NULL;
-  hl_status status = load(web.text, &scene, &error);
-  if (status == HL_ERROR_MEMORY) { /* once more, without what the renderers hold */
-    forget_renderers();
-    status = load(web.text, &scene, &error);
-  }
-  if (status != HL_OK) return answer_error(status, &error);
+/* Loads a file, once more without what the renderers hold where memory is short. */
+static hl_status load(const char *path, hl_scene **scene, hl_error *error) {
+  hl_status status = load_alone(path, scene, error);
+  if (status != HL_ERROR_MEMORY) return status;
+  forget_renderers();
+  return load_alone(path, scene, error);
+}
+
+/* Takes a scene in place of what is open, and answers with its start.json. */
+static int show(hl_scene *scene, const char *title) {
   forget_renderers();
   hl_preview_destroy(web.preview);
   web.preview = NULL;
@@ -132,6 +142,13 @@ int web_open(const char *title) {
   char *start = describe_start(web.context, web.scene, title, 0, false);
   return start != NULL ? answer(HL_OK, (unsigned char *)start, strlen(start))
                        : answer_text(HL_ERROR_MEMORY, "no memory for what the page is told of a volume");
+}
+
+int web_open(const char *title) {
+  hl_error error = {0};
+  hl_scene *scene = NULL;
+  hl_status status = load(web.text, &scene, &error);
+  return status == HL_OK ? show(scene, title) : answer_error(status, &error);
 }
 
 static hl_status read_scene(size_t length, hl_scene **scene, hl_error *error) {
@@ -144,6 +161,18 @@ static hl_status read_scene(size_t length, hl_scene **scene, hl_error *error) {
            d->width, d->height, (int)MOST_PIXELS);
   hl_scene_release(*scene);
   return HL_ERROR_INPUT;
+}
+
+int web_join(size_t length, const char *path_and_title) {
+  hl_error error = {0};
+  hl_scene *base = NULL, *added = NULL, *joined = NULL;
+  hl_status status = read_scene(length, &base, &error);
+  if (status == HL_OK) status = load(path_and_title, &added, &error);
+  if (status == HL_OK) status = join_scenes(web.context, base, added, &joined, &error);
+  hl_scene_release(added);
+  hl_scene_release(base);
+  return status == HL_OK ? show(joined, path_and_title + strlen(path_and_title) + 1)
+                         : answer_error(status, &error);
 }
 
 int web_complete(size_t length, const char *look_and_rig) {

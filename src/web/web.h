@@ -23,6 +23,10 @@ char *web_text(size_t bytes);
  * start.json. */
 int web_open(const char *title);
 
+/* Adds the file, folder or scene at a path to the text's scene, whose volumes are of the open one, and opens
+ * both in place of it. path_and_title: two texts, each with a zero at its end. Answer: start.json. */
+int web_join(size_t length, const char *path_and_title);
+
 /* Answer: the text's scene, whose volumes are of the open one, with all its defaults written out, and with a
  * look and a light rig where they are not "": two texts, each with a zero at its end. */
 int web_complete(size_t length, const char *look_and_rig);

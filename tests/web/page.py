@@ -55,9 +55,9 @@ def choose_files(browser, files):
 def saved_scene(browser, folder, name):
     """The scene that the page shows, for the program, in the folder of its files."""
     scene = json.loads(browser.run("JSON.stringify(halflight.store.scene)"))
-    for volume in scene["volumes"]:
-        if "file" in volume:
-            volume["file"] = pathlib.PurePosixPath(volume["file"]).name
+    for part in scene["volumes"] + scene.get("meshes", []):
+        if "file" in part:
+            part["file"] = pathlib.PurePosixPath(part["file"]).name
     (folder / name).write_text(json.dumps(scene))
     return scene
 
@@ -105,6 +105,21 @@ def try_slices(browser, what, first=(0, 0, 0)):
     check(0 in around and max(around) > 0, f"{what}: a click finds a label's surface: {cursor}")
 
 
+def try_added(browser, program, folder, what):
+    """A mesh is added to the volume that is open, and undone."""
+    (folder / "triangle.obj").write_text("v 2 2 2\nv 25 2 25\nv 2 25 25\nf 1 2 3\n")
+    finals = "halflight.frames.statistics.stage === 'final'"
+    browser.run("[...document.querySelectorAll('.section label')].find((label) => label.textContent.includes('Add to what is open')).control.click()")
+    choose_files(browser, [folder / "triangle.obj"])
+    browser.wait(f"document.getElementById('title').textContent === 'labels.nrrd + triangle.obj' && {finals}")
+    saved_scene(browser, folder, "added.json")
+    check(same_pixels(program, folder, final_picture(browser), "added.json"), f"{what}: a mesh is added to what is open")
+    browser.run("document.getElementById('undo').click()")
+    browser.wait(finals)
+    saved_scene(browser, folder, "undone.json")
+    check(same_pixels(program, folder, final_picture(browser), "undone.json") and browser.run("(halflight.store.scene.meshes ?? []).length") == 0, f"{what}: and undone")
+
+
 def try_reload(browser, folder, what):
     """A page that is loaded anew names what was open, and goes on with it where it is dropped again."""
     browser.run("halflight.store.changeRender('sheet_spacing', 1.5)")
@@ -141,6 +156,7 @@ def try_chromium(url, what, program, folder):
         browser.run("halflight.store.changeRender('sheet_spacing', 1)")
         try_slices(browser, what)
         try_reload(browser, folder, what)
+        try_added(browser, program, folder, what)
         check(browser.problems == [], f"{what}: no problem in the console: {browser.problems}")
 
 

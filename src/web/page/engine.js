@@ -27,7 +27,7 @@ export class Engine {
     });
     this.#exports = { ...instance.exports };
     if (Engine.waits)
-      for (const name of ["web_begin", "web_open", "web_complete", "web_frame", "web_slice", "web_depth"]) this.#exports[name] = WebAssembly.promising(this.#exports[name]);
+      for (const name of ["web_begin", "web_open", "web_join", "web_complete", "web_frame", "web_slice", "web_depth"]) this.#exports[name] = WebAssembly.promising(this.#exports[name]);
     this.#exports._initialize();
   }
 
@@ -87,6 +87,14 @@ export class Engine {
     this.#files.replace(contents);
     this.#write(`/${path}`);
     const answer = await this.#with(title, (pointer) => this.#exports.web_open(pointer));
+    return answer === null ? null : JSON.parse(new TextDecoder().decode(answer));
+  }
+
+  // Adds the same to a scene of what is open.
+  async join(scene, contents, path, title) {
+    this.#files.replace(contents);
+    const length = this.#write(JSON.stringify(scene));
+    const answer = await this.#with(`/${path}\0${title}`, (pointer) => this.#exports.web_join(length, pointer));
     return answer === null ? null : JSON.parse(new TextDecoder().decode(answer));
   }
 

@@ -3,7 +3,7 @@
 
 import { chosenFiles, droppedFiles } from "./dropped.js";
 import { heldFiles, part } from "./parts.js";
-import { filesOf, keepSession, keptSession, restoreFrom } from "./session.js";
+import { isOfOpen, keepSession, keptSession, restoreFrom } from "./session.js";
 import { mount } from "./viewer.js";
 import { WorkerChannel } from "./worker_channel.js";
 
@@ -19,7 +19,7 @@ const message = make("p", { className: "tab-message", role: "status" });
 const choose = make("input", { type: "file", multiple: true, ariaLabel: "Files to open" });
 const welcome = make("section", { className: "tab-welcome" },
   make("h1", { textContent: "Halflight" }),
-  make("p", { textContent: "Drop a volume here: NIfTI, NRRD, MetaImage, VTI, a folder of DICOM, a zip of OME-Zarr, or a scene with its files." }),
+  make("p", { textContent: "Drop a volume here: NIfTI, NRRD, MetaImage, VTI, a folder of DICOM, a zip of OME-Zarr, a mesh, or a scene with its files." }),
   make("label", { textContent: "or choose files " }, choose),
   make("p", { textContent: "They stay on this machine: the page renders them itself, with soft shadows." }), message);
 
@@ -45,12 +45,22 @@ let kept = keptSession(), keeping = null; // kept: what this tab has done before
 
 // Shows what is open, with a session to go on with, or null.
 function show(start, session = null) {
+  const focused = document.activeElement?.id;
   globalThis.halflight?.end();
   keeping?.abort();
   keeping = new AbortController();
   document.title = `${start.title} · Halflight`;
-  globalThis.halflight = mount(document.body, viewerChannel(), start, { keyboard: document, kept: session, address: location.href.split("#")[0], restore: openSession, startAfresh: () => show(start) });
+  globalThis.halflight = mount(document.body, viewerChannel(), start, { keyboard: document, kept: session, address: location.href.split("#")[0], restore: openSession, startAfresh: () => show(start), reopen: (whole, _, state) => show(whole, state), choose: (files) => take(chosenFiles(files)) });
   keepSession(globalThis.halflight.store, start, null, keeping.signal);
+  if (focused) document.getElementById(focused)?.focus();
+}
+
+// The session of before the page was loaded, once all its files are open again.
+function keptOf(start) {
+  if (kept === null || kept.title !== start.title || !isOfOpen(kept.scene, start)) return null;
+  const session = kept;
+  kept = null;
+  return session;
 }
 
 async function open({ contents, path, title }) {
@@ -58,9 +68,19 @@ async function open({ contents, path, title }) {
   try {
     await begun;
     const start = await channel.open(contents, path, title);
-    const goesOn = kept !== null && kept.title === start.title && filesOf(kept.scene) === filesOf(start.scene);
-    show(start, goesOn ? kept : null);
-    kept = null;
+    show(start, keptOf(start));
+  } catch (error) {
+    say(error.message);
+  }
+}
+
+// Adds files to what is open.
+async function add({ contents, path, title }) {
+  const { store, start } = globalThis.halflight;
+  say(`opening ${title} …`);
+  try {
+    const both = await channel.join(store.scene, contents, path, `${start.title} + ${title}`);
+    show(both, keptOf(both) ?? { scene: both.scene, marks: store.marks, page: store.page, history: store.historyBefore });
   } catch (error) {
     say(error.message);
   }
@@ -73,6 +93,7 @@ async function openSession(file) {
 
 async function take(files) {
   const contents = Object.values(files.contents);
+  if (globalThis.halflight?.adds()) return add(files);
   if (globalThis.halflight === undefined || contents.length !== 1 || !files.path.endsWith(".json")) return open(files);
   return openSession(contents[0]).catch((error) => say(error.message));
 }

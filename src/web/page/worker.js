@@ -47,6 +47,7 @@ const calls = {
     return {};
   },
   open: async ({ contents, path, title }) => ({ start: await engine.open(contents, path, title) }),
+  join: async ({ scene, contents, path, title }) => ({ start: await engine.join(scene, contents, path, title) }),
   slice: async (plane) => engine.slice(plane),
   depth: async ({ scene }) => ({ found: await engine.depth(scene) }),
   complete: async ({ scene, choices }) => ({ scene: await engine.complete(scene, choices) }),

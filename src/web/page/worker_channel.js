@@ -43,6 +43,11 @@ export class WorkerChannel {
     return (await this.#ask("open", { contents, path, title })).start;
   }
 
+  // What is open when the same was added to a scene of what is open: start.json's object.
+  async join(scene, contents, path, title) {
+    return (await this.#ask("join", { scene, contents, path, title })).start;
+  }
+
   async completeScene(scene, choices = {}) {
     return (await this.#ask("complete", { scene, choices })).scene;
   }
