@@ -51,6 +51,11 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_from_particles(hl_context *context,
                                                          const hl_particles_description *description,
                                                          hl_volume **volume, hl_error *error);
 
+/* Whether a .vtp file is read as particles: PolyData without lines and surfaces whose points have an array of
+ * masses ("mass", "masses", "m") or of smoothing lengths ("h", "hsml", "smoothing_length"). Other PolyData
+ * are meshes (hl_mesh_load()). 0 for files of other formats, and for null. */
+HL_API int hl_volume_reads_particles(hl_context *context, const char *path);
+
 /* Finds smoothing lengths as hl_volume_from_particles() does where there are none, for several volumes of the
  * same particles. lengths: [description->count]; filled; 0 for particles that are left out. */
 HL_API HL_WARN_UNUSED hl_status hl_particles_find_smoothing(hl_context *context,

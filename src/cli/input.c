@@ -6,6 +6,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <halflight/grids.h>
+#include <halflight/particles.h>
 #include <math.h>
 #include <poll.h>
 #include <stdio.h>
@@ -255,7 +256,8 @@ hl_status input_load(hl_context *context, const cli_input *input, const hl_volum
 }
 
 bool is_mesh_file(hl_context *context, const char *path) {
-  return hl_mesh_reads_name(path) && !hl_volume_reads_cells(context, path);
+  return hl_mesh_reads_name(path) && !hl_volume_reads_cells(context, path) &&
+         !hl_volume_reads_particles(context, path);
 }
 
 int compare_by_number(const void *a, const void *b) {

@@ -102,7 +102,8 @@ void input_name_source(const hl_volume_load_options *options, hl_scene_volume *v
 hl_status input_load(hl_context *context, const cli_input *input, const hl_volume_load_options *options,
                      hl_scene **scene, hl_error *error);
 
-/* Whether a file holds a mesh: a VTK file of cells that have a volume and values is a volume. */
+/* Whether a file holds a mesh: a VTK file of cells that have a volume and values, or of particles, is a
+ * volume. */
 bool is_mesh_file(hl_context *context, const char *path);
 
 /* Orders names (char **) by the numbers in them, for qsort(). */

@@ -102,7 +102,7 @@ static void list_formats(char *text, size_t size) {
 }
 
 static bool is_mesh_name(const char *path) {
-  static const char *const endings[] = {".ply", ".stl", ".obj", ".gltf", ".glb", ".vtp"};
+  static const char *const endings[] = {".ply", ".stl", ".obj", ".gltf", ".glb"};
   for (size_t n = 0; n < sizeof endings / sizeof *endings; n++)
     if (hl_text_ends(path, endings[n])) return true;
   return false;

@@ -31,7 +31,7 @@ MEND = re.compile(r": (choose|convert|crop|decompress|export|extract|give|instal
                   r": (unpack|resample) it")
 # Where the text is put together of parts, which hold the mend.
 PARTS = {"volume/load.c": "%s: %s", "volume/formats/dicom/header.c": "%s: %s: convert it with gdcmconv or dcm2niix",
-         "volume/formats/npy.c": ("save it as", ""), "volume/formats/vtk/vti.c": "an XML file whose first element is", "volume/formats/vtk/vtu.c": "an XML file whose first element is", "mesh/vtp.c": "an XML file whose first element is",
+         "volume/formats/npy.c": ("save it as", ""), "volume/formats/vtk/vti.c": "an XML file whose first element is", "volume/formats/vtk/vtk_pieces.c": "an XML file whose first element is", "mesh/vtp.c": "an XML file whose first element is",
          "volume/formats/vtk/vtk_xml.c": ("a VTKFile of type", "a DataArray of type", " is not read: save it")}
 
 

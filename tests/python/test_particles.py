@@ -1,4 +1,6 @@
 """Particles as volumes, and snapshots of simulations."""
+import base64
+
 import numpy as np
 import pytest
 
@@ -108,3 +110,59 @@ def test_tables(tmp_path):
     assert mass(density) == pytest.approx(500, rel=1e-5)
     mean = np.asarray(halflight.Volume(tmp_path / "table.csv", array="temperature"))
     assert 0 < np.nanmin(mean) and np.nanmax(mean) < 499
+
+
+def data_array(name, values, encoding):
+    """A DataArray element of a VTK file: as text, or in base64 after the length of its bytes."""
+    values = np.asarray(values)
+    kind = {"f4": "Float32", "f8": "Float64"}[values.dtype.str[1:]]
+    components = values.shape[1] if values.ndim > 1 else 1
+    text = " ".join(map(repr, values.ravel().tolist()))
+    if encoding == "binary":
+        content = values.astype(values.dtype.newbyteorder("<")).tobytes()
+        text = base64.b64encode(np.array([len(content)], "<u8").tobytes() + content).decode()
+    return f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{components}" format="{encoding}">{text}</DataArray>'
+
+
+def write_points(path, pieces, encoding="ascii", polygons=0):
+    """PolyData of points; a piece is their places and a dictionary of arrays."""
+    text = '<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64"><PolyData>'
+    for places, arrays in pieces:
+        text += f'<Piece NumberOfPoints="{len(places)}" NumberOfVerts="0" NumberOfLines="0" NumberOfPolys="{polygons}" NumberOfStrips="0">'
+        text += "<PointData>" + "".join(data_array(name, values, encoding) for name, values in arrays.items()) + "</PointData>"
+        text += f"<Points>{data_array('Points', places, encoding)}</Points></Piece>"
+    path.write_text(text + "</PolyData></VTKFile>")
+    return path
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "binary"])
+def test_points_of_vtk(tmp_path, encoding):
+    rng = np.random.default_rng(6)
+    places, masses, lengths = rng.random((500, 3)), rng.random(500).astype("f4"), np.full(500, 0.1, "f4")
+    speeds = np.column_stack([np.arange(500), np.zeros(500), np.zeros(500)])
+    arrays = {"mass": masses, "h": lengths, "velocity": speeds}
+    np.savetxt(tmp_path / "table.csv", np.column_stack([places, masses, lengths, speeds[:, 0]]), fmt="%.17g", delimiter=",",
+               header="x,y,z,mass,h,velocity", comments="")
+    parts = [(places[part], {name: values[part] for name, values in arrays.items()}) for part in (slice(200), slice(200, None))]
+    points = write_points(tmp_path / "points.vtp", parts, encoding)
+    density = halflight.Volume(points, array="density")
+    assert mass(density) == pytest.approx(masses.sum(), rel=1e-5)
+    for array in ("density", "velocity"):
+        voxels = [np.asarray(halflight.Volume(file, array=array)) for file in (points, tmp_path / "table.csv")]
+        assert np.array_equal(*voxels, equal_nan=True)
+
+
+def test_polydata_that_is_no_particles(tmp_path):
+    """Points without masses and lengths, and surfaces, stay meshes."""
+    places = np.random.default_rng(7).random((5, 3))
+    for arrays, polygons in (({"velocity": places}, 0), ({"mass": np.ones(5, "f4")}, 1)):
+        points = write_points(tmp_path / "points.vtp", [(places, arrays)], polygons=polygons)
+        with pytest.raises(halflight.UnsupportedError, match="a mesh, not a volume"):
+            halflight.Volume(points)
+
+
+def test_points_that_lack_an_array(tmp_path):
+    places = np.random.default_rng(8).random((5, 3))
+    points = write_points(tmp_path / "points.vtp", [(places, {"mass": np.ones(5, "f4")}), (places, {})])
+    with pytest.raises(halflight.InputError, match="a piece has no array of mass"):
+        halflight.Volume(points)

@@ -197,7 +197,7 @@ static const malformed files[] = {
      HL_ERROR_INPUT, "no DIMENSIONS"},
     /* VTK image data */
     {"root.vti", "<?xml version='1.0'?><svg/>", HL_ERROR_UNSUPPORTED, "first element is \"svg\""},
-    {"kind.vti", "<VTKFile type=\"PolyData\">", HL_ERROR_UNSUPPORTED, "\"PolyData\" is not read"},
+    {"kind.vti", "<VTKFile type=\"PolyData\">", HL_ERROR_UNSUPPORTED, "a mesh, not a volume"},
     {"order.vti", "<VTKFile type=\"ImageData\" byte_order=\"Middle\">", HL_ERROR_INPUT,
      "byte_order \"Middle\""},
     {"header.vti", "<VTKFile type=\"ImageData\" header_type=\"UInt7\">", HL_ERROR_INPUT,

@@ -10,6 +10,7 @@
   HL_FORMAT(nifti)     \
   HL_FORMAT(mgh)       \
   HL_FORMAT(vtu)       \
+  HL_FORMAT(vtp)       \
   HL_FORMAT(vthb)      \
   HL_FORMAT(vti)       \
   HL_FORMAT(legacy_vtk) \

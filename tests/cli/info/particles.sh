@@ -16,3 +16,6 @@ tool json info.json "d['times'], d['time'], d['origin'][:2], [(n - 1) * s for n,
 # Atoms without a box.
 printf '3\nwater\nO 0 0 0.1\nH 0.75 0 -0.5\nH -0.75 0 -0.5\n' >w.xyz
 halflight info w.xyz --array density 2>message | grep -c density
+# VTK's points with masses are particles, too.
+halflight info "$SOURCE/tests/fuzz/corpus/particle_files/two_pieces.vtp" --array v --json 2>message >info.json
+tool json info.json "[a['name'] for a in d['arrays']], [round(n, 3) for n in d['range']]"

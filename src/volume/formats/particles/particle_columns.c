@@ -49,13 +49,17 @@ int hl_particle_words(char *line, char *words[HL_PARTICLE_COLUMNS_MOST]) {
   return count;
 }
 
+hl_particle_role hl_particle_role_of(const char *name) {
+  for (size_t r = 0; r < sizeof roles / sizeof *roles; r++)
+    if (hl_text_is_one_of(name, roles[r].names)) return roles[r].role;
+  return HL_COLUMN_QUANTITY;
+}
+
 void hl_particle_columns_add(hl_particle_columns *columns, const char *name) {
   if (columns->column_count == HL_PARTICLE_COLUMNS_MOST) return;
   hl_particle_column *column = &columns->column[columns->column_count++];
-  *column = (hl_particle_column){.role = HL_COLUMN_QUANTITY};
+  *column = (hl_particle_column){.role = hl_particle_role_of(name)};
   hl_text_printable(column->name, name);
-  for (size_t r = 0; r < sizeof roles / sizeof *roles; r++)
-    if (hl_text_is_one_of(name, roles[r].names)) column->role = roles[r].role;
   for (const hl_particle_column *before = columns->column; before < column; before++)
     if (column->role != HL_COLUMN_QUANTITY && before->role == column->role) column->role = HL_COLUMN_QUANTITY;
   column->is_scaled = column->role <= HL_COLUMN_Z && hl_text_is_one_of(name, "xs|ys|zs|xsu|ysu|zsu");

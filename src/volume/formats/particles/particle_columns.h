@@ -42,6 +42,9 @@ typedef struct hl_particle_columns {
  * the number of words; at most HL_PARTICLE_COLUMNS_MOST are found. */
 int hl_particle_words(char *line, char *words[HL_PARTICLE_COLUMNS_MOST]);
 
+/* What a column of this name is. */
+hl_particle_role hl_particle_role_of(const char *name);
+
 /* Adds a column by its name. More than HL_PARTICLE_COLUMNS_MOST are left out. */
 void hl_particle_columns_add(hl_particle_columns *columns, const char *name);
 

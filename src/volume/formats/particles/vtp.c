@@ -1,0 +1,164 @@
+/* volume/formats/particles/vtp.c - the points of VTK's XML PolyData (.vtp) as particles.
+ *
+ * PolyData are particles if they have neither lines nor surfaces, and an array of masses or of smoothing
+ * lengths at their points. All others are meshes (mesh/vtp.c). The other arrays at the points are quantities;
+ * of vectors the length is one. */
+#include <halflight/particles.h>
+#include <math.h>
+#include <string.h>
+
+#include "core/door.h"
+#include "core/memory.h"
+#include "volume/formats/particles/particle_columns.h"
+#include "volume/formats/vtk/vtk_pieces.h"
+#include "volume/io/text.h"
+
+static const char *const types[] = {"PolyData"};
+
+/* ---- what is particles ---- */
+
+static bool are_particles(const hl_vtk_pieces *pieces) {
+  bool found = false;
+  for (size_t n = 0; n < pieces->piece_count; n++)
+    if (pieces->pieces[n].surface_count > 0) return false;
+  for (size_t n = 0; pieces->piece_count > 0 && n < pieces->pieces[0].array_count; n++) {
+    const hl_vtk_piece_array *array = &pieces->arrays[pieces->pieces[0].first_array + n];
+    hl_particle_role role = hl_particle_role_of(array->name);
+    found = found || (array->section == HL_VTK_POINT_DATA && array->components == 1 &&
+                      (role == HL_COLUMN_MASS || role == HL_COLUMN_LENGTH));
+  }
+  return found;
+}
+
+int hl_volume_reads_particles(hl_context *context, const char *path) {
+  HL_DOOR;
+  hl_vtk_pieces pieces = {.context = context, .types = types, .type_count = 1};
+  hl_error unused;
+  if (context == NULL || path == NULL || !hl_text_ends(path, ".vtp")) return 0;
+  hl_status status = hl_stream_open(context, path, true, &pieces.xml.stream, &unused);
+  if (status == HL_OK) status = hl_stream_unpack(&pieces.xml.stream, &unused);
+  if (status == HL_OK) status = hl_vtk_pieces_read(&pieces, &unused);
+  bool found = status == HL_OK && are_particles(&pieces);
+  hl_stream_close(pieces.xml.stream);
+  hl_vtk_pieces_release(&pieces);
+  return found;
+}
+
+/* ---- arrays ---- */
+
+/* Names the columns by the arrays of the first piece. Coordinates are the points' alone. */
+static void name_columns(const hl_vtk_pieces *pieces, hl_particle_columns *columns) {
+  for (size_t n = 0; n < pieces->pieces[0].array_count; n++) {
+    const hl_vtk_piece_array *array = &pieces->arrays[pieces->pieces[0].first_array + n];
+    hl_voxel_type type;
+    if (array->section != HL_VTK_POINT_DATA || !hl_vtk_xml_find_type(array->array.type, &type)) continue;
+    if (columns->column_count == HL_PARTICLE_COLUMNS_MOST) return;
+    hl_particle_columns_add(columns, array->name);
+    hl_particle_column *column = &columns->column[columns->column_count - 1];
+    bool is_coordinate = column->role <= HL_COLUMN_Z, is_vector = array->components != 1;
+    if (is_coordinate || is_vector) column->role = HL_COLUMN_QUANTITY;
+    column->is_scaled = false;
+  }
+}
+
+/* Appends tuples to a column: each as its number or, of several components, as their length. */
+static hl_status append(const hl_particle_columns *columns, hl_particle_column *column, const double *numbers,
+                        size_t tuples, size_t components, hl_error *error) {
+  float *values = hl_reallocate(columns->context, column->values, columns->count + tuples, sizeof *values);
+  if (values == NULL) return hl_fail_memory(error, (columns->count + tuples) * sizeof *values, "particles");
+  column->values = values;
+  for (size_t n = 0; n < tuples; n++) {
+    double squares = 0;
+    for (size_t c = 0; c < components; c++)
+      squares += numbers[n * components + c] * numbers[n * components + c];
+    values[columns->count + n] = (float)(components == 1 ? numbers[n] : sqrt(squares));
+  }
+  return HL_OK;
+}
+
+static hl_status read_column(hl_stream **stream, hl_vtk_pieces *pieces, const hl_vtk_piece *piece,
+                             hl_particle_columns *columns, int c, const char *name, hl_error *error) {
+  const hl_vtk_piece_array *array = hl_vtk_pieces_find(pieces, piece, HL_VTK_POINT_DATA, name);
+  double *numbers = NULL;
+  if (array == NULL) return hl_vtk_pieces_fail_missing(pieces, columns->column[c].name, error);
+  hl_status status = hl_vtk_pieces_numbers(stream, pieces, array, piece->point_count, &numbers, error);
+  if (status == HL_OK)
+    status = append(columns, &columns->column[c], numbers, piece->point_count, array->components, error);
+  hl_release(pieces->context, numbers);
+  return status;
+}
+
+static hl_status read_places(hl_stream **stream, hl_vtk_pieces *pieces, const hl_vtk_piece *piece,
+                             hl_particle_columns *columns, hl_error *error) {
+  const hl_vtk_piece_array *points = hl_vtk_pieces_find(pieces, piece, HL_VTK_POINTS, NULL);
+  size_t count = columns->count + piece->point_count;
+  double *numbers = NULL;
+  if (points == NULL || points->components != 3) return hl_vtk_pieces_fail_missing(pieces, "points", error);
+  hl_status status = hl_vtk_pieces_numbers(stream, pieces, points, piece->point_count, &numbers, error);
+  if (status == HL_OK) {
+    void *positions = hl_reallocate(columns->context, columns->positions, count, sizeof *columns->positions);
+    if (positions == NULL) status = hl_fail_memory(error, count * sizeof *columns->positions, "particles");
+    else columns->positions = positions;
+  }
+  if (status == HL_OK)
+    memcpy(columns->positions + columns->count, numbers, piece->point_count * sizeof *columns->positions);
+  hl_release(pieces->context, numbers);
+  return status;
+}
+
+/* The names of the columns' arrays in the file, which the columns hold only as far as they can be printed. */
+static const char *name_of(const hl_vtk_pieces *pieces, int column) {
+  for (size_t n = 0; n < pieces->pieces[0].array_count; n++) {
+    const hl_vtk_piece_array *array = &pieces->arrays[pieces->pieces[0].first_array + n];
+    hl_voxel_type type;
+    if (array->section != HL_VTK_POINT_DATA || !hl_vtk_xml_find_type(array->array.type, &type)) continue;
+    if (column-- == 0) return array->name;
+  }
+  return "";
+}
+
+static hl_status read_pieces(hl_stream **stream, hl_vtk_pieces *pieces, hl_particle_columns *columns,
+                             hl_error *error) {
+  hl_status status = HL_OK;
+  name_columns(pieces, columns);
+  for (size_t n = 0; n < pieces->piece_count && status == HL_OK; n++) {
+    const hl_vtk_piece *piece = &pieces->pieces[n];
+    status = read_places(stream, pieces, piece, columns, error);
+    for (int c = 0; c < columns->column_count && status == HL_OK; c++)
+      status = read_column(stream, pieces, piece, columns, c, name_of(pieces, c), error);
+    columns->count += piece->point_count;
+  }
+  return status;
+}
+
+/* ---- the whole ---- */
+
+static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
+  hl_vtk_pieces pieces = {.context = request->context, .types = types, .type_count = 1};
+  hl_particle_columns columns = {.context = request->context};
+  pieces.xml.stream = *stream;
+  char *path = hl_copy_text(request->context, (*stream)->path); /* arrays open the stream anew */
+  hl_status status = path != NULL ? hl_vtk_pieces_read(&pieces, error) : hl_fail_memory(error, 1, "a path");
+  if (status == HL_OK && !are_particles(&pieces))
+    status = hl_fail(error, HL_ERROR_UNSUPPORTED,
+                     "%s: a mesh, not a volume: give it to `halflight render` beside a volume, or alone",
+                     path);
+  if (status == HL_OK) status = read_pieces(stream, &pieces, &columns, error);
+  if (status == HL_OK) status = hl_particle_columns_volume(&columns, request, path, volume, error);
+  hl_particle_columns_release(&columns);
+  hl_vtk_pieces_release(&pieces);
+  hl_release(request->context, path);
+  return status;
+}
+
+static bool has_content(const unsigned char *bytes, size_t length) {
+  return hl_vtk_xml_is_of(bytes, length, types, 1);
+}
+
+const hl_format hl_format_vtp = {
+    .name = "VTK .vtp",
+    .endings = {".vtp"},
+    .beginning = "\"<VTKFile\" of type \"PolyData\"",
+    .has_content = has_content,
+    .load = load,
+};
