@@ -77,7 +77,7 @@ typedef struct plan_volume {
   float scale, offset, first_visible, last_visible, normal_edge;
   int bends; /* there is a table of bent colours */
   int several_surfaces;
-  float only_outside, side;
+  float only_beginning;
   /* surfaces at the box's faces (shade_volume in render/slab.h) */
   int any_face, cut_shading;
   int face_cuts[6]; /* [axis][low, high] */

@@ -117,13 +117,26 @@ static void fill_outside(classifier *classifier) {
     classifier->outside[empty - 1] = classifier->offset;
     fill_side(classifier, (int)floorf(classifier->offset), -1);
   }
+}
+
+/* The integral of extinction over entries, from entry 0 to a coordinate. */
+static float integral_to(const classifier *classifier, float x) {
+  const float *at = classifier->sums[(int)x], *next = classifier->sums[(int)x + 1];
+  return at[1] + (next[1] - at[1]) * (x - (float)(int)x);
+}
+
+/* Finds the integrals at which surfaces begin, and whether there are several surfaces. */
+static void fill_beginnings(classifier *classifier) {
+  float only = 0, only_side = 0;
   int surfaces = 0;
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES; entry++) {
-    if (!(classifier->sums[entry][0] > 0) && !(classifier->sums[entry + 1][0] > 0)) continue;
     float foot = classifier->outside[entry], side = (float)entry >= foot ? 1 : -1;
-    if (surfaces > 0 && foot == classifier->only_outside && side == classifier->side) continue;
-    classifier->only_outside = foot;
-    classifier->side = side;
+    classifier->sums[entry][3] = integral_to(classifier, foot);
+    if (!(classifier->sums[entry][0] > 0) && !(classifier->sums[entry + 1][0] > 0)) continue;
+    if (surfaces > 0 && foot == only && side == only_side) continue;
+    only = foot;
+    only_side = side;
+    classifier->only_beginning = classifier->sums[entry][3];
     surfaces++;
   }
   classifier->several_surfaces = surfaces > 1;
@@ -154,6 +167,7 @@ static void fill_tables(const hl_scene_volume *volume, double empty, double low,
   classifier->first_visible = (float)classifier->next_visible[0] - 1;
   classifier->last_visible = (float)last + 1;
   fill_outside(classifier);
+  fill_beginnings(classifier);
 }
 
 /* The least gradient of a surface: a thousandth of the transfer function's span of values, per voxel edge. */

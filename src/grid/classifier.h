@@ -25,7 +25,8 @@ typedef struct classifier {
   float scale, offset; /* table coordinate = density * scale + offset, clamped to [0, CLASSIFIER_ENTRIES] */
   /* Tables of CLASSIFIER_ENTRIES + 2 entries in one block, which sums owns. */
   float (*sums)[4];  /* extinction per world unit; its integral over entries, from entry 0; the integral of
-                      * extinction times the entry's number; 0 */
+                      * extinction times the entry's number; for values from an entry to the next, the first
+                      * integral at the coordinate at which their surface begins (see outside) */
   float (*color)[4]; /* linear RGB; 0 */
   float (*shown)[4]; /* integrals over entries, from entry 0: of extinction times linear RGB, and of
                       * extinction */
@@ -38,9 +39,8 @@ typedef struct classifier {
    * before a second rise; the empty value's coordinate if there is none */
   float *outside;
   bool several_surfaces; /* whether visible values have more than one such beginning */
-  float only_outside;    /* the only beginning, where several_surfaces is false; visible values lie above it
-                          * where `side` is 1, and below it where `side` is -1 */
-  float side;
+  float only_beginning;  /* the integral of extinction up to the only beginning, where several_surfaces is
+                          * false */
   float first_visible, last_visible; /* table coordinates outside of which nothing has extinction */
   /* Gradient opacity: the factor of extinction by the gradient's length, [STEEPNESS_ENTRIES + 2], in the same
    * block. Null if the factor is 1 everywhere. Table coordinate = length * steepness_scale, clamped to [0,

@@ -40,16 +40,28 @@ typedef struct way_sums {
   lanes moment;     /* the integral of extinction * entry, 0 where the ends are close */
 } way_sums;
 
-LANES_INLINE way_sums sums_of_way(const classifier *classifier, table_coordinate a, table_coordinate b) {
+/* The integrals of extinction over entries, from entry 0 to the ends of a way. */
+typedef struct way_ends {
+  lanes to_a, to_b;
+} way_ends;
+
+LANES_INLINE way_sums sums_and_ends_of_way(const classifier *classifier, table_coordinate a,
+                                           table_coordinate b, way_ends *to) {
   lanes at_a[3], at_b[3];
   table_values(classifier->sums, a, at_a);
   table_values(classifier->sums, b, at_b);
   lanes ends = (at_a[0] + at_b[0]) * 0.5f, distance = b.x - a.x;
   lanes_int far = lanes_abs(distance) > CLOSE_ENTRIES;
   way_sums sums = {ends, lanes_keep(far, at_b[1] - at_a[1]), at_b[2] - at_a[2]};
+  *to = (way_ends){at_a[1], at_b[1]};
   lanes mean = lanes_max(sums.integral / lanes_select(far, distance, lanes_set(1.0f)), lanes_set(0));
   sums.extinction = lanes_select(far, mean, ends);
   return sums;
+}
+
+LANES_INLINE way_sums sums_of_way(const classifier *classifier, table_coordinate a, table_coordinate b) {
+  way_ends to;
+  return sums_and_ends_of_way(classifier, a, b, &to);
 }
 
 /* The lanes in which some density between a and b can have extinction. */

@@ -399,4 +399,5 @@ void hl_reference_volume_release(hl_context *context, reference_volume *volume) 
   hl_release(context, volume->coefficients);
   hl_release(context, volume->ranges);
   hl_release(context, volume->feet);
+  hl_release(context, volume->depths);
 }

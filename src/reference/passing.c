@@ -57,6 +57,14 @@ static double foot_of(const reference_volume *volume, double value) {
   return volume->feet[index_of_value(volume, value)];
 }
 
+/* The integral of extinction over values, up to a value, in steps. */
+static double depth_to(const reference_volume *volume, double value) {
+  double place = (value - volume->feet_low) / (volume->feet_high - volume->feet_low) * HL_REFERENCE_FEET;
+  place = fmin(fmax(place, 0), HL_REFERENCE_FEET);
+  const int step = (int)fmin(place, HL_REFERENCE_FEET - 1);
+  return volume->depths[step] + (volume->depths[step + 1] - volume->depths[step]) * (place - step);
+}
+
 /* Finds the values at which surfaces begin, walking from the empty value outwards. A surface begins at the
  * last value without extinction. A second surface begins after extinction did not rise over a twentieth of
  * the values since the first surface's beginning, and then rises by half. */
@@ -88,7 +96,8 @@ static void find_feet(reference_volume *volume, int first, int step) {
 hl_status hl_reference_feet_create(hl_context *context, reference_volume *volume, hl_error *error) {
   const hl_volume *grid = volume->grid;
   volume->feet = hl_allocate(context, HL_REFERENCE_FEET, sizeof *volume->feet);
-  if (volume->feet == NULL)
+  volume->depths = hl_allocate_zeroed(context, HL_REFERENCE_FEET + 1, sizeof *volume->depths);
+  if (volume->feet == NULL || volume->depths == NULL)
     return hl_fail_memory(error, HL_REFERENCE_FEET * sizeof *volume->feet, "the reference");
   volume->feet_low = fmin(grid->minimum, volume->empty_value);
   volume->feet_high = fmax(grid->maximum, volume->empty_value);
@@ -96,6 +105,8 @@ hl_status hl_reference_feet_create(hl_context *context, reference_volume *volume
   int empty = index_of_value(volume, volume->empty_value);
   find_feet(volume, empty, -1);
   find_feet(volume, empty, 1);
+  for (int i = 0; i < HL_REFERENCE_FEET; i++)
+    volume->depths[i + 1] = volume->depths[i] + extinction_at(volume, value_of_foot(volume, i));
   return HL_OK;
 }
 
@@ -117,10 +128,12 @@ static double kept_in_skin(double kept, double skin) { return skin > 0 ? pow(kep
 static kept_light kept_of_step(const reference_volume *volume, double from, double to, double length,
                                double skin) {
   double foot_from = foot_of(volume, from), foot_to = foot_of(volume, to), deep = to - foot_to,
-         left = fmin(fabs(deep) / fmax(fabs(from - foot_from), 1e-300), 1);
+         depth_from = fabs(depth_to(volume, from) - depth_to(volume, foot_from)),
+         depth_to_here = fabs(depth_to(volume, to) - depth_to(volume, foot_to)),
+         left = fmin(depth_to_here / fmax(depth_from, 1e-300), 1);
   double even = length - fabs(to - from) / volume->surface_gradient;
   bool same = foot_from == foot_to, enters = (to - from) * deep > 0;
-  left = pow(left, 16) * exp(-fmax(even, 0) / (4 * volume->smallest_edge));
+  left = pow(left, 16) * exp(-fmax(even, 0) / volume->smallest_edge);
   if (!(extinction_at(volume, to) > 0)) skin = 0;
   if (same) return (kept_light){kept_in_skin(left, skin), kept_in_skin(left, skin), false};
   if (skin == 1) return (kept_light){1, 1, false};

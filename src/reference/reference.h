@@ -64,6 +64,8 @@ typedef struct reference_volume {
   double *feet; /* owned; [HL_REFERENCE_FEET]; for equal steps of values from feet_low to feet_high, the value
                  * at which their surface begins */
   double feet_low, feet_high;
+  double *depths; /* owned; [HL_REFERENCE_FEET + 1]; the integrals of extinction over values, from feet_low to
+                   * the ends of these steps */
   const struct reference_volume *second; /* the other volume of a function of two numbers, else null */
   affine3 index_to_second;               /* maps the volume's index space to the second volume's */
   affine3 index_to_mask;    /* maps the volume's index space to its mask's index space, if it has a mask */
@@ -342,7 +344,7 @@ void hl_reference_transmittance(const reference *all, const reference_ray *ray, 
 /* The fraction of light that reaches the outside of the surface of the volume in which the ray begins. */
 void hl_reference_outside(const reference *all, const reference_ray *ray, const reference_receiver *at,
                           crossing *scratch, double passing[3]);
-/* Fills volume->feet. The volume's other members must be known. */
+/* Fills volume->feet and volume->depths. The volume's other members must be known. */
 enum { HL_REFERENCE_FEET = 4096 };
 hl_status hl_reference_feet_create(hl_context *context, reference_volume *volume, hl_error *error);
 /* Henyey and Greenstein's phase function times 4 pi, for light that comes from `towards` (unit vector) and

@@ -143,8 +143,7 @@ static void plan_matter(const shade_volume *shade, plan_volume *volume) {
   volume->normal_edge = classifier->normal_edge;
   volume->bends = classifier->bent != NULL;
   volume->several_surfaces = classifier->several_surfaces;
-  volume->only_outside = classifier->only_outside;
-  volume->side = classifier->side;
+  volume->only_beginning = classifier->only_beginning;
   volume->any_face = shade->any_face;
   volume->cut_shading = shade->cut_shading;
   for (int face = 0; face < 6; face++) volume->face_cuts[face] = shade->face_cuts[face / 2][face % 2];

@@ -58,7 +58,9 @@ typedef struct attenuate_job {
  *
  *     Y <- T t + k (Y - T) + k' T (1 - t)      T <- T t
  *
- * The depth h of a value is its distance from the value at which its surface begins, classifier.outside.
+ * The depth h of a value is the integral of extinction over values, from the value at which its surface
+ * begins, classifier.outside. An edge whose values rise evenly has, up to a value, an optical depth in
+ * proportion to h.
  * While light goes on within one surface, which begins at one value, k = k' = min(1, h2 / h1)^OUTWARDS_POWER:
  * 1 while it goes deeper, falling to 0 where the surface ends. Light that enters another surface within the
  * slab has k = 0 and k' = 1. Light that leaves a surface, or a cut's face, has k = k' = 0. The product over
@@ -72,14 +74,14 @@ typedef struct attenuate_job {
  * comes in. Deeper, the k of the values gets the power 1 - skin, where the skin falls from 1 to 0 at
  * FACE_VOXELS behind the face. There the eye, too, sees less and less of the face (render/slab_lanes.h).
  *
- * OUTWARDS_POWER: sets how soon a surface that light leaves again counts as left. Within about the outermost
- * voxel of an edge h falls to 2/3; then 1/25 of the taken light still lights the surface. */
+ * OUTWARDS_POWER: sets how soon a surface that light leaves again counts as left. Where h has fallen by a
+ * tenth, .19 of the taken light still lights the surface; where it has fallen by a third, .0015 does. */
 #define OUTWARDS_POWER 16
 
-/* Voxels of even matter after which a surface counts as left: few enough that light hardly goes on from a
- * wall into the floor below it, and enough for the face of a cut, whose matter is even, to be lit as deep as
- * it is seen. */
-#define EVEN_VOXELS 4
+/* Voxels of even matter after which a surface counts as left. Matter that is even over a voxel is no edge, so
+ * that light does not go on through it from a wall into the floor below. The faces of cuts, behind which
+ * matter is even, have a rule of their own. */
+#define EVEN_VOXELS 1
 
 /* A surface in the dark takes no light, but a method that blurs the light taken before needs to know that the
  * surface is there, because light from beside the shadow ends at it, too. Where less than DARK_AT_START is

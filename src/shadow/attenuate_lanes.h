@@ -96,9 +96,10 @@ typedef struct kept_light {
   lanes before, within;
 } kept_light;
 
-/* min(1, to / from)^OUTWARDS_POWER, of depths h. */
-LANES_INLINE lanes power_of_depth(lanes from, lanes to) {
-  lanes left = lanes_min(to / lanes_max(from, lanes_set(1e-6f)), lanes_set(1.0f));
+/* min(1, h2 / h1)^OUTWARDS_POWER. The depths h1 and h2 are the differences of the integrals of extinction up
+ * to the values and up to the beginnings of the values' surfaces. */
+LANES_INLINE lanes power_of_depth(lanes h1, lanes h2) {
+  lanes left = lanes_min(lanes_abs(h2) / lanes_max(lanes_abs(h1), lanes_set(1e-30f)), lanes_set(1.0f));
   for (int power = 1; power < OUTWARDS_POWER; power *= 2) left = left * left;
   return left;
 }
@@ -131,27 +132,29 @@ LANES_INLINE kept_light kept_in_span(const attenuate_volume *volume, kept_light 
   return (kept_light){lanes_keep(~ends & ~begins, kept.before), lanes_keep(~ends, kept.within)};
 }
 
-/* Of one volume's own values. path: of the light's ray through the slab; extinction: of the slab; at: offset
- * of the block's first pixel. */
+/* Of one volume's own values. to: of the way from a to b; path: of the light's ray through the slab;
+ * extinction: of the slab; at: offset of the block's first pixel. */
 LANES_INLINE kept_light kept_by_values(const attenuate_job *job, const attenuate_volume *volume,
-                                       table_coordinate a, table_coordinate b, covered_span span, lanes path,
-                                       lanes extinction, size_t at) {
-  const lanes none = lanes_set(0), all = lanes_set(1.0f);
+                                       table_coordinate a, table_coordinate b, const way_ends *to,
+                                       covered_span span, lanes path, lanes extinction, size_t at) {
+  const lanes all = lanes_set(1.0f);
   lanes way = path * span.length;
   lanes even = way - lanes_abs(b.x - a.x) * (1.0f / volume->classifier->normal_edge);
   const int some_even = lanes_bits(even > 0.0f) != 0;
   if (some_even)
     even = lanes_exp_negative(lanes_max(even, lanes_set(0)) * (1.0f / (EVEN_VOXELS * volume->voxel)));
   if (!volume->classifier->several_surfaces) {
-    const float foot = volume->classifier->only_outside, side = volume->classifier->side;
-    lanes left = power_of_depth(lanes_max((a.x - foot) * side, none), lanes_max((b.x - foot) * side, none));
+    const float beginning = volume->classifier->only_beginning;
+    lanes left = power_of_depth(to->to_a - beginning, to->to_b - beginning);
     if (some_even) left = left * even;
     return (kept_light){left, left};
   }
   lanes foot_a = lanes_gather(volume->classifier->outside, a.entry),
         foot_b = lanes_gather(volume->classifier->outside, b.entry), deep = b.x - foot_b,
         depth = extinction * path;
-  lanes left = power_of_depth(lanes_abs(a.x - foot_a), lanes_abs(deep));
+  const float *beginnings = &volume->classifier->sums[0][3];
+  lanes left = power_of_depth(to->to_a - lanes_gather(beginnings, a.entry * 4),
+                              to->to_b - lanes_gather(beginnings, b.entry * 4));
   lanes_int same = foot_a == foot_b, enters = (b.x - a.x) * deep > 0.0f;
   if (some_even) left = left * even;
   kept_light kept = {lanes_keep(same, left), lanes_select(same, left, lanes_keep(enters, all))};
@@ -209,7 +212,8 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
     covered_span span = covered_block(volume->enter, volume->leave, volume->uncut, block, job->height,
                                       job->spacing);
     if (volume->enter != NULL) cut_way(span, &a, &b);
-    way_sums sums = sums_of_way(volume->classifier, a, b);
+    way_ends to;
+    way_sums sums = sums_and_ends_of_way(volume->classifier, a, b, &to);
     lanes extinction = sums.extinction * span.length;
     if (hl_classifier_is_weighed(volume->classifier)) {
       extinction = extinction * factor_in_block(job, volume, corner, &sums, a.x, b.x, span);
@@ -219,7 +223,7 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
     if (job->outside[0] == NULL) continue;
     kept_light own = {lanes_set(0), lanes_set(0)};
     if (volume->surface) {
-      own = kept_by_values(job, volume, a, b, span, path, extinction, (size_t)y * job->stride + x);
+      own = kept_by_values(job, volume, a, b, &to, span, path, extinction, (size_t)y * job->stride + x);
       if (volume->faces != NULL) own = kept_by_face(volume, own, b, corner);
       own = kept_in_span(volume, own, span);
     }

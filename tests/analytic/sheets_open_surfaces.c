@@ -139,31 +139,49 @@ static void test_layers(void **state) {
   }
 }
 
-/* A wall on a floor: behind it no light comes through the corner, before it the floor sends N.L. */
-static void test_wall_on_a_floor(void **state) {
-  (void)state;
-  static float pixels[PIXELS * 4], voxels[64 * 8 * GRID];
+static double greatest(const float *pixels) {
+  double most = 0;
+  for (int i = 0; i < PIXELS; i++) most = fmax(most, (double)pixels[4 * i]);
+  return most;
+}
+
+/* A wall on a floor. Its voxels go from 4 below the origin on. */
+static void add_wall(stage *set, int thickness, const hl_opacity_point *function) {
+  static float voxels[64 * 8 * GRID];
   for (int i = 0; i < 64 * 8 * GRID; i++) {
     int x = i % 64, z = i / 512;
-    voxels[i] = z < 16 || (x >= 24 && x < 32 && z < 40) ? 1 : 0;
+    voxels[i] = z < 16 || (x >= 24 && x < 24 + thickness && z < 40) ? 1 : 0;
   }
-  for (int f = 1; f < 4; f++) {
+  hl_scene_volume *volume = stage_add_grid(set, (size_t[3]){64, 8, GRID}, (double[3]){1, 24, 1},
+                                           (vec3){-28, -96, -16}, voxels);
+  volume->transfer_function.opacity = function;
+  volume->transfer_function.opacity_count = 3;
+  volume->transfer_function.unit_distance = 1;
+  volume->shading = HL_SHADING_PHONG;
+  volume->material = (hl_material){.diffuse = 1};
+}
+
+/* Behind a wall on a floor no light comes through the corner, also where the wall is thin and the light low;
+ * before it the floor sends N.L. */
+static void test_wall_on_a_floor(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  for (int trial = 0; trial < 4 * 2 * 2; trial++) {
+    const int f = trial % 4, thickness = trial / 4 % 2 ? 3 : 8;
+    const double light = trial / 8 ? 15 * DEGREE : 30 * DEGREE;
     stage set;
     open_floor(&set, HL_SHADOWS_HARD, HL_SOFT_CASCADE);
-    hl_scene_volume *volume = stage_add_grid(&set, (size_t[3]){64, 8, GRID}, (double[3]){1, 24, 1},
-                                             (vec3){-28, -96, -16}, voxels);
-    volume->transfer_function.opacity = FUNCTIONS[f];
-    volume->transfer_function.opacity_count = 3;
-    volume->transfer_function.unit_distance = 1;
-    volume->shading = HL_SHADING_PHONG;
-    volume->material = (hl_material){.diffuse = 1};
-    stage_add_directional(&set, way_from(30 * DEGREE, HL_PI));
+    add_wall(&set, thickness, FUNCTIONS[f]);
+    stage_add_directional(&set, way_from(light, HL_PI));
     set.scene.camera.height = 6;
     for (int side = 0; side < 2; side++) { /* 5 to 11 voxels before the wall, 0 to 6 behind it */
-      double x = side == 0 ? -12 : 7.5;
+      double x = side == 0 ? -12 : thickness - 0.5;
       stage_look(&set, (vec3){x, 0, 300}, (vec3){x, 0, 0}, (vec3){0, 1, 0});
       stage_render_sheets(&set, pixels);
-      assert_near(mean(pixels) / sin(30 * DEGREE), side == 0 ? 1 : 0, 0.03);
+      assert_near(mean(pixels) / sin(light), side == 0 ? 1 : 0, 0.03);
+      if (side == 1 && !(greatest(pixels) / sin(light) < 0.08))
+        fail_msg("function %d, wall of %d, light at %.0f degrees: %.3f of the light in the corner", f,
+                 thickness, light / DEGREE, greatest(pixels) / sin(light));
     }
     stage_close(&set);
   }

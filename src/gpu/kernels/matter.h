@@ -32,6 +32,8 @@ DEVICE table_coordinate coordinate_of_density(GLOBAL const plan_volume *volume, 
 DEVICE GLOBAL const float *sums_table(GLOBAL const float *tables) { return tables; }
 DEVICE GLOBAL const float *color_table(GLOBAL const float *tables) { return tables + PLAN_TABLE_ROWS * 4; }
 DEVICE GLOBAL const float *shown_table(GLOBAL const float *tables) { return tables + PLAN_TABLE_ROWS * 8; }
+/* The integral of extinction up to the beginning of the surface of values from an entry to the next. */
+DEVICE float beginning_at(GLOBAL const float *tables, int entry) { return sums_table(tables)[entry * 4 + 3]; }
 DEVICE GLOBAL const float *outside_table(GLOBAL const float *tables) { return tables + PLAN_TABLE_ROWS * 12; }
 DEVICE GLOBAL const float *bent_table(GLOBAL const float *tables) { return tables + PLAN_TABLE_ROWS * 13; }
 
@@ -44,6 +46,7 @@ DEVICE void table_values(GLOBAL const float *table, table_coordinate at, int col
 /* Integrals from one coordinate to another. */
 typedef struct way_sums {
   float extinction, integral, moment;
+  float to_a, to_b; /* the integrals of extinction from entry 0 */
 } way_sums;
 
 DEVICE way_sums sums_of_way(GLOBAL const float *tables, table_coordinate a, table_coordinate b) {
@@ -55,6 +58,8 @@ DEVICE way_sums sums_of_way(GLOBAL const float *tables, table_coordinate a, tabl
   way_sums sums;
   sums.integral = far ? at_b[1] - at_a[1] : 0.0f;
   sums.moment = at_b[2] - at_a[2];
+  sums.to_a = at_a[1];
+  sums.to_b = at_b[1];
   sums.extinction = far ? greater(divided(sums.integral, distance), 0.0f) : ends;
   return sums;
 }

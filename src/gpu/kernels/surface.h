@@ -114,7 +114,7 @@ DEVICE second_surface kept_at_foot(GLOBAL const float *tables, float first, floa
 
 /* ---- a light's way through a slab ---- */
 
-#define EVEN_VOXELS      4
+#define EVEN_VOXELS      1
 #define OUTWARDS_POWER   16
 #define ROUNDING_OF_SPAN 1e-3f
 
@@ -123,18 +123,21 @@ typedef struct kept_light {
   float before, within;
 } kept_light;
 
-DEVICE float power_of_depth(float from, float to) {
-  float left = lesser(divided(to, greater(from, 1e-6f)), 1.0f);
+DEVICE float power_of_depth(float h1, float h2) {
+  float left = lesser(divided(magnitude(h2), greater(magnitude(h1), 1e-30f)), 1.0f);
   for (int power = 1; power < OUTWARDS_POWER; power *= 2) left = left * left;
   return left;
 }
 
 /* Finds them for a volume with several surfaces. light, outside: T and Y before the slab. */
 DEVICE kept_light kept_of_several(const volume_data *volume, table_coordinate a, table_coordinate b,
-                                  float way, float depth, float even, float light, float outside) {
+                                  const way_sums *sums, float way, float depth, float even, float light,
+                                  float outside) {
   GLOBAL const float *feet = outside_table(volume->tables);
   float foot_a = feet[a.entry], foot_b = feet[b.entry], deep = b.x - foot_b;
-  float left = power_of_depth(magnitude(a.x - foot_a), magnitude(deep)) * even;
+  float left = power_of_depth(sums->to_a - beginning_at(volume->tables, a.entry),
+                              sums->to_b - beginning_at(volume->tables, b.entry)) *
+               even;
   int same = foot_a == foot_b, enters = (b.x - a.x) * deep > 0.0f;
   kept_light kept;
   kept.before = same ? left : 0.0f;
@@ -174,21 +177,20 @@ DEVICE float skin_of_faces(GLOBAL const plan_volume *volume, GLOBAL const plan_r
   return greater(greater(x, y), z);
 }
 
-/* path: length of the light's ray through the slab. extinction: the slab's extinction. skin: how much visible
- * matter belongs to a face. */
+/* sums: from a to b. path: length of the light's ray through the slab. extinction: the slab's extinction.
+ * skin: how much visible matter belongs to a face. */
 DEVICE kept_light kept_in_slab(const volume_data *volume, table_coordinate a, table_coordinate b,
-                               covered_span span, float path, float extinction, float skin, float light,
-                               float outside) {
+                               const way_sums *sums, covered_span span, float path, float extinction,
+                               float skin, float light, float outside) {
   GLOBAL const plan_volume *plan = volume->plan;
   float way = path * span.length;
   float even = way - magnitude(b.x - a.x) * divided(1.0f, plan->normal_edge);
   even = exp_negative(greater(even, 0.0f) * divided(1.0f, EVEN_VOXELS * plan->voxel));
   kept_light kept;
   if (plan->several_surfaces) {
-    kept = kept_of_several(volume, a, b, way, extinction * path, even, light, outside);
+    kept = kept_of_several(volume, a, b, sums, way, extinction * path, even, light, outside);
   } else {
-    const float foot = plan->only_outside, side = plan->side;
-    float left = power_of_depth(greater((a.x - foot) * side, 0.0f), greater((b.x - foot) * side, 0.0f));
+    float left = power_of_depth(sums->to_a - plan->only_beginning, sums->to_b - plan->only_beginning);
     kept.before = kept.within = left * even;
   }
 #if BOXED

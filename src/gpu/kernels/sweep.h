@@ -271,15 +271,16 @@ DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *ligh
 #if BOXED
   cut_way(part, &a, &b);
 #endif
-  float extinction = sums_of_way(sweep->volume.tables, a, b).extinction * part.length, all = 0.0f;
+  const way_sums sums = sums_of_way(sweep->volume.tables, a, b);
+  float extinction = sums.extinction * part.length, all = 0.0f;
   if (!(extinction > 0.0f)) return 0;
   float path = path_through_sheet(in_frame, !light->parallel, light->slab_path, u, v);
 #if OUTSIDE
   const float skin = BOXED && volume->any_face && volume->cut_shading == CUT_SHADING_FACE
                          ? skin_of_faces(volume, in_index - 1, !light->parallel, u, v)
                          : 0.0f;
-  const kept_light kept = kept_in_slab(&sweep->volume, a, b, part, path, extinction, skin, pixel->passing[0],
-                                       pixel->passing[CHANNELS]);
+  const kept_light kept = kept_in_slab(&sweep->volume, a, b, &sums, part, path, extinction, skin,
+                                       pixel->passing[0], pixel->passing[CHANNELS]);
 #endif
   for (int c = 0; c < CHANNELS; c++) {
     float depth = fused(extinction, volume->weight[c], 0.0f), light_before = pixel->passing[c];
