@@ -47,7 +47,7 @@ def test_automatic_light_is_for_what_is_seen(program, tmp_path, ball):
 
 def test_scenes_keep_them(program, tmp_path, ball):
     np.save(tmp_path / "ball.npy", ball)
-    scene = Scene(Volume(str(tmp_path / "ball.npy"), iso=[(-26, "gold"), (-65, "skyblue", 0.5)]), size=(24, 24))
+    scene = Scene(Volume(str(tmp_path / "ball.npy"), iso=[(-26, "gold"), (-65, "blue", 0.5)]), size=(24, 24))
     assert [one[0] for one in scene.volumes[0].look["iso"]] == [-26, -65]
     (tmp_path / "scene.json").write_text(scene.to_json())
     subprocess.run([program, "render", tmp_path / "scene.json", "--quiet", "-o", tmp_path / "c.npy"], check=True)
