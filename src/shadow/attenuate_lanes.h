@@ -124,12 +124,13 @@ LANES_INLINE kept_light kept_by_face(const attenuate_volume *volume, kept_light 
 /* The slab's part in a box that ends this near to the slab's own end is rounding. */
 static const float ROUNDING_OF_SPAN = 1e-3f;
 
-/* Where a face cuts the slab, light comes from no surface, or leaves it. */
+/* Where a face ends the matter within the slab, light leaves the surface. Where a face begins it, light comes
+ * from no surface, and has lost what a surface took. Only blurs bring taken light there, across the face: the
+ * shadow of the face's own matter, and with it the light that this matter took, so that the face keeps it. */
 LANES_INLINE kept_light kept_in_span(const attenuate_volume *volume, kept_light kept, covered_span span) {
   if (volume->enter == NULL) return kept;
   lanes_int ends = (span.begin + span.length) < (1.0f - ROUNDING_OF_SPAN);
-  lanes_int begins = span.begin > ROUNDING_OF_SPAN;
-  return (kept_light){lanes_keep(~ends & ~begins, kept.before), lanes_keep(~ends, kept.within)};
+  return (kept_light){lanes_keep(~ends, kept.before), lanes_keep(~ends, kept.within)};
 }
 
 /* Of one volume's own values. to: of the way from a to b; path: of the light's ray through the slab;

@@ -202,9 +202,7 @@ DEVICE kept_light kept_in_slab(const volume_data *volume, table_coordinate a, ta
       kept.within = power_of_part(kept.within, 1.0f - skin);
     }
   }
-  int ends = span.begin + span.length<1.0f - ROUNDING_OF_SPAN, begins = span.begin> ROUNDING_OF_SPAN;
-  if (ends || begins) kept.before = 0.0f;
-  if (ends) kept.within = 0.0f;
+  if (span.begin + span.length < 1.0f - ROUNDING_OF_SPAN) kept.before = kept.within = 0.0f;
 #endif
   return kept;
 }
