@@ -5,6 +5,7 @@
     measure.py   errors and costs
     outside.py   Mitsuba 3 on a scene that both can render
     lines.py     lines where nothing casts a shadow: floors and balls
+    faces.py     faces of cuts, and isosurfaces
     pictures.py  difference pictures and plots
     report.py    docs/accuracy.md
 """
@@ -12,7 +13,6 @@ import argparse
 import os
 import pathlib
 
-import lines
 import measure
 import outside
 import pictures
@@ -28,14 +28,14 @@ def arguments():
     parser.add_argument("--skip-mitsuba", action="store_true")
     parser.add_argument("--skip-costs", action="store_true")
     parser.add_argument("--reference-only", action="store_true", help="only make the reference's pictures")
-    parser.add_argument("--lines-only", action="store_true", help="only the section about lines, without the reference")
+    parser.add_argument("--lines-only", action="store_true", help="only the sections about lines, faces and isosurfaces, without the reference")
     return parser.parse_args()
 
 
 def main():
     chosen = arguments()
     if chosen.lines_only:
-        report.replace_lines(lines.measure(measure.METHODS))
+        report.replace_lines(report.lines_and_faces())
         return
     results = []
     for name in scenes.names(chosen.only):
@@ -60,7 +60,7 @@ def main():
     truth = None if chosen.skip_mitsuba else outside.measure()
     if truth is not None:
         pictures.outside(truth[0])
-    report.write(results, truth, lines.measure(measure.METHODS))
+    report.write(results, truth, report.lines_and_faces())
 
 
 main()

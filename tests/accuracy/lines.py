@@ -36,11 +36,20 @@ def wide(degrees):
     return {"type": "directional", "direction": [-0.5, 0.55, -0.5], "angular_diameter_deg": degrees}
 
 
+def scene_of(volume, camera, light, render):
+    """A white volume; one with isosurfaces shows these alone."""
+    volume = {**volume, "shading": "phong", "material": MATERIAL}
+    if "iso" in volume:
+        volume["iso"] = [{**surface, "color": [1, 1, 1]} for surface in volume["iso"]]
+    else:
+        volume["transfer_function"] = {**volume.get("transfer_function", {}), "color": [1, 1, 1]}
+    return {"halflight": 1, "image": {"width": SIDE, "height": SIDE}, "ambient": [0, 0, 0], "camera": camera, "lights": [light],
+            "volumes": [volume], "render": render}
+
+
 def picture(volume, camera, light, label, **render):
     """Brightness and alpha, linear."""
-    scene = {"halflight": 1, "image": {"width": SIDE, "height": SIDE}, "ambient": [0, 0, 0], "camera": camera, "lights": [light],
-             "volumes": [{**volume, "transfer_function": {"color": [1, 1, 1]}, "material": MATERIAL}], "render": render}
-    scenes.run(scene, label)
+    scenes.run(scene_of(volume, camera, light, render), label)
     pixels = numpy.load(scenes.WORK / f"{label}.npy").astype(float)
     return pixels[:, :, 0], pixels[:, :, 3]
 
@@ -66,27 +75,28 @@ def high_passed(difference, bright, alpha):
     return numpy.quantile(lines / numpy.maximum(around, around.max() / 2), 0.999)
 
 
-def floor(light, settings, spacing, label):
+def floor(volume, light, settings, spacing, label):
     """Lines of what differs from the floor without shadows."""
-    even, alpha = picture(FLOOR, FLOOR_CAMERA, light, label, shadows="off", sheet_spacing=spacing)
-    made, _ = picture(FLOOR, FLOOR_CAMERA, light, label, sheet_spacing=spacing, **settings)
+    even, alpha = picture(volume, FLOOR_CAMERA, light, label, shadows="off", sheet_spacing=spacing)
+    made, _ = picture(volume, FLOOR_CAMERA, light, label, sheet_spacing=spacing, **settings)
     return high_passed(made - even, even, alpha)
 
 
-def ball(degrees, settings, spacing, label):
-    made, alpha = picture(BALL, BALL_CAMERA, wide(degrees), label, sheet_spacing=spacing, **settings)
+def ball(volume, degrees, settings, spacing, label):
+    made, alpha = picture(volume, BALL_CAMERA, wide(degrees), label, sheet_spacing=spacing, **settings)
     return high_passed(made, made, alpha)
 
 
-def measure(methods):
-    """{method: {"far"|"near"|"balls": {spacing: [lines, ...]}}}; methods: {name: settings}."""
+def measure(methods, **surface):
+    """{method: {"far"|"near"|"balls": {spacing: [lines, ...]}}}; methods: {name: settings}; surface: of the volumes."""
     results = {}
     for name, settings in methods.items():
         print(f"lines, {name}", flush=True)
         label = f"lines-{name.replace(' ', '-')}"
-        results[name] = {kind: {spacing: [floor(light, settings, spacing, label) for light in lights] for spacing in SPACINGS}
+        results[name] = {kind: {spacing: [floor({**FLOOR, **surface}, light, settings, spacing, label) for light in lights]
+                                for spacing in SPACINGS}
                          for kind, lights in (("far", list(far_lights())), ("near", NEAR))}
-        results[name]["balls"] = {spacing: [ball(degrees, settings, spacing, label) for degrees in BALL_SIZES]
+        results[name]["balls"] = {spacing: [ball({**BALL, **surface}, degrees, settings, spacing, label) for degrees in BALL_SIZES]
                                   for spacing in SPACINGS}
     return results
 
@@ -100,6 +110,11 @@ def rows(results, kinds):
 def ball_rows(results):
     return [[name, f"{spacing:g}"] + [f"{100 * lines:.2f}" for lines in found["balls"][spacing]]
             for name, found in results.items() for spacing in SPACINGS]
+
+
+def own_line(results):
+    """What a ball has without soft shadows, in percent."""
+    return f"{100 * min(results['hard']['balls'][SPACINGS[0]]):.2f}"
 
 
 def section(results, table):
@@ -117,7 +132,7 @@ taken off; its 99.9 percentile is told, in percent of the brightness around it.
 
 {table(["method"] + heads, rows(results, ("far", "near")))}
 
-**Balls** of a radius of 45 voxels, by the width of a directional light in degrees. 0.39 is the ball's own: its shadow line is an edge
+**Balls** of a radius of 45 voxels, by the width of a directional light in degrees. {own_line(results)} is the ball's own: its shadow line is an edge
 under hard light.
 
 {table(["method", "spacing"] + [f"{degrees}" for degrees in BALL_SIZES], ball_rows(results))}

@@ -3,6 +3,7 @@ import re
 
 import numpy
 
+import faces
 import lines
 import measure
 import scenes
@@ -68,16 +69,36 @@ def bars(results):
             bar("cascade: the same, worst scene", max(ratios("cascade")), 1)]
     if "sublights 4" in methods_of(results):
         rows.append(bar("sublights, M = 4: mean RMSE, in those of paper", mean_ratio("sublights 4"), 1 / 8))
-    for method, limit in (("cascade", 1.3), ("sublights 4", 2.5)):
-        costs = [r.costs[method] for r in results if method in r.costs]
-        if costs:
-            rows.append(bar(f"{method}: mean cost in hard frames", numpy.mean(costs), limit))
     return table(["bar", "measured", "at most", ""], rows)
+
+
+def section_of_page(title):
+    """A section of the page as it stands: one that was not measured anew."""
+    found = re.search(rf"\n## {title}\n.*?(?=\n## )", PATH.read_text(), flags=re.S)
+    return found.group(0) + "\n" if found else ""
+
+
+def cost_section(results):
+    if not all(r.costs for r in results):
+        return section_of_page("Cost")
+    limits = [(method, limit) for method, limit in (("cascade", 1.3), ("sublights 4", 2.5)) if method in methods_of(results)]
+    rows = [bar(f"{method}: mean cost in hard frames", numpy.mean([r.costs[method] for r in results]), limit)
+            for method, limit in limits]
+    return f"""
+## Cost
+
+Time of rendering at {measure.COST_SIZE.replace("x", " x ")} with one thread, by the clock, without loading and preparing, in units of the hard-shadow frame;
+the least of {measure.COST_ROUNDS} rounds in turn.
+
+{table(["bar", "measured", "at most", ""], rows)}
+
+{cost_table(results)}
+"""
 
 
 def outside_section(truth):
     if truth is None:
-        return ""
+        return section_of_page("An outside truth")
     rows, samples = truth
     lines = [[row["light"], number(row["noise"]), number(row["sheets"]), f"{row['sheets'] / row['noise']:.2f}",
               number(row["reference"]), f"{row['reference'] / row['noise']:.2f}"] for row in rows]
@@ -109,25 +130,26 @@ red is too bright, blue too dark, full colour is a difference of 0.2.
     return "".join(parts)
 
 
-def replace_lines(found):
-    """Writes the section about lines anew; the others stay."""
+def lines_and_faces():
+    """Measures the sections about lines, faces of cuts and isosurfaces."""
+    open_lines = lines.section(lines.measure(measure.METHODS), table)
+    shapes = {stretch: faces.shape(stretch) for stretch in faces.STRETCHES}
+    return open_lines + "\n" + faces.section(faces.faces(measure.METHODS), shapes,
+                                             lines.measure(measure.METHODS, iso=[{"value": faces.SURFACE}]), table)
+
+
+def replace_lines(written_sections):
+    """Writes the sections about lines and faces anew; the others stay."""
     text = PATH.read_text()
-    written, count = re.subn(r"## Lines\n.*?(?=\n## )", lambda _: lines.section(found, table), text, flags=re.S)
+    written, count = re.subn(r"## Lines\n.*?(?=\n## Hard shadows)", lambda _: written_sections, text, flags=re.S)
     if count != 1:
         raise SystemExit(f"{PATH}: has no section about lines: run scripts/accuracy without --lines-only")
     PATH.write_text(written)
     print(f"wrote {PATH}")
 
 
-def write(results, truth, found):
-    costs = "" if not all(r.costs for r in results) else f"""
-## Cost
-
-Time of rendering at {measure.COST_SIZE.replace("x", " x ")} with one thread, by the clock, without loading and preparing, in units of the hard-shadow frame;
-the least of {measure.COST_ROUNDS} rounds in turn.
-
-{cost_table(results)}
-"""
+def write(results, truth, lines_and_faces):
+    """lines_and_faces: the sections about them."""
     notes = (scenes.HERE / "notes.md").read_text()
     meshes = (scenes.HERE / "meshes.md").read_text()
     PATH.write_text(f"""# How exact the pictures are
@@ -155,7 +177,7 @@ matter, 0 to 1 ([layers](layers.md)); its pixels count with their alpha. The *pi
 
 {error_table(results, "picture", "picture_worst")}
 
-{lines.section(found, table)}
+{lines_and_faces}
 ## Hard shadows, by sheet spacing
 
 The picture with hard shadows against the reference's with hard shadows, RMSE; sheets a number of voxels apart.
@@ -163,7 +185,7 @@ The picture with hard shadows against the reference's with hard shadows, RMSE; s
 {spacing_table(results)}
 
 ![Errors by sub-lights and by sheet spacing](accuracy/plots.png)
-{costs}{outside_section(truth)}
+{cost_section(results)}{outside_section(truth)}
 {meshes.strip()}
 {strips(results)}""")
     print(f"wrote {PATH}")
