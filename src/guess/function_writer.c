@@ -14,6 +14,7 @@
 
 #define FLOW_DEPTH   2.0 /* optical depth of a flow in which all values are shown */
 #define MEDIUM_DEPTH 5.0 /* optical depth of smoke across its own size */
+#define SHELL        0.2 /* optical depth of a field's shell, for a line that crosses it */
 #define FINE         96  /* voxel edges across an object; the opacities of solid matter are chosen for it */
 
 /* The colours of a function at four distances from the background: faint, solid, dense and top. Linear RGB.
@@ -80,28 +81,21 @@ void hl_write_brain(hl_function_writer *w) {
   write_solid(w, &brain);
 }
 
-/* Adds a thin shell around a distance. crossing: the optical depth of the shell for a line that crosses it
- * where the field falls from its top to nothing within half an object. around: the optical depth of matter
- * beside the shell across the object. */
-static void add_shell(hl_function_writer *w, double distance, double half_width, double crossing,
-                      double around) {
-  const hl_data_analysis *a = w->analysis;
-  double peak = 2 * crossing * a->top /
-                half_width; /* derived: the shell is half_width / (2 top) objects thick */
-  hl_add_opacity(w, distance - half_width, hl_opacity_for(a, around));
-  hl_add_opacity(w, distance, hl_opacity_for(a, around + peak));
-  hl_add_opacity(w, distance + half_width, hl_opacity_for(a, around));
-}
-
-/* Writes a field as two clear shells around a core that is opaque, within thin matter: the shells'
- * reflections tell its shape, and the core is seen through them. */
+/* Writes a field as a clear shell around a core that is opaque, within thin matter: reflections on the shell
+ * tell its shape, and the core is seen through it. */
 void hl_write_field(hl_function_writer *w) {
   const hl_data_analysis *a = w->analysis;
-  double ramp = a->solid - a->faint, top = fmax(a->top, a->solid * 1.001), way = top - a->solid,
-         core = a->solid + 0.35 * way, half = fmin(fmin(0.03 * top, 0.25 * ramp), 0.15 * way);
+  const double ramp = a->solid - a->faint, top = fmax(a->top, a->solid * 1.001), way = top - a->solid;
+  const double shell = a->faint + 0.35 * ramp, core = a->solid + 0.35 * way,
+               half = fmin(fmin(0.03 * top, 0.25 * ramp), 0.15 * way);
+  const double thin = 0.3; /* optical depth across the object of matter beside the shell */
+  /* Derived: where a field falls from its top to nothing within half an object, the values of the shell,
+   * which are 2 half apart, take half / top of the object. The mean of a tent is half its peak. */
+  const double peak = SHELL * 2 * top / half;
   hl_add_opacity(w, a->faint, 0);
-  add_shell(w, a->faint + 0.35 * ramp, half, 0.12, 0.3);
-  add_shell(w, a->solid, half, 0.3, 0.6);
+  hl_add_opacity(w, shell - half, hl_opacity_for(a, thin));
+  hl_add_opacity(w, shell, hl_opacity_for(a, thin + peak));
+  hl_add_opacity(w, shell + half, hl_opacity_for(a, thin));
   hl_add_opacity(w, core - half, hl_opacity_for(a, 1.5));
   hl_add_opacity(w, core, hl_opacity_for(a, 80));
   hl_add_opacity(w, top, hl_opacity_for(a, 80));

@@ -159,34 +159,6 @@ static double symmetry(const shape *s, int axis) {
   return either > 0 ? both / either : 0;
 }
 
-/* The axis that points up, as +-(axis + 1). It is +3 (z) where nothing speaks for another axis. */
-static int up_of(const shape *s, const hl_volume *volume) {
-  double extent[3], most = 0;
-  int bottom = 0;
-  for (int a = 0; a < 3; a++)
-    extent[a] = (s->last[a] - s->first[a]) * vec3_length(mat3_column(volume->index_to_world.linear, a)) *
-                (double)volume->dimension[a] / s->size[a];
-  if (extent[2] > 1.4 * fmax(extent[0], extent[1])) return 3; /* a column stands upright */
-  /* The bottom is where a face of the grid cuts the object off. */
-  for (int a = 0; a < 3; a++)
-    for (int end = 0; end < 2; end++)
-      if (touch(s, a, end) > fmax(most, fmax(0.05, 4 * touch(s, a, !end)))) {
-        most = touch(s, a, end);
-        bottom = end ? a + 1 : -(a + 1);
-      }
-  if (bottom != 0) return -bottom;
-  for (int a = 0; a < 3; a++) /* or the object stands on a plate */
-    for (int end = 0; end < 2; end++)
-      if (bluntness(s, a, end) > fmax(most, 0.4) && bluntness(s, a, !end) < 0.1) {
-        most = bluntness(s, a, end);
-        bottom = end ? a + 1 : -(a + 1);
-      }
-  if (bottom != 0) return -bottom;
-  double z = symmetry(s, 2);
-  bool sideways = z > 0.55 && z > 0.1 + fmax(symmetry(s, 0), symmetry(s, 1));
-  return sideways ? -2 : 3; /* rows of pictures run downwards */
-}
-
 /* The number of places from one end of an axis to the first solid place, in the row (u, v) of the other two
  * axes; -1: the row has no solid place. */
 static int depth_at(const shape *s, int axis, int end, int u, int v) {
@@ -215,6 +187,51 @@ static double relief(const shape *s, int axis, int end) {
           sum += fmin(abs(across[pair] - 2 * depth + across[pair + 1]), 4);
     }
   return sum;
+}
+
+/* The axis along which the objects are their own mirror image, as a head is from left to right; -1: there is
+ * no such axis, or more than one. */
+static int mirror_axis(const shape *s) {
+  for (int a = 0; a < 3; a++) {
+    double own = symmetry(s, a), others = fmax(symmetry(s, (a + 1) % 3), symmetry(s, (a + 2) % 3));
+    if (own > 0.55 && own > 0.1 + others) return a;
+  }
+  return -1;
+}
+
+/* The way up of objects without a bottom. Rows of pictures run downwards, so -y is up where left and right
+ * lie along z; otherwise z is up. A head's vault is smooth, and its jaw is not: where the upper side has
+ * clearly more relief than the lower one, objects with a left and a right stand on their heads. */
+static int up_without_bottom(const shape *s) {
+  const int mirror = mirror_axis(s), up = mirror == 2 ? -2 : 3, axis = abs(up) - 1;
+  const bool overturned = mirror >= 0 && relief(s, axis, up > 0) > CLEARLY * relief(s, axis, up < 0);
+  return overturned ? -up : up;
+}
+
+/* The axis that points up, as +-(axis + 1). It is +3 (z) where nothing speaks for another axis. */
+static int up_of(const shape *s, const hl_volume *volume) {
+  double extent[3], most = 0;
+  int bottom = 0;
+  for (int a = 0; a < 3; a++)
+    extent[a] = (s->last[a] - s->first[a]) * vec3_length(mat3_column(volume->index_to_world.linear, a)) *
+                (double)volume->dimension[a] / s->size[a];
+  if (extent[2] > 1.4 * fmax(extent[0], extent[1])) return 3; /* a column stands upright */
+  /* The bottom is where a face of the grid cuts the object off. */
+  for (int a = 0; a < 3; a++)
+    for (int end = 0; end < 2; end++)
+      if (touch(s, a, end) > fmax(most, fmax(0.05, 4 * touch(s, a, !end)))) {
+        most = touch(s, a, end);
+        bottom = end ? a + 1 : -(a + 1);
+      }
+  if (bottom != 0) return -bottom;
+  for (int a = 0; a < 3; a++) /* or the object stands on a plate */
+    for (int end = 0; end < 2; end++)
+      if (bluntness(s, a, end) > fmax(most, 0.4) && bluntness(s, a, !end) < 0.1) {
+        most = bluntness(s, a, end);
+        bottom = end ? a + 1 : -(a + 1);
+      }
+  if (bottom != 0) return -bottom;
+  return up_without_bottom(s);
 }
 
 static int axis_of(vec3 v, int *end) {

@@ -36,7 +36,8 @@ typedef struct hl_upright {
  * world, z is up. In smoke, which comes from computer graphics, y is up. Scanned objects stand on their
  * bottom, or a face of the grid cuts them off there: the opposite way is up. Without a bottom, y points down
  * for objects that are symmetric only along z, as heads and vessels are from left to right. Otherwise z is
- * up. The azimuth belongs to the three-quarter view whose sides have the most relief, so that heads show
+ * up. Both are turned over where the upper side of a symmetric object has more relief than the lower one.
+ * The azimuth belongs to the three-quarter view whose sides have the most relief, so that heads show
  * their faces. Fails for lack of memory and when cancelled. */
 
 hl_status hl_scene_upright(const hl_scene_volume *volume, const hl_data_analysis *analysis,

@@ -375,6 +375,37 @@ static void things_stand_upright(void **state) {
   hl_context_destroy(context);
 }
 
+/* The z of the way up in which a head is shown: a smooth vault, a ragged jaw under the face, and nothing
+ * under its back. over: it lies upside down in the grid. */
+static double up_of_head(hl_context *context, bool over) {
+  static float values[N * N * N];
+  for (int k = 0, v = 0; k < N; k++)
+    for (int j = 0; j < N; j++)
+      for (int i = 0; i < N; i++, v++) {
+        const int x = abs(i - 20), y = j - 20, z = over ? 19 - k : k - 20;
+        bool inside = pow(x / 9.0, 2) + pow(y / 14.0, 2) + pow(z / 13.0, 2) < 1, behind = z < -2 && y < -3,
+             groove = z < -6 && (x / 2 + j / 2) % 2 == 0;
+        values[v] = inside && !behind && !groove ? 1.0f : 0.0f;
+      }
+  hl_volume *volume = scaled_volume(context, values, 1, 0);
+  hl_scene *scene = NULL;
+  assert_int_equal(hl_scene_for_volume(context, volume, NULL, &scene, NULL), HL_OK);
+  vec3 right, up, forward;
+  hl_camera_basis(&hl_scene_describe(scene)->camera, &right, &up, &forward);
+  hl_scene_release(scene);
+  hl_volume_release(volume);
+  return up.z;
+}
+
+static void heads_do_not_hang(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  assert_true(up_of_head(context, false) > 0.9);
+  assert_true(up_of_head(context, true) < -0.9);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 static double spacing_of_ball(double softness) {
   static float values[N * N * N];
   for (int k = 0, v = 0; k < N; k++)
@@ -442,6 +473,7 @@ int main(void) {
       cmocka_unit_test(colormaps_have_their_published_colors),
       cmocka_unit_test(names_and_statistics),
       cmocka_unit_test(things_stand_upright),
+      cmocka_unit_test(heads_do_not_hang),
       cmocka_unit_test(ids_of_any_size_are_labels),
       cmocka_unit_test(thin_surfaces_of_small_grids_get_more_sheets),
   };
