@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "message.h"
 #include "platform/program.h"
+#include "suggest.h"
 #include "text/edit_distance.h"
 
 static const cli_command *const commands[] = {
@@ -29,7 +30,8 @@ static const cli_command *find_command(const char *name) {
 }
 
 static int refuse_command(const char *name) {
-  const char *meant = hl_nearest_candidate(name, command_name, NULL);
+  const char *meant = command_meant_by(name);
+  if (meant == NULL) meant = hl_nearest_candidate(name, command_name, NULL);
   if (meant != NULL) return fail(EXIT_CODE_USAGE, "unknown command '%s': did you mean '%s'?", name, meant);
   if (access(name, F_OK) == 0)
     return fail(EXIT_CODE_USAGE,

@@ -84,7 +84,8 @@ static int refuse_value(const cli_option *option, const char *text) {
   switch (option->kind) {
     case OPTION_CHOICE:
       list_choices(option, ", ", accepted, sizeof accepted);
-      meant = hl_nearest_candidate(text, choice_name, option->choices);
+      meant = value_meant_by(option->name, text);
+      if (meant == NULL) meant = hl_nearest_candidate(text, choice_name, option->choices);
       return fail(EXIT_CODE_USAGE, "--%s: '%s' is none of %s%s%s%s", option->name, text, accepted,
                   meant != NULL ? " (did you mean " : "", meant != NULL ? meant : "",
                   meant != NULL ? "?)" : "");
@@ -223,7 +224,8 @@ static int refuse_unknown(const cli_command *command, const char *argument) {
   snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : sizeof name - 1), argument + 2);
   const char *meant = length > 0 ? hl_nearest_candidate(name, option_name, command) : NULL;
   const char *does = synonym_of(name, option_name, command);
-  if (does != NULL && meant != NULL && strcmp(does, meant) != 0)
+  const bool differ = does != NULL && meant != NULL && strncmp(does, meant, strcspn(does, " ")) != 0;
+  if (differ)
     return fail(EXIT_CODE_USAGE, "unknown option '--%s' of %s: did you mean --%s, or --%s?", name,
                 command->name, does, meant);
   if (does != NULL) meant = does;
@@ -236,6 +238,16 @@ static int refuse_unknown(const cli_command *command, const char *argument) {
                 "unknown option '--%s' of render: a scene says %s; --print-scene writes a scene", name, json);
   return fail(EXIT_CODE_USAGE, "unknown option '%s' of %s: see 'halflight help %s'", argument, command->name,
               command->name);
+}
+
+static int refuse_missing(const cli_option *option) {
+  char accepted[300] = "";
+  if (option->argument == NULL) list_choices(option, ", ", accepted, sizeof accepted);
+  else if (option->kind == OPTION_NUMBERS && option->count == 1)
+    describe_numbers(option, accepted, sizeof accepted);
+  return fail(EXIT_CODE_USAGE, "--%s needs a value: %s%s%s", option->name,
+              option->argument != NULL ? option->argument : "",
+              option->argument != NULL && accepted[0] != '\0' ? ", " : "", accepted);
 }
 
 /* Parses the option at arguments[*index] and its value. *index becomes the index of the last argument that
@@ -268,12 +280,7 @@ static int parse_option(const cli_command *command, int argument_count, char **a
     cli_value chosen = {0}; /* "-y" may be one of the choices */
     bool missing = *index + 1 >= argument_count || (looks_like_option(arguments[*index + 1]) &&
                                                     !parse_choice(option, arguments[*index + 1], &chosen));
-    if (missing) {
-      char choices[200] = "";
-      if (option->argument == NULL) list_choices(option, ", ", choices, sizeof choices);
-      return fail(EXIT_CODE_USAGE, "--%s needs a value: %s", option->name,
-                  option->argument != NULL ? option->argument : choices);
-    }
+    if (missing) return refuse_missing(option);
     attached = arguments[++*index];
   }
   return parse_value(option, attached, value);

@@ -30,10 +30,12 @@ static const struct {
     {"roll", "rotate-y bank twist"},
     {"up", "view-up viewup up-vector orientation"},
     {"view", "viewpoint front side top camera-preset view-direction"},
-    {"zoom", "dolly distance magnification crop-factor"},
+    {"zoom", "zoom-in zoom-out zoom-factor dolly distance magnification crop-factor"},
     {"fovy", "fov field-of-view view-angle focal-length perspective vfov angle-of-view"},
     {"ortho", "orthographic parallel parallel-projection orthogonal ortho-scale"},
-    {"tf", "transfer-function transferfunction opacity alpha-map transfer ctf otf preset opacity-function"},
+    {"tf",
+     "opacity-curve alpha-curve colour-function color-function transfer-function transferfunction opacity "
+     "alpha-map transfer ctf otf preset opacity-function"},
     {"colormap",
      "cmap color-map colourmap lut palette colors colours color colour color-table lookup-table colorscale"},
     {"range",
@@ -48,10 +50,19 @@ static const struct {
     {"cut-sphere", "sphere hole"},
     {"shading", "shade shader material lighting phong"},
     {"ambient", "ambient-light ambient-color fill-light"},
-    {"sky", "skylight sky-light ambient-occlusion ao environment dome environment-light hdri"},
+    {"sky", "skylight sky-light ambient-occlusion ao ssao environment dome environment-light hdri"},
     {"exposure", "brightness gain gamma intensity stops"},
     {"tone", "tonemap tone-map tone-mapping tonemapping filmic highlights rolloff"},
-    {"look", "style mode mip blend-mode projection rendering-mode"},
+    {"look", "effect style mode blend-mode projection rendering-mode"},
+    {"look mip", "mip maximum maximum-intensity maximum-intensity-projection max-projection"},
+    {"look xray", "xray x-ray drr radiograph"},
+    {"shadows off", "no-shadows noshadows without-shadows"},
+    {"labels", "overlay atlas segmentation seg parcellation annotation-volume"},
+    {"show", "label region regions organ roi-name structure"},
+    {"whole", "keep-table show-table no-cut no-crop uncut"},
+    {"device", "gpu cuda opencl backend use-gpu"},
+    {"scattering", "multiple-scattering sss subsurface subsurface-scattering bounces"},
+    {"floor", "ground plate shadow-catcher table"},
     {"light",
      "light-direction light-dir light-position light-pos light-azimuth light-elevation sun key-light lamp "
      "light-angle key"},
@@ -76,7 +87,7 @@ static const struct {
     {"max-memory", "memory mem ram memory-limit mem-limit"},
     {"instruction-set", "simd isa avx arch"},
     {"json", "stats statistics report info verbose"},
-    {"quiet", "silent no-progress q batch"},
+    {"quiet", "hide-progress silent no-progress q batch"},
     {"print-scene", "dump dump-scene save-scene export-scene scene print dry-run write-scene"},
     {"data", "data-dir data-folder include"},
     {"max-rmse", "rmse tolerance threshold metric fuzz"},
@@ -90,10 +101,13 @@ static bool has_word(const char *words, const char *word) {
   return false;
 }
 
-static bool takes(const char *(*option)(const void *data, size_t index), const void *data, const char *name) {
+/* Whether the options have that of a meaning; a value may follow the option there. */
+static bool takes(const char *(*option)(const void *data, size_t index), const void *data,
+                  const char *meaning) {
   const char *known;
+  const size_t length = strcspn(meaning, " ");
   for (size_t i = 0; (known = option(data, i)) != NULL; i++)
-    if (strcmp(known, name) == 0) return true;
+    if (strlen(known) == length && strncmp(known, meaning, length) == 0) return true;
   return false;
 }
 
@@ -126,5 +140,71 @@ const char *scene_setting_of(const char *word) {
   if (word[0] == '\0' || strchr(word, ' ') != NULL) return NULL;
   for (size_t n = 0; n < sizeof settings / sizeof *settings; n++)
     if (has_word(settings[n].words, word)) return settings[n].json;
+  return NULL;
+}
+
+/* words: separated by blanks, in lower case */
+static const struct {
+  const char *option, *value, *words;
+} values[] = {
+    {"view", "front", "anterior coronal face ap"},
+    {"view", "back", "posterior rear behind pa"},
+    {"view", "left", "sagittal lateral side profile"},
+    {"view", "top", "superior axial transverse above dorsal cranial"},
+    {"view", "bottom", "inferior below underneath ventral caudal"},
+    {"view", "iso", "isometric 3d diagonal corner three-quarter perspective"},
+    {"shadows", "soft", "yes on true smooth area"},
+    {"shadows", "off", "no none false never"},
+    {"shadows", "hard", "sharp crisp"},
+    {"light-rig", "studio", "three-point 3-point threepoint softbox portrait default"},
+    {"light-rig", "raking", "grazing side relief low"},
+    {"light-rig", "rim", "back backlight backlit contour silhouette edge"},
+    {"light-rig", "overcast", "cloudy ambient dome sky diffuse"},
+    {"look", "surface", "skin bone solid opaque isosurface shaded"},
+    {"look", "translucent", "glass ghost transparent see-through clear volume"},
+    {"look", "xray", "x-ray radiograph drr"},
+    {"look", "vessels", "angio angiography angiogram mra cta arteries"},
+    {"look", "smoke", "cloud fog medium gas fire"},
+    {"look", "mip", "maximum max maxip"},
+    {"tone", "filmic", "aces reinhard agx tonemapped hdr"},
+    {"tone", "clip", "none linear srgb off standard"},
+    {"kernel", "linear", "trilinear nearest"},
+    {"kernel", "bspline", "cubic tricubic smooth"},
+    {"axes", "letters", "anatomical orientation ras lps"},
+    {"axes", "arrows", "xyz triad on yes"},
+    {"format", "png", "jpg jpeg webp bmp gif"},
+    {"format", "tif", "tiff"},
+    {"device", "gpu", "cuda opencl"},
+};
+
+const char *value_meant_by(const char *option, const char *word) {
+  if (word[0] == '\0' || strchr(word, ' ') != NULL) return NULL;
+  for (size_t n = 0; n < sizeof values / sizeof *values; n++)
+    if (strcmp(values[n].option, option) == 0 && has_word(values[n].words, word)) return values[n].value;
+  return NULL;
+}
+
+/* words: separated by blanks, in lower case */
+static const struct {
+  const char *command, *words;
+} commands[] = {
+    {"view", "show open display viewer gui interactive web browse"},
+    {"render", "draw image picture plot snapshot screenshot export-image slice"},
+    {"animate", "movie film video turntable anim animation rotate spin mp4 gif"},
+    {"looks", "styles presets contact-sheet gallery thumbnails"},
+    {"info", "stat stats header describe inspect ls list metadata"},
+    {"convert", "resample crop resize downsample save translate"},
+    {"diff", "compare cmp difference psnr rmse"},
+    {"bench", "benchmark time timing profile"},
+    {"export", "html page webpage share"},
+    {"figure", "panel panels figures montage layout"},
+    {"devices", "gpus gpu cuda opencl"},
+    {"make", "create generate new shape"},
+};
+
+const char *command_meant_by(const char *word) {
+  if (word[0] == '\0' || strchr(word, ' ') != NULL) return NULL;
+  for (size_t n = 0; n < sizeof commands / sizeof *commands; n++)
+    if (has_word(commands[n].words, word)) return commands[n].command;
   return NULL;
 }

@@ -12,6 +12,7 @@
 #include "scene/function/transfer_function.h"
 #include "text/color.h"
 #include "text/edit_distance.h"
+#include "text/plain.h"
 
 static const char *preset_name(const void *data, size_t index) {
   (void)data;
@@ -30,9 +31,45 @@ static bool is_known(const char *name, const char *(*known)(const void *, size_t
   return false;
 }
 
+/* Names that other programs use, and names of this program's that mean nearly the same. */
+static const char *const meanings[][2] = {
+    {"jet", "turbo"},
+    {"rainbow", "turbo"},
+    {"hsv", "turbo"},
+    {"spectral", "turbo"},
+    {"parula", "viridis"},
+    {"bwr", "coolwarm"},
+    {"seismic", "coolwarm"},
+    {"RdBu", "coolwarm"},
+    {"blue-red", "coolwarm"},
+    {"diverging", "coolwarm"},
+    {"fire", "hot"},
+    {"afmhot", "hot"},
+    {"CT-Bones", "ct-bone"},
+    {"bones", "ct-bone"},
+    {"skull", "ct-bone"},
+    {"skin", "ct-skin"},
+    {"CT-Fat", "ct-skin"},
+    {"CT-AAA", "ct-soft-tissue"},
+    {"CT-Muscle", "ct-soft-tissue"},
+    {"CT-Cardiac", "ct-soft-tissue"},
+    {"muscle", "ct-soft-tissue"},
+    {"MR-Default", "mr-brain"},
+    {"MR-T1", "mr-brain"},
+    {"MR-T2-Brain", "mr-brain"},
+    {"MR-MIP", "mip"},
+};
+
+static const char *meant_by(const char *name, const char *(*known)(const void *, size_t)) {
+  for (size_t n = 0; n < sizeof meanings / sizeof *meanings; n++)
+    if (hl_plain_equal(name, meanings[n][0]) && is_known(meanings[n][1], known)) return meanings[n][1];
+  return NULL;
+}
+
 static hl_status refuse_name(const char *option, const char *name, const char *kind, const char *topic,
                              const char *(*known)(const void *, size_t), hl_error *error) {
-  const char *meant = hl_nearest_candidate(name, known, NULL);
+  const char *meant = meant_by(name, known);
+  if (meant == NULL) meant = hl_nearest_candidate(name, known, NULL);
   if (meant != NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "--%s: '%.300s' is no %s: did you mean %s?", option, name, kind,
                    meant);

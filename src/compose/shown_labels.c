@@ -119,6 +119,16 @@ static void list_labels(const hl_label_layers *layers, char *text, size_t size) 
     snprintf(text + used, size - used, " and %zu more: see 'halflight info'", count - LISTED);
 }
 
+static bool have_names(const hl_label_layers *layers) {
+  bool named = false;
+  for (size_t n = 0; n < layers->count; n++)
+    for (size_t l = 0; l < layers->volumes[n].label_count; l++) {
+      const char *name = layers->volumes[n].labels[l].name;
+      named = named || (name != NULL && name[0] != '\0');
+    }
+  return named;
+}
+
 hl_status hl_check_shown(const hl_shown_list *list, const hl_label_layers *layers, hl_error *error) {
   for (size_t s = 0; s < list->count; s++) {
     if (list->labels[s].found) continue;
@@ -129,8 +139,18 @@ hl_status hl_check_shown(const hl_shown_list *list, const hl_label_layers *layer
       return hl_fail(error, HL_ERROR_ARGUMENT,
                      "--show: there is no label \"%.100s\": did you mean \"%.100s\"?", list->labels[s].name,
                      near);
+    if (strcmp(list->labels[s].name, "rest") == 0)
+      return hl_fail(error, HL_ERROR_ARGUMENT,
+                     "--show: \"rest\" is the matter beside a mask: give the label map by --mask");
     char known[1000];
     list_labels(layers, known, sizeof known);
+    int64_t number;
+    if (!have_names(layers) && !hl_text_whole(list->labels[s].name, &number))
+      return hl_fail(
+          error, HL_ERROR_ARGUMENT,
+          "--show: there is no label \"%.100s\": labels have numbers alone (%s): give one, or names by "
+          "--label-table FILE",
+          list->labels[s].name, known[0] != '\0' ? known : "none");
     return hl_fail(error, HL_ERROR_ARGUMENT, "--show: there is no label \"%.100s\": there is %s",
                    list->labels[s].name, known[0] != '\0' ? known : "none");
   }

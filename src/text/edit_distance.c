@@ -6,6 +6,13 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Whether two letters differ by more than their case. */
+static bool differ(char a, char b) {
+  if (a >= 'A' && a <= 'Z') a += 'a' - 'A';
+  if (b >= 'A' && b <= 'Z') b += 'a' - 'A';
+  return a != b;
+}
+
 static int least(int a, int b) { return a < b ? a : b; }
 
 /* Three rows of the dynamic programme's table are kept at a time. */
@@ -17,9 +24,9 @@ int hl_edit_distance(const char *a, const char *b) {
   for (int i = 1; i <= length_a; i++) {
     row[0] = i;
     for (int j = 1; j <= length_b; j++) {
-      int replace = last[j - 1] + (a[i - 1] != b[j - 1]);
+      int replace = last[j - 1] + differ(a[i - 1], b[j - 1]);
       row[j] = least(replace, least(last[j], row[j - 1]) + 1);
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+      if (i > 1 && j > 1 && !differ(a[i - 1], b[j - 2]) && !differ(a[i - 2], b[j - 1]))
         row[j] = least(row[j], before[j - 2] + 1);
     }
     int *spare = before;
