@@ -355,7 +355,8 @@ HL_API void hl_cut_defaults(hl_cut *cut);
 HL_API void hl_scene_volume_place_point(const hl_scene_volume *volume, double point[3]);
 
 /* Checks and copies the description, and retains the volumes. Errors name the field as a JSON pointer
- * ("/lights/0/radius"). */
+ * ("/lights/0/radius"). The smooth fields of labels and masks are made for the first frame, which then tells
+ * where none of the visible labels has voxels, or where more of them show than a frame can have. */
 HL_API HL_WARN_UNUSED hl_status hl_scene_create(hl_context *context, const hl_scene_description *description,
                                                 hl_scene **scene, hl_error *error);
 

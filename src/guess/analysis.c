@@ -389,10 +389,33 @@ static int place_of(value_table *table, int64_t value) {
   return (int)place;
 }
 
-/* Fills in tallies. False at a value that is no whole number, and where there are too many values. */
+enum { MOST_REPEATED = 8 };
+
+/* Whether each voxel stands `count` times in a row along an axis, as in a volume that was enlarged by
+ * repeating its voxels; count: a power of two. It looks at the places of a lattice. */
+static bool is_repeated(const hl_volume *volume, int axis, size_t count) {
+  const size_t *n = volume->dimension, step = hl_lattice_step(n, HL_LATTICE_PLACES);
+  for (size_t k = step / 2; k < n[2]; k += step)
+    for (size_t j = step / 2; j < n[1]; j += step)
+      for (size_t i = step / 2; i < n[0]; i += step) {
+        size_t first[3] = {i, j, k}, last[3] = {i, j, k};
+        int64_t value, other;
+        first[axis] -= first[axis] % count;
+        last[axis] = first[axis] + count - 1;
+        const hl_whole found = hl_volume_whole(volume, first[0], first[1], first[2], &value);
+        if (found != hl_volume_whole(volume, last[0], last[1], last[2], &other)) return false;
+        if (found == HL_WHOLE_FOUND && value != other) return false;
+      }
+  return n[axis] % count == 0;
+}
+
+/* Fills in tallies. False at a value that is no whole number, and where there are too many values. The
+ * neighbours of a voxel that is repeated are those of the volume that was enlarged. */
 static bool count_neighbours(const hl_volume *volume, value_table *table) {
   const size_t *n = volume->dimension;
-  size_t step = hl_lattice_step(n, HL_LATTICE_PLACES);
+  size_t step = hl_lattice_step(n, HL_LATTICE_PLACES), apart[3] = {1, 1, 1};
+  for (int a = 0; a < 3; a++)
+    while (apart[a] < MOST_REPEATED && is_repeated(volume, a, 2 * apart[a])) apart[a] *= 2;
   for (size_t k = step / 2; k < n[2]; k += step)
     for (size_t j = step / 2; j < n[1]; j += step)
       for (size_t i = step / 2; i < n[0]; i += step) {
@@ -404,7 +427,8 @@ static bool count_neighbours(const hl_volume *volume, value_table *table) {
         if (place == NO_ROOM) return false;
         tally *own = &table->tallies[place];
         for (int a = 0; a < 3; a++) {
-          found = hl_volume_whole(volume, i + (a == 0), j + (a == 1), k + (a == 2), &next);
+          found = hl_volume_whole(volume, i + (a == 0) * apart[0], j + (a == 1) * apart[1],
+                                  k + (a == 2) * apart[2], &next);
           own->seen += found != HL_WHOLE_ABSENT;
           own->shared += found == HL_WHOLE_FOUND && next == value;
         }

@@ -461,6 +461,35 @@ static void ids_of_any_size_are_labels(void **state) {
   hl_context_destroy(context);
 }
 
+/* Voxels that are repeated, as nearest neighbours enlarge a scan, are equal to their neighbours without being
+ * names of regions. A label map that is enlarged in this way stays one. */
+static void repeated_voxels_are_no_labels(void **state) {
+  (void)state;
+  enum { N = 12, TIMES = 4, SIDE = N * TIMES };
+  static uint8_t voxels[SIDE * SIDE * SIDE];
+  for (int labels = 0; labels < 2; labels++) {
+    for (int at = 0; at < SIDE * SIDE * SIDE; at++) {
+      const int i = at % SIDE / TIMES, j = at / SIDE % SIDE / TIMES, k = at / SIDE / SIDE / TIMES;
+      const unsigned noise = (unsigned)(i + N * (j + N * k)) * 2654435761u >> 16;
+      const bool inside = i >= 1 && i < 11 && j >= 1 && j < 11 && k >= 1 && k < 11;
+      voxels[at] = (uint8_t)(!inside ? 0 : labels ? 1 + i / 5 : 100 + (int)(noise % 60));
+    }
+    hl_context *context = make_context();
+    hl_volume_description d;
+    hl_volume_description_defaults(&d);
+    d.dimensions[0] = d.dimensions[1] = d.dimensions[2] = SIDE;
+    d.type = HL_VOXEL_U8;
+    d.voxels = voxels;
+    hl_volume *volume = NULL;
+    int is_map = -1;
+    assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
+    assert_int_equal(hl_volume_is_label_map(context, volume, &is_map, NULL), HL_OK);
+    assert_int_equal(is_map, labels);
+    hl_volume_release(volume);
+    hl_context_destroy(context);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(separates_air_from_things),
@@ -475,6 +504,7 @@ int main(void) {
       cmocka_unit_test(things_stand_upright),
       cmocka_unit_test(heads_do_not_hang),
       cmocka_unit_test(ids_of_any_size_are_labels),
+      cmocka_unit_test(repeated_voxels_are_no_labels),
       cmocka_unit_test(thin_surfaces_of_small_grids_get_more_sheets),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
