@@ -22,9 +22,11 @@ export function openPanel(viewer) {
   const where = make("p", { class: "facts" });
   let adds = false;
   const add = toggle({ label: "Add to what is open", get: () => adds, set: (on) => { adds = on; } });
-  const chooser = make("input", { type: "file", multiple: true, "aria-label": "Files to open", hidden: !viewer.choose, onchange: () => {
+  const chooser = make("input", { type: "file", multiple: true, hidden: true, "aria-label": "Files to open", onchange: () => {
     if (chooser.files.length > 0) viewer.choose([...chooser.files]);
   } });
+  const choose = button("choose files …", () => chooser.click(), { hidden: !viewer.choose });
+  if (viewer.choose) where.textContent = "or drop files anywhere on the page";
 
   async function show(at) {
     try {
@@ -83,7 +85,7 @@ export function openPanel(viewer) {
     });
     element.addEventListener("toggle", () => { if (element.open && list.childElementCount === 0) show(""); });
   }
-  body.append(add.element, chooser, where, bar, list);
+  body.append(add.element, choose, chooser, where, bar, list);
   viewer.adds = () => adds;
   return { element, update: () => {} };
 }
