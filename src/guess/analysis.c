@@ -389,12 +389,14 @@ static int place_of(value_table *table, int64_t value) {
   return (int)place;
 }
 
-enum { MOST_REPEATED = 8 };
+/* LEAST_REPEATED: a row of fewer voxels may look repeated by chance, as in a map of a few plates. */
+enum { MOST_REPEATED = 8, LEAST_REPEATED = 8 };
 
 /* Whether each voxel stands `count` times in a row along an axis, as in a volume that was enlarged by
  * repeating its voxels; count: a power of two. It looks at the places of a lattice. */
 static bool is_repeated(const hl_volume *volume, int axis, size_t count) {
   const size_t *n = volume->dimension, step = hl_lattice_step(n, HL_LATTICE_PLACES);
+  if (n[axis] < LEAST_REPEATED * count) return false;
   for (size_t k = step / 2; k < n[2]; k += step)
     for (size_t j = step / 2; j < n[1]; j += step)
       for (size_t i = step / 2; i < n[0]; i += step) {
