@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 import halflight
-from halflight import Renderer
+from halflight import Renderer, Scene, TransferFunction, Volume
 
 
 @pytest.fixture
-def image(small):
-    return Renderer().render(small)
+def image(blob):
+    """A soft picture, which JPEG keeps well."""
+    return Renderer().render(Scene(Volume(blob, transfer_function=TransferFunction([(20, 0), (255, 0.2)])), size=(64, 48)))
 
 
 @pytest.mark.parametrize("ending, mark", [("jpg", b"\xff\xd8\xff"), ("jpeg", b"\xff\xd8\xff"), ("tif", b"II*\0"), ("pdf", b"%PDF"), ("webp", b"RIFF")])
