@@ -10,23 +10,47 @@ LANES_INLINE lanes3 load3(const float v[3][SURFACE_SAMPLES]) {
   return (lanes3){lanes_load(v[0]), lanes_load(v[1]), lanes_load(v[2])};
 }
 
-/* Moves a position away from a surface. Derived: the buffer's column is (r1.p) / (r0.p); a way d at a right
- * angle to the light moves the column by about |r1| d / (r0.p). */
-LANES_INLINE lanes3 moved_away(const shade_light *light, const shadow_map *map, lanes3 position,
-                               lanes3 normal) {
+/* A surface's sample and the light that arrives there. */
+typedef struct lit_sample {
+  lanes3 position, normal; /* unit normal, on the side that is lit */
+  lanes3 towards;          /* unit direction to the light */
+  lanes facing;            /* the cosine between the two; greater than 0 where the light is wanted */
+} lit_sample;
+
+/* The direction in which a look-up moves away from a surface, at most of length 1: along the normal n, but
+ * not to where the buffer meets the surface earlier than at the sample, since the buffer may hold the surface
+ * there already. Derived: let t be the direction to the light and h that of growing heights of sheets. The
+ * light's view moves with e, at a right angle to t. The ray of this view meets the surface's plane e + t
+ * (n.e) / (n.t) farther on, so that the height there grows by e.g, where g = h - a n and a = (h.t) / (n.t); g
+ * is at a right angle to t. For e = n - (n.t) t that is h.n - a. Where it is less than 0, the part of e along
+ * g is left out. */
+LANES_INLINE lanes3 way_from_surface(const float h[3], const lit_sample *sample) {
+  lanes3 sheets = {lanes_set(h[0]), lanes_set(h[1]), lanes_set(h[2])};
+  lanes along = dot3(sheets, sample->normal),
+        a = dot3(sheets, sample->towards) / lanes_max(sample->facing, lanes_set(1e-6f)),
+        falls = lanes_min(along - a, lanes_set(0));
+  lanes3 g = add_scaled3(sheets, sample->normal, lanes_set(0) - a);
+  return add_scaled3(sample->normal, g, lanes_set(0) - falls / lanes_max(dot3(g, g), lanes_set(1e-12f)));
+}
+
+/* The position at which a sample's light is looked up: moved away from the surface. Derived: the buffer's
+ * column is (r1.p) / (r0.p); a way d at a right angle to the light moves the column by about |r1| d / (r0.p). */
+LANES_INLINE lanes3 moved_away(const shade_job *job, const shade_light *light, const shadow_map *map,
+                               const lit_sample *sample) {
   const float *row = map->rows[1];
   float scale = LOOKUP_OFFSET / sqrtf(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
-  lanes away = light->parallel ? lanes_set(scale)
-                               : lanes_max(row_of_point(map->rows[0], position), lanes_set(0)) * scale;
-  return add_scaled3(position, normal, away);
+  lanes away = light->parallel
+                   ? lanes_set(scale)
+                   : lanes_max(row_of_point(map->rows[0], sample->position), lanes_set(0)) * scale;
+  return add_scaled3(sample->position, way_from_surface(job->normal, sample), away);
 }
 
 /* The fraction of the light that passes everything before the slab. */
-LANES_INLINE color_lanes light_before_slab(const shade_job *job, const shade_light *light, lanes3 position,
-                                           lanes3 normal) {
+LANES_INLINE color_lanes light_before_slab(const shade_job *job, const shade_light *light,
+                                           const lit_sample *sample) {
   const shadow_lookup *lookup = &light->lookups[job->plane];
   const shadow_map *map = light->sublight_count > 0 ? &light->sublights[0].map : &lookup->map;
-  position = moved_away(light, map, position, normal);
+  lanes3 position = moved_away(job, light, map, sample);
   if (light->sublight_count > 0) return mean_of_sublights(light, position, 0xffff, 0);
   color_lanes passing = {{lanes_set(1.0f), lanes_set(1.0f), lanes_set(1.0f)}};
   shadow_taps taps = taps_of_position(light, map, position);
@@ -37,13 +61,14 @@ LANES_INLINE color_lanes light_before_slab(const shade_job *job, const shade_lig
 /* The light on the side that the eye sees. Light from behind, through the surface itself, counts only where
  * the material sends on light from any angle. */
 LANES_INLINE color_lanes light_of_sample(const shade_job *job, const shade_light *light,
-                                         const surface_samples *samples, lanes3 position, lanes3 normal,
-                                         lanes facing) {
-  if (samples->even == 0) return light_before_slab(job, light, position, normal);
-  lanes side = lanes_select(facing > 0.0f, lanes_set(1.0f), lanes_set(-1.0f));
-  color_lanes passing = light_before_slab(job, light, position, scale3(normal, side));
+                                         const surface_samples *samples, const lit_sample *seen) {
+  if (samples->even == 0) return light_before_slab(job, light, seen);
+  lanes_int before = seen->facing > 0.0f;
+  lanes side = lanes_select(before, lanes_set(1.0f), lanes_set(-1.0f));
+  lit_sample lit = {seen->position, scale3(seen->normal, side), seen->towards, seen->facing * side};
+  color_lanes passing = light_before_slab(job, light, &lit);
   for (int c = 0; c < light->channels; c++)
-    passing.c[c] = lanes_select(facing > 0.0f, passing.c[c], passing.c[c] * samples->behind[c]);
+    passing.c[c] = lanes_select(before, passing.c[c], passing.c[c] * samples->behind[c]);
   return passing;
 }
 
@@ -73,7 +98,10 @@ LANES_INLINE void add_light(const shade_job *job, const shade_light *light, cons
   glint = light->of_sky > 0 ? lanes_set(0) : lanes_keep(facing > 0.0f, glint);
   bool shadowed = light->shadowed && samples->receives_shadow;
   color_lanes passing;
-  if (shadowed) passing = light_of_sample(job, light, samples, position, normal, facing);
+  if (shadowed) {
+    lit_sample seen = {position, normal, arriving.towards, facing};
+    passing = light_of_sample(job, light, samples, &seen);
+  }
   for (int c = 0; c < 3; c++) {
     if (shadowed && c < light->channels)
       transmittance = lanes_min(lanes_max(passing.c[c], lanes_set(0)), contact_of(job, light, samples, c));

@@ -143,6 +143,37 @@ static void test_no_acne(void **state) {
     }
 }
 
+/* A floor under a lamp close above it looks as it does without shadows: where the lamp's rays come from other
+ * sides than in its middle, look-ups move to where the floor is not met yet. */
+static void test_no_acne_under_lamps(void **state) {
+  (void)state;
+  static float open[PIXELS * 4], pixels[PIXELS * 4];
+  for (int k = 0; k < 4; k++) {
+    mesh_stage all;
+    open_meshes(&all);
+    add_quad(&all, (vec3){0, 0, 0}, (vec3){60, 0, 0}, (vec3){0, 60, 0});
+    hl_light *lamp = stage_add_point(&all.set, (vec3){0, 0, 40});
+    all.set.scene.camera.height = 70;
+    stage_look(&all.set, (vec3){43, -60, 71}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
+    hl_render_settings *render = &all.set.scene.render;
+    render->shadow_resolution = SIDE;
+    render->sheet_spacing = 1;
+    render->shadows = HL_SHADOWS_OFF;
+    stage_render_sheets(&all.set, open);
+    mesh_stage_choose_shadows(&all, lamp, k, 0);
+    lamp->radius = k == 0 ? 0 : 6;
+    stage_render_sheets(&all.set, pixels);
+    int seen = 0;
+    for (int i = 0; i < PIXELS; i++) {
+      if (open[4 * i + 3] < 0.9999f) continue;
+      assert_near((double)(pixels[4 * i] / open[4 * i]), 1, k == 0 ? 0.02 : 0.002);
+      seen++;
+    }
+    assert_true(seen > 2000);
+    mesh_stage_close(&all);
+  }
+}
+
 /* A pane of opacity o between light and floor takes o of the light, in every method and colour. */
 static void test_translucent_pane(void **state) {
   (void)state;
@@ -515,6 +546,7 @@ int main(void) {
                                      cmocka_unit_test(test_no_seams),
                                      cmocka_unit_test(test_pane_in_haze),
                                      cmocka_unit_test(test_no_acne),
+                                     cmocka_unit_test(test_no_acne_under_lamps),
                                      cmocka_unit_test(test_cube_and_box),
                                      cmocka_unit_test(test_translucent_pane),
                                      cmocka_unit_test(test_penumbra),
