@@ -149,13 +149,16 @@ def zoom_goes_on(browser):
 
 def true_status(browser):
     """The line under the picture is not 'final' from the very moment of a change; slow pictures tell how far they are."""
+    browser.run("halflight.store.changeRender('soft_method', 'sublights')")
+    browser.run("halflight.store.changeRender('light_samples', 8)")  # a slow picture on any machine
     rest(browser)
-    said = browser.run("(halflight.store.changeRender('sheet_spacing', 0.02), document.getElementById('stage').dataset.stage)")
+    said = browser.run("(halflight.store.changeRender('sheet_spacing', 0.01), document.getElementById('stage').dataset.stage)")
     check(said == "moving", f"at the change: {said}")
     browser.wait(f"{STAGE} === 'refining'")
     browser.wait("/^[0-9]+ %/.test(document.getElementById('progress').textContent)")
     check(browser.run("document.getElementById('stage').textContent") != "final", "not final while it is made")
-    undo(browser)
+    for _ in range(3):
+        undo(browser)
     rest(browser)
     check(browser.run("document.getElementById('progress').textContent") == "", "at rest nothing is under way")
     marks = browser.run("""(halflight.store.setMarks('test', [{ kind: 'text', points: [[0, 0, 0]], text: 'here' }]), document.getElementById('stage').dataset.stage)""")
