@@ -21,16 +21,16 @@ static int levels_below(double distance, double solid) {
   return (int)fmin(fmax(ceil(distance / solid * LEVELS - 0.5), 0), LEVELS);
 }
 
-/* Counts, for each level, the pairs of neighbours that lie on both sides of it: they are the surface's
- * area. */
+/* Counts, for each level, the pairs of neighbours that lie on both sides of it: they are the surface's area.
+ * Every second place of the sample along each axis is enough for 64 levels. */
 static void count_areas(const hl_volume *volume, const hl_sample *sample, const hl_data_analysis *a,
                         double areas[LEVELS]) {
-  const size_t *n = volume->dimension;
+  const size_t *n = volume->dimension, step = 2 * sample->step;
   double change[LEVELS + 1] = {0}, scale = a->direction / sample->range,
                          background = sample->low + a->background * sample->range;
-  for (size_t k = 0; k + 1 < n[2]; k += sample->step)
-    for (size_t j = 0; j + 1 < n[1]; j += sample->step)
-      for (size_t i = 0; i + 1 < n[0]; i += sample->step) {
+  for (size_t k = 0; k + 1 < n[2]; k += step)
+    for (size_t j = 0; j + 1 < n[1]; j += step)
+      for (size_t i = 0; i + 1 < n[0]; i += step) {
         double here = scale * (hl_volume_value_within(volume, i, j, k) - background);
         for (int axis = 0; axis < 3; axis++) {
           double next = scale *
