@@ -34,7 +34,8 @@ LANES_INLINE lanes3 way_from_surface(const float h[3], const lit_sample *sample)
 }
 
 /* The position at which a sample's light is looked up: moved away from the surface. Derived: the buffer's
- * column is (r1.p) / (r0.p); a way d at a right angle to the light moves the column by about |r1| d / (r0.p). */
+ * column is (r1.p) / (r0.p); a way d at a right angle to the light moves the column by about |r1| d / (r0.p).
+ */
 LANES_INLINE lanes3 moved_away(const shade_job *job, const shade_light *light, const shadow_map *map,
                                const lit_sample *sample) {
   const float *row = map->rows[1];
