@@ -28,7 +28,8 @@ LANES_INLINE lanes3 way_from_surface(const float h[3], const lit_sample *sample)
   lanes3 sheets = {lanes_set(h[0]), lanes_set(h[1]), lanes_set(h[2])};
   lanes along = dot3(sheets, sample->normal),
         a = dot3(sheets, sample->towards) / lanes_max(sample->facing, lanes_set(1e-6f)),
-        falls = lanes_min(along - a, lanes_set(0));
+        falls = lanes_keep(sample->facing > 0.0f,
+                           lanes_min(along - a, lanes_set(0))); /* lines have no normal */
   lanes3 g = add_scaled3(sheets, sample->normal, lanes_set(0) - a);
   return add_scaled3(sample->normal, g, lanes_set(0) - falls / lanes_max(dot3(g, g), lanes_set(1e-12f)));
 }
