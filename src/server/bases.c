@@ -17,7 +17,9 @@ void base_forget(server_page *page) {
 }
 
 void base_keep(server *s, server_page *page, const frame_request *request) {
-  char *text = strndup(request->text, request->length);
+  char *text = malloc(request->length + 1); /* a body has no zero byte at its end */
+  if (text != NULL) text[request->length] = '\0';
+  if (text != NULL && request->length > 0) memcpy(text, request->text, request->length);
   pthread_mutex_lock(&s->pages_lock);
   if (text != NULL && request->number > page->base_number) {
     free(page->base);
