@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "message.h"
+#include "text/plain.h"
 
 const char *const picture_extensions[] = {".png", ".exr", ".npy", ".tif", ".tiff", NULL};
 const char *const figure_extensions[] = {".png", ".exr", ".npy", ".tif", ".tiff", ".pdf", ".svg", NULL};
@@ -21,10 +22,6 @@ const char *const volume_extensions[] = {".nrrd", ".nii",    ".nii.gz", ".mha", 
 const char *base_name(const char *path) {
   const char *slash = strrchr(path, '/');
   return slash != NULL ? slash + 1 : path;
-}
-
-bool is_url(const char *input) {
-  return strncmp(input, "http://", 7) == 0 || strncmp(input, "https://", 8) == 0;
 }
 
 bool has_extension(const char *path, const char *extension) {
@@ -96,7 +93,7 @@ hl_status output_scene_text(hl_context *context, const hl_scene *scene, const ch
 char *output_default_name(const char *input, const char *extension) {
   char folder[PATH_MAX];
   char url[PATH_MAX];
-  if (is_url(input)) {
+  if (hl_plain_is_url(input)) {
     size_t length = strcspn(input, "?");
     while (length > 0 && input[length - 1] == '/') length--;
     snprintf(url, sizeof url, "%.*s", (int)length, input);

@@ -11,9 +11,6 @@
 /* The part of a path after its last slash. */
 const char *base_name(const char *path);
 
-/* Whether an INPUT is a URL of a store on a server. */
-bool is_url(const char *input);
-
 /* True if path ends in extension (".png"), in upper or lower case, and has something before it. */
 bool has_extension(const char *path, const char *extension);
 

@@ -17,6 +17,7 @@
 #include "core/context.h"
 #include "core/memory.h"
 #include "platform/paths.h"
+#include "text/plain.h"
 
 static hl_status fail_system(hl_error *error, const char *path, const char *verb) {
   return hl_fail(error, HL_ERROR_IO, "%s: cannot %s: %s", path, verb, strerror(errno));
@@ -327,16 +328,13 @@ void hl_output_memory_abort(hl_output_memory *memory) {
 
 /* ---- paths ---- */
 
-bool hl_path_is_url(const char *path) {
-  return strncmp(path, "http://", 7) == 0 || strncmp(path, "https://", 8) == 0;
-}
-
 char *hl_path_join(hl_context *context, const char *folder, const char *path) {
   if (folder == NULL || folder[0] == 0)
     folder = path[0] == '/' || path[0] == '\\'
                  ? "."
                  : NULL; /* "//server" may be no path, and must not become one */
-  if (hl_path_is_absolute(path) || hl_path_is_url(path) || folder == NULL) return hl_copy_text(context, path);
+  if (hl_path_is_absolute(path) || hl_plain_is_url(path) || folder == NULL)
+    return hl_copy_text(context, path);
   size_t folder_length = strlen(folder), path_length = strlen(path);
   char *joined = hl_allocate(context, folder_length + path_length + 2, 1);
   if (joined == NULL) return NULL;

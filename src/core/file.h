@@ -75,8 +75,6 @@ hl_status hl_output_memory_commit(hl_output_memory *memory, unsigned char **byte
 /* Releases everything; harmless after a commit. */
 void hl_output_memory_abort(hl_output_memory *memory);
 
-/* Whether a path is a URL of a web server, "http://..." or "https://...". */
-bool hl_path_is_url(const char *path);
 /* folder + "/" + path, or path itself where it is absolute or a URL, or folder is null or empty; null without
  * memory. */
 char *hl_path_join(hl_context *context, const char *folder, const char *path);

@@ -5,6 +5,7 @@
 #include <locale.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* The C library keeps one object for this locale: the call allocates nothing and cannot fail. */
 static locale_t plain_locale(void) { return newlocale(LC_ALL_MASK, "C", (locale_t)0); }
@@ -35,4 +36,8 @@ static char lower(char c) { return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') 
 bool hl_plain_equal(const char *a, const char *b) {
   for (; *a != 0 && lower(*a) == lower(*b); a++) b++;
   return lower(*a) == lower(*b);
+}
+
+bool hl_plain_is_url(const char *text) {
+  return strncmp(text, "http://", 7) == 0 || strncmp(text, "https://", 8) == 0;
 }

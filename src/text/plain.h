@@ -1,5 +1,5 @@
 /* text/plain.h - reading and writing of numbers and names in the locale "C", whatever locale the host has
- * set. In that locale "1.5" is a number, and 'I' and 'i' are the same letter. */
+ * set; and which texts are URLs. In that locale "1.5" is a number, and 'I' and 'i' are the same letter. */
 #ifndef HL_TEXT_PLAIN_H
 #define HL_TEXT_PLAIN_H
 
@@ -14,6 +14,9 @@ __attribute__((format(printf, 3, 4))) int hl_plain_print(char *text, size_t size
 
 /* Whether texts are equal but for the case of the letters A to Z. */
 bool hl_plain_equal(const char *a, const char *b);
+
+/* Whether a text is a URL of a web server, "http://..." or "https://...". */
+bool hl_plain_is_url(const char *text);
 
 /* A section in which the calling thread is in the locale "C", for calls of other libraries' functions. */
 typedef struct hl_plain_section {

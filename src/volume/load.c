@@ -7,6 +7,7 @@
 #include "core/door.h"
 #include "core/file.h"
 #include "core/memory.h"
+#include "text/plain.h"
 #include "volume/formats/format.h"
 #include "volume/io/bundle_zip.h"
 #include "volume/io/decoders.h"
@@ -368,7 +369,7 @@ hl_status hl_volume_load_with(hl_context *context, const char *path, const hl_vo
                              .selection = {1, 1, 1, 0, 0, 0}};
   memcpy(request.spacing, options->spacing, sizeof request.spacing);
   hl_stream *stream = NULL;
-  bool on_server = options->bytes == NULL && hl_path_is_url(path) && !hl_is_confined(context);
+  bool on_server = options->bytes == NULL && hl_plain_is_url(path) && !hl_is_confined(context);
   if (on_server || (options->bytes == NULL && hl_file_kind(context, path) == 'd')) {
     status = on_server ? load_from_server(path, &request, volume, error)
                        : load_folder(path, &request, volume, error);

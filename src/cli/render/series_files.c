@@ -13,13 +13,14 @@
 #include "cli/input.h"
 #include "series.h"
 #include "start/joined.h"
+#include "text/plain.h"
 
 enum { MOST_LABEL_LAYERS = 64 };
 
 /* ---- names ---- */
 
 static bool is_pattern(const char *path) {
-  return strpbrk(path, "*?[") != NULL && !is_url(path) && access(path, F_OK) != 0;
+  return strpbrk(path, "*?[") != NULL && !hl_plain_is_url(path) && access(path, F_OK) != 0;
 }
 
 /* True if the text has one "%d" or "%04d", and no other '%' but "%%". */
