@@ -46,13 +46,16 @@ int hl_volume_reads_particles(hl_context *context, const char *path) {
 
 /* ---- arrays ---- */
 
-/* Names the columns by the arrays of the first piece. Coordinates are the points' alone. */
-static void name_columns(const hl_vtk_pieces *pieces, hl_particle_columns *columns) {
+/* Names the columns by the arrays of the first piece. Coordinates are the points' alone. names:
+ * [HL_PARTICLE_COLUMNS_MOST]; set to the arrays' names in the file, which the columns hold only as far as
+ * they can be printed. */
+static void name_columns(const hl_vtk_pieces *pieces, hl_particle_columns *columns, const char **names) {
   for (size_t n = 0; n < pieces->pieces[0].array_count; n++) {
     const hl_vtk_piece_array *array = &pieces->arrays[pieces->pieces[0].first_array + n];
     hl_voxel_type type;
     if (array->section != HL_VTK_POINT_DATA || !hl_vtk_xml_find_type(array->array.type, &type)) continue;
     if (columns->column_count == HL_PARTICLE_COLUMNS_MOST) return;
+    names[columns->column_count] = array->name;
     hl_particle_columns_add(columns, array->name);
     hl_particle_column *column = &columns->column[columns->column_count - 1];
     bool is_coordinate = column->role <= HL_COLUMN_Z, is_vector = array->components != 1;
@@ -106,26 +109,16 @@ static hl_status read_places(hl_stream **stream, hl_vtk_pieces *pieces, const hl
   return status;
 }
 
-/* The names of the columns' arrays in the file, which the columns hold only as far as they can be printed. */
-static const char *name_of(const hl_vtk_pieces *pieces, int column) {
-  for (size_t n = 0; n < pieces->pieces[0].array_count; n++) {
-    const hl_vtk_piece_array *array = &pieces->arrays[pieces->pieces[0].first_array + n];
-    hl_voxel_type type;
-    if (array->section != HL_VTK_POINT_DATA || !hl_vtk_xml_find_type(array->array.type, &type)) continue;
-    if (column-- == 0) return array->name;
-  }
-  return "";
-}
-
 static hl_status read_pieces(hl_stream **stream, hl_vtk_pieces *pieces, hl_particle_columns *columns,
                              hl_error *error) {
+  const char *names[HL_PARTICLE_COLUMNS_MOST];
   hl_status status = HL_OK;
-  name_columns(pieces, columns);
+  name_columns(pieces, columns, names);
   for (size_t n = 0; n < pieces->piece_count && status == HL_OK; n++) {
     const hl_vtk_piece *piece = &pieces->pieces[n];
     status = read_places(stream, pieces, piece, columns, error);
     for (int c = 0; c < columns->column_count && status == HL_OK; c++)
-      status = read_column(stream, pieces, piece, columns, c, name_of(pieces, c), error);
+      status = read_column(stream, pieces, piece, columns, c, names[c], error);
     columns->count += piece->point_count;
   }
   return status;
