@@ -96,6 +96,7 @@ static const struct {
 
 static bool has_word(const char *words, const char *word) {
   size_t length = strlen(word);
+  if (length == 0 || strchr(word, ' ') != NULL) return false;
   for (const char *at = words; (at = strstr(at, word)) != NULL; at++)
     if ((at == words || at[-1] == ' ') && (at[length] == ' ' || at[length] == '\0')) return true;
   return false;
@@ -113,7 +114,6 @@ static bool takes(const char *(*option)(const void *data, size_t index), const v
 
 const char *synonym_of(const char *word, const char *(*option)(const void *data, size_t index),
                        const void *data) {
-  if (word[0] == '\0' || strchr(word, ' ') != NULL) return NULL;
   for (size_t n = 0; n < sizeof meanings / sizeof *meanings; n++)
     if (has_word(meanings[n].words, word) && takes(option, data, meanings[n].option))
       return meanings[n].option;
@@ -137,7 +137,6 @@ static const struct {
 };
 
 const char *scene_setting_of(const char *word) {
-  if (word[0] == '\0' || strchr(word, ' ') != NULL) return NULL;
   for (size_t n = 0; n < sizeof settings / sizeof *settings; n++)
     if (has_word(settings[n].words, word)) return settings[n].json;
   return NULL;
@@ -178,7 +177,6 @@ static const struct {
 };
 
 const char *value_meant_by(const char *option, const char *word) {
-  if (word[0] == '\0' || strchr(word, ' ') != NULL) return NULL;
   for (size_t n = 0; n < sizeof values / sizeof *values; n++)
     if (strcmp(values[n].option, option) == 0 && has_word(values[n].words, word)) return values[n].value;
   return NULL;
@@ -203,7 +201,6 @@ static const struct {
 };
 
 const char *command_meant_by(const char *word) {
-  if (word[0] == '\0' || strchr(word, ' ') != NULL) return NULL;
   for (size_t n = 0; n < sizeof commands / sizeof *commands; n++)
     if (has_word(commands[n].words, word)) return commands[n].command;
   return NULL;
