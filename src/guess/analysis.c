@@ -396,7 +396,7 @@ enum { MOST_REPEATED = 8, LEAST_REPEATED = 8 };
  * repeating its voxels; count: a power of two. It looks at the places of a lattice. */
 static bool is_repeated(const hl_volume *volume, int axis, size_t count) {
   const size_t *n = volume->dimension, step = hl_lattice_step(n, HL_LATTICE_PLACES);
-  if (n[axis] < LEAST_REPEATED * count) return false;
+  if (n[axis] < LEAST_REPEATED * count || n[axis] % count != 0) return false;
   for (size_t k = step / 2; k < n[2]; k += step)
     for (size_t j = step / 2; j < n[1]; j += step)
       for (size_t i = step / 2; i < n[0]; i += step) {
@@ -408,7 +408,7 @@ static bool is_repeated(const hl_volume *volume, int axis, size_t count) {
         if (found != hl_volume_whole(volume, last[0], last[1], last[2], &other)) return false;
         if (found == HL_WHOLE_FOUND && value != other) return false;
       }
-  return n[axis] % count == 0;
+  return true;
 }
 
 /* Fills in tallies. False at a value that is no whole number, and where there are too many values. The
