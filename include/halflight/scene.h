@@ -108,8 +108,9 @@ typedef enum hl_sky_type {
 
 /* Light from all directions, which everything that casts shadows attenuates. A surface receives diffuse / pi
  * times the integral of radiance x transmittance x cosine over all directions. A medium receives the mean of
- * radiance x transmittance x phase function over all directions. So an even sky of radiance 1 that nothing
- * hides lights both by 1. A sky makes no highlights.
+ * radiance x transmittance x phase function over all directions. So where nothing hides an even sky of
+ * radiance 1, a medium receives 1, and a surface receives its diffuse reflectance. A sky makes no
+ * highlights.
  *
  * The image's top row is the zenith, and its bottom row the opposite point. Its middle column lies in the
  * direction up x right. The direction `right` is the world's x axis, made perpendicular to up; where up is
@@ -446,9 +447,9 @@ HL_API const char *hl_light_rig_name(size_t index);
 #define HL_LIGHT_RIG_MOST 4
 
 /* Gives a description the lights of a named rig, which move with the camera, and a sky of the rig's strength.
- * A description without a sky gets one that is brighter above than below. All of them together are about as
- * strong as the light that the description had; hl_scene_light_factor() gives the factor that a bare volume's
- * picture needs beside.
+ * A description without a sky gets one that is brighter above than below. The lights and the sky together are
+ * about as strong as the light that the description had. The picture of a bare volume needs another factor,
+ * which hl_scene_light_factor() gives.
  * lights: the caller's, [HL_LIGHT_RIG_MOST], to which description->lights points afterwards. Errors:
  * HL_ERROR_ARGUMENT for an unknown name. */
 HL_API HL_WARN_UNUSED hl_status hl_scene_light_rig(const char *rig, hl_scene_description *description,

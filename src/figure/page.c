@@ -1,8 +1,8 @@
 /* figure/page.c - draws a figure's panels, through cairo, on pixels, PDF or SVG.
  *
  * In: the figure, checked. Out: a picture, or the bytes of a file. The unit of length is always the
- * point. Pictures are drawn into their rectangles as 8-bit sRGB; they are not resampled where their pixels
- * and the page's agree. Cairo allocates its surfaces outside of the context's memory. */
+ * point. Pictures are drawn into their rectangles as 8-bit sRGB. A picture is not resampled where its
+ * pixels are as large as the page's. Cairo allocates its surfaces outside of the context's memory. */
 #include "figure/page.h"
 
 #include <cairo-pdf.h>

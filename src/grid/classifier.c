@@ -119,7 +119,7 @@ static void fill_outside(classifier *classifier) {
   }
 }
 
-/* The integral of extinction over entries, from entry 0 to a coordinate. */
+/* The integral of extinction over the coordinate of the tables, which counts entries, from 0 to x. */
 static float integral_to(const classifier *classifier, float x) {
   const float *at = classifier->sums[(int)x], *next = classifier->sums[(int)x + 1];
   return at[1] + (next[1] - at[1]) * (x - (float)(int)x);

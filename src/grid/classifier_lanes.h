@@ -69,7 +69,7 @@ LANES_INLINE lanes_int may_be_visible(const classifier *classifier, table_coordi
   return (lanes_max(a.x, b.x) > classifier->first_visible) & (lanes_min(a.x, b.x) < classifier->last_visible);
 }
 
-/* The integral of extinction over entries, from entry 0 to a coordinate. */
+/* The integral of extinction over the coordinate of the tables, which counts entries, from 0 to x. */
 LANES_INLINE lanes integral_to(const classifier *classifier, lanes x) {
   lanes values[3];
   table_values(classifier->sums, split_coordinate(x), values);

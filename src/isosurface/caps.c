@@ -19,8 +19,8 @@ typedef struct cap_face {
   affine3 to_index, from_index;
   int axis;
   double height;
-  double outward; /* 1: the normal points to where q[axis] rises, or away from a sphere's centre; -1: the
-                     other way */
+  double outward; /* 1: the face's normal points to where q[axis] rises, or, of a sphere, away from its
+                     centre; -1: the normal points the other way */
   bool sphere;
   size_t cut; /* index of the grid's cut; cut_count: the face is one of the box */
 } cap_face;

@@ -1,8 +1,8 @@
 /* scene/drawn_scene.h - what frames draw of a scene, made when the first frame asks for it.
  *
- * Label maps and masks are drawn by smooth fields, which take long to make for large maps. Scenes are also
- * made to be composed, written and described, or to be shown at a coarser resolution first. So a scene makes
- * these fields not with itself, but for its first frame, and keeps them. */
+ * Label maps and masks are drawn by smooth fields, which take long to make for large maps. Many
+ * scenes are only composed, written or described, or are shown at a coarser resolution first. So the first
+ * frame of a scene makes these fields, and the scene keeps them. */
 #ifndef HL_SCENE_DRAWN_SCENE_H
 #define HL_SCENE_DRAWN_SCENE_H
 

@@ -436,8 +436,8 @@ static void advance_cascade(light_shadow *shadow, const occupancy *occupancy, in
 
 /* ---- the method ---- */
 
-/* Sets how much the samples of a slab read of the buffer, and how much of its second planes: these alone at a
- * chunk's beginning, the buffer alone after the length of a chunk. */
+/* Sets the part of a slab's light that its samples read from the buffer; they read the rest from the buffer's
+ * second planes. The part is 0 at the beginning of a chunk, and 1 once the chunk has its whole length. */
 static void before_shading(light_shadow *shadow, int sheet, shadow_lookup *lookup) {
   const soft_cascade *cascade = shadow->state;
   double middle = slab_omega(cascade, shadow->setup.sheets, sheet);

@@ -192,7 +192,8 @@ export class Frames {
     const frame = await this.#channel.fetchFrame(scene, options);
     if (generation !== this.#generation) return;
     if (frame === null) {
-      // The other end took this frame for outdated, but nothing newer has come: the final picture is asked for again.
+      // The other end gave this frame up without a newer one, as a viewer that is ending does. Asking again shows whether it has
+      // ended.
       if (stage === "final") this.#refineSoon();
       return;
     }

@@ -67,8 +67,9 @@ enum { MOST_CORNERS = 4096, MOST_PARTS = 8 };
 
 /* ---- look-ups ---- */
 
-/* How far look-ups move away from a surface along its normal, in pixels of the shadow buffer. So they read as
- * little as possible of the light behind the surface, and of the light that the surface itself has taken. */
+/* How far look-ups move away from a surface, in pixels of the shadow buffer: along the normal, but not to
+ * where the buffer meets the surface earlier (render/surface_lanes.h). So they read as little as possible of
+ * the light behind the surface, and of the light that the surface itself has taken. */
 static const float LOOKUP_OFFSET = 1.25f;
 
 /* The delay of surfaces where look-ups use cubic convolution, which reaches so far; pixels. */

@@ -6,8 +6,8 @@
 #include "volume/volume.h"
 
 /* Reads the .mat file beside a volume's header, and sets the axes and the origin of the volume's grid (x to
- * the right, y to the front, z up). Returns false, and leaves the grid as it is, where there is no such file.
- * A file that cannot be read is left out, too, with a warning. */
+ * the right, y to the front, z up). Where there is no such file, it returns false and leaves the grid as it
+ * is. It does the same, with a warning, where the file cannot be read. */
 bool hl_spm_mat_place(hl_context *context, const char *header_path, hl_volume_description *grid);
 
 #endif
