@@ -50,8 +50,18 @@ static bool make_token(char token[TOKEN_DIGITS + 1]) {
   return true;
 }
 
-/* Gives memory back to the system. The C library keeps freed memory for the thread that had it, which is much
- * with many threads. */
+/* The GNU C library keeps freed memory for the thread that had it, which is much with many threads. By itself
+ * it keeps up to 64 MiB at the end of each thread's memory, and malloc_trim() does not give those back.
+ * Blocks of KEPT_BYTES and more are taken from the system one by one here, and less is kept of the others. */
+static void keep_little_memory(void) {
+#ifdef __GLIBC__
+  enum { KEPT_BYTES = 1 << 22 };
+  mallopt(M_MMAP_THRESHOLD, KEPT_BYTES);
+  mallopt(M_TRIM_THRESHOLD, KEPT_BYTES);
+#endif
+}
+
+/* Gives freed memory back to the system. */
 static void give_back_memory(server *s) {
   if (!atomic_exchange(&s->released, false)) return;
 #ifdef __GLIBC__
@@ -89,6 +99,7 @@ static bool serve(server *s, int listening, char *problem, size_t size) {
 bool server_run(const server_options *options, char *problem, size_t problem_size) {
   server *s = calloc(1, sizeof *s);
   int listening = -1;
+  keep_little_memory();
   bool good = s != NULL && pages_begin(s) && connections_begin(&s->connections);
   if (good) {
     s->options = *options;
