@@ -15,17 +15,18 @@ extern "C" {
 /* One option. An option that may be given several times ("iso", "tf", "show", ...) stands in the list several
  * times. */
 typedef struct hl_option {
-  const char *name;  /* "look", "iso", "view", ...: hl_option_name() lists all */
-  const char *value; /* as `halflight render` takes it; of a switch null or "" */
+  const char *name;  /* the option's name, as "look", "iso" or "view"; hl_option_name() lists all names */
+  const char *value; /* the option's value, written as for `halflight render`; null or "" for a switch */
 } hl_option;
 
 /* How the value of an option is read. */
 typedef enum hl_option_kind {
   HL_OPTION_SWITCH = 0,  /* no value */
-  HL_OPTION_TEXT = 1,    /* a text of the option's own form, as "120:gold:0.3" of "iso" */
+  HL_OPTION_TEXT = 1,    /* the value is a text in the option's own form, as "120:gold:0.3" for "iso" */
   HL_OPTION_CHOICE = 2,  /* one of hl_option_choices() */
-  HL_OPTION_NUMBERS = 3, /* numbers joined by ',' or 'x'; or one of hl_option_choices() */
-  HL_OPTION_COLOR = 4    /* linear R,G,B or a grey, #rrggbb, a CSS name; or one of hl_option_choices() */
+  HL_OPTION_NUMBERS = 3, /* the value is numbers joined by ',' or 'x', or one of hl_option_choices() */
+  HL_OPTION_COLOR = 4    /* the value is a colour (linear R,G,B, a grey, #rrggbb or a CSS name), or one of
+                          * hl_option_choices() */
 } hl_option_kind;
 
 /* The name of an option that scenes are composed by; null past the last. */
@@ -34,13 +35,13 @@ HL_API const char *hl_option_name(size_t index);
 /* The kind of a named option; HL_OPTION_TEXT for an unknown name. */
 HL_API hl_option_kind hl_option_kind_of(const char *name);
 
-/* The choices of a named option, ended by a null name; null: it has none. */
+/* The choices of a named option, ended by a null name; null where the option has no choices. */
 HL_API const hl_setting_choice *hl_option_choices(const char *name);
 
 /* What is known of the description that hl_scene_compose() changes; flags, joined by |. */
 typedef enum hl_compose_flag {
-  /* It was made by hl_scene_for_volume() or another function that chooses: what follows from an option
-   * (camera, light, sky) is chosen anew. */
+  /* The description was made by hl_scene_for_volume() or another function that chooses. What follows from
+   * an option (camera, light, sky) is then chosen anew. */
   HL_COMPOSE_BARE = 1,
   HL_COMPOSE_CHANGED = 2, /* the caller changed what is seen of the volumes: a bare camera frames them anew */
   HL_COMPOSE_CUT = 4,     /* the caller cut the volume: bare light is made for what is left */
@@ -51,13 +52,13 @@ typedef enum hl_compose_flag {
   HL_COMPOSE_VALUES = 128 /* bare label maps are drawn by their values, as by options that are about values */
 } hl_compose_flag;
 
-/* Makes the scene of a description and options, which are applied in one order, whatever order they stand in:
- * label maps, looks and functions, cuts, camera, floor, lights, exposure, sky, ambient light, settings.
- * A bare label map is drawn by its values where options say how values are drawn: "tf", "colormap", "range",
- * "threshold", "iso", "mask" and the maximum projection. The other layers of a bare label map's file show,
- * too. flags: of hl_compose_flag. Options that change nothing are told to the context's log. Errors name an
- * option as the program does, with two dashes: HL_ERROR_ARGUMENT for an impossible value, HL_ERROR_INPUT or
- * HL_ERROR_IO for a file that an option names. */
+/* Makes the scene of a description and options, which are applied in one order, whatever order they stand
+ * in: label maps, looks and functions, cuts, camera, floor, lights, exposure, sky, ambient light, settings.
+ * A bare label map is drawn by its values where options say how values are drawn: "tf", "colormap",
+ * "range", "threshold", "iso", "mask" and the maximum projection. If a bare label map's file has further
+ * layers, they show, too. flags: of hl_compose_flag. Options that change nothing are told to the context's
+ * log. Errors name an option as the program does, with two dashes: HL_ERROR_ARGUMENT for an impossible
+ * value, HL_ERROR_INPUT or HL_ERROR_IO for a file that an option names. */
 HL_API HL_WARN_UNUSED hl_status hl_scene_compose(hl_context *context, const hl_scene_description *description,
                                                  unsigned flags, const hl_option *options,
                                                  size_t option_count, hl_scene **scene, hl_error *error);
@@ -76,7 +77,7 @@ HL_API HL_WARN_UNUSED hl_status hl_scene_for_label_map(hl_context *context, cons
                                                        hl_scene **scene, hl_error *error);
 
 /* The colour of a mesh or an isosurface that has none of its own, linear RGB: ivory, blue, ochre, green,
- * rose, violet, and again. */
+ * rose, violet, and ivory again. */
 HL_API void hl_surface_color(size_t index, double color[3]);
 
 #ifdef __cplusplus

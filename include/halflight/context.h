@@ -30,7 +30,8 @@ extern "C" {
 
 typedef enum hl_status {
   HL_OK = 0,
-  HL_ERROR_ARGUMENT = 1,    /* a call's argument is impossible: null, out of range, wrong struct_size */
+  HL_ERROR_ARGUMENT = 1,    /* an argument of the call is impossible: null, out of range, or of a wrong
+                             * struct_size */
   HL_ERROR_MEMORY = 2,      /* the allocator returned null, or the context's memory limit was reached */
   HL_ERROR_IO = 3,          /* a file could not be opened, read, written or renamed */
   HL_ERROR_INPUT = 4,       /* a file or a scene is malformed */
@@ -39,9 +40,9 @@ typedef enum hl_status {
   HL_ERROR_INTERNAL = 7     /* a fault in the library itself */
 } hl_status;
 
-/* Why a call failed. Filled by every failing call that is given one; null is always allowed. `message` is one
- * line: the file or key, the place in it, what is wrong and how to mend it. line and column count from 1; 0:
- * not applicable. byte_offset is -1 if unknown. */
+/* Why a call failed. Every failing call that is given an hl_error fills it; null is always allowed.
+ * `message` is one line: the file or key, the place in it, what is wrong and how to mend it. line and
+ * column count from 1, and are 0 where there is no text. byte_offset is -1 if unknown. */
 typedef struct hl_error {
   hl_status code;
   int line;
@@ -54,32 +55,34 @@ typedef enum hl_log_level { HL_LOG_WARNING = 1, HL_LOG_INFO = 2 } hl_log_level;
 
 /* Instruction sets of the hot functions. Each gives the same bytes. */
 typedef enum hl_instruction_set {
-  HL_INSTRUCTION_SET_AUTO = 0,   /* the best that the processor has */
-  HL_INSTRUCTION_SET_SCALAR = 1, /* the compiler's baseline for the target; on 64-bit Arm without vectors */
-  HL_INSTRUCTION_SET_AVX2 = 2,   /* and FMA: Haswell, Zen and later */
-  HL_INSTRUCTION_SET_AVX512 = 3, /* F, DQ, BW and VL: Skylake servers and later */
-  HL_INSTRUCTION_SET_NEON = 4,   /* every 64-bit Arm processor */
-  HL_INSTRUCTION_SET_AVX512_VBMI = 5 /* and VBMI, VBMI2 and VNNI: Ice Lake, Zen 4 and later */
+  HL_INSTRUCTION_SET_AUTO = 0,       /* the best that the processor has */
+  HL_INSTRUCTION_SET_SCALAR = 1,     /* the set that the compiler assumes of every processor; on 64-bit Arm
+                                      * this set has no vectors */
+  HL_INSTRUCTION_SET_AVX2 = 2,       /* and FMA: Haswell, Zen and later */
+  HL_INSTRUCTION_SET_AVX512 = 3,     /* F, DQ, BW and VL: Skylake servers and later */
+  HL_INSTRUCTION_SET_NEON = 4,       /* every 64-bit Arm processor */
+  HL_INSTRUCTION_SET_AVX512_VBMI = 5 /* AVX-512 with VBMI, VBMI2 and VNNI: Ice Lake, Zen 4 and later */
 } hl_instruction_set;
 
-/* Libraries by which processes of an MPI job meet (halflight/ranks.h): Open MPI's of version 4 or 5,
- * libmpi.so.40; MPICH's since 3.1, or another with its binary interface, libmpi.so.12 or libmpich.so.12. */
+/* Libraries by which processes of an MPI job meet (halflight/ranks.h): Open MPI 4 or 5 (libmpi.so.40);
+ * MPICH 3.1 or later, or a library with its binary interface (libmpi.so.12 or libmpich.so.12). */
 typedef enum hl_mpi {
-  HL_MPI_AUTO = 0, /* the one that the process has loaded; else Open MPI's; where that is missing MPICH's */
+  HL_MPI_AUTO = 0, /* the library that the process has loaded; else Open MPI; where Open MPI is missing,
+                    * MPICH */
   HL_MPI_OPEN_MPI = 1,
   HL_MPI_MPICH = 2
 } hl_mpi;
 
 /* A file that was brought from a server. */
 typedef struct hl_fetched_file {
-  int descriptor; /* open for reading, at any position; -1: the server has no such file */
-  uint64_t size;  /* bytes; what follows them in the descriptor's file is not read */
+  int descriptor; /* the file, open for reading, at any position; -1: the server has no such file */
+  uint64_t size; /* the file's size in bytes; what follows these bytes in the descriptor's file is not read */
 } hl_fetched_file;
 
-/* All callbacks may be null (a default is used) and receive user_data. They may be called
- * from the thread that called into the library only, except allocate and release, which may be
- * called from any of its threads. They may call the library, but not with the renderer whose frame is under
- * way. Arithmetic in them is that of C's default floating-point environment, whichever the host's is. */
+/* All callbacks may be null (a default is used) and receive user_data. They may be called from the thread
+ * that called into the library only, except allocate and release, which may be called from any of its
+ * threads. They may call the library, but not with the renderer whose frame is under way. Callbacks run in
+ * C's default floating-point environment, whatever environment the host has set. */
 typedef struct hl_context_options {
   size_t struct_size; /* set by hl_context_options_defaults() */
   void *user_data;
@@ -98,36 +101,40 @@ typedef struct hl_context_options {
   /* Called with the path of every file that is opened for reading: scenes, volumes, the data files that their
    * headers name, transfer functions, pictures. A program can use it to avoid writing over one of them. */
   void (*reads)(void *user_data, const char *path);
-  /* Asked for a file of a format that another program converts, "OpenVDB": gives the bytes of the file that
-   * it makes (NanoVDB), which are read in its place, or fails: with HL_ERROR_UNSUPPORTED where there is no
-   * such program. The library runs no program itself. */
+  /* Called for a file of a format that another program must convert first ("OpenVDB"). The callback runs
+   * that program and gives the bytes of the file that the program makes (NanoVDB), which are read in place
+   * of the file. Where there is no such program it fails with HL_ERROR_UNSUPPORTED. The library runs no
+   * program itself. */
   hl_status (*convert)(void *user_data, const char *format, const char *path, const void **bytes,
                        size_t *byte_count, hl_error *error);
   /* Takes the bytes of `convert` back. */
   void (*converted)(void *user_data, const void *bytes, size_t byte_count);
-  /* Asked for files of a Zarr store on a server, where a volume's file is a URL, "http://..." or
-   * "https://...": brings `count` files, by their names in the store ("0/c/1/2/3"), of `most` bytes each at
-   * most. files: [count], whose descriptors the library closes, also after a failure. A file that the server
-   * does not have is one of the store's absent files; every other fault must be an error. The callback
-   * decides which URLs it may ask: a scene's text can name any. Null (default): URLs are refused. The library
-   * asks no network itself. */
+  /* Called where a volume's file is the URL of a Zarr store on a server ("http://..." or "https://...").
+   * The callback brings `count` files of the store, whose names are relative to the store ("0/c/1/2/3").
+   * Each has at most `most` bytes. files: [count], whose descriptors the library closes, also after a
+   * failure. A file that the server does not have is one of the store's absent files; every other fault
+   * must be an error. The callback decides which URLs it may ask: a scene's text can name any. Null
+   * (default): URLs are refused. The library asks no network itself. */
   hl_status (*fetch)(void *user_data, const char *url, const char *const *names, size_t count, uint64_t most,
                      hl_fetched_file *files, hl_error *error);
-  /* A folder for scratch files, on a disk; copied; null (default): none. A volume file of one component whose
-   * voxels and a renderer's tables of them would be more than memory_limit is read into a scratch file there,
-   * of 1.15 times the voxels' bytes, and rendered from it. The file has no name. Parts of it are in memory
-   * where the limit leaves room beside what the context holds, and always up to 16 times 64^3 voxels. */
+  /* A folder on a disk for scratch files; copied; null (default): none. A volume of one component may be
+   * too large for memory_limit, together with a renderer's tables of its voxels. Its file is then read into
+   * a scratch file of 1.15 times the voxels' bytes, and rendered from there. The file has no name. Parts of
+   * it are in memory where the limit leaves room beside what the context holds, and always up to 16 times
+   * 64^3 voxels. */
   const char *scratch_folder;
-  /* What makes the frames of renderers: "cpu" (the default, and null), the processors; "gpu", the first GPU;
-   * "auto", the first GPU if at the first frame it turns out faster; "cuda" or "opencl", the first device of
-   * that interface; else the first device whose name has this text in it, such as "H100". Copied. Where there
-   * is no such device, or where it does not make a frame, the processors make it: the same bytes, and
-   * hl_render_statistics says why. Nothing is loaded before the first frame that a device shall make. */
+  /* The device that makes the renderers' frames. "cpu" (the default, also null): the processors. "gpu": the
+   * first GPU. "auto": the first GPU, if it turns out to be faster at the first frame. "cuda" or "opencl":
+   * the first device of that interface. Any other text: the first device whose name contains it, such as
+   * "H100". Copied. The processors make a frame where there is no such device, or where the device cannot
+   * make it. The bytes are the same, and hl_render_statistics says why. Drivers are loaded for the first
+   * frame that a device shall make, not before. */
   const char *device;
-  const char
-      *cache_folder; /* for kernels compiled for devices, 64 MiB at most, the user's alone; made where
-                        its parent folder is there; copied; null (default): kernels are compiled anew */
-  hl_mpi mpi;        /* what hl_ranks_join() loads: of the two, the one whose launcher started the process */
+  const char *cache_folder; /* a folder for kernels that were compiled for devices, of 64 MiB at most,
+                             * readable by the user alone; made if its parent folder exists; copied; null
+                             * (default): kernels are compiled anew */
+  hl_mpi mpi; /* the library that hl_ranks_join() loads: Open MPI or MPICH, whichever the launcher
+               * of the process belongs to */
 } hl_context_options;
 
 typedef struct hl_context hl_context; /* usable from several threads at once */
@@ -138,20 +145,20 @@ HL_API void hl_context_options_defaults(hl_context_options *options);
 HL_API HL_WARN_UNUSED hl_status hl_context_create(const hl_context_options *options, hl_context **context,
                                                   hl_error *error);
 
-/* Changes `memory_limit` and `scratch_folder` from now on; volumes stay where they are. scratch_folder:
- * copied; may be null: none. Call it while no other call with the context runs. */
+/* Changes `memory_limit` and `scratch_folder` from now on; volumes that are loaded stay where they are, in
+ * memory or in a scratch file. scratch_folder: copied; may be null: none. Call it while no other call with
+ * the context runs. */
 HL_API HL_WARN_UNUSED hl_status hl_context_limit_memory(hl_context *context, uint64_t memory_limit,
                                                         const char *scratch_folder, hl_error *error);
 
-/* A context for files that strangers wrote. Names of files are relative to `folder` (a path; of a confined
- * context, one relative to its folder), and so are the names that files hold: of all of them those are opened
- * that lie below the folder, and are regular files. Absolute names, URLs, "data:..." and what "..", or a
- * link, leads out of the folder are refused in the words for files that do not exist. folder: null refuses
- * every file. The rule is about reading: files are written where the caller says.
- *
- * All else is that of `context`: its memory and its limit, which they share, its callbacks, except that
- * `reads` is not called. *confined is owned by the caller, and may be destroyed before what was made with it.
- * `context` must outlive it all. */
+/* A context for files that strangers wrote. It opens only regular files below `folder`. Names of files are
+ * relative to `folder`, also the names that files hold. Absolute names, URLs, "data:..." and names that
+ * lead out of the folder by ".." or by a link are refused, with the message for files that do not exist.
+ * folder: a path, relative to the folder of `context` if that context is confined; null: every file is
+ * refused. Only reading is confined: files are written where the caller says. The confined context shares
+ * the memory, the memory limit and the callbacks of `context`, but does not call `reads`. *confined is
+ * owned by the caller, and may be destroyed before what was made with it. `context` must outlive everything
+ * that was made with the confined context. */
 HL_API HL_WARN_UNUSED hl_status hl_context_confine(hl_context *context, const char *folder,
                                                    hl_context **confined, hl_error *error);
 

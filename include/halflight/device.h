@@ -15,12 +15,14 @@ typedef struct hl_device {
   char interface_name[16]; /* "cuda", "opencl" */
   char version[128];       /* of the driver and of the compiler */
   uint64_t memory_bytes;
-  int processor; /* non-zero: it computes on the machine's processors; "gpu" and "auto" never mean it */
+  int processor; /* non-zero: the device computes on the machine's processors; "gpu" and "auto" never
+                  * choose it */
 } hl_device;
 
 /* Finds the machine's devices: loads libcuda.so.1 and nvrtc, and libOpenCL.so.1, where they are. devices:
- * room for `most` of them; *count: how many there are, which may be more. missing: [missing_bytes]; what was
- * not found, a line, empty where all was; null: not wanted. */
+ * room for `most` of them; *count: the number of devices of the machine, which may be greater than `most`.
+ * missing: [missing_bytes]; one line that says which libraries were not found, empty if all were; may be
+ * null. */
 HL_API HL_WARN_UNUSED hl_status hl_devices_find(hl_context *context, hl_device *devices, size_t most,
                                                 size_t *count, char *missing, size_t missing_bytes,
                                                 hl_error *error);

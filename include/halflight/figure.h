@@ -27,29 +27,32 @@ typedef enum hl_axes {
 /* A text over a picture. */
 typedef struct hl_annotation {
   const char *text;
-  double at[3]; /* fractions of the picture's width and height, from its upper left; at[2] is not used */
+  double at[3]; /* place in the picture, as fractions of its width and height from its upper left corner;
+                 * at[2] is not used */
   int in_world; /* non-zero: `at` is a point of the scene's world instead, which gets a ring */
 } hl_annotation;
 
-/* Instead of a depth: the distance from the eye to the camera's target. */
+/* A depth of the scale bar: the distance from the eye to the camera's target. */
 #define HL_DEPTH_OF_TARGET (-1.0)
 
-/* What is drawn over one picture. Fill it by hl_overlay_defaults(): then nothing is. */
+/* What is drawn over one picture. hl_overlay_defaults() fills it so that nothing is drawn. */
 typedef struct hl_overlay {
   size_t struct_size;
-  int scale_bar;           /* non-zero: a bar at the lower left, with its length */
-  double scale_bar_length; /* in scale_bar_unit; 0: 1, 2 or 5 times a power of ten, at most a quarter of the
-                              picture's width */
-  const char *scale_bar_unit; /* of that length and of the text; null: world_unit, or one that suits it */
-  const char *world_unit; /* of one unit of length in the volumes' files: "m", "mm", "um", "nm", "A", ..., or
-                             any other text, which is written as it is; null: as the files tell, and where
-                             they tell none the bar is refused */
-  double
-      scale_bar_depth; /* for a perspective camera, which has no one scale: the distance from the eye at which
-                          the bar holds, in the scene's units, or HL_DEPTH_OF_TARGET; 0: the bar is refused */
-  int legend; /* non-zero: at the right, a legend shows for each visible volume its colours and opacity over
-                 its values, its isosurfaces, or the names of its labels */
-  const char *legend_title; /* of the first volume, instead of its name; with the values' unit; may be null */
+  int scale_bar;              /* non-zero: a bar at the lower left, with its length */
+  double scale_bar_length;    /* length of the scale bar in scale_bar_unit; 0: a length is chosen, 1, 2 or 5
+                               * times a power of ten and at most a quarter of the picture's width */
+  const char *scale_bar_unit; /* unit of the scale bar's length and text; null: world_unit, or a unit in
+                               * which the number is short */
+  const char *world_unit;     /* the unit of length of the scene's world: "m", "mm", "um", "nm", "A", ..., or
+                               * any other text, which is written as it is; null: the unit that the volumes'
+                               * files tell; the scale bar is refused where they tell none */
+  double scale_bar_depth; /* for a perspective camera, whose scale changes with depth: the distance from the
+                           * eye at which the scale bar is right, in the scene's units, or HL_DEPTH_OF_TARGET;
+                           * 0: the bar is refused */
+  int legend; /* non-zero: a legend at the right shows the colours and opacity of each visible volume over
+               * its values, its isosurfaces, or the names of its labels */
+  const char *legend_title; /* title of the first volume's legend, in place of the volume's name; the
+                             * values' unit is added; may be null */
   hl_axes axes;
   const hl_annotation *annotations; /* [annotation_count] */
   size_t annotation_count;
@@ -61,8 +64,8 @@ HL_API void hl_overlay_defaults(hl_overlay *overlay);
 /* A picture on the page. */
 typedef struct hl_figure_panel {
   const hl_image *image; /* borrowed; null: nothing is there but the overlay */
-  const hl_scene *scene; /* borrowed; of the picture: its background, exposure, camera and volumes; null: the
-                            overlay may hold annotations in fractions and a letter alone */
+  const hl_scene *scene; /* borrowed; the scene of the picture, for its background, exposure, camera and
+                          * volumes; null: the overlay may hold annotations in fractions and a letter alone */
   double left, top, width, height; /* on the page, millimetres from its upper left */
   int frame;                       /* non-zero: a thin line around it, as of an inset */
   hl_overlay overlay;
@@ -83,31 +86,32 @@ typedef struct hl_figure {
 /* A page without panels. */
 HL_API void hl_figure_defaults(hl_figure *figure);
 
-/* A page that one picture fills: sets the figure's and the panel's sizes, and figure->panels. width: in
- * millimetres; 0: not stated, and the page is as wide as gives letters of 7 points a 36th of its width, but
- * at least 9 pixels. figure and panel must have their defaults. */
+/* A page that one picture fills: sets the figure's and the panel's sizes, and figure->panels. width: of the
+ * page, in millimetres; 0: chosen so that letters of 7 points are a 36th of the page's width high, and at
+ * least 9 pixels. figure and panel must have their defaults. */
 HL_API void hl_figure_of_picture(const hl_image *image, const hl_scene *scene, double width,
                                  hl_figure *figure, hl_figure_panel *panel);
 
-/* Finds out, before pictures are made, whether all that a figure wants can be drawn: draws its page at an
- * eighth of its pixels, without the panels' images. Errors: those of hl_figure_draw(). */
+/* Draws a figure's page at an eighth of its pixels, without the panels' images, to find out before pictures
+ * are made whether all that the figure wants can be drawn. Errors: those of hl_figure_draw(). */
 HL_API HL_WARN_UNUSED hl_status hl_figure_check(hl_context *context, const hl_figure *figure,
                                                 hl_error *error);
 
-/* Draws the figure as pixels, width x pixels_per_inch / 25.4 by the same of height, rounded. A picture whose
- * pixels fit the page's keeps them bit by bit, as 8-bit sRGB. *image is owned by the caller. */
+/* Draws the figure as pixels: each side is its length in millimetres x pixels_per_inch / 25.4, rounded. A
+ * picture whose pixels coincide with the page's keeps its bytes, as 8-bit sRGB. *image is owned by the
+ * caller. */
 HL_API HL_WARN_UNUSED hl_status hl_figure_draw(hl_context *context, const hl_figure *figure, hl_image **image,
                                                hl_error *error);
 
-/* Writes the figure in the format of the path's extension: .pdf, .svg, .png, .tif or .tiff. The file appears
- * whole or not at all. options: for PNG and TIFF: scene_json, and the size that they state as
- * pixels_per_inch; may be null: the figure's pixels_per_inch. */
+/* Writes the figure in the format of the path's extension: .pdf, .svg, .png, .tif or .tiff. The file
+ * appears whole or not at all. options: scene_json and pixels_per_inch, which PNG and TIFF files state;
+ * null: no scene, and the figure's pixels_per_inch. */
 HL_API HL_WARN_UNUSED hl_status hl_figure_write(hl_context *context, const hl_figure *figure,
                                                 const char *path, const hl_image_write_options *options,
                                                 hl_error *error);
 
-/* The same bytes in memory; format: "pdf", "svg", "png" or "tif". *bytes: [*length], owned by the caller
- * (hl_bytes_release()). */
+/* Makes the bytes of a figure's file in memory; format: "pdf", "svg", "png" or "tif". *bytes: [*length],
+ * owned by the caller (hl_bytes_release()). */
 HL_API HL_WARN_UNUSED hl_status hl_figure_encode(hl_context *context, const hl_figure *figure,
                                                  const char *format, const hl_image_write_options *options,
                                                  unsigned char **bytes, size_t *length, hl_error *error);

@@ -1,7 +1,6 @@
 /* halflight/formats.h - which formats of files this build of the library reads and writes.
  *
- * Builds differ by the libraries that were there: docs/formats.md describes the formats themselves.
- */
+ * A build lacks the formats whose libraries were not installed. docs/formats.md describes the formats. */
 #ifndef HALFLIGHT_FORMATS_H
 #define HALFLIGHT_FORMATS_H
 
@@ -11,18 +10,21 @@
 extern "C" {
 #endif
 
-/* A format of files, or a packing of the bytes and pictures in volume files. Texts are static. */
+/* A format of files, or a compression that volume files use inside. Texts are static. */
 typedef struct hl_file_format {
   size_t struct_size;  /* set by the caller: sizeof(hl_file_format) */
   const char *name;    /* "NRRD" */
   int reads, writes;   /* non-zero: this build does */
-  const char *missing; /* the library that the format needs and this build lacks, "libtiff"; null: none */
-  /* Endings of the names of files that are read and that are written, between blanks: ".nrrd .nhdr". "" where
-   * something else than the name's ending tells the format, or where files are not read or not written. */
+  const char *missing; /* the library that the format needs and that this build lacks, as "libtiff"; null:
+                        * the build reads the format */
+  /* The endings of file names by which files of the format are read and written, separated by blanks, as
+   * ".nrrd .nhdr". "" where the ending does not tell the format, or where such files are not read or not
+   * written. */
   char read_endings[64], written_endings[64];
 } hl_file_format;
 
-/* Describe a format. index: from 0 on. HL_ERROR_ARGUMENT beyond the last format. */
+/* Describe a format of volumes, meshes or pictures. index: from 0 on. HL_ERROR_ARGUMENT beyond the last
+ * format. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_format(size_t index, hl_file_format *format);
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_packing(size_t index, hl_file_format *packing);
 HL_API HL_WARN_UNUSED hl_status hl_mesh_get_format(size_t index, hl_file_format *format);

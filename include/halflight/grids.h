@@ -8,9 +8,9 @@
 extern "C" {
 #endif
 
-/* Whether a file is an unstructured grid (.vtu) that hl_volume_load() reads: it has cells with a volume, and
- * values. Other unstructured grids are meshes (hl_mesh_load()). 0 for files of other formats, and for null.
- */
+/* Whether a .vtu file is an unstructured grid that hl_volume_load() reads as a volume: some of its cells
+ * enclose a volume, and it has values. Other unstructured grids are meshes (hl_mesh_load()). 0 for files of
+ * other formats, and for null. */
 HL_API int hl_volume_reads_cells(hl_context *context, const char *path);
 
 /* A mesh of cells with values, in VTK's terms. All arrays are borrowed during the call. */
@@ -18,22 +18,23 @@ typedef struct hl_cells_description {
   size_t struct_size;   /* set by hl_cells_description_defaults() */
   const double *points; /* [point_count][3]: world */
   size_t point_count;
-  const unsigned char
-      *types;          /* [cell_count]: VTK's numbers: 10 tetrahedra, 12 hexahedra, 13 wedges, 14 pyramids,
-                          ...; cells without a volume are left out, with a warning */
-  const int64_t *ends; /* [cell_count]: where each cell's corners end in `corners` */
+  const unsigned char *types; /* [cell_count]; VTK's numbers of the types of cells: 10 tetrahedra, 12
+                               * hexahedra, 13 wedges, 14 pyramids, ...; cells that enclose no volume are left
+                               * out, with a warning */
+  const int64_t *ends;        /* [cell_count]; the place in `corners` one past each cell's last corner */
   size_t cell_count;
   const int64_t *corners; /* [corner_count]: points, from 0; in VTK's order */
   size_t corner_count;
-  const double *values; /* one for each point, or for each cell: NaN where there is none */
-  int of_cells; /* not 0: values are of cells: a point gets the mean of the cells around it. Default 0 */
+  const double *values; /* one value for each point, or for each cell; NaN: there is no data */
+  int of_cells;         /* non-zero: values belong to cells, and a point gets the mean of the cells around it.
+                         * Default 0 */
 } hl_cells_description;
 
 HL_API void hl_cells_description_defaults(hl_cells_description *description);
 
-/* Samples a mesh of cells at about half of a cell's edge, finer where cells are smaller. Outside of the cells
- * there is nothing. A warning tells how far the volume is from the mesh's values. *volume is owned by the
- * caller (release it). */
+/* Makes a volume of a mesh of cells. Its samples lie about half of a cell's edge apart, and closer where
+ * cells are smaller. Nothing shows outside the cells. A warning tells how much the volume differs from the
+ * mesh's values. *volume is owned by the caller (release it). */
 HL_API HL_WARN_UNUSED hl_status hl_volume_create_cells(hl_context *context,
                                                        const hl_cells_description *description,
                                                        hl_volume **volume, hl_error *error);
@@ -41,9 +42,10 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_create_cells(hl_context *context,
 /* A box of cells of one level of an adaptive grid. */
 typedef struct hl_patch {
   int level;           /* from 0, the coarsest */
-  int64_t first[3];    /* its first cell in the level's index space, along x, y, z */
+  int64_t first[3];    /* the place of the patch's first cell in the level's index space, along x, y, z */
   size_t count[3];     /* cells along x, y, z */
-  const float *values; /* [count[2]][count[1]][count[0]], means over the cells; borrowed during the call */
+  const float *values; /* [count[2]][count[1]][count[0]]; the patch's values, which are means over its
+                        * cells; borrowed during the call */
 } hl_patch;
 
 /* An adaptive grid. Cell i of a level covers the cells i ratio .. i ratio + ratio - 1 of the next finer one.
@@ -51,7 +53,7 @@ typedef struct hl_patch {
 typedef struct hl_amr_description {
   size_t struct_size;      /* set by hl_amr_description_defaults() */
   int levels;              /* 1 to 16 */
-  const int *ratios;       /* [levels - 1]: 2, 4, 8, ...; how much finer level n + 1 is than level n */
+  const int *ratios;       /* [levels - 1]; how many times finer level n + 1 is than level n: 2, 4, 8, ... */
   int64_t first[3];        /* the domain's first cell of level 0; default 0 */
   size_t count[3];         /* the domain's cells of level 0 along x, y, z */
   double origin[3];        /* world: the domain's corner with the least coordinates; default 0 */
@@ -62,9 +64,9 @@ typedef struct hl_amr_description {
 
 HL_API void hl_amr_description_defaults(hl_amr_description *description);
 
-/* Makes a volume of an adaptive grid, without seams where the level changes. Its voxels have the size of the
- * finest cells. Finer patches count where they cover coarser ones. *volume is owned by the caller (release
- * it). */
+/* Makes a volume of an adaptive grid, without seams where the level changes. Its voxels have the size of
+ * the finest cells. Where a finer patch covers a coarser one, the finer values count. *volume is owned by
+ * the caller (release it). */
 HL_API HL_WARN_UNUSED hl_status hl_volume_create_amr(hl_context *context,
                                                      const hl_amr_description *description,
                                                      hl_volume **volume, hl_error *error);

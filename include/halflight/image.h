@@ -10,14 +10,15 @@ extern "C" {
 
 typedef struct hl_image hl_image;
 
-/* width x height pixels, all zero. *image is owned by the caller. */
+/* Makes a picture of width x height pixels, which are all zero. *image is owned by the caller. */
 HL_API HL_WARN_UNUSED hl_status hl_image_create(hl_context *context, int width, int height, hl_image **image,
                                                 hl_error *error);
 HL_API void hl_image_destroy(hl_image *image); /* null is allowed */
 
 HL_API int hl_image_width(const hl_image *image);
 HL_API int hl_image_height(const hl_image *image);
-/* [height][width][4]: linear premultiplied R, G, B, A; valid as long as the image. */
+/* The pixels of a picture, [height][width][4]: linear premultiplied R, G, B, A; valid as long as the image.
+ */
 HL_API float *hl_image_pixels(hl_image *image);
 HL_API const float *hl_image_pixels_const(const hl_image *image);
 
@@ -29,8 +30,9 @@ HL_API HL_WARN_UNUSED hl_status hl_image_add_layer(hl_image *image, const char *
 /* How a PNG shows light that is brighter than white. */
 typedef enum hl_tone {
   HL_TONE_CLIP = 0,  /* each channel is cut at 1 */
-  HL_TONE_FILMIC = 1 /* above 0.6 of white the brightest channel comes ever more slowly near 1 and the others
-                        keep their ratio to it: nothing is cut and hues stay; darker light is left as it is */
+  HL_TONE_FILMIC = 1 /* where a colour's brightest channel is above 0.6 of white, the channel approaches 1
+                      * ever more slowly, and the other channels keep their ratio to it: nothing is clipped
+                      * and hues stay; darker colours are left as they are */
 } hl_tone;
 
 typedef struct hl_image_write_options {
@@ -38,39 +40,43 @@ typedef struct hl_image_write_options {
   int png_depth;              /* bits of a channel in PNG and TIFF files: 8 or 16 */
   double background[3];       /* linear RGB; PNG and TIFF only */
   int background_transparent; /* PNG and TIFF keep alpha, unassociated */
-  const char *scene_json;     /* stored in the PNG as the text chunk "halflight:scene"; may be null */
-  const char *field_errors;   /* stored beside scene_json, if that is not null, as the text chunk
-                               * "halflight:field_errors"; may be null. hl_scene_write_options() sets it to the
-                               * scene's: a JSON array of how far its volumes' fields are from their sources
-                               * (hl_volume_get_field_error()), with the number of each volume */
-  double exposure; /* stops, -32 to 32; PNG only: the picture's light is multiplied by 2^exposure, the
-                      background is not */
-  hl_tone tone;    /* PNG only: of the picture's light after the exposure; the background keeps its colour */
-  double pixels_per_inch; /* the physical size that a PNG or TIFF states, 1 to 100000; 0, the default: none */
+  const char *scene_json;     /* the scene's JSON, stored in a PNG as the text chunk "halflight:scene"; may
+                               * be null */
+  const char *field_errors;   /* a JSON array that says how much the fields of the scene's volumes differ
+                               * from their files (hl_volume_get_field_error()), with each volume's number.
+                               * It is stored beside scene_json, if that is not null, as the text chunk
+                               * "halflight:field_errors". hl_scene_write_options() sets it; may be null */
+  double exposure;            /* exposure in stops, -32 to 32; PNG only: the picture's light is multiplied by
+                               * 2^exposure, the background is not */
+  hl_tone tone;           /* PNG only: how the picture's light is brought below white, after the exposure; the
+                           * background keeps its colour */
+  double pixels_per_inch; /* the number of pixels per inch that a PNG or TIFF states as its physical size,
+                           * 1 to 100000; 0 (default): none */
 } hl_image_write_options;
 
 HL_API void hl_image_write_options_defaults(hl_image_write_options *options);
 
 /* Writes a picture in the format of the path's extension: .png, .tif or .tiff (sRGB, composited over the
- * background), .exr (linear float) or .npy (float32, height x width x 4). It is written to a temporary name
- * beside the path and renamed: there is never half a file. Layers become channels "name.R" and so on of an
- * .exr, and files of their own beside an .npy, "picture-name.npy" (height x width x channels, or height x
- * width), which are written before it; for a .png or .tif an image with layers is refused. A build without
- * libtiff refuses .tif. options may be null. */
+ * background), .exr (linear float) or .npy (float32, height x width x 4). The file is written to a
+ * temporary name beside the path and then renamed, so half a file is never seen. Layers become channels
+ * "name.R" and so on of an .exr, and files of their own beside an .npy, "picture-name.npy" (height x width
+ * x channels, or height x width), which are written before it; for a .png or .tif an image with layers is
+ * refused. A build without libtiff refuses .tif. options may be null. */
 HL_API HL_WARN_UNUSED hl_status hl_image_write(hl_context *context, const hl_image *image, const char *path,
                                                const hl_image_write_options *options, hl_error *error);
 
-/* The same bytes in memory; format: "png", "tif", "exr" or "npy". *bytes: [*length], owned by the caller
- * (hl_bytes_release()). Layers fit into "exr" alone. */
+/* Makes the bytes of a picture's file in memory. format: "png", "tif", "exr" or "npy". *bytes: [*length],
+ * owned by the caller (hl_bytes_release()). Layers fit into "exr" alone. */
 HL_API HL_WARN_UNUSED hl_status hl_image_encode(hl_context *context, const hl_image *image,
                                                 const char *format, const hl_image_write_options *options,
                                                 unsigned char **bytes, size_t *length, hl_error *error);
 HL_API void hl_bytes_release(hl_context *context, unsigned char *bytes); /* null is allowed */
 
 /* The picture as 8-bit sRGB, for windows and toolkits: bytes R, G, B, A of each pixel, top row first, the
- * same codes as in a .png of png_depth 8. Over the background A is 255; with background_transparent colours
- * are unassociated. bytes: the caller's, [height][row_stride], 4 x width of them used in each row; row_stride
- * in bytes, at least 4 x width. options may be null: over black. */
+ * same codes as in a .png of png_depth 8. Pixels over a background have A = 255. With
+ * background_transparent, colours are not multiplied by alpha. bytes: the caller's, [height][row_stride], 4
+ * x width of them used in each row; row_stride in bytes, at least 4 x width. options may be null: over
+ * black. */
 HL_API HL_WARN_UNUSED hl_status hl_image_to_srgb8(const hl_image *image,
                                                   const hl_image_write_options *options, uint8_t *bytes,
                                                   size_t row_stride, hl_error *error);
@@ -86,7 +92,7 @@ HL_API HL_WARN_UNUSED hl_status hl_image_read(hl_context *context, const char *p
 HL_API HL_WARN_UNUSED hl_status hl_image_find_scene(hl_context *context, const char *name, const void *bytes,
                                                     size_t byte_count, char **text, hl_error *error);
 
-/* Differences of b against a over R, G, B, A, linear premultiplied. */
+/* How a picture b differs from a picture a, over R, G, B and A, linear and premultiplied. */
 typedef struct hl_image_difference {
   size_t struct_size;     /* set by the caller */
   double rmse;            /* root mean square over all pixels and channels */

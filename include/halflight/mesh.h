@@ -23,15 +23,17 @@ typedef struct hl_mesh_description {
   size_t vertex_count;
   const uint32_t (*triangles)[3]; /* [triangle_count]; indices of vertices */
   size_t triangle_count;
-  const float (*face_colors)[4];   /* [triangle_count]; as colors, which they stand in for; null: none */
+  const float (*face_colors)[4];   /* [triangle_count]; linear RGB and opacity of triangles, in place of
+                                    * `colors`; null: none */
   const float (*spheres)[4];       /* [sphere_count]; centre and radius; world units */
   const float (*sphere_colors)[4]; /* [sphere_count]; as colors; null: white */
   size_t sphere_count;
-  /* Lines that are drawn as tubes: their points, one line after the other. */
+  /* Lines that are drawn as tubes. Their points stand one line after the other. */
   const float (*line_points)[4]; /* [line_point_count]; a point, and the tube's radius there; world units */
   const float (*line_colors)[4]; /* [line_point_count]; as colors; null: white */
   size_t line_point_count;
-  const uint32_t *line_lengths; /* [line_count]; points of each line; their sum is line_point_count */
+  const uint32_t *line_lengths; /* [line_count]; number of points of each line; the sum of all is
+                                 * line_point_count */
   size_t line_count;
 } hl_mesh_description;
 
@@ -44,20 +46,21 @@ HL_API void hl_mesh_description_defaults(hl_mesh_description *description);
 HL_API HL_WARN_UNUSED hl_status hl_mesh_create(hl_context *context, const hl_mesh_description *description,
                                                hl_mesh **mesh, hl_error *error);
 
-/* Reads PLY (ASCII and binary), STL (ASCII and binary), OBJ with the colours of its materials, glTF 2.0 files
- * (.gltf, .glb: the scene's triangles with base colours; textures are left out), VTK's PolyData (.vtp, legacy
- * .vtk) and the surfaces of its unstructured grids (.vtu). Faces of more than three corners become triangles
- * that cover them, concave ones, too. Colours of 8 bits are sRGB, as other programs take them.
+/* Reads PLY (ASCII and binary), STL (ASCII and binary), OBJ with the colours of its materials, glTF 2.0
+ * files (.gltf, .glb: the scene's triangles with base colours; textures are left out), VTK's PolyData
+ * (.vtp, legacy .vtk) and the surfaces of VTK's unstructured grids (.vtu). Faces of more than three corners
+ * become triangles that cover them, concave faces, too. Colours of 8 bits are sRGB, as other programs take
+ * them.
  *
- * PolyData: vertices become spheres, lines tubes, of the radii that the point array "radius" tells (without
- * it a 400th of the diagonal of the points' box). Colours are the active scalars, or else the first array of
- * 8-bit RGB or RGBA, of points before those of cells; other scalars go through the colormap viridis over
- * their whole range. */
+ * PolyData: vertices become spheres, lines tubes, with radii from the point array "radius" (without it, a
+ * 400th of the diagonal of the points' box). Colours come from the active scalars, or else from the first
+ * array of 8-bit RGB or RGBA, where arrays of points come before arrays of cells. Other scalars go through
+ * the colormap viridis over their whole range. */
 HL_API HL_WARN_UNUSED hl_status hl_mesh_load(hl_context *context, const char *path, hl_mesh **mesh,
                                              hl_error *error);
 
-/* Whether hl_mesh_load() reads files of this name: by its ending, and, as .vtk files may hold volumes, too,
- * by the first kilobyte of these. */
+/* Whether hl_mesh_load() reads a file, as the ending of its name tells. For .vtk files, which may also hold
+ * volumes, the file's first kilobyte tells. */
 HL_API int hl_mesh_reads_name(const char *path);
 
 /* The mesh's arrays, with the triangles of its tubes, valid as long as the mesh. Null for null. */

@@ -10,13 +10,11 @@
 extern "C" {
 #endif
 
-/* Writes the page. viewer: path of the page without a scene, halflight.html, which scripts/web makes
- * (docs/web.md); title: UTF-8, what the page is called; path: the file to write, which appears whole or not
- * at all.
- *
- * Volumes are cut to the box that shows anything, with a few voxels around it, and lie in 8 bits where these
- * hold all of the values. Volumes with colours of their own, and images, are held as they lie on the disk.
- * Where there is no such file, the error is HL_ERROR_INPUT. */
+/* Writes a scene as a page. viewer: path of the viewer's page without a scene, halflight.html, which
+ * scripts/web makes (docs/web.md). title: UTF-8, the page's title. path: the file to write, which appears
+ * whole or not at all. Volumes are cut to the box that shows anything, with a few voxels around it, and are
+ * stored in 8 bits where 8 bits hold all values. For volumes with colours of their own, and for images, the
+ * page holds their files as they are; without such a file the error is HL_ERROR_INPUT. */
 HL_API HL_WARN_UNUSED hl_status hl_scene_write_page(hl_context *context, const hl_scene *scene,
                                                     const char *viewer, const char *title, const char *path,
                                                     hl_error *error);

@@ -1,10 +1,9 @@
-/* halflight/particles.h - volumes made of particles: of smoothed particle hydrodynamics and molecular
+/* halflight/particles.h - volumes made of the particles of smoothed particle hydrodynamics and molecular
  * dynamics.
  *
  * Each particle is spread by the cubic spline kernel, which reaches to twice its smoothing length, over the
  * lattice of a volume. The mass of the volume (the sum of its densities times the volume of a voxel) is the
- * mass of the particles. docs/particles.md describes the method.
- */
+ * mass of the particles. docs/particles.md describes the method. */
 #ifndef HALFLIGHT_PARTICLES_H
 #define HALFLIGHT_PARTICLES_H
 
@@ -16,8 +15,8 @@ extern "C" {
 
 /* What the voxels of the volume are. */
 typedef enum hl_particles_quantity {
-  HL_PARTICLES_LOG_DENSITY = 0, /* logarithm to base 10 of the density. Voxels below a tenth of the least
-                                   density that a particle has at its own place get that tenth */
+  HL_PARTICLES_LOG_DENSITY = 0, /* logarithm to base 10 of the density. Voxels get at least a tenth of the
+                                 * least density that any particle has at its own place */
   HL_PARTICLES_DENSITY = 1,     /* mass per cubed world unit; 0 where no particle reaches */
   HL_PARTICLES_MEAN = 2 /* mean of `values`, weighted by mass and kernel; NaN where no particle reaches */
 } hl_particles_quantity;
@@ -29,14 +28,16 @@ typedef struct hl_particles_description {
   const void *positions;       /* [count][3]; world x, y, z */
   hl_voxel_type position_type; /* HL_VOXEL_F64 (default) or HL_VOXEL_F32 */
   const float *masses;         /* [count]; finite, from 0 on; null (default): 1 each */
-  const float *lengths; /* [count]; smoothing lengths in world units: kernels reach to twice of them; null
-                           (default): half of the distance of the 48th neighbour */
+  const float *lengths; /* [count]; smoothing lengths in world units: kernels reach to twice the smoothing
+                         * length; null (default): half of the distance of the 48th neighbour */
   const float *values;  /* [count]; finite; for HL_PARTICLES_MEAN */
   double period_low[3]; /* world: where the periodic box begins; default 0 */
-  double period[3];     /* world: the box's length along x, y, z; 0 (default): not periodic along the axis */
+  double period[3];     /* the length of the world's periodic box along x, y, z; 0 (default): not periodic
+                         * along the axis */
   hl_particles_quantity quantity;
-  double spacing; /* of voxels, world units; 0 (default): half of the smoothing length that one particle in
-                     fifty stays below, or more where `side` or the memory limit ask for it */
+  double spacing; /* spacing of the voxels in world units; 0 (default): half of the smoothing length that
+                   * one particle in fifty stays below, or more where `side` or the memory limit requires
+                   * it */
   size_t side;    /* most voxels along an axis where spacing is 0; default 512 */
   int threads;    /* 0 (default): one per processor */
 } hl_particles_description;
@@ -56,8 +57,8 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_from_particles(hl_context *context,
  * are meshes (hl_mesh_load()). 0 for files of other formats, and for null. */
 HL_API int hl_volume_reads_particles(hl_context *context, const char *path);
 
-/* Finds smoothing lengths as hl_volume_from_particles() does where there are none, for several volumes of the
- * same particles. lengths: [description->count]; filled; 0 for particles that are left out. */
+/* Finds the smoothing lengths that hl_volume_from_particles() would choose. They serve to make several
+ * volumes of the same particles. lengths: [description->count]; filled; 0 for particles that are left out. */
 HL_API HL_WARN_UNUSED hl_status hl_particles_find_smoothing(hl_context *context,
                                                             const hl_particles_description *description,
                                                             float *lengths, hl_error *error);

@@ -2,10 +2,9 @@
  * volumes at coarser resolutions.
  *
  * A picture costs about its pixels times its sheets. Sheets that are far apart miss what lies between them,
- * and thin surfaces come apart. So a preview has copies of the volumes whose voxels are merged over 2, 4 or 8
- * along each axis, and takes for a scene those whose voxels are about as long as its sheets are apart.
- * examples/c/preview.c is a loop that turns a volume at an interactive rate.
- */
+ * and thin surfaces come apart. So a preview has copies of the volumes with voxels merged over 2, 4 or 8
+ * along each axis. For a scene it takes the copies whose voxels are about as long as the distance between
+ * the scene's sheets. examples/c/preview.c is a loop that turns a volume at an interactive rate. */
 #ifndef HALFLIGHT_PREVIEW_H
 #define HALFLIGHT_PREVIEW_H
 
@@ -20,10 +19,10 @@ extern "C" {
 typedef struct hl_preview hl_preview;
 
 /* Makes the coarser copies of the scene's volumes and masks, which takes one pass over their voxels and a
- * seventh of their memory. It may run in a thread of its own while the scene is rendered. In copies of label
- * maps and masks a voxel has the label that most of its voxels have. Volumes of colours, volumes over ranks,
- * labels beyond 2^24 that floats round, and volumes of fewer than 64^3 voxels get no copies. A volume has
- * copies for what it is in this scene: a label map, or values. Errors: HL_ERROR_MEMORY;
+ * seventh of their memory. It may run in a thread of its own while the scene is rendered. In copies of
+ * label maps and masks a voxel has the label that most of its voxels have. Volumes of colours, volumes over
+ * ranks, labels beyond 2^24 that floats round, and volumes of fewer than 64^3 voxels get no copies. The
+ * copies of a volume suit its use in this scene: as a label map, or as values. Errors: HL_ERROR_MEMORY;
  * HL_ERROR_CANCELLED. */
 HL_API HL_WARN_UNUSED hl_status hl_preview_create(hl_context *context, const hl_scene *scene,
                                                   hl_preview **preview, hl_error *error);

@@ -11,10 +11,11 @@
 extern "C" {
 #endif
 
-/* Reusable: keeps buffers and prepared volumes between frames. For one thread at a time: while it makes a
- * frame it refuses other calls, those of the frame's callbacks too, with HL_ERROR_ARGUMENT, and if it is
- * destroyed then, the frame's end releases it. Scenes may be shared by any number of renderers. After fork()
- * the child may use a renderer that was idle, or create one: either starts threads of its own. */
+/* Makes frames of scenes, and keeps buffers and prepared volumes between frames. A renderer serves one
+ * thread at a time: while it makes a frame it refuses other calls with HL_ERROR_ARGUMENT, also calls from
+ * the frame's callbacks. If it is destroyed during a frame, it is released when the frame ends. Scenes may
+ * be shared by any number of renderers. After fork() the child may use a renderer that was idle, or create
+ * one: either starts threads of its own. */
 typedef struct hl_renderer hl_renderer;
 
 typedef struct hl_render_statistics {
@@ -38,11 +39,13 @@ typedef struct hl_render_statistics {
   uint64_t pixels_filled_image,
       pixels_filled_light; /* sheet pixels reconstructed, including those for finding hidden blocks */
   uint64_t pixels_skipped_image, pixels_skipped_light; /* in occupied places, but already opaque or dark */
-  char device[128];        /* that ran the sheets: "cpu", or a device's name (halflight/device.h) */
-  char device_reason[400]; /* "cpu": why no other device did, where the context names one; else empty */
-  double seconds_device;   /* of a device's kernels, by its own clock; 0 of "cpu" */
+  char device[128]; /* the device that made the sweeps: "cpu", or a device's name (halflight/device.h) */
+  char device_reason[400]; /* why the device that the context names did not make the frame; empty where it
+                            * did, and where the context names none */
+  double seconds_device;   /* seconds of the device's kernels, by its own clock; 0 for "cpu" */
   int device_launches;     /* of kernels */
-  uint64_t waits; /* how often all threads waited for each other in the loops over the sheets; 0 with one */
+  uint64_t waits; /* how often all threads waited for each other in the loops over the sheets; 0 with one
+                   * thread */
 } hl_render_statistics;
 
 HL_API HL_WARN_UNUSED hl_status hl_renderer_create(hl_context *context, hl_renderer **renderer,
@@ -61,21 +64,22 @@ HL_API HL_WARN_UNUSED hl_status hl_renderer_render(hl_renderer *renderer, const 
 /* Rows and columns of a cell of a picture: the first cells are in its top left corner. */
 #define HL_STRIP_ROWS 16
 
-/* From now on the renderer's pictures have one of `parts` parts of each picture, number `part` (0 to parts -
- * 1); the other pixels are zeros. Its pixels have the bytes that they have in a whole picture, so that
- * several processes can make one: their pictures' sum. Of shadows each part works through the light that it
- * reads, but of HL_SOFT_CASCADE through all light. A part is a band of whole cells, along the direction in
- * the picture of the brightest light with shadows that are not the cascade's; without such a light it is each
- * parts-th row of cells. It depends on the scene and on `parts` alone, and on whether its volumes lie over
- * ranks. Layers are then refused. parts 1 (default): whole pictures. */
+/* From now on the renderer's pictures have one of `parts` parts of each picture, number `part` (0 to parts
+ * - 1); the other pixels are zeros. The pixels of a part have the same bytes as in a whole picture, so
+ * several processes can make a picture whose parts are added up. Each part computes only the shadows that
+ * it reads; for HL_SOFT_CASCADE it computes the light's shadows everywhere. A part is a band of whole
+ * cells, which runs in the picture along the direction of the brightest light whose shadows are not the
+ * cascade's. Without such a light a part is every parts-th row of cells. Where a part lies depends only on
+ * the scene, on `parts`, and on whether the volumes lie over ranks. Layers are refused while a picture has
+ * several parts. parts 1 (default): whole pictures. */
 HL_API HL_WARN_UNUSED hl_status hl_renderer_share(hl_renderer *renderer, int part, int parts,
                                                   hl_error *error);
 
-/* The same for the processes of an MPI job: part hl_ranks_rank() of hl_ranks_size(). They tell each other of
- * the cascade's light that they work through, so that each works through its part's alone, of HL_SOFT_CASCADE
- * too, and of the sky's light, of which each finds a part; bands then follow the brightest light with any
- * shadows, and a part may have two or three of them. From now on rendering is collective: every rank renders
- * the same scenes, in the same order. ranks: borrowed, while the renderer renders; null: whole pictures. */
+/* Shares pictures among the processes of an MPI job, as hl_renderer_share() does: each makes part
+ * hl_ranks_rank() of hl_ranks_size(). The processes exchange the light of HL_SOFT_CASCADE and of the sky,
+ * so that each computes only a part of these, too. Bands then follow the brightest light with any shadows,
+ * and a part may have two or three bands. From now on rendering is collective: every rank renders the same
+ * scenes, in the same order. ranks: borrowed while the renderer renders; null: whole pictures. */
 HL_API HL_WARN_UNUSED hl_status hl_renderer_share_over_ranks(hl_renderer *renderer, hl_ranks *ranks,
                                                              hl_error *error);
 
@@ -84,8 +88,8 @@ HL_API HL_WARN_UNUSED hl_status hl_renderer_share_over_ranks(hl_renderer *render
 HL_API HL_WARN_UNUSED hl_status hl_renderer_use_device(hl_renderer *renderer, const char *device,
                                                        hl_error *error);
 
-/* Renders the picture and the requested layers. Takes longer: each light is shaded once more for its picture
- * and once more for its shadow. */
+/* Renders the picture and the requested layers. This takes longer than the picture alone: for its layers,
+ * each light is shaded twice more, with and without its shadow. */
 HL_API HL_WARN_UNUSED hl_status hl_renderer_render_layers(hl_renderer *renderer, const hl_scene *scene,
                                                           float *pixels, size_t row_stride,
                                                           const hl_layers *layers,
@@ -98,11 +102,11 @@ HL_API HL_WARN_UNUSED hl_status hl_renderer_render_layers(hl_renderer *renderer,
 HL_API HL_WARN_UNUSED hl_status hl_scene_show_sky(const hl_scene *scene, float *pixels, size_t row_stride,
                                                   hl_error *error);
 
-/* Plans the frame of a scene as hl_renderer_render() does, and makes no picture. *text: the plan as JSON, one
- * object, for those who ask why a frame takes its time or its memory: the picture's size and tiles, the
+/* Plans the frame of a scene as hl_renderer_render() does, and makes no picture. *text: the plan as JSON,
+ * one object, for those who ask why a frame takes its time or its memory: the picture's size and tiles, the
  * volumes with the bricks that show anything, the lights, the meshes, and the sweeps, each with the number,
  * spacing and direction of its sheets, and its lights with their shadow buffers. Lengths are the world's.
- * Members may be added. Null-terminated; free with hl_text_release(). */
+ * Later versions may add members. Null-terminated; free with hl_text_release(). */
 HL_API HL_WARN_UNUSED hl_status hl_renderer_plan(hl_renderer *renderer, const hl_scene *scene, char **text,
                                                  hl_error *error);
 
@@ -117,10 +121,10 @@ typedef struct hl_reference_options {
   int threads;        /* 0: one per processor */
   int rays;  /* rays along each side of a pixel, from 1 to 8, that are averaged; default 1. 0: as many as the
                 renderer averages where voxels are smaller than pixels */
-  int paths; /* from each pixel, that estimate the light which media scatter more than once, from 1 to 2^24;
-                default 64 */
-  float *error; /* the caller's; [height][width][3]: the estimate's standard error; null: not wanted. Default
-                   null */
+  int paths; /* number of paths from each pixel, from 1 to 2^24, that estimate the light which media
+              * scatter more than once; default 64 */
+  float *error; /* owned by the caller; [height][width][3]: filled with the standard error of the estimate
+                 * of scattered light; null (default): not wanted */
 } hl_reference_options;
 
 HL_API void hl_reference_options_defaults(hl_reference_options *options);

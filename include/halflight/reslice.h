@@ -21,12 +21,13 @@ typedef enum hl_blend {
 
 typedef struct hl_reslice_options {
   size_t struct_size;          /* set by hl_reslice_options_defaults() */
-  size_t width, height, depth; /* samples along a row, rows, layers of a thick plane; each at least 1; default
-                                  1 */
-  double origin[3]; /* i, j, k of the first sample of the first row of the first layer; default 0 */
-  double across[3], down[3], through[3]; /* from one sample to the next, from one row to the next and from one
-                                            layer to the next, in voxels along i, j, k; default: the unit
-                                            steps along i, j, k */
+  size_t width, height, depth; /* numbers of the plane's samples: along a row, of rows, and of layers of a
+                                * thick plane; each at least 1; default 1 */
+  double origin[3]; /* place of the first sample of the first row of the first layer, as voxel numbers i,
+                     * j, k; default 0 */
+  double across[3], down[3], through[3]; /* steps from one sample to the next, from one row to the next and
+                                          * from one layer to the next, in voxels along i, j, k; default:
+                                          * the unit steps along i, j, k */
   hl_blend blend;                        /* default HL_BLEND_MAXIMUM */
   int interpolate; /* non-zero: values between voxels are interpolated linearly; default 0: the nearest
                       voxel's value */

@@ -51,7 +51,7 @@ typedef struct hl_light_texture {
   const float *pixels; /* [height][width][3]: linear RGB, top row first; null: the light has no texture */
   int width, height;
   double screen_center[3];
-  double screen_right[3]; /* from the centre to the middle of the image's right edge */
+  double screen_right[3]; /* from the screen's centre to the middle of the image's right edge */
   double screen_up[3];    /* from the centre to the middle of its top edge */
 } hl_light_texture;
 
@@ -66,26 +66,29 @@ typedef struct hl_light_emission {
   const char *file;    /* where the pixels came from, for hl_scene_to_json; may be null */
   const float *pixels; /* [height][width][3]: linear RGB, top row first; null: the light is even */
   int width, height;
-  double up[3]; /* not for rects; if it is parallel to the light's normal, [0, 1, 0] is used instead */
+  double up[3]; /* the direction in which the image's top lies, for all lights but rects; where it is
+                 * parallel to the light's normal, [0, 1, 0] is used instead */
 } hl_light_emission;
 
 /* The axes that a light's positions and directions are measured in. */
 typedef enum hl_light_frame {
   HL_LIGHT_FRAME_WORLD = 0,
-  HL_LIGHT_FRAME_CAMERA = 1 /* x right, y up, z towards the viewer; the origin is the camera's target: the
-                               light moves with the camera */
+  HL_LIGHT_FRAME_CAMERA = 1 /* x is right, y up, z towards the viewer, and the origin is the camera's
+                             * target: the light moves with the camera */
 } hl_light_frame;
 
 typedef struct hl_light {
   hl_light_type type;
-  hl_light_frame frame;        /* the axes of all vectors below, and of those in texture and emission */
+  hl_light_frame frame;        /* the axes in which all vectors below are given, also those of texture and
+                                * emission */
   double direction[3];         /* directional, spot: the way the light travels */
   double angular_diameter_deg; /* directional: above 0, its shadows can be soft */
   double position[3];          /* point, spot, rect, disk (its centre) */
   double radius;               /* point and spot (spheres), disk */
   double normal[3];            /* disk */
   double edge1[3], edge2[3];   /* rect: full edges */
-  double opening_angle_deg;    /* spot: full angle of its cone, beyond which it is dark */
+  double opening_angle_deg;    /* spot: full angle of the cone of light; no light leaves the lamp outside
+                                * of it */
   double falloff_angle_deg;    /* spot: width of the smooth edge inside the cone */
   const double (*vertices)[3]; /* polygon; [vertex_count][3] */
   size_t vertex_count;
@@ -101,8 +104,8 @@ typedef struct hl_light {
 typedef enum hl_sky_type {
   HL_SKY_NONE = 0,
   HL_SKY_UNIFORM = 1,  /* one colour */
-  HL_SKY_GRADIENT = 2, /* from the horizon to the zenith and to the ground, linear in the sine of the
-                          elevation */
+  HL_SKY_GRADIENT = 2, /* the radiance changes from the horizon to the zenith and from the horizon to the
+                        * ground, linearly in the sine of the elevation */
   HL_SKY_IMAGE = 3     /* an environment: an equirectangular image */
 } hl_sky_type;
 
@@ -115,8 +118,8 @@ typedef enum hl_sky_type {
  * The image's top row is the zenith, and its bottom row the opposite point. Its middle column lies in the
  * direction up x right. The direction `right` is the world's x axis, made perpendicular to up; where up is
  * within 8 degrees of x, it is the y axis instead. So with up along z, the image's middle lies towards +y,
- * and from within the image is not mirrored. It is interpolated bilinearly between the middles of its pixels.
- */
+ * and seen from within the sky the image is not mirrored. The image is interpolated bilinearly between the
+ * middles of its pixels. */
 typedef struct hl_sky {
   hl_sky_type type;
   double color[3];                         /* uniform: radiance */
@@ -124,13 +127,13 @@ typedef struct hl_sky {
   const char *file;    /* image: where the pixels came from, for hl_scene_to_json; may be null */
   const float *pixels; /* image: [height][width][3]: linear RGB, copied by hl_scene_create() */
   int width, height;
-  double
-      rotation_deg; /* image: the angle by which it is turned about up, counterclockwise as seen from above */
-  double up[3];     /* direction of the zenith, of any length; world */
-  int hemisphere;   /* non-zero: nothing shines below the horizon */
-  double strength;  /* a factor on all colours */
-  int suns;         /* image: non-zero (the default): where the scene has shadows, up to four compact bright
-                       spots of the image shine as parallel lights; all light together stays the same */
+  double rotation_deg; /* image: the angle by which the image is turned about up, counterclockwise as seen
+                        * from above */
+  double up[3];        /* direction of the zenith, of any length; world */
+  int hemisphere;      /* non-zero: nothing shines below the horizon */
+  double strength;     /* a factor on all colours */
+  int suns; /* image: non-zero (the default): where the scene has shadows, up to four compact bright
+               spots of the image shine as parallel lights; all light together stays the same */
 } hl_sky;
 
 typedef enum hl_shading {
@@ -144,8 +147,8 @@ typedef struct hl_material {
   double emission; /* ke: fraction of the colour that shines without any light; default 0 */
 } hl_material;
 
-/* A surface on which a volume has one value. It takes the same fraction of light at any angle, as a sheet of
- * paper does. It has the volume's material, and the volume's gradient as its normal. */
+/* A surface on which a volume has one value. It takes the same fraction of light at any angle, as a sheet
+ * of paper does. The surface has the volume's material, and the volume's gradient as its normal. */
 typedef struct hl_isosurface {
   double value;
   double color[3]; /* linear RGB */
@@ -167,7 +170,8 @@ typedef struct hl_cut {
   double min[3], max[3];      /* box */
   double center[3], radius;   /* sphere */
   hl_cut_keep keep;           /* the side that is left; default: the outside */
-  int world; /* non-zero: lengths are in the scene's world, after the volume's transform; default 0 */
+  int world; /* non-zero: the cut's lengths are in the scene's world, after the volume's transform; default
+              * 0 */
 } hl_cut;
 
 /* How matter is shaded at the faces that a cut, the clip box or a mask leaves. Behind the face of a cut or of
@@ -183,31 +187,35 @@ typedef struct hl_label {
   int64_t value;
   const char *name; /* may be null */
   double color[3];  /* linear RGB */
-  double opacity;   /* 1: solid; below 1: a skin that takes this fraction of the light that crosses it */
+  double opacity;   /* 1: the label is solid; below 1: it is a skin that takes this fraction of the light
+                     * that crosses it */
   int visible;
-  double tint; /* in a mask: 0: the matter has its own colour, 1: `color`, between: a mixture */
+  double tint; /* in a mask, how much of the label's colour matter takes: 0: the matter has its own colour,
+                * 1: `color`, between: a mixture */
 } hl_label;
 
 /* A label map that masks, colours or reveals a volume: smooth at the labels' borders. Within a label the
  * volume's extinction is multiplied by the label's opacity, or by 0 where it is not visible. Where
  * matter is hidden, faces are left. HL_CUT_SHADING_FACE lights them by the normals of the labels' borders. */
 typedef struct hl_mask {
-  hl_volume *volume; /* the label map, in the world of the volume's file; any grid; retained by the scene;
-                        null: there is no mask */
-  const char *file;  /* where it came from, for hl_scene_to_json; may be null */
-  int component;     /* the file's component, for hl_scene_to_json; default HL_COMPONENT_DEFAULT */
+  hl_volume *volume;      /* the label map; it has any grid in the world of the volume's file; retained by the
+                           * scene; null: there is no mask */
+  const char *file;       /* the file that the label map came from, for hl_scene_to_json; may be null */
+  int component;          /* the component of the label map's file, for hl_scene_to_json; default
+                           * HL_COMPONENT_DEFAULT */
   const hl_label *labels; /* [label_count]; rising by value */
   size_t label_count;
-  double rest; /* the factor of extinction outside the labels: 0 (the default) hides, 1 leaves it; the option
-                  "show" of hl_scene_compose() takes a fraction of opacity, and makes this factor of it */
+  double rest; /* the factor of extinction outside the labels: 0 (the default) hides the matter there, 1
+                * leaves it as it is; the option "show" of hl_scene_compose() takes a fraction of opacity,
+                * and makes this factor of it */
 } hl_mask;
 
 typedef struct hl_scene_volume {
   const char *name;   /* may be null */
   const char *file;   /* where the voxels came from, for hl_scene_to_json; may be null */
   const char *shapes; /* the text that the voxels were made from (hl_volume_from_shapes()); may be null */
-  const char *array;  /* may be null; with the next three, options that the file was read with
-                         (hl_volume_load_options), for hl_scene_to_json */
+  const char *array;  /* the array of the file that was read, for hl_scene_to_json; may be null. This
+                       * member and the next three are options of hl_volume_load_options */
   int component;      /* default HL_COMPONENT_DEFAULT */
   double spacing[3];  /* default 0 */
   const char *series; /* may be null */
@@ -223,23 +231,24 @@ typedef struct hl_scene_volume {
   int visible, casts_shadow, receives_shadow;
   int clipped;                     /* non-zero: everything outside the box clip_min..clip_max is removed */
   double clip_min[3], clip_max[3]; /* world units of the volume's own file, before the transform */
-  double axis_scale[3];     /* further factors of scale, along x, y and z of the volume's own file, before the
-                               rotation */
-  int time, channel, level; /* options that the file was read with (hl_volume_load_options), for
-                               hl_scene_to_json; default HL_INDEX_DEFAULT */
+  double axis_scale[3];     /* factors of the size along x, y and z of the volume's own file, beside scale;
+                             * applied before the rotation */
+  int time, channel, level; /* the time step, channel and resolution that were read
+                             * (hl_volume_load_options), for hl_scene_to_json; default HL_INDEX_DEFAULT */
   double anisotropy; /* g of Henyey and Greenstein's phase function, by which a medium scatters light: above 0
                         mostly onwards, below 0 mostly back, 0 (the default) evenly */
   const hl_isosurface *iso; /* [iso_count]; surfaces beside the matter that the transfer function shows */
   size_t iso_count;
-  double albedo[3]; /* of the light that a medium takes, the fraction that it scatters: R, G, B; multiplies
-                       its colour; default 1 */
-  int multiple_scattering; /* non-zero: light is scattered again and again; default 0: once */
-  /* [label_count]; rising by value. Where there are any, the voxels are labels. Those that are listed and
-   * visible are shown, with smooth borders and in their colours. The transfer function is then made of them.
-   */
+  double albedo[3]; /* the fraction of the light that the medium scatters, of the light that it takes: R,
+                     * G, B; multiplies the medium's colour; default 1 */
+  int multiple_scattering; /* non-zero: the medium scatters light that it has scattered before; default 0:
+                            * it scatters light once */
+  /* [label_count]; rising by value. Where there are any, the voxels are labels. Listed labels that are
+   * visible are shown, with smooth borders and in their colours. The transfer function is then made of the
+   * labels. */
   const hl_label *labels;
   size_t label_count;
-  const hl_cut *cuts; /* [cut_count]; a point is left where each of the cuts leaves it */
+  const hl_cut *cuts; /* [cut_count]; matter is left at a point where each of the cuts leaves it */
   size_t cut_count;
   hl_cut_shading cut_shading;
   int cut_casts_shadow; /* non-zero: what `cuts` remove goes on taking light; default 0 */
@@ -250,21 +259,22 @@ typedef struct hl_scene_volume {
  * `color`. */
 typedef struct hl_scene_mesh {
   const char *name; /* may be null */
-  const char *file; /* where the mesh came from, for hl_scene_to_json; null: it writes the arrays */
+  const char *file; /* the file that the mesh came from, for hl_scene_to_json; null: hl_scene_to_json
+                     * writes the arrays */
   hl_mesh *mesh;    /* retained by the scene */
   double scale;     /* transform: scale, then rotate, then translate */
   double rotate_axis[3];
   double rotate_angle_deg;
   double translate[3];
   double color[3]; /* linear RGB */
-  double
-      opacity; /* the fraction of light that the surface takes, 0 to 1; multiplied by its vertices' opacity */
+  double opacity;  /* the fraction of light that the surface takes, 0 to 1; multiplied by the opacity of the
+                    * mesh's vertices */
   hl_material material;
   int smooth;    /* non-zero: normals are interpolated between vertices */
   int two_sided; /* non-zero: the side that faces away from the eye is lit like the front */
   int visible, casts_shadow, receives_shadow;
-  double attenuation_color[3]; /* the fractions of `opacity` that the surface takes of red, green and blue
-                                  light */
+  double attenuation_color[3]; /* the parts of red, green and blue light that the surface takes, as factors
+                                * of `opacity` */
   int cut;                     /* non-zero: the scene's cuts cut it */
 } hl_scene_mesh;
 
@@ -273,11 +283,11 @@ typedef enum hl_kernel {
   HL_KERNEL_BSPLINE = 0,
   HL_KERNEL_GAUSSIAN = 1,
   HL_KERNEL_LINEAR = 2,
-  HL_KERNEL_INTERPOLATING =
-      3 /* the B-spline whose coefficients make it pass through the voxels' values; it is sharper */
+  HL_KERNEL_INTERPOLATING = 3 /* a cubic B-spline with coefficients that make it pass through the voxels'
+                               * values; it is sharper than the others */
 } hl_kernel;
 typedef enum hl_reconstruction {
-  HL_RECONSTRUCTION_AUTO = 0, /* gather: the faster method wherever both were measured */
+  HL_RECONSTRUCTION_AUTO = 0, /* gather: it was the faster method wherever both were measured */
   HL_RECONSTRUCTION_SPLAT = 1,
   HL_RECONSTRUCTION_GATHER = 2
 } hl_reconstruction;
@@ -287,16 +297,16 @@ typedef enum hl_shadow_lookup {
   HL_LOOKUP_BILINEAR = 0,
   HL_LOOKUP_NEAREST = 1,
   HL_LOOKUP_CUBIC = 2, /* cubic convolution, which is sharper; sub-lights are read bilinearly even so */
-  HL_LOOKUP_AUTO = 3 /* cubic, with larger pixels, for cascade shadows of lights without an emission image and
-                        for hard shadows with close sheets; else bilinear */
+  HL_LOOKUP_AUTO = 3   /* cubic, with larger pixels, for cascade shadows of lights without an emission image,
+                        * and for hard shadows where sheets are close; else bilinear */
 } hl_shadow_lookup;
 
 /* How the samples along a ray make a pixel. */
 typedef enum hl_compositing {
-  HL_COMPOSITING_LIGHT = 0, /* lit matter, front to back */
-  HL_COMPOSITING_MAXIMUM =
-      1 /* maximum projection: the colour of the greatest value that has an opacity above 0, without light;
-           where several volumes overlap, the greatest number in each channel of their colours */
+  HL_COMPOSITING_LIGHT = 0,  /* lit matter, front to back */
+  HL_COMPOSITING_MAXIMUM = 1 /* maximum projection: a pixel has the colour of the greatest value on its ray
+                              * that has an opacity above 0, without light. Where several volumes overlap,
+                              * each channel has the greatest number of the volumes' colours */
 } hl_compositing;
 
 typedef struct hl_render_settings {
@@ -311,8 +321,8 @@ typedef struct hl_render_settings {
   int shadow_resolution; /* pixels along the longer side; 0: auto */
   int threads;           /* 0: one per processor */
   hl_compositing compositing;
-  int slabs_at_once; /* number of slabs after which the threads wait for each other; changes no picture; 0:
-                        auto */
+  int slabs_at_once; /* number of slabs after which the threads wait for each other; it changes no picture;
+                      * 0: chosen by the renderer */
 } hl_render_settings;
 
 typedef struct hl_scene_description {
@@ -328,17 +338,19 @@ typedef struct hl_scene_description {
   size_t volume_count;
   hl_render_settings render;
   const char *description; /* one sentence on the scene; may be null */
-  double exposure;         /* stops: a PNG shows the volumes' light times 2^exposure; 0 by default */
+  double exposure;         /* stops: picture files such as PNG show the volumes' light times 2^exposure; 0
+                            * by default */
   const hl_scene_mesh *meshes;
   size_t mesh_count;
-  const hl_cut
-      *cuts; /* [cut_count]; cut all volumes, with each volume's own cut_shading and cut_casts_shadow, and
-                the meshes with `cut`; their lengths are in the world, whatever `world` says */
+  const hl_cut *cuts; /* [cut_count]; they cut all volumes, and the meshes with `cut`. Faces and shadows
+                       * follow each volume's own cut_shading and cut_casts_shadow. Lengths are in the world,
+                       * whatever `world` says */
   size_t cut_count;
-  hl_tone tone; /* how a PNG shows light that is brighter than white; default HL_TONE_CLIP */
+  hl_tone tone; /* how picture files such as PNG show light that is brighter than white; default
+                 * HL_TONE_CLIP */
   hl_sky sky;
-  int background_sky; /* non-zero: pictures show the sky in place of a background, and have alpha 1; default
-                         0 */
+  int background_sky; /* non-zero: pictures show the sky in place of a background, and have alpha 1
+                       * everywhere; default 0 */
 } hl_scene_description;
 
 typedef struct hl_scene hl_scene; /* never changes; its references are counted */
@@ -356,8 +368,8 @@ HL_API void hl_cut_defaults(hl_cut *cut);
 HL_API void hl_scene_volume_place_point(const hl_scene_volume *volume, double point[3]);
 
 /* Checks and copies the description, and retains the volumes. Errors name the field as a JSON pointer
- * ("/lights/0/radius"). The smooth fields of labels and masks are made for the first frame, which then tells
- * where none of the visible labels has voxels, or where more of them show than a frame can have. */
+ * ("/lights/0/radius"). The smooth fields of labels and masks are made for the first frame. Only that frame
+ * can tell that none of the visible labels has voxels, or that too many labels show. */
 HL_API HL_WARN_UNUSED hl_status hl_scene_create(hl_context *context, const hl_scene_description *description,
                                                 hl_scene **scene, hl_error *error);
 
@@ -372,9 +384,9 @@ HL_API HL_WARN_UNUSED hl_status hl_scene_from_json(hl_context *context, const ch
                                                    hl_scene **scene, hl_error *error);
 
 /* hl_scene_from_json() for editors and viewers, whose scene changes many times a second. No file is opened:
- * volumes and lights' images are taken from the scene `like`, by their file and the options that it was read
- * with, or by their shapes. A scene that names other ones is refused with HL_ERROR_INPUT. Where like is null,
- * files are opened as usual. */
+ * the scene `like` gives the volumes and the lights' images. They are found there by their file and its
+ * reading options, or by their shapes. A scene that names a volume or an image which `like` lacks is
+ * refused with HL_ERROR_INPUT. Where like is null, files are opened as usual. */
 HL_API HL_WARN_UNUSED hl_status hl_scene_from_json_like(hl_context *context, const char *text, size_t length,
                                                         const char *base_folder, const char *name,
                                                         const hl_scene *like, hl_scene **scene,
@@ -383,32 +395,34 @@ HL_API HL_WARN_UNUSED hl_status hl_scene_from_json_like(hl_context *context, con
 /* The scene as JSON text, null-terminated; free with hl_text_release(). */
 HL_API HL_WARN_UNUSED hl_status hl_scene_to_json(hl_context *context, const hl_scene *scene, char **text,
                                                  hl_error *error);
-/* The same for a text that will be stored in a folder, or in a picture there. Files in the folder or below it
- * are named relative to it; all others as hl_scene_to_json() names them. folder: "" is the current folder;
- * null: all files are named as by hl_scene_to_json(). */
+/* The scene as JSON text that will be stored in a folder, or in a picture there. Files in the folder or
+ * below it are named relative to it; all others as hl_scene_to_json() names them. folder: "" is the current
+ * folder; null: all files are named as by hl_scene_to_json(). */
 HL_API HL_WARN_UNUSED hl_status hl_scene_to_json_beside(hl_context *context, const hl_scene *scene,
                                                         const char *folder, char **text, hl_error *error);
 HL_API void hl_text_release(hl_context *context, char *text);
 
 /* A scene that shows one volume well with no further choice: three-quarter view, automatic transfer
- * function, key light from the upper left with soft shadows, and a sky; where the context's memory limit is
- * below 512 MiB and twice the volume, constant light in place of the sky. What holds a scanned object, as
- * a head rest, rails or a towel, is removed by up to 8 planes among the volume's cuts, which lie beside the
- * object and remove nothing of it. A label map (hl_volume_is_label_map()) has its labels, with the names and
- * colours of its file. file may be null (see hl_scene_volume). */
+ * function, key light from the upper left with soft shadows, and a sky. Constant light takes the sky's
+ * place where the context's memory limit is below 512 MiB and below twice the volume. Things that hold a
+ * scanned object, such as a head rest, rails or a towel, are removed by up to 8 planes among the volume's
+ * cuts. These planes lie beside the object and remove nothing of it. A label map (hl_volume_is_label_map())
+ * has its labels, with the names and colours of its file. file may be null (see hl_scene_volume). */
 HL_API HL_WARN_UNUSED hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char *file,
                                                     hl_scene **scene, hl_error *error);
 
-/* The same with one of the looks of hl_look_name(), whatever the volume holds. file may be null. */
+/* A scene as hl_scene_for_volume() makes it, but with one of the looks of hl_look_name(), whatever the
+ * volume holds. file may be null. */
 HL_API HL_WARN_UNUSED hl_status hl_scene_for_volume_look(hl_context *context, hl_volume *volume,
                                                          const char *file, const char *look, hl_scene **scene,
                                                          hl_error *error);
 
 /* Makes one scene of several scenes of one volume each, which hl_scene_for_volume() has made. All volumes
  * stand in one world, each with its own look. Light, background and render settings are the first scene's.
- * The sheets are as close as the closest of all scenes, and the camera frames all volumes. A volume without a
- * name is named after its file, without folder and extensions, and "-2" and so on is appended to names that
- * are taken. scenes: [count], each with a volume; they may be released afterwards. */
+ * The sheets are as close as the closest of all scenes, and the camera frames all volumes. A volume without
+ * a name is named after its file, without folder and extensions, and "-2" and so on is appended to names
+ * that are taken. scenes: [count], each scene has one volume; the caller may release the scenes afterwards.
+ */
 HL_API HL_WARN_UNUSED hl_status hl_scene_join(hl_context *context, hl_scene *const *scenes, size_t count,
                                               hl_scene **scene, hl_error *error);
 
@@ -429,14 +443,16 @@ HL_API HL_WARN_UNUSED hl_status hl_scene_for_channels(hl_context *context, const
 HL_API HL_WARN_UNUSED hl_status hl_scene_channel_color(const hl_scene_description *description, size_t index,
                                                        double srgb[3]);
 
-/* Puts constant light in place of the sky of a description that one of these functions made. The picture
- * stays about as bright as a whole, but has no shadows of the sky, and takes less time. */
+/* Puts constant light in place of the sky, in a description that hl_scene_for_volume() or a similar
+ * function made. The picture stays about as bright as a whole, but has no shadows of the sky, and takes
+ * less time. */
 HL_API void hl_scene_level_sky(hl_scene_description *description);
 
-/* Finds a factor for the strengths of all lights, `ambient` and the sky of such a scene, after cuts or
- * isosurfaces have changed what is seen of its volume. The strengths were chosen for the whole volume; with
- * them a cut face that looks at the light, or a white surface, would be clipped. look: the look that the
- * scene was made with. *factor is 1 for looks that keep their light, and for orthographic cameras. */
+/* Finds a factor for the strengths of all lights, of `ambient` and of the sky, in a scene of
+ * hl_scene_for_volume() after cuts or isosurfaces have changed what is seen of its volume. The strengths
+ * were chosen for the whole volume. A cut face that looks at the light, or a white surface, would be too
+ * bright with them and would be clipped. look: the look that the scene was made with. *factor is 1 for
+ * looks that keep their light, and for orthographic cameras. */
 HL_API HL_WARN_UNUSED hl_status hl_scene_light_factor(const hl_scene_description *description,
                                                       const char *look, double *factor, hl_error *error);
 
@@ -466,15 +482,15 @@ HL_API HL_WARN_UNUSED hl_status hl_transfer_function_look(hl_context *context, c
                                                           hl_transfer_function *function, hl_shading *shading,
                                                           hl_error *error);
 
-/* The kind of data that hl_scene_for_volume() takes a volume to be, and by which it chooses a look: "scanned
- * body", "scanned brain", "scanned matter", "vessels" (bright tubes within other matter, as angiography shows
- * them), "labels", "field", "flow", "signed field", "smoke or cloud", "particles" or "one value". file: as
- * for that function. *kind is a constant text. */
+/* The kind of data that hl_scene_for_volume() believes a volume to be. It chooses the look by this kind:
+ * "scanned body", "scanned brain", "scanned matter", "vessels" (bright tubes within other matter, as
+ * angiography shows them), "labels", "field", "flow", "signed field", "smoke or cloud", "particles" or "one
+ * value". file: as for that function. *kind is a constant text. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_guess(const hl_volume *volume, const char *file, const char **kind,
                                                 hl_error *error);
 
-/* The name of the look (hl_look_name()) to try next, where hl_scene_for_volume() took the volume to be what
- * it is not, or its own look shows too little. file: as for that function. *name is a constant text. */
+/* The name of the look (hl_look_name()) to try next, where hl_scene_for_volume() was wrong about the kind
+ * of the volume, or where its look shows too little. file: as for that function. *name is a constant text. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_next_look(const hl_volume *volume, const char *file,
                                                     const char **name, hl_error *error);
 
@@ -487,20 +503,20 @@ HL_API void hl_scene_release(hl_scene *scene); /* null is allowed */
 
 /* ---- label maps ---- */
 
-/* The labels that a volume's voxels have, 0 left out, rising; all visible and solid. Names and colours are
- * those of the table (a path: FreeSurfer's or Slicer's colour table, ITK-SNAP's label descriptions, CSV;
- * null: none), else of the file (.seg.nrrd), else colours that differ. *labels is owned by the caller
- * (hl_labels_release). HL_ERROR_INPUT where a value is no whole number; HL_ERROR_UNSUPPORTED for a map in a
- * scratch file or in bricks. Of a map over ranks (ranks.h) each rank gets a copy, which the map keeps: the
- * first call with it is collective. */
+/* The labels that a volume's voxels have, 0 left out, rising; all visible and solid. Names and colours come
+ * from the table, else from the volume's file (.seg.nrrd); else colours are chosen that differ. table: the
+ * path of a colour table of FreeSurfer or Slicer, of ITK-SNAP's label descriptions or of a CSV file; null:
+ * none. *labels is owned by the caller (hl_labels_release). HL_ERROR_INPUT where a value is no whole
+ * number; HL_ERROR_UNSUPPORTED for a map in a scratch file or in bricks. Where a map lies over ranks
+ * (ranks.h), the first call is collective: each rank gets a copy of the whole map, which the map keeps. */
 HL_API HL_WARN_UNUSED hl_status hl_labels_of_volume(hl_context *context, const hl_volume *map,
                                                     const char *table, hl_label **labels, size_t *count,
                                                     hl_error *error);
 HL_API void hl_labels_release(hl_context *context, hl_label *labels); /* null is allowed */
 
-/* Sets *labels to 1 where the volume's values are probably labels of regions, else to 0. They are where the
- * file names segments, or where the values are few whole numbers in blocks. Such a volume is drawn by its
- * labels where nothing else is asked for. */
+/* Sets *labels to 1 where the volume's values are probably labels of regions, else to 0. They probably are
+ * labels where the file names segments, or where the values are few whole numbers in blocks. Such a volume
+ * is drawn by its labels where nothing else is asked for. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_is_label_map(hl_context *context, const hl_volume *volume,
                                                        int *labels, hl_error *error);
 
@@ -508,9 +524,10 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_is_label_map(hl_context *context, cons
 
 /* A direction of view. */
 typedef struct hl_view {
-  double up[3];    /* unit; the direction that is up in the picture at elevation 0 and roll 0 */
-  double front[3]; /* unit, perpendicular to up; from the volumes to the eye at azimuth 0 and elevation 0 */
-  double azimuth_deg;   /* positive: the eye moves to its right, about up */
+  double up[3];       /* unit vector; the direction that is up in the picture at elevation 0 and roll 0 */
+  double front[3];    /* unit vector, perpendicular to up; points from the volumes to the eye at azimuth 0 and
+                       * elevation 0 */
+  double azimuth_deg; /* positive: the eye moves to its right, about up */
   double elevation_deg; /* -90 to 90; positive: the eye rises */
   double roll_deg;      /* positive: the picture turns clockwise */
 } hl_view;
@@ -525,7 +542,8 @@ typedef enum hl_side {
   HL_SIDE_RIGHT = 4,
   HL_SIDE_TOP = 5,
   HL_SIDE_BOTTOM = 6,
-  HL_SIDE_ISO = 7 /* azimuth 45 and the elevation at which three edges of a cube look alike, 35.26 */
+  HL_SIDE_ISO = 7 /* azimuth 45, and elevation 35.26, at which the three edges of a cube at a corner look
+                   * alike */
 } hl_side;
 
 /* Finds the view from a side. up: the direction that is up, of any length; null: it follows from how a
@@ -536,7 +554,7 @@ HL_API HL_WARN_UNUSED hl_status hl_view_choose(const hl_scene_description *descr
                                                const double up[3], hl_view *view, hl_error *error);
 
 /* The view of the description's camera, with roll 0. view->up is the camera's up vector; where that vector
- * was made perpendicular to the line of sight from an axis of the world, it is this axis. Fails where
+ * is an axis of the world made perpendicular to the line of sight, view->up is this axis. Fails where
  * position and target are the same. */
 HL_API HL_WARN_UNUSED hl_status hl_view_of_camera(const hl_scene_description *description, hl_view *view);
 
@@ -574,13 +592,15 @@ HL_API HL_WARN_UNUSED hl_status hl_camera_turn(const hl_view *view, hl_camera *c
 HL_API HL_WARN_UNUSED hl_status hl_camera_frame(const hl_scene_description *description, double azimuth_deg,
                                                 double elevation_deg, double zoom, hl_camera *camera);
 
-/* The same, but the camera keeps its direction and its up vector: it is only moved, and its height is set. */
+/* Fills the picture with the visible voxels as hl_camera_frame() does, but keeps the camera's direction and
+ * up vector: the camera is only moved, and its height is set. */
 HL_API HL_WARN_UNUSED hl_status hl_camera_fit(const hl_scene_description *description, double zoom,
                                               hl_camera *camera);
 
-/* The direction (unit, the way light travels) of a light that stands, seen by the camera, at azimuth
- * (positive: right) and elevation (positive: up) from the line of sight: 0,0 is a headlight. camera null:
- * direction becomes 0, 0, 0, which hl_scene_create() refuses; direction null: nothing is done. */
+/* Finds the direction (unit, the way light travels) of a light whose place is given as the camera sees it:
+ * azimuth (positive: right) and elevation (positive: up) from the line of sight. At 0, 0 the light shines
+ * along the line of sight. camera null: direction becomes 0, 0, 0, which hl_scene_create() refuses;
+ * direction null: nothing is done. */
 HL_API void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elevation_deg,
                                double direction[3]);
 /* The same for a light in HL_LIGHT_FRAME_CAMERA. */

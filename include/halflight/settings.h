@@ -12,7 +12,8 @@
 extern "C" {
 #endif
 
-/* The tables. For each: the struct whose fields its rows are, and where its keys stand in a scene file. */
+/* The tables of settings. The comment at each says which struct has the fields, and where the keys stand in
+ * a scene file. */
 typedef enum hl_setting_kind {
   HL_SETTINGS_SCENE = 0,             /* hl_scene_description; the file's top level */
   HL_SETTINGS_IMAGE = 1,             /* hl_scene_description; "image" */
@@ -20,7 +21,8 @@ typedef enum hl_setting_kind {
   HL_SETTINGS_LIGHT = 3,             /* hl_light; each of "lights" */
   HL_SETTINGS_VOLUME = 4,            /* hl_scene_volume; each of "volumes" */
   HL_SETTINGS_MATERIAL = 5,          /* hl_material; a volume's "material" */
-  HL_SETTINGS_TRANSFER_FUNCTION = 6, /* hl_transfer_function; a volume's "transfer_function" */
+  HL_SETTINGS_TRANSFER_FUNCTION = 6, /* fields of hl_transfer_function; keys of a volume's
+                                      * "transfer_function" */
   HL_SETTINGS_RENDER = 7,            /* hl_render_settings; "render" */
   HL_SETTINGS_MESH = 8,              /* hl_scene_mesh; each of "meshes" */
   HL_SETTINGS_SKY = 9,               /* hl_sky; "sky" */
@@ -45,7 +47,8 @@ typedef struct hl_setting_choice {
 } hl_setting_choice;
 
 typedef struct hl_setting {
-  const char *key;   /* in a scene file; "transform/translate" is the key translate in the object transform */
+  const char *key;   /* the key in a scene file; "transform/translate" is the key translate in the object
+                      * transform */
   const char *field; /* in the struct */
   hl_setting_type type;
   const char *unit;                 /* "degrees", "world units", ...; "" for none */
@@ -54,11 +57,12 @@ typedef struct hl_setting {
   double standard[3];               /* the default: its first number, or three */
   const hl_setting_choice *choices; /* null: none */
   size_t offset;                    /* of the field in the struct */
-  unsigned
-      only_for; /* lights, cameras and skies: the types that have the key, bit (1 << type) each; 0: all */
-  int optional; /* non-zero: hl_scene_to_json() leaves the key out where it has its default */
+  unsigned only_for; /* for lights, cameras and skies: the types that have the key, as bits (1 << type); 0:
+                      * all types */
+  int optional;      /* non-zero: hl_scene_to_json() leaves the key out where it has its default */
   const char *sentence;
-  const char *mend; /* how an error asks for a value in range; {low} and {high} stand for the range's ends */
+  const char *mend;   /* the part of an error's text that asks for a value in range; {low} and {high} stand
+                       * for the range's ends */
   const char *option; /* of `halflight render`, without dashes; null: none */
 } hl_setting;
 

@@ -18,15 +18,16 @@ extern "C" {
 
 typedef struct hl_shapes_options {
   size_t struct_size; /* set by hl_shapes_options_defaults() */
-  int size;           /* above 0: voxels along the grid's longest side, in place of the text's voxel_size */
-  int seed;           /* added to every hypertexture's seed; default 0 */
-  int threads;        /* 0: one per processor */
+  int size; /* above 0: number of voxels along the grid's longest side, in place of the text's voxel_size */
+  int seed; /* added to every hypertexture's seed; default 0 */
+  int threads; /* 0: one per processor */
 } hl_shapes_options;
 
 HL_API void hl_shapes_options_defaults(hl_shapes_options *options);
 
-/* text: UTF-8 JSON, length bytes. name: what errors call the text. options may be null for the defaults.
- * The same text gives the same voxels on every machine. *volume is owned by the caller. */
+/* Makes a volume of shapes. text: UTF-8 JSON, length bytes. name: what errors call the text. options may be
+ * null for the defaults. The same text gives the same voxels on every machine. *volume is owned by the
+ * caller. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_from_shapes(hl_context *context, const char *text, size_t length,
                                                       const char *name, const hl_shapes_options *options,
                                                       hl_volume **volume, hl_error *error);

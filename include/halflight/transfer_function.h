@@ -22,14 +22,16 @@ typedef struct hl_color_point {
 /* What a transfer function takes as its second number. */
 typedef enum hl_second_axis {
   HL_SECOND_NONE = 0,
-  HL_SECOND_GRADIENT = 1, /* the length of the data's gradient: the kernel's, in data units per world unit */
+  HL_SECOND_GRADIENT = 1, /* the length of the data's gradient, found with the scene's kernel, in data
+                           * units per world unit */
   HL_SECOND_VOLUME = 2    /* the value of another volume of the scene at the same place, whether or not the
-                             scene shows it; beyond its faces its border's values go on */
+                           * scene shows it; beyond the other volume's faces, the values at its faces
+                           * continue */
 } hl_second_axis;
 
 /* Below, a point of a transfer function's plane is [value, second number]. Where a shape has the weight w,
- * its matter has w times the extinction of its opacity. Where shapes overlap, extinctions add up and colours
- * are averaged by them. */
+ * matter has w times the extinction that follows from the shape's opacity. Where shapes overlap,
+ * extinctions add up and colours are averaged by them. */
 
 /* A box. Its weight is 1 inside and rises from 0 at its border over the width `edge`; or it is a Gaussian. */
 typedef struct hl_function_box {
@@ -48,11 +50,11 @@ typedef struct hl_function_polygon {
   double apex[2];
   double color[3]; /* linear RGB */
   double opacity;  /* per unit_distance */
-  double falloff;  /* the fraction of the way to the border over which the weight falls: 1 from the apex on,
-                      0: hard */
+  double falloff;  /* the part of the way from the apex to the border over which the weight falls: 1: from
+                    * the apex on, 0: the border is hard */
 } hl_function_polygon;
 
-/* An image: bilinear between the middles of its pixels. Outside of it there is nothing. */
+/* An image: bilinear between the middles of its pixels. Outside the image nothing is visible. */
 typedef struct hl_function_image {
   const char *file;    /* where the pixels came from, for hl_scene_to_json; may be null */
   const float *pixels; /* [height][width][4]: linear RGB times opacity, and opacity per unit_distance; the top
@@ -70,32 +72,36 @@ typedef struct hl_function_plane {
   const hl_function_polygon *polygons;
   size_t polygon_count;
   hl_function_image image;
-  double second_scale; /* the second number is multiplied by this first; 0 counts as 1 */
+  double second_scale; /* a factor by which the second number is multiplied first; 0 counts as 1 */
 } hl_function_plane;
 
-/* Piecewise linear in data values, constant beyond the end points. */
+/* What the values of a volume look like: opacity and colour are piecewise linear in data values, and
+ * constant beyond the end points. */
 typedef struct hl_transfer_function {
   double unit_distance;            /* world units; opacities are per this length */
   const hl_opacity_point *opacity; /* sorted by value */
   size_t opacity_count;
   const hl_color_point *color; /* sorted by value; linear RGB */
   size_t color_count;
-  /* What extinction is multiplied by, 0 to 1, where the data's gradient has a length (`value`: data units per
-   * world unit); sorted by value. None: 1 everywhere. */
+  /* Factors of extinction, 0 to 1, by the length of the data's gradient. `value` is a length in data units
+   * per world unit; points are sorted by it. Without points the factor is 1 everywhere. */
   const hl_opacity_point *gradient_opacity;
   size_t gradient_opacity_count;
-  /* If there is one, a scene makes opacity and color of it: for each value the greatest opacity that the
-   * value has with any second number, and the mean colour. */
+  /* A function of two numbers. If there is one, a scene makes opacity and color from it: for each value the
+   * greatest opacity that the value has with any second number, and the mean colour. */
   hl_function_plane plane;
 } hl_transfer_function;
 
-/* ---- transfer functions: free the points of those made here with hl_transfer_function_release() ---- */
+/* ---- functions that make transfer functions: release their points with hl_transfer_function_release()
+ * ---- */
 
-/* Chosen by the volume's values: separates objects from their background in CT, MR and simulations alike. */
+/* Makes a transfer function that follows from the volume's values: separates objects from their background
+ * in CT, MR and simulations alike. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_automatic(hl_context *context, const hl_volume *volume,
                                                                hl_transfer_function *function,
                                                                hl_error *error);
-/* name: one of hl_preset_name(0..). Presets adapt to the volume's values. */
+/* Makes a transfer function from a preset, which adapts to the volume's values. name: one of
+ * hl_preset_name(). */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_preset(hl_context *context, const char *name,
                                                             const hl_volume *volume,
                                                             hl_transfer_function *function, hl_error *error);
@@ -117,12 +123,12 @@ HL_API HL_WARN_UNUSED hl_status hl_transfer_function_visible_range(const hl_volu
 /* How a function spreads over a range of values. */
 typedef enum hl_range_scale {
   HL_RANGE_LINEAR = 0,
-  HL_RANGE_LOG = 1 /* evenly over the values' logarithms: the range must be above 0 */
+  HL_RANGE_LOG = 1 /* colours are spread evenly over the values' logarithms; the range must be above 0 */
 } hl_range_scale;
-/* Makes *to of `from` by moving its points, so that the values old[0] to old[1] become range[0] to range[1];
- * the lengths of gradients are multiplied by the ratio of the ranges' widths. HL_RANGE_LOG: between points,
- * too, the function follows the logarithm, by further points, and beyond the range its ends are held. Points
- * of *to are owned by the caller. */
+/* Makes *to of `from` by moving its points, so that the values old[0] to old[1] become range[0] to
+ * range[1]; the lengths of gradients are multiplied by the ratio of the ranges' widths. With HL_RANGE_LOG
+ * the function gets further points, so that it follows the logarithm between points, too, and its values at
+ * the range's ends hold beyond the range. Points of *to are owned by the caller. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_spread(hl_context *context,
                                                             const hl_transfer_function *from,
                                                             const double old[2], const double range[2],
@@ -135,12 +141,13 @@ HL_API HL_WARN_UNUSED hl_status hl_transfer_function_colormap_scaled(hl_context 
                                                                      hl_range_scale scale,
                                                                      hl_transfer_function *function,
                                                                      hl_error *error);
-/* Reads Halflight's own JSON object, a scene (its first volume's function), ParaView's .json colour maps, the
- * boxes of its states (.pvsm), or Slicer's .vp.json, .vp, and presets.xml (path: FILE.xml:PRESET). From a
- * file with colours alone, opacity becomes null: take the opacity points from elsewhere. Slicer's lengths of
- * gradients are per mean voxel edge and end at a quarter of the range of values, as VTK's: they are fitted to
- * the volume; null: they are taken as if its voxels had edges of 1. Of a .vp.json of several components, the
- * functions of the volume's component are read; null, or another component, is an error. */
+/* Reads Halflight's own JSON object, a scene (its first volume's function), ParaView's .json colour maps,
+ * the boxes of its states (.pvsm), or Slicer's .vp.json, .vp, and presets.xml (path: FILE.xml:PRESET). From
+ * a file with colours alone, opacity becomes null: take the opacity points from elsewhere. Slicer's lengths
+ * of gradients are per mean voxel edge and end at a quarter of the range of values, as VTK's: they are
+ * fitted to the volume; null: they are taken as if its voxels had edges of 1. From a .vp.json of several
+ * components, the functions of the volume's component are read. If the volume is null or has another
+ * component, this is an error. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_load_for(hl_context *context, const char *path,
                                                               const hl_volume *volume,
                                                               hl_transfer_function *function,

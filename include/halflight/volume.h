@@ -21,8 +21,9 @@ typedef enum hl_voxel_type {
   HL_VOXEL_I32 = 6,
   HL_VOXEL_F32 = 7,
   HL_VOXEL_F64 = 8,
-  HL_VOXEL_U64 = 9, /* pictures take 64 and 32 bit integers and doubles to 24 bits, as float; labels, masks,
-                       hl_volume_value(), the range and hl_volume_save() have whole numbers exactly */
+  HL_VOXEL_U64 = 9, /* pictures round 64 and 32 bit integers and doubles to floats, which have 24 bits.
+                     * Labels, masks, hl_volume_value(), the range and hl_volume_save() keep whole numbers
+                     * exactly */
   HL_VOXEL_I64 = 10,
   HL_VOXEL_F16 = 11 /* IEEE 754 binary16, kept as float */
 } hl_voxel_type;
@@ -32,7 +33,8 @@ typedef struct hl_volume hl_volume;
 /* Which way the world's axes x, y, z point in a patient's body, if the file tells. */
 typedef enum hl_space {
   HL_SPACE_UNKNOWN = 0,
-  HL_SPACE_RAS = 1, /* to the body's right, front (anterior) and head (superior): NIfTI */
+  HL_SPACE_RAS = 1, /* the axes point to the body's right, front (anterior) and head (superior), as in
+                     * NIfTI */
   HL_SPACE_LPS = 2, /* left, back (posterior), head: DICOM */
   HL_SPACE_LAS = 3  /* left, front, head: left-handed */
 } hl_space;
@@ -48,17 +50,17 @@ typedef struct hl_volume_description {
   double value_offset;       /* default 0 */
   const void *voxels;        /* voxel (0,0,0) */
   ptrdiff_t stride_bytes[3]; /* bytes from one voxel to the next along i, j, k; all 0: packed */
-  /* Non-zero: u8, u16 and f32 voxels are not copied and must outlive the volume, where those of a row adjoin;
-   * rows and slices may lie apart, in rising order, slices by 64 MiB at most. They shall stay as they are:
-   * range, histogram, the places that are empty and what a renderer keeps are those of the voxels that were
-   * there when each was found. Where the voxels change all the same, between calls or while one runs, the new
-   * ones are seen in some places and the old in others, and a pixel may be any number or none; but no call
-   * reads or writes other memory, or does not end. For new voxels make a new volume. */
+  /* Non-zero: u8, u16 and f32 voxels are not copied, and must outlive the volume. The voxels of a row must
+   * adjoin. Rows and slices may lie apart, in rising order, slices by 64 MiB at most. The voxels shall not
+   * change: range, histogram, empty places and what a renderer keeps are found once. If voxels change all
+   * the same, pictures show new voxels in some places and old ones in others, and a pixel may be any number
+   * or NaN. Even then no call reads or writes other memory, and every call ends. For new voxels make a new
+   * volume. */
   int borrow;
   hl_space space; /* default unknown */
   /* Called once when the library no longer reads `voxels`: when the volume's last reference is released, by
-   * the thread that does it, or before hl_volume_create() returns where voxels were copied. Not called where
-   * hl_volume_create() fails. Default null. */
+   * the thread that releases it, or before hl_volume_create() returns where voxels were copied. Not called
+   * where hl_volume_create() fails. Default null. */
   void (*release)(void *release_data, const void *voxels);
   void *release_data; /* for `release` */
 } hl_volume_description;
@@ -73,9 +75,9 @@ typedef struct hl_volume_info {
   double spacing[3];  /* length of each axis, world units */
   double origin[3];
   double direction[3][3];   /* direction[row][column]; columns are the unit axes */
-  double range[2];          /* least and greatest finite value; 0, 0 if there is none. Of a mesh of
-                             * cells or a grid with refinement: of the spline's coefficients, which
-                             * the values between them may exceed near a face */
+  double range[2];          /* least and greatest finite value; 0, 0 if there is none. For a mesh of cells
+                             * or a grid with refinement it is the range of the spline's coefficients,
+                             * which values between coefficients may exceed near a face */
   double mean;              /* over finite voxels */
   uint64_t nonfinite_count; /* NaN and infinite voxels: transparent when rendered */
   uint64_t histogram[HL_HISTOGRAM_BINS]; /* equal bins over range, finite voxels */
@@ -90,63 +92,66 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_create(hl_context *context,
                                                  const hl_volume_description *description, hl_volume **volume,
                                                  hl_error *error);
 
-/* Reads raw (by name), NRRD, MetaImage, NIfTI, VTK .vti, legacy .vtk, NumPy .npy (axes [z][y][x]), MRC,
- * TIFF, NanoVDB, OpenVDB (by the context's `convert`) and DICOM files, particles in tables, dumps of LAMMPS
- * and XYZ files (as log10 of their density: halflight/particles.h), and folders and zip archives of DICOM
- * files or of Zarr arrays (OME-Zarr). The format is recognised by the content, or by the name where the
- * content has no mark. Of several arrays or components one is read by default (hl_volume_load_options), and a
- * warning says which. */
+/* Reads a volume file: raw (by name), NRRD, MetaImage, NIfTI, VTK .vti, legacy .vtk, NumPy .npy (axes
+ * [z][y][x]), MRC, TIFF, NanoVDB, OpenVDB (by the context's `convert`) and DICOM files, particles in
+ * tables, dumps of LAMMPS and XYZ files (as log10 of their density: halflight/particles.h), and folders and
+ * zip archives of DICOM files or of Zarr arrays (OME-Zarr). The format is recognised by the content, or by
+ * the name where the content has no mark. Where a file has several arrays or components, one is read by
+ * default (hl_volume_load_options), and a warning says which. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_load(hl_context *context, const char *path, hl_volume **volume,
                                                hl_error *error);
 
 /* Instead of the index of a component. */
 enum {
-  HL_COMPONENT_DEFAULT = -1, /* the only one; colours, where the file says that they are such; of vectors of 2
-                                or 3 the magnitude; else the first */
+  HL_COMPONENT_DEFAULT = -1,   /* the file's only component; else colours, where the file says that its
+                                * components are such; else the magnitude of vectors of 2 or 3; else the
+                                * first */
   HL_COMPONENT_MAGNITUDE = -2, /* the square root of the sum of squares, as float */
-  /* Three or four components, unsigned of 8 or 16 bits, as the voxels' own colours: red, green, blue (sRGB),
-   * alpha. They are kept in 8 bits and multiply the transfer function's colours. The volume's values, which
-   * opacity comes from, are the alpha, or the luminance (luma with BT.709's weights) where there is no alpha
-   * or it is the same everywhere; */
+  /* Three or four components (unsigned, 8 or 16 bits) are the voxels' own colours: red, green, blue (sRGB),
+   * alpha. Colours are kept in 8 bits and multiply the transfer function's colours. The volume's values,
+   * which opacity comes from, are the alpha, or the luminance (luma with BT.709's weights) where there is
+   * no alpha or it is the same everywhere. */
   HL_COMPONENT_COLOR = -3,
   HL_COMPONENT_LUMINANCE = -4 /* and the luminance in any case */
 };
 
-/* "magnitude", "color" or "luminance"; null for an index and the default. */
+/* The name of an HL_COMPONENT_ value: "magnitude", "color" or "luminance"; null for an index and for the
+ * default. */
 HL_API const char *hl_component_name(int component);
-/* The HL_COMPONENT_ value of such a name; HL_COMPONENT_DEFAULT for any other. */
+/* The HL_COMPONENT_ value that a name of hl_component_name() stands for; HL_COMPONENT_DEFAULT for any other
+ * text. */
 HL_API int hl_component_of_name(const char *name);
 
-/* Instead of the index of a time step or channel: the first; of a resolution: the finest that the memory
- * limit leaves room for and the picture shows (`pixels`). */
+/* In place of an index. A time step or channel is then the first. A resolution is the finest for which the
+ * memory limit leaves room and whose detail the picture shows (`pixels`). */
 enum { HL_INDEX_DEFAULT = -1 };
 
 typedef struct hl_volume_load_options {
   size_t struct_size; /* set by hl_volume_load_options_defaults() */
-  const char *array;  /* name of one of the file's arrays; null: the file's active one, else the first scalar,
-                         else the first */
-  int component; /* from 0 on, or an HL_COMPONENT_ value; default HL_COMPONENT_DEFAULT. Volumes of a series
-                    (time) are components too */
-  double spacing[3]; /* distance of voxels along i, j, k, world units, instead of the file's own; all 0
-                        (default): the file's own */
-  const void *bytes; /* the file's content in memory, borrowed during the call: nothing is opened then, and
-                        path is only its name. Default null */
+  const char *array;  /* the name of the array that is read, of several in a file; null: the array that the
+                       * file calls active, else the first scalar array, else the first array */
+  int component;      /* the component that is read: a number from 0, or an HL_COMPONENT_ value; default
+                       * HL_COMPONENT_DEFAULT. The volumes of a series over time are components, too */
+  double spacing[3];  /* distance of voxels along i, j, k in world units, in place of the file's; all 0
+                       * (default): the file's */
+  const void *bytes;  /* the file's content in memory, borrowed during the call: nothing is opened then, and
+                         path is only its name. Default null */
   size_t byte_count;
-  const char *series; /* the one to read of several. DICOM: a series' number, UID or description; null: the
-                         largest. OME-Zarr: an image's number, path or name; null: the first */
-  hl_space space;     /* the volume's world is turned into this anatomical space, if the file tells its own;
-                         default     unknown: the file's */
-  int time, channel, level; /* the time step, channel and resolution (0: the finest) to read of several, from
-                               0 on; default HL_INDEX_DEFAULT */
-  int pixels; /* the longer side, in pixels, of a picture that the volume fills: of several levels the
-                 coarsest is read whose longest axis has a voxel for each of them; 0 (default):
-                 unknown. Unused where `level` is given */
+  const char *series; /* the series that is read, of several. DICOM: a series' number, UID or description;
+                       * null: the largest. OME-Zarr: an image's number, path or name; null: the first */
+  hl_space space;     /* the anatomical space into which the volume's world is turned, if the file tells
+                       * its own space; default unknown: the world is not turned */
+  int time, channel, level; /* the time step, channel and resolution (0: the finest) that are read, of
+                             * several; numbers from 0; default HL_INDEX_DEFAULT */
+  int pixels; /* the longer side, in pixels, of a picture that the volume will fill; 0 (default): unknown.
+               * Of several resolutions, the coarsest is read whose longest axis has at least as many
+               * voxels. Unused where `level` is given */
 } hl_volume_load_options;
 
 HL_API void hl_volume_load_options_defaults(hl_volume_load_options *options);
 
-/* hl_volume_load() with options (null: the defaults). An array or component that the file does not have is
- * HL_ERROR_INPUT, and the message lists those it has. */
+/* Reads a volume as hl_volume_load() does, with options (null: the defaults). An array or component that
+ * the file does not have is HL_ERROR_INPUT, and the message lists those it has. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_load_with(hl_context *context, const char *path,
                                                     const hl_volume_load_options *options, hl_volume **volume,
                                                     hl_error *error);
@@ -154,13 +159,16 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_load_with(hl_context *context, const c
 /* How a volume is written. */
 typedef struct hl_volume_save_options {
   size_t struct_size; /* set by hl_volume_save_options_defaults() */
-  hl_voxel_type type; /* 0 (default): the volume's own where it holds all data values and the format has it;
-                         else the next integers that do; else float */
-  size_t begin[3],
-      end[3];    /* the voxels begin[a] <= index < end[a] along axis a; end 0 (default): to the last */
-  size_t shrink; /* a written voxel is the mean over shrink^3 voxels, of the finite ones; default 1 */
-  int labels;    /* not 0: a written voxel has the value that most of the shrink^3 voxels have, and of equally
-                    common values the first; the mean of two labels is a third one. Default 0 */
+  hl_voxel_type type; /* type of the written voxels; 0 (default): the volume's own type where it holds all
+                       * data values and the format has it; else the smallest integer type that holds them;
+                       * else float */
+  size_t begin[3], end[3]; /* the voxels begin[a] <= index < end[a] along axis a are written; end 0 (default):
+                            * up to the last */
+  size_t shrink; /* a written voxel is the mean of shrink^3 voxels, without those that are not finite;
+                  * default 1 */
+  int labels;    /* non-zero: the volume holds labels, whose mean would be another label. A written voxel
+                  * has the value that most of the shrink^3 voxels have, the first of equally common
+                  * values. Default 0 */
 } hl_volume_save_options;
 
 HL_API void hl_volume_save_options_defaults(hl_volume_save_options *options);
@@ -169,8 +177,8 @@ HL_API void hl_volume_save_options_defaults(hl_volume_save_options *options);
  * ending; the name of a raw file must state size and type, as for reading. Data values and placement are
  * kept: NIfTI's and MetaImage's worlds are turned into their anatomical spaces, and a grid that MRC cannot
  * hold is refused. Values are rounded to the nearest where the type holds whole numbers; warnings tell how
- * many were beyond its range or not finite (these become 0), and what of the placement the format has no
- * words for. options: null: the defaults. The file appears whole or not at all. */
+ * many were beyond its range or not finite (these become 0), and which parts of the placement the format
+ * cannot state. options: null: the defaults. The file appears whole or not at all. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_save_with(hl_context *context, const hl_volume *volume,
                                                     const char *path, const hl_volume_save_options *options,
                                                     hl_error *error);
@@ -179,14 +187,15 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_save_with(hl_context *context, const h
 HL_API HL_WARN_UNUSED hl_status hl_volume_save(hl_context *context, const hl_volume *volume, const char *path,
                                                hl_error *error);
 
-/* Makes a volume whose voxels are smoothed by a Gaussian of the standard deviation `sigma`, in voxels of each
- * axis, along thick slices, too: from 0 (the volume itself, which is then not smoothed without being asked
- * either) to 16. The numbers become floats. Label maps, whose numbers are names, volumes with colours and
- * volumes larger than memory are refused. *smoothed is owned by the caller (release it). */
+/* Makes a volume whose voxels are smoothed by a Gaussian of the standard deviation `sigma`, in voxels of
+ * each axis, along thick slices, too: from 0 to 16. With 0 the volume is not smoothed, and pictures do not
+ * smooth it by themselves either. Smoothed values are floats. Label maps, volumes with colours and volumes
+ * larger than memory are refused. *smoothed is owned by the caller (release it). */
 HL_API HL_WARN_UNUSED hl_status hl_volume_smooth(hl_volume *volume, double sigma, hl_volume **smoothed,
                                                  hl_error *error);
 
-/* What the volume's voxels were smoothed by, in voxels; 0: they are as they were, or the volume is null. */
+/* The standard deviation, in voxels, of the Gaussian that smoothed the volume's voxels; 0: they were not
+ * smoothed, or the volume is null. */
 HL_API double hl_volume_smoothing(const hl_volume *volume);
 
 HL_API void hl_volume_retain(hl_volume *volume);
@@ -194,22 +203,25 @@ HL_API void hl_volume_release(hl_volume *volume); /* null is allowed */
 
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_info(const hl_volume *volume, hl_volume_info *info);
 
-/* How far the field of a volume is from what its file says. Meshes of cells, grids with refinement and sparse
- * grids become a field of bricks when they are loaded; other volumes are their voxels. */
+/* How much the field of a volume differs from its file. Meshes of cells, grids with refinement and sparse
+ * grids become a field of bricks when they are loaded. Other volumes keep the file's voxels. */
 typedef struct hl_volume_field_error {
   size_t struct_size; /* set by the caller */
-  double value;       /* data values; NaN: nothing could be compared, as in a mesh of one layer of cells */
+  double value;       /* the difference in data values; NaN: nothing could be compared, as in a mesh of one
+                       * layer of cells */
   double of_range;    /* `value` as a part of the volume's range; NaN as `value` */
-  const char *kind;   /* "exact": some difference is as great as `value`; "bound": all may be smaller. A
-                         constant text */
+  const char *kind;   /* "exact": somewhere the difference is as great as `value`; "bound": the differences
+                       * may all be smaller. A constant text */
   const char
       *source; /* what the field was compared with, in words: "the means over the cells". A constant text */
 } hl_volume_field_error;
 
-/* Tells of a mesh of cells a bound of the difference between the field and the values that its cells
- * interpolate, where the field does not depend on places outside of the mesh; of a grid with refinement the
- * greatest difference of a cell's value and the field's mean over the cell; of a sparse grid 0, as its field
- * is the dense grid's. HL_ERROR_ARGUMENT, and nothing is set, where the volume is its voxels. */
+/* Finds how much a volume's field differs from its file. For a mesh of cells this is a bound of the
+ * difference between the field and the values that the cells interpolate, at places where the field does
+ * not depend on anything outside the mesh. For a grid with refinement it is the greatest difference between
+ * a cell's value and the field's mean over the cell. For a sparse grid it is 0, since the field equals that
+ * of the dense grid. Where the volume keeps the file's voxels, the call fails with HL_ERROR_ARGUMENT, and
+ * sets nothing. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_field_error(const hl_volume *volume,
                                                           hl_volume_field_error *field_error);
 
@@ -229,12 +241,13 @@ typedef struct hl_volume_array {
   hl_voxel_type type; /* 0: a type that cannot be read */
   int of_cells;       /* VTK: values between the points */
   int chosen;         /* the volume was read from this array */
-  int component; /* of the chosen array: index of the component that was read, or an HL_COMPONENT_ value; of
-                    colours HL_COMPONENT_LUMINANCE where the opacity comes from it */
+  int component;      /* for the array that was read: the number of the component that was read, or an
+                       * HL_COMPONENT_ value; HL_COMPONENT_LUMINANCE for colours whose luminance gives the
+                       * opacity */
 } hl_volume_array;
 
-/* How many arrays the file has (those beyond 256 are not listed); 0: the volume came from memory or
- * shapes. */
+/* The number of arrays in the volume's file (arrays beyond 256 are not counted); 0: the volume came from
+ * memory or shapes. */
 HL_API size_t hl_volume_array_count(const hl_volume *volume);
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_array(const hl_volume *volume, size_t index,
                                                     hl_volume_array *array);
@@ -245,8 +258,8 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_get_array(const hl_volume *volume, siz
 HL_API HL_WARN_UNUSED hl_status hl_volume_percentiles(const hl_volume *volume, const double *percents,
                                                       size_t count, double *values, hl_error *error);
 
-/* How many time steps, channels and resolutions the volume's file has, each at least 1, and which were
- * read. */
+/* The numbers of time steps, channels and resolutions that the volume's file has, each at least 1, and
+ * which of them were read. */
 typedef struct hl_volume_selection {
   size_t struct_size; /* set by the caller */
   size_t times, channels, levels;
@@ -266,8 +279,8 @@ typedef struct hl_volume_channel {
   int chosen;       /* the volume was read from this channel */
 } hl_volume_channel;
 
-/* index: below the number of channels (hl_volume_get_selection()). Of a file that tells nothing of its
- * channels each has neither name nor colour nor window. */
+/* index: below the number of channels (hl_volume_get_selection()). Where the file tells nothing of its
+ * channels, they have neither names nor colours nor windows. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_channel(const hl_volume *volume, size_t index,
                                                       hl_volume_channel *channel);
 
@@ -301,14 +314,15 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_get_segment(const hl_volume *volume, s
                                                       hl_volume_segment *segment);
 
 /* The label maps that lie beside the volume in its file (the "labels" of OME-Zarr): the path of each within
- * the file, as "labels/cells", which is opened as a volume of its own. The volume's; null past the last. */
+ * the file, as "labels/cells". A label map is opened as a volume of its own. The text belongs to the
+ * volume; null past the last. */
 HL_API const char *hl_volume_label_map(const hl_volume *volume, size_t index);
 
 enum { HL_NUMBER_TEXT_BYTES = 64 };
 
 /* Writes the least (end 0) or the greatest (end 1) finite data value as a decimal number that reads back as
- * the same number. Whole numbers have all their digits, also those of 64 bits, which a double rounds. text:
- * has room for HL_NUMBER_TEXT_BYTES bytes. */
+ * the same number. Whole numbers have all their digits, even where they have 64 bits, which a double would
+ * round. text: has room for HL_NUMBER_TEXT_BYTES bytes. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_write_range(const hl_volume *volume, int end, char *text);
 
 /* The data value of one voxel, NaN where it is not finite or outside the grid. */

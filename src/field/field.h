@@ -61,7 +61,7 @@ typedef struct field_matter {
   int smooth; /* the voxels are coefficients of the interpolating kernel */
 } field_matter;
 
-/* A mesh's triangles and spheres; frame space. The last number of a colour is opacity. Where colours are
+/* A mesh's triangles and spheres; frame space. The fourth number of a colour is opacity. Where colours are
  * null, opacity is 1 everywhere. */
 typedef struct field_surface {
   const float (*positions)[3];
@@ -78,16 +78,16 @@ typedef struct field_surface {
   size_t cut_count;
 } field_surface;
 
-/* The light that is lost in a cell, for each axis along which light crosses the cell. */
+/* How much light is lost in each cell, for each axis along which light crosses the cell. */
 typedef struct opacity_field {
   field_lattice lattice;
-  float *depth[3]; /* [slices][rows][3][stride]; optical depths in powers of 1/2: along the axis, across and
-                      down */
+  float *depth[3]; /* [slices][rows][3][stride]; optical depths, as powers of 1/2, of light that crosses
+                    * the cell along the slices' axis, across and down */
   unsigned char
       /* [slices][rows][stride / FIELD_LANES]; FIELD_MATTER and FIELD_RECEIVES for a block of cells;
        * FIELD_RECEIVES is set only in slabs whose light this process finds (field_share.h). */
       *flags[3];
-  unsigned char *seen; /* [z][y][x]; 1 where something may be visible, or near it */
+  unsigned char *seen; /* [z][y][x]; 1 for cells in which something may be visible, or near which it may */
 } opacity_field;
 
 enum { FIELD_MATTER = 1, FIELD_RECEIVES = 2 };
@@ -95,7 +95,8 @@ enum { FIELD_MATTER = 1, FIELD_RECEIVES = 2 };
 /* A cell is linked with nine cells of the slice before and with nine of the slice after. */
 enum { FIELD_LINKS = 9 };
 
-/* Which links of a block of FIELD_LANES cells are cut: some to the slice before, some to the slice after. */
+/* Flags of a block of FIELD_LANES cells: some link to the slice before is cut; some link to the slice after
+ * is cut. */
 enum { LINKS_BEFORE = 1, LINKS_AFTER = 2 };
 
 /* ---- the functions of this room that are compiled for each instruction set ---- */
@@ -117,12 +118,14 @@ typedef void field_opacity_function(const field_block *block, float depth[3][FIE
 typedef struct sky_direction {
   int32_t offset;  /* offset, in floats, from a cell to the first of the four cells of the slice before that
                     * its  light comes from */
-  float weight[4]; /* weights of this cell, of the next one across, and of the two below them */
-  int link;        /* the number of the link to the first cell: 3 (1 + down) + 1 + across */
-  float across, down; /* squares of the cells by which the light moves aside in a slice */
-  int slope; /* the number of the first direction with the same `across` and `down`; mirrored directions pass
-              * the same matter */
-  const float *basis; /* [channels x FIELD_HARMONICS]; the integrals of radiance times each harmonic */
+  float weight[4]; /* weights of this cell of the slice before, of the next one across, and of the two
+                    * below them */
+  int link;        /* the number of the link to the first of the four cells: 3 (1 + down) + 1 + across */
+  float across, down; /* how far the light moves across and down in a slice, in cells, squared */
+  int slope; /* the number of the first direction with the same `across` and `down`; directions that mirror
+              * each other pass the same matter */
+  const float *basis; /* [channels x FIELD_HARMONICS]; the integrals over the direction of radiance times
+                       * each harmonic */
 } sky_direction;
 
 typedef struct sky_slice {
@@ -136,9 +139,10 @@ typedef struct sky_slice {
   int32_t plane_stride;
   size_t plane;        /* floats from plane to plane */
   float *field;        /* the slice's first cell */
-  size_t across, down; /* floats to the next cell in a row, and in the next row */
-  int passing; /* the number, in a cell, of its transmittance, to which a third of the transmittance along
-                * this axis is added; 0: none */
+  size_t across, down; /* numbers of floats from a cell to the next cell in its row, and to the cell in the
+                        * next row */
+  int passing; /* the place, among a cell's numbers, of its transmittance; a third of the transmittance
+                * along this axis is added there; 0: nothing is added */
   const unsigned char *cut; /* [rows][stride / FIELD_LANES]; null: there are no surfaces */
   unsigned char cut_here;   /* LINKS_BEFORE or LINKS_AFTER: the side from which the light comes through
                              * links */
@@ -146,8 +150,8 @@ typedef struct sky_slice {
                                             * part of a link's light that surfaces take, in 255ths */
 } sky_slice;
 
-/* Moves the light of all directions one slice on, in one row. Adds it to the cells that receive light because
- * something visible is near. */
+/* Moves the light of all directions to the next slice, in one row, and adds it to those cells near which
+ * something is visible. */
 typedef void sky_row_function(const sky_slice *slice, int32_t row);
 
 typedef struct field_functions {

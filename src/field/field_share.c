@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-/* GATHERED: about the number of bytes that a process gets from all others at a time. LEAST_PIECE: the least
- * number from one process. */
+/* GATHERED: the number of bytes, approximately, that a process gets from all others in one exchange.
+ * LEAST_PIECE: the least number of bytes from one process. */
 enum { GATHERED = 4 << 20, LEAST_PIECE = 1 << 14 };
 
 void hl_field_share_lay_out(const light_exchange *with, size_t slabs, field_share *share, hl_layout *layout) {

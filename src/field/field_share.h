@@ -16,7 +16,8 @@ typedef struct field_share {
   uint64_t *weights;          /* [slabs]; input of hl_field_share_ranges() */
 } field_share;
 
-/* Takes the share's arrays. with: null: no arrays are needed. */
+/* Takes the share's arrays from a layout. with: the exchange with the other processes; null: no arrays are
+ * needed. */
 void hl_field_share_lay_out(const light_exchange *with, size_t slabs, field_share *share, hl_layout *layout);
 
 /* Cuts the slabs into a range for each process. The sums of share->weights in the ranges are about equal. A
@@ -28,9 +29,9 @@ static inline bool hl_field_share_turn(const field_share *share, int32_t slab) {
   return share->with == NULL || slab % share->with->parts == share->with->part;
 }
 
-/* Completes an array of which each process has found its own slabs: afterwards all processes have all slabs.
- * array: [slabs][slab_bytes]. ranges: a process's own slabs are its range; else they are the slabs of its
- * turn. */
+/* Completes an array of which each process has found its own slabs: afterwards all processes have all
+ * slabs. array: [slabs][slab_bytes]. ranges: true where a process's own slabs are its range, false where
+ * processes take slabs in turn. */
 void hl_field_share_complete(const field_share *share, bool ranges, void *array, int32_t slabs,
                              size_t slab_bytes);
 

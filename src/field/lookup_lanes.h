@@ -10,8 +10,8 @@
 #include "field/sky_field.h"
 #include "simd/lanes.h"
 
-/* The light that reaches sixteen samples, as harmonics in the field's units. They are still to be divided by
- * the sum of the weights of the cells around the sample. */
+/* The light that reaches sixteen samples, as harmonics in the field's units. The caller divides them by the
+ * sum of the weights of the cells around the sample. */
 typedef struct sky_rows {
   float of[LANES][2 * LANES]; /* [lane][FIELD_HARMONICS][channels]; set for the active lanes */
   lanes unit;                 /* 1 over the sum of the weights */
@@ -31,8 +31,8 @@ LANES_INLINE lanes place_between_cells(const sky_light *sky, int axis, lanes pos
 static const float LEAST_COUNTED = 1.0f / 1024;
 
 /* The weight of a cell among the cells around a position. It is the trilinear weight times the cell's
- * transmittance; on a volume's surface (surface: 1) times the sixth power of the transmittance, so that cells
- * half filled with matter do not darken the outside of the surface. */
+ * transmittance; On a volume's surface (surface: 1) it is the trilinear weight times the sixth power of the
+ * transmittance, so that cells half filled with matter do not darken the outside of the surface. */
 LANES_INLINE lanes weight_of_cell(lanes trilinear, lanes_int stored, lanes surface) {
   lanes passing = lanes_from_int(stored) * (1.0f / SKY_MOST), squared = passing * passing,
         counted = passing * lanes_fma(surface, squared * squared * passing - 1.0f, lanes_set(1.0f));
@@ -88,8 +88,9 @@ static int cell_on_side(const int16_t *cell, const sky_steps *steps, const float
   return corner;
 }
 
-/* The cells, of eight, from which a way leads to one cell that no surface cuts; one bit each. open: for each
- * axis, a bit for the first cell of each of its four ways that no surface cuts. */
+/* Finds which of eight cells are joined to one of them by ways that no surface cuts; one bit for each cell.
+ * open: for each axis, bits of its four ways between neighbouring cells that no surface cuts, each at the
+ * way's first cell. */
 static uint32_t cells_from(int corner, const uint32_t open[3]) {
   uint32_t reached = 1u << corner, before = 0;
   while (reached != before) {
@@ -195,8 +196,8 @@ LANES_INLINE void fetch_sky(const sky_light *sky, lanes3 position, uint32_t acti
   }
 }
 
-/* Adds up the eight cells around each active lane's position. pairs: the cells' weights. halves: number of
- * halves of a cell that are read, 1 or 2; the first half holds the mean of the light. */
+/* Adds up the eight cells around each active lane's position. pairs: the cells' weights. halves: how many
+ * halves of a cell's numbers are read, 1 or 2; the mean of the light is in the first half. */
 LANES_INLINE void add_cells(const sky_light *sky, const sky_cells *cells, const int32_t pairs[4][LANES],
                             int halves, sky_rows *found) {
   const sky_steps steps = steps_of_sky(sky);
@@ -254,7 +255,8 @@ LANES_INLINE lanes harmonic_of_rows(const sky_light *sky, const sky_rows *rows, 
   return lanes_load(column) * (rows->unit * sky->stored_unit[channel]);
 }
 
-/* The second degree of the sum over harmonics of light times the harmonic towards d. */
+/* The terms of the second degree in the sum over harmonics of light times the harmonic's value in the
+ * direction d. */
 LANES_INLINE lanes second_degree(const lanes *light, lanes3 d) {
   return (light[4] * d.x * d.y + light[5] * d.y * d.z + light[6] * d.z * d.x) * (float)HARMONIC_2 +
          light[7] * lanes_line(d.z * d.z, 3.0f, -1.0f) * (float)HARMONIC_20 +
@@ -276,7 +278,8 @@ LANES_INLINE void factors_of_surface(lanes3 normal, lanes factors[FIELD_HARMONIC
   factors[8] = (normal.x * normal.x - normal.y * normal.y) * ((float)HARMONIC_22 * 0.25f);
 }
 
-/* 1 / pi times the integral of light and cosine, in each channel of the field. Inactive lanes get 0. */
+/* The light that a surface receives from the sky: 1 / pi times the integral of light and cosine, in each
+ * channel of the field. Inactive lanes get 0. */
 LANES_INLINE void light_of_surface(const sky_light *sky, const sky_rows *rows, lanes3 normal,
                                    lanes light[3]) {
   typedef float quad __attribute__((vector_size(16)));

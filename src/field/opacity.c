@@ -70,8 +70,8 @@ static bool reaches_matter(const grid *grid, const float at[3], const float reac
   return hl_any_brick_relevant(grid, first, last);
 }
 
-/* Whether a volume reaches a box about `middle` (frame space), `side` cells long and wide and one cell
- * thick. */
+/* Whether a volume reaches a box around `middle` (frame space), which is `side` cells long and wide and one
+ * cell high. */
 static bool volume_reaches(const opacity_job *job, int volume, const float middle[3], float side) {
   const field_matter *matter = &job->content->matter[volume];
   float at[3], reach[3];
@@ -95,7 +95,7 @@ static uint32_t cells_of(const opacity_job *job, int volume, const float corner[
   return bits;
 }
 
-/* axes: number of the field's arrays to which the depths are added. */
+/* Adds optical depths to cells of the field. axes: number of the field's arrays to which they are added. */
 static void add_depths(opacity_field *field, int axes, const int32_t cell[3], int32_t valid,
                        float depth[3][FIELD_LANES]) {
   for (int a = 0; a < axes; a++) {
@@ -149,8 +149,8 @@ static void find_slab(void *data, size_t index, int worker) {
 
 /* ---- processes that share a picture ---- */
 
-/* Estimates the time that a slab takes. A box of 4 x 4 cells counts 1, and for each volume that reaches it
- * SAMPLED more, because its cells are then sampled. */
+/* Estimates the time that a slab takes. A box of 4 x 4 cells counts 1. Each volume that reaches the box
+ * adds SAMPLED, because the box's cells are then sampled. */
 static void weigh_slab(void *data, size_t index, int worker) {
   enum { BOX = 4, SAMPLED = 20 };
   const opacity_job *job = data;
@@ -171,8 +171,8 @@ static void weigh_slab(void *data, size_t index, int worker) {
   job->share->weights[index] = weight;
 }
 
-/* Spreads the depths of a slab that another process has sampled. They lie in the third array, and go into the
- * others. */
+/* Spreads the depths of a slab that another process has sampled. The third of the field's arrays holds
+ * them; they are copied to the other two. */
 static void spread_depths(void *data, size_t index, int worker) {
   const opacity_job *job = data;
   opacity_field *field = job->field;
@@ -282,8 +282,8 @@ static void find_flags(void *data, size_t slice, int worker) {
   }
 }
 
-/* The number of samples along a cell's edge: samples are no farther apart than voxels, up to FIELD_SAMPLES
- * samples. */
+/* The number of samples along a cell's edge: enough that they are no farther apart than voxels, but at most
+ * FIELD_SAMPLES. */
 static int samples_of(double cell, double voxel) {
   double samples = ceil(cell / voxel - 0.25);
   return samples < 1 ? 1 : samples > FIELD_SAMPLES ? FIELD_SAMPLES : (int)samples;

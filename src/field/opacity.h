@@ -15,8 +15,9 @@ typedef struct field_content {
   double voxel; /* the smallest edge of a voxel; frame units */
 } field_content;
 
-/* Makes a lattice around points of the content. It has at most `most_cells` cells, none smaller than a voxel,
- * and a margin of FIELD_MARGIN cells on every side. */
+/* FIELD_MARGIN: the width, in cells, of the margin that a lattice has on every side. The function makes a
+ * lattice around points of the content, with at most `most_cells` cells, none of which is smaller than a
+ * voxel. */
 enum { FIELD_MARGIN = 3 };
 field_lattice hl_field_lattice(const vec3 *points, int count, double voxel, double most_cells);
 

@@ -1,7 +1,8 @@
 /* field/opacity_lanes.h - how much light sixteen cells absorb along the axes.
  *
- * A cell is sampled on a lattice of its own. Along an axis its transmittance is the mean over the rows of
- * samples, so that a cell that is half filled with dense matter lets half of the light through (derived). */
+ * A cell is sampled on a lattice of its own. The cell's transmittance along an axis is the mean of the
+ * transmittances of its rows of samples, so that a cell that is half filled with dense matter lets half of
+ * the light through (derived). */
 #ifndef HL_FIELD_OPACITY_LANES_H
 #define HL_FIELD_OPACITY_LANES_H
 
@@ -185,8 +186,9 @@ LANES_INLINE int sample_cells(const field_block *block, int volume, float (*samp
   return any;
 }
 
-/* -log2 of the mean over n x n rows of 2^-depth. along: distance of a row's samples. first, second: distances
- * of the rows. */
+/* The optical depth of cells along one axis, as a power of 1/2: -log2 of the mean of 2^-depth over n x n
+ * rows of samples. along: distance in memory between a row's samples. first, second: distances between
+ * rows. */
 LANES_INLINE lanes depth_along(const float (*samples)[FIELD_LANES], int n, int along, int first, int second,
                                float scale) {
   lanes sum = lanes_set(0);

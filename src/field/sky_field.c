@@ -7,7 +7,8 @@
  * representation for irradiance environment maps", 2001). The sums of a cell always have the same order.
  *
  * Processes that share a picture divide two parts of the work by slabs of cells: sampling the volumes, and
- * adding the light up. Each process moves all light from slice to slice, which is a fifth of the work. */
+ * adding the light up. Moving light from slice to slice, a fifth of the work, is done by each process for
+ * all light. */
 #include "field/sky_field.h"
 
 #include <string.h>
@@ -20,8 +21,8 @@
 /* Cells by which look-ups are lifted off a surface. */
 static const double LIFT_CELLS = 0.5;
 
-/* SIDE: number of squares along each side of a cube's face. With fewer, floors of slots and flat faces of
- * meshes show where the light of a single direction ends. */
+/* SIDE: number of squares along each side of a cube's face. With fewer squares, edges of the light of
+ * single directions show on the floors of slots and on flat faces of meshes. */
 enum { SIDE = 6, ENDS = 6, SIDE_SAMPLES = 64 };
 
 _Static_assert(SIDE *SIDE == FIELD_DIRECTIONS, "room for a cube's face");
@@ -43,7 +44,7 @@ static int samples_of_sky(const hl_sky *sky) {
 }
 
 /* The direction of a point of a face. x, y: from -1 to 1 in equal angles. slope: how far a ray moves aside
- * while it moves one along the axis. */
+ * while it moves by 1 along the axis. */
 static vec3 direction_of(const field_slices *s, int sign, double x, double y, double slope[2]) {
   double v[3] = {0, 0, 0};
   slope[0] = tan(HL_PI / 4 * x);
@@ -76,8 +77,8 @@ static void integrate_square(const hl_sky *sky, const field_slices *s, int sign,
   }
 }
 
-/* Sets the four cells from which a direction's light comes. Derived: a ray to the cell's middle crossed the
- * slice before at (u, v) beside the middle. */
+/* Sets the four cells from which a direction's light comes. Derived: a ray to a cell's middle has crossed
+ * the slice before at the distance (u, v) from the middle. */
 static void set_taps(double u, double v, int32_t plane_stride, sky_direction *direction) {
   double column = floor(u), row = floor(v), fu = u - column, fv = v - row;
   direction->offset = (int32_t)row * plane_stride + (int32_t)column;
@@ -90,7 +91,7 @@ static void set_taps(double u, double v, int32_t plane_stride, sky_direction *di
   direction->down = (float)(v * v);
 }
 
-/* The number of the first direction that moves aside as far as the last direction does. */
+/* The number of the first direction that moves as far aside as the direction that was added last. */
 static int find_slope(const sky_end *end) {
   const sky_direction *last = &end->directions[end->count - 1], *direction = end->directions;
   while (direction->across != last->across || direction->down != last->down) direction++;
@@ -136,8 +137,8 @@ static void move_row(void *data, size_t row, int worker) {
   rows->functions->sky_row(&rows->slice, (int32_t)row);
 }
 
-/* The number of floats of the light of all directions in one slice, with a border of light that nothing
- * hides. */
+/* The number of floats of the light of all directions in one slice, with a border of cells whose light
+ * nothing hides. */
 static size_t light_of_slice(const field_slices *s) { return FIELD_DIRECTIONS * hl_field_planes(s).plane; }
 
 /* The number of floats of two slices' planes, along the axis with the largest slices. */
@@ -150,14 +151,14 @@ static size_t most_light(const sky_content *content) {
   return 2 * most;
 }
 
-/* The destination of light in the field: the cells, and those of their harmonics that are added to. */
+/* Where the field's light is added: the cells, and the harmonics that are kept of each cell. */
 typedef struct sky_target {
   float *field;   /* begins with the first cell's first harmonic */
   size_t step[3]; /* floats from cell to cell */
 } sky_target;
 
-/* Sets the links through which light comes to a slice. The links to the slice after belong to that slice;
- * they are read from their other ends. rising: the light comes from the slice before. */
+/* Sets the links through which light comes to a slice. Links to the slice after are stored with that slice,
+ * so they are read there from their other ends. rising: the light comes from the slice before. */
 static void set_links(const surface_links *links, const field_slices *s, size_t slice, bool rising,
                       sky_slice *of) {
   const field_planes planes = hl_field_planes(s);
@@ -171,7 +172,8 @@ static void set_links(const surface_links *links, const field_slices *s, size_t 
   }
 }
 
-/* light: [2][directions][plane]. links: the links along the end's axis; null: there are no surfaces. */
+/* Sweeps the light of one end of an axis through all slices. light: [2][directions][plane]. links: the
+ * links along the end's axis; null: there are no surfaces. */
 static void sweep_end(const sky_content *content, const opacity_field *opacity, const surface_links *links,
                       float *light, const sky_target *target, int end_index, int first, int channels,
                       const field_functions *functions, hl_pool *pool) {
@@ -265,8 +267,8 @@ static bool attenuates_in_color(const sky_content *content) {
   return false;
 }
 
-/* Finds the links along an axis. The places where they are cut are the last three floats of cells. Returns
- * null where there are no surfaces. */
+/* Finds the links along an axis. The places where surfaces cut the links go to the last three floats of the
+ * cells. Returns null where there are no surfaces. */
 static const surface_links *find_links(const sky_content *content, const surface_links *links,
                                        const sky_target *target, float *field, int axis, hl_pool *pool) {
   const field_content *of = &content->content;
@@ -303,8 +305,8 @@ static void make(const sky_content *content, passing_arrays *arrays, const field
     hl_field_share_complete(&arrays->share, false, field, count[2], target.step[2] * sizeof *field);
 }
 
-/* Finds the light that nothing hides, and a bound of each channel's harmonics: matter only takes away from
- * the share of each direction. */
+/* Finds the light that nothing hides, and a bound of each channel's harmonics: matter can only lessen the
+ * share of each direction. */
 static void find_open(const sky_content *content, sky_light *light) {
   double sum[3][FIELD_HARMONICS] = {{0}}, bound[3][FIELD_HARMONICS] = {{0}};
   for (int end = 0; end < ENDS; end++) {
@@ -338,7 +340,8 @@ typedef struct store_rows {
   size_t row_floats, cell_floats, columns;
   size_t used;              /* number of used floats of a cell */
   float scale[MOST_FLOATS]; /* [used]; the factors that turn floats into numbers of 16 bits */
-  int place[MOST_FLOATS];   /* [used]; the index among a cell's numbers at which each float is stored */
+  int place[MOST_FLOATS];   /* [used]; for each float of a cell, its place among the cell's numbers of 16
+                             * bits */
 } store_rows;
 
 static bool is_dark(const float *cell, size_t count) {
@@ -358,14 +361,15 @@ static void store_cell(const store_rows *rows, const float *cell, int16_t number
   for (size_t i = 0; i < rows->used && i < MOST_FLOATS; i++) numbers[rows->place[i]] = (int16_t)whole[i];
 }
 
-/* Stores a row of cells along x. The numbers of a cell lie before its floats, or begin where its floats
- * begin. Most cells are dark; they are zero already, except where the floats of a brighter cell lay. */
+/* Stores a row of cells along x. A cell's numbers take the memory of floats that were stored before them,
+ * and never overwrite floats that are still needed. Most cells are dark: their numbers are zero already,
+ * unless floats of a brighter cell were there. */
 static void store_row(void *data, size_t row, int worker) {
   const store_rows *rows = data;
   const size_t size = rows->cell_floats;
   float *cells = rows->field + row * rows->row_floats;
   int16_t *at = (int16_t *)cells;
-  size_t written = 0; /* the end of the floats that are not zero, counted in numbers */
+  size_t written = 0; /* the end of the memory that floats have made non-zero, counted in numbers */
   (void)worker;
   for (size_t x = 0; x < rows->columns; x++, at += SKY_CELL) {
     const float *cell = cells + x * size;

@@ -11,13 +11,13 @@
 /* The greatest amount of a number of 16 bits. */
 enum { SKY_MOST = 32767 };
 
-/* A cell is SKY_CELL numbers of 16 bits. lanes_unpack_shorts() joins the numbers of two cells; hl_sky_place()
- * says where a harmonic stands so that it then becomes number `harmonic` of the sums. At SKY_PASSING, where
- * no harmonic stands, are the transmittances of the cell and of the next cell along x; SKY_MOST stands
- * for 1. */
+/* A cell is SKY_CELL numbers of 16 bits. lanes_unpack_shorts() joins the numbers of two cells, and changes
+ * their order. hl_sky_place() gives the place at which a harmonic must stand to become number `harmonic` of
+ * the sums. At SKY_PASSING, where no harmonic stands, are the transmittances of the cell and of the next
+ * cell along x; SKY_MOST stands for 1. */
 enum { SKY_CELL = 32, SKY_PASSING = 28 };
-/* The places, without harmonics, of three numbers: the parts of the way to the next cell along x, y and z at
- * which a surface cuts it; 0: no surface does. */
+/* The places, where no harmonic stands, of three numbers of a cell: the fractions of the way to the next
+ * cell along x, y and z at which a surface cuts the way; 0: no surface does. */
 static const int SKY_CUTS[3] = {23, 30, 31};
 static inline int hl_sky_place(int harmonic) {
   int low = harmonic < 16, i = low ? harmonic : harmonic - 16;
@@ -38,7 +38,8 @@ typedef struct sky_light {
   int cut;                        /* surfaces may cut the ways between cells (SKY_CUTS) */
   float stored_unit[3];           /* [channels]; the light that the number 1 stands for */
   float color[3];                 /* a factor on the field's light */
-  float open[3][FIELD_HARMONICS]; /* [channels]; the light that nothing hides, without the factor */
+  float open[3][FIELD_HARMONICS]; /* [channels]; harmonics of the light that arrives where nothing hides
+                                   * the sky, without the scale factor */
 } sky_light;
 
 typedef struct sky_field {
@@ -48,15 +49,15 @@ typedef struct sky_field {
   hl_key key; /* the key of the field's content */
 } sky_field;
 
-/* The content that a field is made of. The casts of matter are 1 or 0. colors: relative extinctions,
+/* The content that a field is made of. Each matter's `cast` is 1 or 0. colors: relative extinctions,
  * [matter][3]. */
 typedef struct sky_content {
   const hl_sky *sky;
   field_content content;
   const double (*colors)[3]; /* attenuation colours */
   field_lattice lattice;
-  int channels; /* 3 where the light of the channels comes from different directions or is attenuated
-                 * differently; else 1 */
+  int channels; /* number of channels: 3 where the light of the channels comes from different directions or
+                 * is attenuated differently; else 1 */
   const light_exchange
       *exchange; /* exchange with processes that each find a part of the field; null: there are none */
 } sky_content;

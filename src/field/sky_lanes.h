@@ -1,16 +1,18 @@
 /* field/sky_lanes.h - the sky's light moved from slice to slice (derived).
  *
- * Light of one direction that reaches a cell's middle left four cells of the slice before: it is interpolated
- * between them. The light that the cell itself absorbs is missing from the next slice on. Surfaces take their
- * part of the light from each of the four cells. Beyond the lattice nothing hides the light. */
+ * Light of one direction that reaches a cell's middle left four cells of the slice before: it is
+ * interpolated between them. What the cell itself absorbs is subtracted from the light that goes to the
+ * next slice. Surfaces take their part of the light from each of the four cells. Beyond the lattice nothing
+ * hides the light. */
 #ifndef HL_FIELD_SKY_LANES_H
 #define HL_FIELD_SKY_LANES_H
 
 #include "field/field.h"
 #include "simd/lanes.h"
 
-/* Adds the light of sixteen cells, times the integrals of each direction. Three sums at a time stay in
- * registers while the directions go by; FIELD_HARMONICS is a multiple of three. */
+/* Adds each direction's light to the harmonics of sixteen cells, multiplied by the direction's integrals.
+ * Three sums at a time stay in registers while the directions go by; FIELD_HARMONICS is a multiple of
+ * three. */
 LANES_INLINE void add_harmonics(const sky_slice *slice, const lanes *reaching, int32_t column, float *cells,
                                 int count) {
   float sums[3 * FIELD_HARMONICS][FIELD_LANES];
@@ -60,7 +62,8 @@ LANES_INLINE void find_open_links(const sky_slice *slice, size_t at, lanes open[
   }
 }
 
-/* The light of a direction that comes to sixteen cells. from: the cells of the slice before. */
+/* The light of a direction that comes to sixteen cells. from: the cells of the slice before, where the
+ * light comes from. */
 LANES_INLINE lanes light_from(const float *from, int32_t stride, const sky_direction *direction) {
   lanes light = lanes_load(from) * direction->weight[0];
   light = lanes_add_scaled(light, lanes_load(from + 1), direction->weight[1]);

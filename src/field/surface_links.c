@@ -14,8 +14,10 @@ typedef struct link_lines {
   const surface_links *links;
   const link_places *places;         /* null: the links do not join neighbours along the axis */
   double low[3], cell, inverse_cell; /* low corner and cell of the lattice */
-  double farthest;                   /* the farthest that a line may stand aside and still meet the lattice */
-  int across, down;                  /* columns and rows from a cell to its neighbour in the slice before */
+  double farthest;                   /* the farthest distance aside of a line, in cells, at which the line
+                                      * still meets the lattice */
+  int across, down;                  /* columns and rows from a cell to the neighbour in the slice before
+                                      * with which the line joins it */
   int kind;
 } link_lines;
 
@@ -101,7 +103,7 @@ static bool is_left(const field_surface *surface, const link_lines *lines, doubl
 static double lesser(double a, double b) { return a < b ? a : b; }
 static double greater(double a, double b) { return a > b ? a : b; }
 
-/* The whole numbers between two places, where lines stand. */
+/* The whole numbers between two places along an axis; lines stand at whole numbers. */
 typedef struct whole_numbers {
   int32_t first, last; /* there are none where last < first */
 } whole_numbers;
@@ -111,7 +113,8 @@ static int32_t round_down(double x) {
   return whole - (x < whole);
 }
 
-/* most: the farthest that a line may stand aside and still meet the lattice. */
+/* Finds the whole numbers between two places. most: the greatest number at which a line still meets the
+ * lattice. */
 static whole_numbers whole_between(double low, double high, double most) {
   if (!(low <= most && high >= -most)) return (whole_numbers){0, -1};
   return (whole_numbers){-round_down(-greater(low, -most)), round_down(lesser(high, most))};
@@ -128,7 +131,8 @@ typedef struct seen_triangle {
   whole_numbers columns, rows;
 } seen_triangle;
 
-/* False: no line meets the triangle. Most small triangles are excluded by their rows alone. */
+/* Brings a triangle to the lines of the lattice. False: no line meets the triangle. For most small
+ * triangles the test by rows alone tells this. */
 static bool see(const field_surface *surface, uint32_t triangle, const link_lines *lines, seen_triangle *t) {
   const field_slices *s = &lines->slices;
   const uint32_t *corner = surface->triangles[triangle];
@@ -187,9 +191,9 @@ static void cut_by_triangle(const field_surface *surface, uint32_t triangle, con
 
 /* ---- spheres ---- */
 
-/* Cuts the links of a line at a sphere. A line within the sphere's reach meets it twice. Derived: where a and
- * b are the line's slopes, the point at height h of the line (x, y) is (x - a h, y - b h, h). A quadratic
- * equation has the heights on the sphere. */
+/* Cuts the links of a line at a sphere. A line within the sphere's reach meets it twice. Derived: if a and
+ * b are the slopes of the line (x, y), its point at height h is (x - a h, y - b h, h). The heights at which
+ * the line meets the sphere solve a quadratic equation. */
 static void cut_by_sphere(const field_surface *surface, uint32_t sphere, const link_lines *lines) {
   const field_slices *s = &lines->slices;
   const float *from = surface->spheres[sphere];

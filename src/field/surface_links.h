@@ -28,8 +28,8 @@ typedef struct link_places {
   size_t step[3]; /* floats from cell to cell along x, y and z */
 } link_places;
 
-/* Finds the links along an axis. places: for each cell, the part of the way to the next cell along the axis,
- * above 0, at which the first surface lies; where there is no surface, it is left as it is. */
+/* Finds the links along an axis. places: for each cell, the fraction (above 0) of the way to the next cell
+ * along the axis at which the first surface lies. Places without a surface are not changed. */
 void hl_surface_links_find(const field_surface *surfaces, size_t count, const field_lattice *lattice,
                            int axis, const surface_links *links, const link_places *places, hl_pool *pool);
 

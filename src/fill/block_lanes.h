@@ -1,5 +1,5 @@
-/* fill/block_lanes.h - the points of a volume where a 4x4 block of pixels sees a sheet, and whether the cells
- * around these points may show something. */
+/* fill/block_lanes.h - the points of a volume at which the rays of a 4x4 block of pixels meet a sheet, and
+ * whether the cells around these points may show something. */
 #ifndef HL_FILL_BLOCK_LANES_H
 #define HL_FILL_BLOCK_LANES_H
 
@@ -171,9 +171,9 @@ LANES_INLINE int cells_in_bricks(const lanes_int cell[3], const int32_t first[3]
 typedef lanes_int cell_offsets;
 #endif
 
-/* Whether any of a block's points lies in a cell that may show something. cell: floors of the points, clamped
- * as in find_points(). low: the least cell along each axis. Most often all cells lie in the 2x2x2 bricks from
- * the least cell's brick on. */
+/* Whether any of a block's points lies in a cell that may show something. cell: floors of the points,
+ * clamped as in find_points(). low: the least cell along each axis. Usually all cells lie in the 2x2x2
+ * bricks that begin with the brick of the least cell. */
 LANES_INLINE int cells_visible(const grid *grid, const lanes_int cell[3], const int32_t low[3]) {
   int32_t first_cell[3];
   cell_offsets within[3];

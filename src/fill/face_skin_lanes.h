@@ -8,15 +8,16 @@
 #include "grid/faces.h"
 #include "view/rays_lanes.h"
 
-/* The skin of one face, in the middle of a ray's way behind it in a slab. before, depth: how deep the ray
- * lies behind the face on the slab's first and last sheet; in voxels. */
+/* How much matter belongs to one face (its skin), in the middle of the part of a ray that lies behind the
+ * face in a slab. before, depth: how deep the ray lies behind the face on the slab's first and last sheet;
+ * in voxels. */
 LANES_INLINE lanes skin_of_depth(lanes before, lanes depth) {
   lanes middle = (lanes_max(before, lanes_set(0)) + depth) * 0.5f;
   return lanes_keep(depth > before, lanes_clamp(FACE_VOXELS - middle, 0, 1));
 }
 
-/* The skin of two opposite faces, at the places low and high of an axis. scale: voxels per unit of the axis.
- */
+/* How much matter belongs to either of two opposite faces, at the places low and high of an axis. scale:
+ * voxels per unit of the axis. */
 LANES_INLINE lanes skin_of_axis(lanes from, lanes to, lanes low, lanes high, lanes scale) {
   return lanes_max(skin_of_depth((from - low) * scale, (to - low) * scale),
                    skin_of_depth((high - from) * scale, (high - to) * scale));

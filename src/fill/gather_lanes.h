@@ -189,8 +189,8 @@ typedef struct brick_lanes {
   float step;        /* cells of the brick's level in one of level 0 */
 } brick_lanes;
 
-/* Finds the brick of the first of the lanes `left`, and all of these lanes whose points lie in it. cell,
- * part: cells of level 0 of the lattice, and places in them. */
+/* Finds the brick that holds the point of the first of the lanes `left`, and all lanes of `left` whose
+ * points lie in this brick. cell, part: cells of level 0 of the lattice, and places in them. */
 LANES_INLINE void lanes_in_brick(const hl_bricks *bricks, const lanes_int cell[3], const lanes part[3],
                                  uint32_t left, brick_lanes *found) {
   int first = __builtin_ctz(left);
@@ -199,7 +199,7 @@ LANES_INLINE void lanes_in_brick(const hl_bricks *bricks, const lanes_int cell[3
     int32_t at = cell[a][first] >> bricks->shift, last = (int32_t)bricks->directory_size[a] - 1;
     at = at < 0      ? 0
          : at > last ? last
-                     : at; /* whatever a ray's numbers are, the entry is one of the directory */
+                     : at; /* whatever a ray's numbers are, the place is limited to the directory */
     block = block * bricks->directory_size[a] + (size_t)at;
   }
   found->entry = &bricks->directory[block];
@@ -216,7 +216,8 @@ LANES_INLINE void lanes_in_brick(const hl_bricks *bricks, const lanes_int cell[3
   found->bits = lanes_bits(same);
 }
 
-/* Makes a grid of the coefficients of a brick, for sum_in_memory(): only what that reads is set. */
+/* Makes a grid of the coefficients of a brick, for sum_in_memory(): only the members that it reads are set.
+ */
 LANES_INLINE void grid_of_brick(const hl_bricks *bricks, const hl_brick_entry *entry, struct grid *view) {
   size_t width = ((size_t)1 << bricks->shift) + BRICK_MARGIN;
   view->voxels = bricks->pool + (size_t)entry->slot * width * width * width;
@@ -227,8 +228,8 @@ LANES_INLINE void grid_of_brick(const hl_bricks *bricks, const hl_brick_entry *e
   for (int a = 0; a < 3; a++) view->dimension[a] = (int32_t)width;
 }
 
-/* The weights of a brick's taps along an axis. A field of several levels has the B-spline's, one of a single
- * level those of any kernel. */
+/* The weights of a brick's taps along an axis. For a field of several levels they are the B-spline's
+ * weights; for a field of one level they are the weights of the scene's kernel. */
 LANES_INLINE void weights_in_brick(const kernel *kernel, lanes part, lanes weight[4]) {
   if (kernel->degree == HL_BSPLINE_DEGREE) tap_weights(kernel, HL_BSPLINE_DEGREE, part, weight);
   else tap_weights(kernel, HL_KERNEL_DEGREE, part, weight);

@@ -11,8 +11,8 @@ LANES_INLINE __m512i repeat_bytes(__m512i x) {
   return _mm512_shuffle_epi8(x, _mm512_set4_epi32(0x0c0c0c0c, 0x08080808, 0x04040404, 0));
 }
 
-/* The index of each tap in tap row 0, a byte each, computed from the coordinates of each lane's first tap in
- * the window. */
+/* The index of each tap in tap row 0, as one byte each, computed from the coordinates of each lane's first
+ * tap in the window. */
 LANES_INLINE __m512i index_u8(__m512i x, __m512i y) {
   __m512i first = _mm512_add_epi32(_mm512_slli_epi32(y, 3), x);
   return _mm512_add_epi8(repeat_bytes(first), _mm512_set1_epi32(0x03020100));

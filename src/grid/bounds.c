@@ -67,7 +67,7 @@ static void reduce_row(const grid *grid, const float *least, const float *greate
   }
 }
 
-/* Bounds a row of bricks. copies: space for WINDOW * WINDOW rows, for grids with pages. */
+/* Bounds a row of bricks. copies: room for WINDOW * WINDOW rows, for grids with pages. */
 static void bound_brick_row(const brick_job *job, int32_t by, int32_t bz, float *least, float *greatest,
                             unsigned char *copies) {
   const grid *grid = job->grid;

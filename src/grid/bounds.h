@@ -29,14 +29,14 @@ void hl_bounds_of_brick(const grid *grid, size_t brick, float bounds[2]);
 /* Takes the memory of the grid's look-ups and cell_bounds, and sets the look-ups' counts. dimension and
  * brick_count must be set. Takes nothing where 32 bits cannot number the cells. */
 void hl_cells_lay_out(grid *grid, hl_layout *layout);
-/* Fills the grid's cell_bounds, which must be null: allocates each layer when packing has found its size.
- * smooth: whether the kernel is the B-spline. */
+/* Fills the grid's cell_bounds, which must be null: each layer is allocated when packing has found the
+ * layer's size. smooth: whether the kernel is the B-spline. */
 hl_status hl_cells_bound(hl_context *context, hl_pool *pool, const grid_functions *functions, bool smooth,
                          const hl_volume *volume, grid *grid, hl_error *error);
 void hl_cell_bounds_release(hl_context *context, grid *grid);
 
-/* Counts what hl_bricks_bound() and then hl_cells_bound() take, for a grid that is laid out: packed layers of
- * the greatest size, and the scratch of each, which is given back. */
+/* Counts what hl_bricks_bound() and then hl_cells_bound() take, for a grid that is laid out: packed layers
+ * of the greatest size, and the scratch memory of each function, which is released at its end. */
 void hl_bounds_count(const grid *grid, int threads, hl_layout *layout);
 
 /* The bounds of the group of 2x2x2 cells with the coordinates `cell`, in stored units. Slow: walks through a

@@ -25,8 +25,9 @@ typedef struct classifier {
   float scale, offset; /* table coordinate = density * scale + offset, clamped to [0, CLASSIFIER_ENTRIES] */
   /* Tables of CLASSIFIER_ENTRIES + 2 entries in one block, which sums owns. */
   float (*sums)[4];  /* extinction per world unit; its integral over entries, from entry 0; the integral of
-                      * extinction times the entry's number; for values from an entry to the next, the first
-                      * integral at the coordinate at which their surface begins (see outside) */
+                      * extinction times the entry's number; the first integral up to the coordinate at
+                      * which the surface begins to which values from this entry to the next belong (see
+                      * outside) */
   float (*color)[4]; /* linear RGB; 0 */
   float (*shown)[4]; /* integrals over entries, from entry 0: of extinction times linear RGB, and of
                       * extinction */
@@ -34,13 +35,13 @@ typedef struct classifier {
    * is the greatest channel's change per entry. Null if the slope changes little everywhere. */
   float *bent;
   int32_t *next_visible; /* for each entry, the first entry from there on with extinction > 0 */
-  /* [entries]; for values from an entry to the next: the table coordinate at which their surface begins. It
-   * is the nearest value, on the way to the empty value, without extinction, or with the least extinction
-   * before a second rise; the empty value's coordinate if there is none */
+  /* [entries]; for values from an entry to the next, the table coordinate at which their surface begins: on
+   * the way from these values to the empty value, the nearest value without extinction, or with the least
+   * extinction before a second rise; the empty value's coordinate if there is no such value */
   float *outside;
-  bool several_surfaces; /* whether visible values have more than one such beginning */
-  float only_beginning;  /* the integral of extinction up to the only beginning, where several_surfaces is
-                          * false */
+  bool several_surfaces; /* whether the surfaces of visible values begin at more than one coordinate */
+  float only_beginning;  /* where several_surfaces is false: the integral of extinction up to the
+                          * coordinate at which all surfaces begin */
   float first_visible, last_visible; /* table coordinates outside of which nothing has extinction */
   /* Gradient opacity: the factor of extinction by the gradient's length, [STEEPNESS_ENTRIES + 2], in the same
    * block. Null if the factor is 1 everywhere. Table coordinate = length * steepness_scale, clamped to [0,
@@ -64,7 +65,8 @@ static inline bool hl_classifier_needs_gradient(const classifier *classifier) {
          (classifier->plane.sums != NULL && classifier->plane.axis == HL_SECOND_GRADIENT);
 }
 
-/* Makes the tables. second: the other volume of a function of two numbers, else null. */
+/* Makes the tables of a volume's transfer function. second: the other volume of a function of two numbers,
+ * else null. */
 hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volume,
                                const hl_scene_volume *second, const grid *grid, classifier *classifier,
                                hl_error *error);

@@ -85,13 +85,13 @@ static const float SAME_RAMP = 1.2f, OTHER_LAYER = 1.6f;
 typedef struct second_surface {
   lanes kept;  /* the part, 0 to 1, of the light taken by the first surface that counts as taken by the
                 * second */
-  lanes ahead; /* the optical depth from `start` to the second surface's foot */
+  lanes ahead; /* the optical depth on the light's way from `start` to the second surface's foot */
 } second_surface;
 
-/* Finds a second surface on the light's way. start: the value where light is known, and so is `outside`, the
- * light at the first surface's outside. first: the value where the first surface begins. rise: values per
- * unit of the light's way, above 0. Derived: a straight ramp from the value a to the value b takes the
- * optical depth |P(b) - P(a)| / rise, where P is the integral of extinction. */
+/* Finds a second surface on the light's way. start: the value at the place where the light is known, and
+ * also `outside`, the light at the first surface's outside. first: the value where the first surface
+ * begins. rise: values per unit of the light's way, above 0. Derived: a straight ramp from the value a to
+ * the value b takes the optical depth |P(b) - P(a)| / rise, where P is the integral of extinction. */
 LANES_INLINE second_surface kept_at_foot(const classifier *classifier, lanes first, lanes start, lanes foot,
                                          lanes rise, lanes light, lanes outside) {
   lanes at_foot = integral_to(classifier, foot), ramp = lanes_abs(at_foot - integral_to(classifier, first)),

@@ -20,8 +20,8 @@
 
 enum {
   HL_BRICK_CELLS = 4,
-  HL_LOOKUP_CELLS = 2, /* cells along an edge of a group of 2x2x2 cells, the finer unit of bounds and
-                        * look-ups */
+  HL_LOOKUP_CELLS = 2, /* number of cells along an edge of a group of 2x2x2 cells, the finer unit of bounds
+                        * and look-ups */
   GRID_COLUMN = 8,     /* width of a column in voxels */
   /* The distance outside its box up to which a grid has values, in voxels, for slabs that cross the box's
    * faces. */
@@ -69,8 +69,8 @@ typedef struct grid {
   double value_scale, value_offset; /* data value = value_scale * stored + value_offset */
   affine3 index_to_frame, frame_to_index;
   double box_low[3], box_high[3]; /* index space: the box in which the volume exists */
-  /* The faces of the box that cut something visible. Other faces are far outside, and so are, in a frame,
-   * faces beyond which another volume goes on. */
+  /* The faces of the box that cut something visible. Faces that cut nothing visible are put far outside. In
+   * a frame, so are faces beyond which another volume goes on. */
   float face_low[3], face_high[3];
   bool face_shows[3][2]; /* [axis][low, high]: whether something is visible on the face itself */
   int32_t brick_count[3];

@@ -57,7 +57,8 @@ typedef struct plane_point {
   float extinction, color[3];
 } plane_point;
 
-/* The function at a point. coordinate: in the classifier's tables. second: in the units of row_scale. */
+/* The value of the transfer function at a point of its plane. coordinate: in the classifier's tables.
+ * second: in the units of row_scale. */
 plane_point hl_plane_table_at(const plane_table *table, float coordinate, float second);
 
 /* The other volume's value at a position in frame space, linear between its voxels, in stored units above its

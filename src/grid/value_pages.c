@@ -85,7 +85,7 @@ static void run_along_z(value_job *job, size_t count, bool forward) {
 
 /* ---- a scratch file ---- */
 
-/* Reads or writes slices between the two runs; they lie one after another in a file. */
+/* Reads or writes slices between the two runs; slices lie one after another in a file. */
 static bool move_slices(int file, bool write, float *slices, size_t bytes, uint64_t at) {
   unsigned char *place = (unsigned char *)slices;
   while (bytes > 0) {

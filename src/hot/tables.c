@@ -1,4 +1,4 @@
-/* hot/tables.c - the hot functions of all rooms for each instruction set. */
+/* hot/tables.c - for each instruction set, one table of the hot functions of all rooms. */
 #include "hot/tables.h"
 
 #define HL_HOT_TABLE(set)                                                                    \

@@ -1,4 +1,5 @@
-/* hot/view.c - the hot functions of views: the bricks that a view sees, and the pixels that a box covers. */
+/* hot/view.c - the hot functions of views: the tiles and sheets that bricks touch, and where rays enter and
+ * leave boxes. */
 #include "hot/tables.h"
 
 #include "view/brick_ranges_lanes.h"

@@ -9,7 +9,7 @@
 #include "grid/relevant.h"
 #include "isosurface/clip.h"
 
-/* How far caps reach beyond the inside of the surface, in voxels. The surface and the cap are made of
+/* How far caps extend beyond the inside of the surface, in voxels. The surface and the cap are made of
  * different triangles, whose edges lie apart by less than this; so no gap shows between them. */
 static const double OVERLAP = 0.03;
 
@@ -19,8 +19,8 @@ typedef struct cap_face {
   affine3 to_index, from_index;
   int axis;
   double height;
-  double outward; /* 1: the face's normal points to where q[axis] rises, or, of a sphere, away from its
-                     centre; -1: the normal points the other way */
+  double outward; /* 1: the face's normal points to where q[axis] rises, or for a sphere away from its
+                   * centre; -1: the normal points the other way */
   bool sphere;
   size_t cut; /* index of the grid's cut; cut_count: the face is one of the box */
 } cap_face;
@@ -30,8 +30,8 @@ typedef struct capping {
   const lattice *lattice;
   const cap_face *face;
   iso_triangles patch;
-  double *inside;   /* owned; [vertices]; how far the field is beyond the surface's value; above 0 inside;
-                       stored units */
+  double *inside;   /* owned; [vertices]; how far the field at each vertex is beyond the surface's value;
+                     * above 0 inside; stored units */
   size_t across[2]; /* number of cells along the two coordinates */
 } capping;
 
@@ -279,7 +279,8 @@ static hl_status cap_box(hl_pool *pool, const lattice *lattice, iso_triangles *m
   return status;
 }
 
-/* A plane's own space has the plane's x across it; y and z span the box. */
+/* Places the face of a plane. In the plane's own space x runs across the plane; the face covers the box
+ * along y and z. */
 static bool place_plane(const grid *grid, const cut_shape *shape, cap_face *face) {
   const vec3 row = shape->to_shape.linear.row[0];
   const double length = vec3_length(row),
@@ -301,7 +302,7 @@ static hl_status cap_cut(hl_pool *pool, const lattice *lattice, size_t cut, iso_
   const double away =
       shape->keep_inside
           ? 1
-          : -1; /* 1: the outside of what is left points away from the shape's middle; -1: towards it */
+          : -1; /* 1: the outward side of the face points away from the shape's middle; -1: towards it */
   cap_face face = {.cut = cut, .from_index = shape->to_shape, .sphere = shape->type == HL_CUT_SPHERE};
   hl_status status = HL_OK;
   if (shape->type == HL_CUT_PLANE) {

@@ -86,8 +86,8 @@ static size_t count_cut(const cutting *cut) {
   return count;
 }
 
-/* Each triangle that is cut adds one triangle and two vertices at most, or twice as many where both sides are
- * kept. */
+/* Makes room for the results of a cut. Each triangle that is cut adds at most one triangle and two
+ * vertices, or twice as many where both sides are kept. */
 static hl_status make_room(cutting *cut, size_t more, uint32_t (**triangles)[3], hl_error *error) {
   iso_triangles *made = cut->made;
   void *positions = hl_reallocate(cut->context, made->positions, made->vertex_count + 4 * more,

@@ -19,7 +19,8 @@ static int edge_between(int a, int b) {
   return 4 * axis + (from >> low & 1) + 2 * (from >> high & 1);
 }
 
-/* Corners around each face: across axis a at its low end, and at its high end. */
+/* Finds the four corners of a face, in order around the face. Faces 2 a and 2 a + 1 are the low and the
+ * high face across axis a. */
 static void corners_of_face(int face, int corner[4]) {
   int axis = face / 2, u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3;
   const int low[4] = {0, v, u | v, u}, high[4] = {0, u, u | v, v};

@@ -164,7 +164,8 @@ static uint32_t vertex_of_edge(const lattice_brick *const around[8], const int c
   return vertex + (uint32_t)__builtin_popcountll(before);
 }
 
-/* Cuts the cells of a brick into triangles, and returns their number. triangles: null to count them alone. */
+/* Cuts the cells of a brick into triangles, and returns their number. triangles: null: the triangles are
+ * only counted. */
 static size_t cut_cells(const extraction *job, size_t index, uint32_t (*triangles)[3]) {
   const lattice *lattice = job->lattice;
   const lattice_brick *around[8];

@@ -180,7 +180,8 @@ hl_status hl_lattice_create(hl_context *context, hl_pool *pool, const grid *grid
   made->sign = grid->value_scale < 0 ? -1 : 1;
   size_t total = 1;
   for (int axis = 0; axis < 3; axis++) {
-    /* the outermost points lie at the box's faces, which are half a voxel, or a whole one, away */
+    /* the outermost points lie on the faces of the box, which are half a voxel or a whole voxel away from
+     * the outermost voxels */
     made->outside[axis] = fmin(fmax(0.5 - grid->shift[axis], 0.5), 1);
     made->points[axis] = grid->dimension[axis] + 2;
     made->brick_count[axis] = (made->points[axis] + SIDE - 1) / SIDE;

@@ -17,7 +17,8 @@ typedef struct lattice_brick {
   uint8_t crossed;   /* the surface may run through its cells */
   uint64_t inside;   /* the points that lie inside */
   uint64_t cross[3]; /* along x, y and z: the points whose edge along this axis crosses the surface */
-  uint32_t vertex;   /* number of its first vertex; the others follow, by axis and then by point */
+  uint32_t vertex;   /* number of the brick's first vertex; its other vertices follow, sorted by axis and
+                      * then by point */
   uint32_t triangle; /* number of its first triangle */
 } lattice_brick;
 
@@ -32,7 +33,8 @@ typedef struct lattice {
   double outside[3]; /* the distance of the outermost points from the outermost voxels */
   int32_t points[3]; /* n + 2 */
   int32_t brick_count[3];
-  uint32_t *slot;        /* owned; [bricks z][y][x]; index of `bricks`; LATTICE_NONE: not kept */
+  uint32_t *slot;        /* owned; [bricks z][y][x]; the place of each brick in `bricks`; LATTICE_NONE: the
+                          * brick is not kept */
   lattice_brick *bricks; /* owned; [count]; in rising order */
   size_t count;
 } lattice;

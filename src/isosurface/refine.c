@@ -23,13 +23,13 @@ static const double LEAST_EDGE = 0.75;
 typedef struct halving {
   const lattice *lattice;
   iso_triangles *made;
-  uint64_t *edges; /* owned; [count]; in rising order; an edge is the number of its lesser vertex in the upper
-                    * 32 bits, and of the other one in the lower */
+  uint64_t *edges; /* owned; [count]; the edges to halve, in rising order; an edge is a number of 64 bits,
+                    * whose upper half is its lesser vertex and whose lower half is the other vertex */
   size_t count;
   size_t first_vertex; /* number of the first vertex that is an edge's middle */
   mat3 ways, turns;    /* `ways` maps differences of index coordinates to the world; `turns`, its inverse
                           transpose, maps normals */
-  float (*normals)[3]; /* owned; [vertices before the middles]; the world's unit normals */
+  float (*normals)[3]; /* owned; [vertices before the middles]; unit normals in the world */
 } halving;
 
 static vec3 vertex_of(const float (*of)[3], uint32_t vertex) {
@@ -66,8 +66,8 @@ static int compare_keys(const void *a, const void *b) {
   return x < y ? -1 : x > y;
 }
 
-/* Lists the edges that are to be halved, and returns their number. keys: room for three edges a triangle;
- * null to count them alone. */
+/* Lists the edges that are to be halved, and returns their number. keys: room for three edges for each
+ * triangle; null: the edges are only counted. */
 static size_t list_edges(const halving *job, uint64_t *keys) {
   const iso_triangles *made = job->made;
   size_t count = 0, kept = 0;
@@ -93,9 +93,9 @@ static int64_t middle_of(const halving *job, uint32_t a, uint32_t b) {
   return found != NULL ? (int64_t)(job->first_vertex + (size_t)(found - job->edges)) : -1;
 }
 
-/* Moves a point of index space onto the surface along the field's slope in the world (Newton), at most
- * `reach` of the world's lengths away: in long voxels a middle moves by more of the short edges than its edge
- * has of the long ones. */
+/* Moves a point of index space onto the surface along the field's slope in the world (Newton), by at most
+ * `reach` in world units. The reach is a length in the world because in long voxels a middle may have to
+ * move by many of the short edges. */
 static vec3 move_to_surface(const halving *job, vec3 start, double reach) {
   enum { STEPS = 4 };
   const lattice *lattice = job->lattice;
@@ -254,7 +254,10 @@ static hl_status halve_edges(hl_pool *pool, const lattice *lattice, iso_triangle
 }
 
 hl_status hl_iso_refine(hl_pool *pool, const lattice *lattice, iso_triangles *triangles, hl_error *error) {
-  enum { ROUNDS = 8 }; /* a cell twenty times as wide along an axis needs five */
+  enum {
+    ROUNDS = 8
+  }; /* the greatest number of rounds; a cell that is twenty times as wide along one axis
+      * as along another needs five */
   hl_status status = HL_OK;
   bool any = true;
   for (int round = 0; round < ROUNDS && any && status == HL_OK; round++)

@@ -12,7 +12,7 @@ typedef struct iso_triangles {
   size_t vertex_count, triangle_count;
 } iso_triangles;
 
-/* Cuts the lattice's cells into triangles. Release them after a failure, too. */
+/* Cuts the lattice's cells into triangles. Release the triangles after a failure, too. */
 hl_status hl_iso_extract(hl_pool *pool, lattice *lattice, iso_triangles *made, hl_error *error);
 
 /* Halves the edges that lie far from the surface, and moves their middles onto it. */

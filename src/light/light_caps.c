@@ -3,14 +3,14 @@
 
 #include "light/light_extent.h"
 
-/* Number of points along each side of a part; the part's middle and spread are means over them. */
+/* Number of points along each side of a part; the part's middle and spread are means over these points. */
 enum { POINTS_OF_PART = 8 };
 
 /* A light is one part if its apparent size is at most this fraction of its distance, and it looks about as
  * long as wide. */
 static const double NARROW = 0.35;
 
-/* Cuts a rect into parts that look about as long as wide. length: how long its edges look. */
+/* Cuts a rect into parts that look about as long as wide. length: the apparent lengths of its edges. */
 static void cut_rect(const double length[2], int parts[2]) {
   int longer = length[1] > length[0], across = 1 - longer;
   double ratio = length[longer] / fmax(length[across], length[longer] / MOST_CAPS);
@@ -64,7 +64,7 @@ light_caps hl_light_caps(const light_source *source) {
   caps.count = parts[0] * parts[1];
   for (int i = 0; i < caps.count; i++) caps.cap[i] = cap_of_part(source, parts, i);
   if (!source->shape.kind->sphere) return caps;
-  /* a sphere counts as the disk that faces the point, wherever the point is */
+  /* a sphere counts as the disk that faces the viewing point, wherever this point is */
   double radius = source->shape.radius;
   vec3_store(caps.cap[0].middle, source->position);
   for (int i = 0; i < 6; i++) caps.cap[0].spread[i] = i < 3 ? (float)(radius * radius / 2) : 0;

@@ -1,10 +1,10 @@
 /* light/light_caps.h - an extended light as a few round caps, as a point within media sees it.
  *
- * Scattering in media depends on the angle to the light, so they need to know how wide it looks. A parallel
- * light looks the same from everywhere: it is one cap of directions. Other lights are cut into parts. A part
- * looks like the cap of directions with the same mean (derived: a disk of radius q at distance 1, square to
- * the view, has the mean cosine 2 (h - 1) / q^2, h = sqrt(1 + q^2); a cap of least cosine c has (1 + c) / 2;
- * so c = (3 - h) / (1 + h)). */
+ * Scattering in media depends on the angle to the light, so media need to know how wide the light looks. A
+ * parallel light looks the same from everywhere: it is one cap of directions. Other lights are cut into
+ * parts. A part is taken as the cap of directions with the same mean (derived: a disk of radius q at
+ * distance 1, square to the view, has the mean cosine 2 (h - 1) / q^2, h = sqrt(1 + q^2); a cap of least
+ * cosine c has (1 + c) / 2; so c = (3 - h) / (1 + h)). */
 #ifndef HL_LIGHT_LIGHT_CAPS_H
 #define HL_LIGHT_LIGHT_CAPS_H
 
@@ -15,8 +15,9 @@ enum { MOST_CAPS = 4 };
 /* A part of a light. */
 typedef struct light_cap {
   float middle[3]; /* frame space */
-  float spread[6]; /* twice the mean of x x', with x from the middle: xx, yy, zz, xy, xz, yz. Seen along w,
-                    * the part counts as a disk of the squared radius xx + yy + zz - w' spread w */
+  float spread[6]; /* twice the mean of x x', where x is a point of the part, counted from the part's
+                    * middle: xx, yy, zz, xy, xz, yz. Seen along w, the part counts as a disk of the
+                    * squared radius xx + yy + zz - w' spread w */
 } light_cap;
 
 typedef struct light_caps {

@@ -7,8 +7,8 @@
 /* Number of samples of the image along each side of a cell. */
 enum { LEAST_SAMPLES = 4, GREATEST_SAMPLES = 32 };
 
-/* Adds the colour at a point of the image, bilinear between the middles of pixels. s to the right and t
- * upwards, each from -1 to 1. */
+/* Adds the colour at a point of the image, interpolated bilinearly between the middles of pixels. s: the
+ * point's place to the right; t: upwards; each from -1 to 1. */
 static void add_color(const light_picture *picture, double s, double t, double sum[HL_CHANNELS]) {
   const int size[2] = {picture->width, picture->height};
   const double position[2] = {(1 + s) / 2 * size[0] - 0.5, (1 - t) / 2 * size[1] - 0.5};
@@ -67,7 +67,7 @@ void hl_light_emission_weights(const light_source *source, int side, float (*wei
       weights[i][c] = mean[c] > 0 ? (float)((double)weights[i][c] / mean[c]) : 1;
 }
 
-/* The weights of all cells in their order; dark cells are included. */
+/* Weighs all cells by their light, in the cells' order; dark cells are included. */
 static void weigh_cells(const light_source *source, light_emission *emission) {
   float weights[EMISSION_CELLS][HL_CHANNELS];
   hl_light_emission_weights(source, EMISSION_SIDE, weights, emission->mean);
@@ -96,8 +96,8 @@ static vec3 middle_of_cell(const light_source *source, int i) {
                         (i % EMISSION_SIDE + 0.5) / EMISSION_SIDE);
 }
 
-/* The greatest slope of receivers at which every cell of a tilted light has taps of its own; beyond it the
- * outermost cells share taps. */
+/* The greatest slope of receivers at which every cell of a tilted light has taps of its own; at greater
+ * slopes the outermost cells share taps. */
 static const double GREATEST_SLOPE = 0.5;
 
 /* Leaves dark cells out, and bounds the other cells. */

@@ -27,8 +27,8 @@ typedef struct emission_cell {
 
 typedef struct light_emission {
   double mean[HL_CHANNELS]; /* the image's mean over the light */
-  bool even;                /* the image has one colour, so penumbrae are as for a light without an image */
-  int count;                /* number of cells that are not dark */
+  bool even; /* the image has one colour, so that penumbrae are the same as for a light without an image */
+  int count; /* number of cells that are not dark */
   emission_cell cells[EMISSION_CELLS];
   bool tilted;     /* cells differ in z, so receivers at different slopes see different taps */
   double reach;    /* the cells' greatest distance from the middle, for any receiver */
@@ -56,8 +56,8 @@ void hl_light_emission_project(const light_source *source, const view *view, dou
 /* Whether a light's penumbrae are coloured, apart from the light's own colour. */
 bool hl_light_emission_colored(const hl_light *light);
 
-/* The kernel of one penumbra: taps that are `step` pixels apart along u and v. The pixels that the taps weigh
- * must first be averaged over `step` pixels. */
+/* The kernel of one penumbra: taps that are `step` pixels apart along u and v. Pixels must be averaged over
+ * `step` pixels before the taps weigh them. */
 typedef struct emission_taps {
   int count;
   int32_t x[EMISSION_TAPS], y[EMISSION_TAPS]; /* pixels */

@@ -74,8 +74,8 @@ sheet_light hl_light_on_sheets(const light_source *source, vec3 normal) {
   vec3 mean = vec3_scale(sum, 1 / n);
   double u = vec3_dot(mean, seen.u), v = vec3_dot(mean, seen.v);
   c = turn_to_axes((covariance){c.uu / n - u * u, c.uv / n - u * v, c.vv / n - v * v}, &seen.u, &seen.v);
-  /* parallel: the plane through the end of the direction has the height l.h, and widths are widths at height
-   * 1 */
+  /* parallel light: the plane goes through the end of the direction, so that its height is l.h, and widths
+   * are widths at height 1 */
   double height = source->parallel ? fmax(vec3_dot(source->direction, normal), 0.1) : 1;
   seen.middle = vec3_add(centre, mean);
   seen.width_u = sqrt(12 * fmax(c.uu, 0)) / height;

@@ -21,12 +21,13 @@ void hl_sublight_point(const light_source *source, int side, int i, int j, doubl
 /* The light as the content's middle sees it, on a plane parallel to the sheets. The plane goes through the
  * light's centre, or for parallel light through the end of its direction. */
 typedef struct sheet_light {
-  vec3 middle; /* the projection's middle; frame space; for parallel light its mean direction of travel */
+  vec3 middle; /* the middle of the light's projection; frame space; for parallel light the mean direction
+                * of travel */
   vec3 u, v;   /* unit vectors in the sheets: the projection's principal axes, u the longer */
   double width_u,
       width_v; /* widths of boxes with the same variance; frame units, or per unit of height if parallel */
-  mat3 spread; /* mean of x x' over the light itself, with x from its centre; along u, v and the sheets'
-                * normal */
+  mat3 spread; /* mean of x x' over the light itself, where x is a point of the light counted from its
+                * centre; along u, v and the sheets' normal */
   bool parallel;
 } sheet_light;
 

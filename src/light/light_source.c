@@ -1,8 +1,8 @@
 /* light/light_source.c - see light_source.h. */
 #include "light/light_source.h"
 
-/* The square of a light's size, as a fraction of its distance, up to which the light is a point: no pixel
- * shows its penumbrae. */
+/* The square of a light's size, as a fraction of its distance, up to which the light counts as a point,
+ * since its penumbrae are too narrow for any pixel. */
 static const double POINT_LIKE = 1e-12;
 
 static double trace(mat3 m) { return m.row[0].x + m.row[1].y + m.row[2].z; }
@@ -51,10 +51,10 @@ light_source hl_light_in_sector(const light_source *whole, const light_sectors *
 
 /* ---- sectors ---- */
 
-/* Three axes at the angle phi to the eye's direction, and three at this angle to its opposite, turned by 60
- * degrees. For phi = 54.7 degrees they are the axes of an octahedron seen along a face. With 45 degrees every
- * direction lies within 59 degrees of an axis. Wide pictures need axes closer to the eye's direction, so that
- * their corners' rays still cross the sheets. */
+/* Finds the axes of the sectors: three at the angle phi to the eye's direction, and three at this angle to
+ * the opposite direction, turned by 60 degrees. For phi = 54.7 degrees they are the axes of an octahedron
+ * seen along a face. With 45 degrees every direction lies within 59 degrees of an axis. Wide pictures need
+ * axes closer to the eye's direction, so that their corners' rays still cross the sheets. */
 light_sectors hl_light_sectors(vec3 eye_direction, double widest) {
   const double usual = 45 * HL_PI / 180, flattest = 75 * HL_PI / 180, closest = 15 * HL_PI / 180;
   double phi = fmax(fmin(usual, flattest - widest), closest);
@@ -147,8 +147,8 @@ void hl_lit_region(const view *view, const light_source *source, double low[2], 
     cut((double[2]){-reach, -reach}, (double[2]){reach, reach}, low, high);
   }
   if (source->shadows != HL_SHADOWS_HARD)
-    return; /* occluders outside the lit region cast penumbrae into it, so the bounds stay whole for its cone
-             * and screen */
+    return; /* matter outside the lit region casts penumbrae into it, so the bounds are not cut down to the
+             * light's cone and screen */
   if (source->screen.picture.pixels != NULL && bound_screen(view, source, lit_low, lit_high))
     cut(lit_low, lit_high, low, high);
   if (source->shape.kind->cone && bound_cone(view, source, lit_low, lit_high))

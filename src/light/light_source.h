@@ -19,9 +19,9 @@ enum { LIGHT_SECTORS = 6 };
 enum { MAXIMUM_SWEEP_LIGHTS = 16 };
 
 typedef struct light_sectors {
-  vec3 axis[LIGHT_SECTORS]; /* unit vectors of the directions in which the sectors' light travels; frame
-                             * space */
-  double least;             /* cosine of the angle to its axis at which a sector has faded out */
+  vec3 axis[LIGHT_SECTORS]; /* unit vectors, the directions in which the light of the sectors travels;
+                             * frame space */
+  double least;             /* the cosine of the angle to a sector's axis at which the sector has faded out */
 } light_sectors;
 
 /* Finds the axes of sectors. eye_direction: unit vector. widest: the angle between the eye's direction and
@@ -50,7 +50,8 @@ typedef struct light_picture {
 /* The picture that a light projects, and the screen on which it stands; frame space. */
 typedef struct light_screen {
   light_picture picture;
-  vec3 center, right, up; /* the screen's middle, and from there the middles of its right and top edges */
+  vec3 center, right, up; /* the middle of the screen, and the ways from there to the middles of its right
+                           * and top edges */
 } light_screen;
 
 typedef struct light_source {
@@ -59,8 +60,8 @@ typedef struct light_source {
                    * or the way from the light's centre to the centre of its screen or of the content */
   vec3 position;  /* position of the light's centre, unless parallel; frame space */
   vec3 content;   /* the content's middle; frame space */
-  mat3 spread;    /* mean of x x' over the light, with x from its centre; parallel: over the directions, at
-                   * distance 1 */
+  mat3 spread;    /* mean of x x' over the light, where x is a point of the light counted from its centre;
+                   * for parallel light over its directions, as points at distance 1 */
   hl_shadows shadows; /* off, hard or soft */
   hl_soft_method soft_method;
   light_shape shape;      /* frame space; vertices of polygons are borrowed until the frame ends */
@@ -70,7 +71,8 @@ typedef struct light_source {
                     * which makes no highlights; else 0 */
   int light_index; /* index in the scene */
   int row;         /* index in the frame's list of lights */
-  const light_sectors *sectors; /* the frame's sectors, where this is one sector of a light; else null */
+  const light_sectors *sectors; /* where this source is one sector of a light: the frame's sectors; else
+                                 * null */
   int sector;
 } light_source;
 
@@ -88,17 +90,17 @@ light_source hl_light_in_sector(const light_source *whole, const light_sectors *
 typedef struct light_cone {
   float axis[3]; /* unit vector along which the light travels; frame space */
   float outer;   /* cosine at which light begins */
-  float scale;   /* 1 / (cosine at which brightness is full - outer); 0: the light has no cone */
+  float scale;   /* 1 / (cosine of the angle at which brightness is full - outer); 0: the light has no cone */
 } light_cone;
 
-/* Makes the cone of a light. content: the middle of the lit content. pixel: edge of a picture's pixel there,
- * frame units; the cone's edge is at least as wide as this. */
+/* Makes the cone of a light. content: the middle of the lit content. pixel: edge of a picture's pixel at
+ * this middle, frame units. The blurred edge of the cone is at least one pixel wide. */
 light_cone hl_light_cone(const light_source *source, vec3 content, double pixel);
 
 /* ---- The region of a light's view that its screen, its cone or its sector lights ---- */
 
-/* Cuts bounds, in coordinates of a view from the light, down to the lit region. Where they do not overlap it,
- * they become a point. */
+/* Cuts bounds, in coordinates of a view from the light, down to the lit region. Bounds that do not overlap
+ * the lit region become a point. */
 void hl_lit_region(const view *view, const light_source *source, double low[2], double high[2]);
 
 #endif

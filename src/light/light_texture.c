@@ -24,8 +24,8 @@ static view view_of_screen(const light_source *source, int width, int height) {
   return view;
 }
 
-/* The length of a screen vector's projection at the content's middle, across the light's ray there. It does
- * not shrink where the content lies before the screen. */
+/* The length of a screen vector's projection at the content's middle, across the light's ray there. Where
+ * the content lies before the screen, the vector's own length counts. */
 static double length_at_content(const light_source *source, const view *view, vec3 step, vec3 content) {
   vec3 way = source->direction;
   double magnified = 1;
@@ -42,8 +42,8 @@ static double length_at_content(const light_source *source, const view *view, ve
 /* The weights of neighbouring pixels for each pixel of a result. */
 typedef struct axis_weights {
   int count, taps;
-  int *first;     /* owned; [count]; the first weighted pixel for each result; all weighted pixels lie in the
-                   * image, outside of which it is dark */
+  int *first;     /* owned; [count]; for each pixel of the result, the first weighted pixel of the image.
+                   * All weighted pixels lie in the image; outside the image there is no light */
   float *weights; /* owned; [count][taps] */
 } axis_weights;
 
@@ -65,7 +65,7 @@ typedef struct axis_plan {
   double start, step, half_width; /* in pixels of the image that is convolved */
 } axis_plan;
 
-/* length: the number of the image's pixels along the axis. */
+/* Finds the weights along one axis. length: the number of the image's pixels along the axis. */
 static hl_status weigh_axis(hl_context *context, kernel_fraction *below, const axis_plan *plan, int length,
                             axis_weights *axis, hl_error *error) {
   double half_width = plan->half_width;

@@ -15,7 +15,8 @@
 #include "core/error.h"
 #include "light/light_source.h"
 
-/* The image blurred by the light's shape. It has a border of zeros: beyond the screen it is dark. */
+/* The image blurred by the light's shape. The image has a border of zeros, because no light passes outside
+ * the screen. */
 typedef struct texture_level {
   const float *pixels; /* [height][width][3]; in the light texture's memory */
   int width, height;
@@ -31,8 +32,8 @@ typedef struct light_texture {
                     * 0: the ray does not pass the screen's plane */
   float sharpness[2]; /* along u and v: number of the picture's pixels that one pixel of the image covers, at
                        * least 1 */
-  float beyond[4];    /* for parallel light: maps frame space to the distance from the screen along the rays.
-                       * Near    light has this distance in w */
+  float beyond[4];    /* for parallel light: maps frame space to the distance from the screen along the
+                       * rays. For near light, w of `map` is this distance */
   int parallel;
   float first; /* 1 / square of the distance (near light: of 1 - Zs / Z) for which level 0 is blurred. Level l
                 * is for 2^l times this square, and has 2^l times the variance */

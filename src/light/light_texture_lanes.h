@@ -84,7 +84,7 @@ LANES_INLINE void soft_pattern(const light_texture *texture, lanes blur, lanes u
   }
 }
 
-/* light_color(x) of eq. (2), at samples in frame space. */
+/* Finds light_color(x) of eq. (2), the texture's colour, at samples in frame space. */
 LANES_INLINE void texture_pattern(const light_texture *texture, lanes3 position, lanes pattern[3]) {
   lanes projected[3];
   for (int row = 0; row < 3; row++) projected[row] = row_of_point(texture->map[row], position);

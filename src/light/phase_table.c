@@ -74,7 +74,7 @@ static bool scatters_unevenly(const hl_scene_volume *volume) {
   return volume->anisotropy != 0 && volume->shading != HL_SHADING_FLAT;
 }
 
-/* Whether some light is wide; near: whether some light is wide and not parallel. */
+/* Whether some light is wide. *near: whether some light is wide and not parallel. */
 static bool has_wide_light(const hl_scene_description *scene, bool near) {
   bool found = false;
   for (size_t i = 0; i < scene->light_count; i++)
@@ -99,7 +99,7 @@ static size_t wanted_tables(const hl_scene_description *scene) {
   return count;
 }
 
-/* The number of floats of one table: rows of parallel lights, then caps. */
+/* The number of floats of one table, which consists of rows of parallel lights, followed by rows of caps. */
 static size_t table_size(const hl_scene_description *scene) {
   return PHASE_COLUMNS * (scene->light_count + (needs_caps(scene) ? 2 * PHASE_CAPS : 0));
 }
@@ -150,8 +150,8 @@ typedef struct phase_job {
   ring_places rings;
 } phase_job;
 
-/* Fills the rows of caps. Each row is stored twice: as its own row, beside the next one, and in the row
- * before, beside that row. */
+/* Fills the rows of caps. Each row is stored twice: in its own row of the table, beside the numbers of the
+ * next row, and in the row before, beside that row's numbers. */
 static void fill_caps(const phase_job *job, const phase_table *table, size_t row) {
   double g = table->g, part = (double)row / (PHASE_CAPS - 1), s = (1 - g) * pow((1 + g) / (1 - g), part);
   float(*to)[2] = table->caps[row];

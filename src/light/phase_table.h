@@ -25,8 +25,9 @@ enum { PHASE_COLUMNS = 512, PHASE_CAPS = 64 };
 typedef struct phase_table {
   double g;                         /* 0 < g < 1 */
   float rows_per_log2;              /* number of rows of caps for each step of the binary logarithm of s^2 */
-  float (*caps)[PHASE_COLUMNS][2];  /* [PHASE_CAPS]; [0] is for this row, [1] for the next one; set only where
-                                     * there is a sky, or some light is wide and not parallel */
+  float (*caps)[PHASE_COLUMNS][2];  /* [PHASE_CAPS]; number [0] belongs to this row, [1] to the next row;
+                                     * set only where there is a sky, or some light is wide and not
+                                     * parallel */
   float (*parallel)[PHASE_COLUMNS]; /* [lights]; only rows of wide parallel lights are set */
 } phase_table;
 

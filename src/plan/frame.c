@@ -68,7 +68,7 @@ static half_space through(vec3 a, vec3 b, vec3 c, vec3 inside) {
   return plane;
 }
 
-/* The eye's pyramid (or beam), out to a distance beyond all content. */
+/* Finds the pyramid (or beam) of the eye's rays, out to a depth beyond all content. */
 static void frustum(const view *eye, double depth, vec3 near[4], vec3 far[4], half_space planes[4]) {
   vec3 middle_start, middle_way;
   hl_view_ray(eye, eye->width / 2.0, eye->height / 2.0, &middle_start, &middle_way);
@@ -136,7 +136,7 @@ static double pixel_at_content(const frame *frame, double middle_depth) {
   return edge * fmax(nearest, middle_depth / 3);
 }
 
-/* The volume of a box that hl_frame_content wrote the corners of; above 0 where the box is flat. */
+/* The volume of a box whose corners hl_frame_content() found; above 0 where the box is flat. */
 static double box_volume(const vec3 corners[8]) {
   vec3 x = vec3_subtract(corners[1], corners[0]), y = vec3_subtract(corners[2], corners[0]),
        z = vec3_subtract(corners[4], corners[0]);
@@ -180,8 +180,10 @@ static void look(frame *frame) {
                              fmax(vec3_length(frame->eye.du), vec3_length(frame->eye.dv)) * middle_depth);
 }
 
-/* Where voxels are smaller than pixels, they could fall between pixels. The frame is then made of smaller
- * pixels, about as large as voxels, which are averaged. */
+/* Voxels that are smaller than pixels could fall between pixels. A frame of such a volume has smaller
+ * pixels, about as large as voxels, and the picture's pixels are means of them. GREATEST_OVERSAMPLING: the
+ * frame's pixels along a side of a picture's pixel, at most. GREATEST_OVERSAMPLED_SIDE: the frame's pixels
+ * along a side, at most. */
 enum { GREATEST_OVERSAMPLING = 8, GREATEST_OVERSAMPLED_SIDE = 4096 };
 
 static int oversampling(const frame *frame, const hl_scene_description *scene) {

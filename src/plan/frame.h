@@ -35,7 +35,7 @@ typedef struct frame {
   light_source *lights;  /* [light_count]; owned by the caller; sectors of a light follow each other */
   int light_count;
   const surfaces *surfaces;    /* surfaces of the scene's meshes; null: none */
-  const surface_tree *contact; /* the tree of surfaces that shadow buffers leave light behind
+  const surface_tree *contact; /* the tree of surfaces behind which shadow buffers leave light
                                 * (render/late/) */
 } frame;
 

@@ -10,7 +10,7 @@
 #include "plan/framed_scene.h"
 #include "surface/surfaces.h"
 
-/* How a volume's matter looks, and what it takes of light. */
+/* How a volume's matter looks, and how much light it takes. */
 typedef struct volume_look {
   hl_shading shading;
   hl_cut_shading cut_shading;
@@ -28,9 +28,9 @@ typedef struct frame_volume {
   const hl_transfer_function *function; /* borrowed; lengths are frame space's */
   const classifier *classifier;         /* borrowed; the transfer function's tables */
   double empty;                         /* data value beyond the volume */
-  uint64_t version, tables_version; /* versions of the grid's voxels, and of everything that follows from the
-                                     * transfer function; they rise with each change */
-  int object;                       /* the volume's number in the layer of objects */
+  uint64_t version, tables_version;     /* versions of the grid's voxels, and of all tables that follow from
+                                         * the transfer function; a version rises with each change */
+  int object;                           /* the volume's number in the layer of objects */
   bool visible, casts_shadow, receives_shadow, is_cut;
   volume_look look;
 } frame_volume;
@@ -38,13 +38,15 @@ typedef struct frame_volume {
 /* A light of the frame, as a whole. Its light_source, or the light_source of each of its sectors, says where
  * its rays run. */
 typedef struct frame_light {
-  int index;              /* in the scene's list of lights; suns of a sky follow the lights of the list */
+  int index;              /* the light's number in the scene's list of lights; suns of a sky follow the
+                           * lights of the list */
   double sun_part;        /* the fraction of the light that a medium takes, where the light is a sun of the
                            * sky; else 0 */
-  bool is_wide;           /* the light has an extent, or its directions have one */
+  bool is_wide;           /* the light has an extent, or its rays have several directions at a point */
   bool is_inverse_square; /* samples receive the intensity divided by the square of their distance */
   bool has_image;         /* the light projects a picture, or shows one */
-  bool has_colored_image; /* colours of the picture that it shows come from different places */
+  bool has_colored_image; /* the light shows a picture whose colours come from different places on the
+                           * light */
   double color[HL_CHANNELS], intensity; /* frame space */
 } frame_light;
 

@@ -48,7 +48,7 @@ typedef struct plan_fields {
 typedef struct light_plan {
   const light_source *source;
   light_emission *emission; /* owned; the picture on the light itself; null: none */
-  light_shadow shadow;      /* as planned: a back end works on a copy (hl_light_shadow_begin) */
+  light_shadow shadow;      /* the shadow as planned; a back end works on a copy (hl_light_shadow_begin) */
   shadow_layouts memory;    /* memory of the shadow's method */
 } light_plan;
 

@@ -15,16 +15,18 @@ typedef struct framed_scene {
   hl_scene_volume *volumes;    /* owned; [volume_count] */
   hl_light *lights;            /* owned; [light_count] */
   hl_scene_mesh *meshes;       /* owned; [mesh_count], with room for the volumes' isosurfaces */
-  int *mesh_objects;           /* owned; as the array before; numbers of the meshes in the layer of objects */
-  const scene_order *order;    /* borrowed; where in the world's lists volumes, lights and meshes stand */
+  int *mesh_objects;           /* owned; [mesh_count], with room for the volumes' isosurfaces; numbers of
+                                * the meshes in the layer of objects */
+  const scene_order *order;    /* borrowed; the places of volumes, lights and meshes in the world's lists */
   double (*vertices)[3];       /* owned; of all polygons */
   hl_opacity_point *gradients; /* owned; of all volumes' gradient opacity */
   hl_cut *cuts;                /* owned; the cuts of the volumes */
   double *sun_parts;     /* owned; [light_count]; the fraction of a light that a medium takes, where the light
                           * is a sun of the sky; else 0 */
-  uint64_t *plane_marks; /* owned; [volume_count]; of the content of functions of two numbers */
-  double unit; /* length in the world of 1 in frame space; in frame space the smallest voxel edge is 1 to 2
-                  long */
+  uint64_t *plane_marks; /* owned; [volume_count]; marks that tell the content of functions of two numbers
+                          * apart */
+  double unit; /* the length in the world of 1 in frame space; the smallest voxel edge is 1 to 2 long in
+                * frame space */
 } framed_scene;
 
 /* scene: borrowed. */

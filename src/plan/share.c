@@ -15,14 +15,14 @@ typedef struct share_cell {
   int32_t index;
 } share_cell;
 
-/* Bands of a part, at most; depths that are told apart. */
+/* MOST_BANDS: number of bands of a part, at most. DEPTHS: number of depths that are told apart. */
 enum { MOST_BANDS = 3, DEPTHS = 32 };
 
 /* The arrays that a picture is cut in. */
 typedef struct share_arrays {
-  share_cell *cells;                    /* [cells] */
-  double *each;                         /* [cells], by index; the weight of each brick under a cell */
-  int32_t *cut[MOST_BANDS];             /* [cells], by index; parts of 1, 2, ... bands */
+  share_cell *cells;        /* [cells] */
+  double *each;             /* owned; [cells], by the cell's index; the weight of each brick under a cell */
+  int32_t *cut[MOST_BANDS]; /* [cells], by index; parts of 1, 2, ... bands */
   double (*depths[MOST_BANDS])[DEPTHS]; /* [parts]; the weight of such parts at each depth */
 } share_arrays;
 
@@ -54,7 +54,7 @@ static double brightness(const share_content *content, const light_source *sourc
   return color / fmax(vec3_dot(way, way), 1e-12);
 }
 
-/* Whether parts work through a light's shadows each for itself. */
+/* Whether each part computes only its own share of a light's shadows. */
 static bool is_divided(const picture_share *share, const light_source *source) {
   const shadow_method *method = hl_shadow_method(source);
   if (method == NULL) return false;
@@ -97,8 +97,8 @@ static void line_through(const light_image *image, double u, double v, double wa
 static double cross2(const double a[2], const double b[2]) { return a[0] * b[1] - a[1] * b[0]; }
 static double dot2(const double a[2], const double b[2]) { return a[0] * b[0] + a[1] * b[1]; }
 
-/* Rises with a direction's angle, from -1 to 3: without trigonometric functions, whose last digits differ
- * between machines. */
+/* A number from -1 to 3 that rises with a direction's angle. It needs no trigonometric function, because
+ * their last digits differ between machines. */
 static double turn_of(const double way[2]) {
   double sum = fabs(way[0]) + fabs(way[1]), part = sum > 0 ? way[1] / sum : 0;
   return way[0] >= 0 ? part : 2 - part;
@@ -134,12 +134,13 @@ static void set_keys(const share_content *content, const picture_share *share, s
 /* ---- how much lies under a cell ---- */
 
 /* About SHARE_BRICKS bricks of the volume are looked at. A cell weighs as much as the root of the number of
- * its bricks: most of many bricks are hidden (measured: docs/laboratory/ranks.md). A cell without bricks
- * weighs LEAST_WEIGHT times the mean. */
+ * its bricks: where there are many bricks, most of them are hidden (measured: docs/laboratory/ranks.md). A
+ * cell without bricks weighs LEAST_WEIGHT times the mean. */
 enum { SHARE_BRICKS = 1 << 18 };
 static const double LEAST_WEIGHT = 0.1;
 
-/* What is done with a brick over a cell. height: of its centre, along the sheets' normal. */
+/* A function that is called for each visible brick, with the cell that the brick lies over. height: of the
+ * brick's centre, along the sheets' normal. */
 typedef void brick_action(const share_content *content, const picture_share *share, share_arrays *arrays,
                           size_t cell, double height, double bricks);
 
@@ -224,7 +225,7 @@ static void cut_bands(const picture_share *share, const share_cell *cells, int b
 
 /* ---- how many bands ---- */
 
-/* Adds a brick to the sums that its parts have at its depth. */
+/* Adds a brick's weight to the sums of the parts that it lies over, at the brick's depth. */
 static void place_brick(const share_content *content, const picture_share *share, share_arrays *arrays,
                         size_t cell, double height, double bricks) {
   (void)share;
@@ -265,7 +266,7 @@ static double cost_of(const picture_share *share, const share_arrays *arrays, in
   return (all > 0 ? slowest * share->parts / all : 1) + border / (2 * cells);
 }
 
-/* More bands must be worth so much: the estimate is rough. */
+/* The least gain, as a fraction, for which more bands are chosen: the estimate of the cost is rough. */
 static const double LEAST_GAIN = 0.1;
 
 static int choose_bands(const share_content *content, const picture_share *share, share_arrays *arrays) {
@@ -299,8 +300,9 @@ static bool waits_at_depths(const share_content *content, const picture_share *s
 }
 
 /* Whether parts are bands. Rows of cells in turn have more equal shares of the work; but bands need less
- * light where shadows are divided, and less of the voxels where no shadows are cast, which counts where these
- * lie over ranks. Whether they lie in a scratch file must not matter: that is each process's own affair. */
+ * light where shadows are divided, and less of the voxels where no shadows are cast, which counts where
+ * these lie over ranks. Whether they lie in a scratch file must not matter: each process decides that for
+ * itself. */
 static bool is_cut_in_bands(const share_content *content, const picture_share *share) {
   const frame *frame = content->frame;
   bool soft = false;

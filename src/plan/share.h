@@ -15,7 +15,8 @@
 #include "plan/frame.h"
 #include "plan/frame_objects.h"
 
-/* A cell is as many pixels of the picture as a tile has of the frame: `oversampling` tiles a side. */
+/* A picture's division into parts. A cell has as many pixels of the picture as a tile has of the frame:
+ * `oversampling` tiles a side. */
 typedef struct picture_share {
   int part, parts;                /* this renderer's part; how many there are */
   const light_exchange *exchange; /* borrowed; exchange with the other parts; null: they cannot be asked */
@@ -43,7 +44,7 @@ hl_status hl_share_create(hl_context *context, const share_content *content, pic
                           hl_error *error);
 void hl_share_release(hl_context *context, picture_share *share);
 
-/* Whether a tile of the frame is of this renderer's part. */
+/* Whether a tile of the frame belongs to this renderer's part. */
 static inline bool hl_share_has(const picture_share *share, int tile_x, int tile_y) {
   if (share->part_of == NULL) return true;
   return share->part_of[tile_y / share->oversampling * share->cells_x + tile_x / share->oversampling] ==

@@ -7,8 +7,9 @@
  * the slicing axis. */
 static const double STEEPEST = 0.5;
 
-/* The least |cos| of the angle between the slicing axis and the picture's outermost rays (87 degrees), and a
- * light's direction (80 degrees). Flatter crossings are refused. */
+/* The least |cos| of the angle between the slicing axis and the picture's outermost rays (87 degrees), and
+ * of the angle between the slicing axis and a light's direction (80 degrees). Flatter crossings are
+ * refused. */
 static const double FLATTEST_EYE_RAY = 0.05, FLATTEST_LIGHT = 0.17;
 
 /* The least |cos| of the angle between h and the eye's rays through the picture's corners. 0 unless all these
@@ -45,13 +46,13 @@ static vec3 slicing_axis(const frame *frame, const hl_render_settings *settings,
   return h;
 }
 
-/* The least cosine of the angle between the slicing axis and a light's rays to the content (78 degrees). The
- * second number holds for a soft parallel light that has a sweep of its own (70 degrees): along flatter rays,
- * floors shade themselves. */
+/* FLATTEST: the least cosine of the angle between the slicing axis and a light's rays to the content (78
+ * degrees). FLATTEST_ALONE: the same for a soft parallel light that has a sweep of its own (70 degrees);
+ * along flatter rays, floors would shade themselves. */
 static const double FLATTEST = 0.2, FLATTEST_ALONE = 0.35;
 
-/* Whether all rays of a light cross the sheets at this cosine or a greater one. For a near light these are
- * the rays from its centre, for a soft parallel light the rays of its disk. */
+/* Whether the angles of all rays of a light with the sheets' normal have this cosine or a greater one. For
+ * a near light these are the rays from its centre, for a soft parallel light the rays of its disk. */
 static bool rays_cross(const frame *frame, const light_source *source, vec3 h, double least) {
   if (source->parallel) {
     double off = acos(fmin(fmax(vec3_dot(source->direction, h), -1), 1));
@@ -64,9 +65,9 @@ static bool rays_cross(const frame *frame, const light_source *source, vec3 h, d
   return true;
 }
 
-/* The middle of the narrowest cone around a light's rays to the content's corners, nearly: the axis moves
- * towards the ray farthest from it, each time by less (Badoiu and Clarkson, "Smaller core-sets for balls",
- * 2003, on directions). */
+/* The axis of the narrowest cone around a light's rays to the content's corners, approximately: the axis
+ * moves towards the ray farthest from it, by a smaller step each time (Badoiu and Clarkson, "Smaller
+ * core-sets for balls", 2003, on directions). */
 static vec3 middle_of_rays(const frame *frame, const light_source *source) {
   enum { STEPS = 64 };
   vec3 middle = source->direction;
@@ -132,7 +133,7 @@ static bool serves(const frame *frame, const hl_render_settings *settings, const
 
 /* ---- the lights ---- */
 
-/* The angle of the eye's outermost ray to its direction. */
+/* The angle between the eye's outermost ray and the eye's direction. */
 static double widest_ray(const frame *frame) {
   double least = 1;
   for (int corner = 0; corner < 4; corner++) {
@@ -251,8 +252,8 @@ void hl_frame_add_eye_sweep(const frame *frame, sweep_sheets *sweeps, int *count
   place_sheets(frame, &added->sheets);
 }
 
-/* Adds a light without shadows to any sweep with room, else to a new image-aligned sweep. light -1: adds only
- * the sweep. */
+/* Adds a light without shadows to any sweep with room, else to a new sweep whose sheets are parallel to the
+ * picture. light -1: adds only the sweep. */
 static void add_plain_light(const frame *frame, int light, sweep_sheets *sweeps, int *count) {
   int s = 0;
   while (s < *count && sweeps[s].light_count == FRAME_LIGHTS) s++;

@@ -10,8 +10,10 @@
 /* One pass over the sheets, with the lights that one slicing direction serves. */
 typedef struct sweep_sheets {
   sheet_stack sheets;
-  bool back_to_front;      /* the eye meets the last sheet first; light always travels with rising sheets */
-  bool of_sectors;         /* the lights are sectors of lights, and the slicing direction is theirs */
+  bool back_to_front;      /* the eye meets the sheets from the last to the first; light always travels
+                            * from the first to the last */
+  bool of_sectors;         /* the sweep's lights are sectors of lights, and the slicing direction is chosen
+                            * for the sectors */
   int light[FRAME_LIGHTS]; /* indices into frame lights */
   int light_count;
 } sweep_sheets;
@@ -25,7 +27,7 @@ void hl_frame_set_up_lights(frame *frame, const framed_scene *framed);
  * 1. Returns the number of sweeps, which is at least one. */
 int hl_frame_sweeps(const frame *frame, const hl_render_settings *settings, sweep_sheets *sweeps);
 
-/* One more sweep, without lights, image-aligned: front to back for the eye. */
+/* Adds a sweep without lights, whose sheets are parallel to the picture and go front to back for the eye. */
 void hl_frame_add_eye_sweep(const frame *frame, sweep_sheets *sweeps, int *count);
 
 /* Refuses a sweep of too many sheets, or whose sheets some ray of the eye or a shadowing light does not

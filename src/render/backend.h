@@ -24,7 +24,7 @@ typedef struct backend {
 } backend;
 
 /* All back ends, in the order in which a renderer asks them. A back end NAME is a file NAME_backend.c,
- * which defines hl_NAME_backend. The last one makes every frame. */
+ * which defines hl_NAME_backend. The last back end can make every frame. */
 #define HL_BACKENDS  \
   HL_BACKEND(device) \
   HL_BACKEND(processor)

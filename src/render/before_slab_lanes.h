@@ -23,8 +23,8 @@ typedef struct near_pixels {
 typedef struct seen_light {
   lanes3 towards;          /* unit direction to the light */
   lanes path;              /* length of the light's way through the slab */
-  const near_pixels *near; /* the pixels of its buffer around the sample; null: no face of a box is near, or
-                              only the nearest pixel is read */
+  const near_pixels *near; /* pixels of the light's buffer around the sample; null: no face of a box is
+                            * near, or only the nearest pixel is read */
 } seen_light;
 
 /* The root of 1/6. Bilinear look-ups, averaged over all positions between pixels, weigh by a tent of variance
@@ -35,9 +35,9 @@ LANES_INLINE lanes3 cross3(lanes3 a, lanes3 b) {
   return (lanes3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/* Derived: u = (row 1 . x) / (row 0 . x) has the gradient (row 1 - u row 0) / (row 0 . x), v likewise; the
- * step on the sheet along which u rises by one and v stays is (grad v x h) / (grad u . (grad v x h)), and
- * likewise with u and v exchanged. */
+/* Derived: u = (row 1 . x) / (row 0 . x) has the gradient (row 1 - u row 0) / (row 0 . x), v likewise; The
+ * step on the sheet that raises u by one and leaves v is (grad v x h) / (grad u . (grad v x h)). The other
+ * step is the same with u and v exchanged. */
 LANES_INLINE void find_steps(const shadow_map *map, int parallel, lanes3 normal, lanes3 position,
                              near_pixels *near) {
   lanes3 gradient_u = set3(map->rows[1]), gradient_v = set3(map->rows[2]);
@@ -74,8 +74,8 @@ LANES_INLINE near_pixels pixels_of_sublights(void) {
   return near;
 }
 
-/* A way from a point towards the light, shortened to what cuts leave of it next to the point. enter, leave:
- * distances from the point. */
+/* Shortens a way from a point towards the light to the part next to the point that cuts leave. enter,
+ * leave: distances from the point. */
 LANES_INLINE void shorten_way(const shade_volume *volume, lanes3 from, lanes3 towards, lanes *enter,
                               lanes *leave) {
   for (int i = 0; i < volume->light_cut_count; i++) {
@@ -109,22 +109,25 @@ LANES_INLINE lanes way_left(const shade_volume *volume, lanes3 from, lanes3 towa
   return lanes_max(leave - enter - removed, lanes_set(0));
 }
 
-/* Lengths of light's ways within a volume's box before the slab's first sheet: to where the eye's ray enters
- * and leaves the slab's part in the box, and to the near pixels. */
+/* Lengths of the ways that light goes within a volume's box before it reaches the slab's first sheet: on
+ * its way to the points where the eye's ray enters and leaves the slab's part in the box, and on its way to
+ * the near pixels. */
 typedef struct ways_before {
   lanes first, last, near[NEAR_PIXELS];
 } ways_before;
 
-/* The two faces of a box across one axis: the distances from the lit position, towards the light, to the face
- * ahead and to the face behind. u, v, along: by how much both distances shrink with one pixel's step along u
- * or v, and with the whole slab along the eye's ray. */
+/* The two faces of a box across one axis: the distances from the lit position, towards the light, to the
+ * face ahead and to the face behind. u, v: how much both distances shrink with a step of one pixel along u
+ * or v. along: how much both shrink when the lit position moves through the whole slab along the eye's ray.
+ */
 typedef struct faces_of_axis {
   lanes ahead, behind, u, v, along;
 } faces_of_axis;
 
-/* For faces nearly parallel to the light: a step to a near pixel moves such a face far along the light's way.
- * Up to this fraction of the light's way through the box the face counts fully, at twice the fraction not at
- * all: the light to both sides of such a face enters the box by another face, far away. */
+/* A face that is nearly parallel to the light lies much nearer or farther along the light's way after a
+ * step to a near pixel. The face counts fully while this change is below this fraction of the light's way
+ * through the box, and not at all from twice the fraction on: light on both sides of such a face enters the
+ * box by another face, far away. */
 static const float ALONG_FACE = 0.5f;
 
 /* Does for a cut what find_faces() does for a box: the face ahead is a plane where the light's ray meets the

@@ -18,7 +18,8 @@ LANES_INLINE lanes some_speed(lanes speed) {
   return lanes_select(lanes_abs(speed) < 1e-12f, lanes_set(1e-12f), speed);
 }
 
-/* The way of a ray within a shape: distances along it, first > last where it misses the shape. */
+/* Finds the section of a ray within a cut's shape, as distances along the ray; first > last where the ray
+ * misses the shape. */
 LANES_INLINE ray_section cross_cut(const shade_cut *cut, lanes3 from, lanes3 along) {
   lanes3 at = point_in_cut(cut, from);
   lanes3 speed = {row_of_vector(cut->rows[0], along), row_of_vector(cut->rows[1], along),

@@ -8,7 +8,7 @@
  * False where the name is too long. */
 bool hl_device_choose(hl_renderer *renderer, const char *device);
 
-/* Makes the device forget its copy of the volume, which the renderer no longer has. */
+/* Makes the device release its copy of the volume after the renderer has released the volume. */
 void hl_device_forget(hl_renderer *renderer);
 void hl_device_release(hl_renderer *renderer);
 

@@ -55,7 +55,8 @@ static bool has_phase_tables(const frame_plan *plan) {
   return hl_phase_table(plan->fields.phases, volume_of(plan)->look.anisotropy) != NULL;
 }
 
-/* The reasons in the order in which they are tried: the first that applies is told. */
+/* Reasons why a device cannot make a frame, with the function that tests each. The user is told the first
+ * that applies. */
 static const struct {
   bool (*applies)(const frame_plan *plan);
   const char *reason;
@@ -93,7 +94,8 @@ static int storage_of(const grid *grid) {
   return grid->storage == HL_STORAGE_U8 ? 0 : grid->storage == HL_STORAGE_U16 ? 1 : 2;
 }
 
-/* The bits of the grid's cells. Null where they tell nothing; the processors do not ask them then, either. */
+/* The bits of the grid's cells. Null where all cells are visible; then the processors do not read the bits,
+ * either. */
 static const uint64_t *bits_of_cells(const grid *grid) {
   return grid->cell_bits_tell ? grid->cell_bits : NULL;
 }
@@ -211,7 +213,7 @@ static void plan_box_rays(const view *view, const sweep_task *task, plan_box *bo
   memcpy(box, &rays, sizeof *box);
 }
 
-/* The box around what shows, a voxel larger for rounding. */
+/* Finds the box around everything visible, one voxel larger on each side because of rounding. */
 static void plan_content(const view *view, const sweep_task *task, plan_box *box) {
   const sheet_stack *sheets = &task->plan->geometry->sheets;
   const grid *grid = &task->frame_plan->volumes.grids[0];
@@ -226,11 +228,11 @@ static void plan_content(const view *view, const sweep_task *task, plan_box *box
   memcpy(box, &rays, sizeof *box);
 }
 
-/* Derived: on the sheet, one pixel of a parallel light's buffer along u is (grad v x h) / (grad u . (grad v x
- * h)), where h is the sheets' normal; the step along v has the same form. The pixels around a sample are at
- * most one such step away. A face counts where it is up to twice as far away. The light's way through the
- * slab is as long as its path. A little is added for rounding. The pixels of a near light grow with distance;
- * for such a light all samples count as near a face. */
+/* Derived: on the sheet, one pixel of a parallel light's buffer along u is (grad v x h) / (grad u . (grad v
+ * x h)), where h is the sheets' normal; the step along v has the same form. The pixels around a sample are
+ * at most one such step away. A face counts where it is up to twice as far away. The light's way through
+ * the slab is as long as its path. The margin is a little larger because of rounding. The pixels of a near
+ * light grow with distance; for such a light all samples count as near a face. */
 static void plan_margin(const sweep_task *task, int index, plan_light *light) {
   const sheet_stack *sheets = &task->plan->geometry->sheets;
   const light_source *source = task->plan->lights[index].source;

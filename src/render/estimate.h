@@ -1,4 +1,4 @@
-/* render/estimate.h - the memory that a frame will take, so that one that cannot fit is refused before it
+/* render/estimate.h - the memory that a frame will take. A frame that cannot fit is refused before it
  * begins. */
 #ifndef HL_RENDER_ESTIMATE_H
 #define HL_RENDER_ESTIMATE_H

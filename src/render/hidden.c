@@ -23,7 +23,7 @@ static int32_t first_shown(const sweep *sweep, int slab) { return sweep->geometr
 /* The data of the tile action. */
 typedef struct hidden_search {
   int32_t *shown_from; /* [tiles][16]; first visible slab; 0: the block is not covered yet */
-  bool trying;         /* blocks stay open after they are opaque, so that what they cover is counted */
+  bool trying; /* blocks stay open after they are opaque, so that the pixels which they cover are counted */
 } hidden_search;
 
 static uint32_t uncovered_blocks(const int32_t shown_from[TILE_BLOCKS]) {

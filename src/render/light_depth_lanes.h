@@ -27,11 +27,11 @@ LANES_INLINE mean_transmittance transmittance_within(lanes x, lanes left) {
   return (mean_transmittance){lanes_select(thin, near, 1.0f - left), lanes_select(thin, lanes_set(1.0f), x)};
 }
 
-/* The light's transmittance within the slab, averaged as the eye sees it. e: the slab's optical depth for the
- * eye; left: exp(-e). enter: the light's optical depth where the eye's ray enters the matter; more: what the
- * depth gains until the ray leaves. Derived; exact for extinction that varies along one direction only: int e
- * exp(-e s) exp(-enter - more s) ds / (1 - exp(-e)) = exp(-enter) phi(e + more) / phi(e), with phi(-x) =
- * exp(x) phi(x). */
+/* The light's transmittance within the slab, averaged over the slab's matter with the weights with which
+ * the eye sees it. e: the slab's optical depth for the eye; left: exp(-e). enter: the light's optical depth
+ * where the eye's ray enters the matter; more: what the depth gains until the ray leaves. Derived; exact
+ * for extinction that varies along one direction only: int e exp(-e s) exp(-enter - more s) ds / (1 -
+ * exp(-e)) = exp(-enter) phi(e + more) / phi(e), with phi(-x) = exp(x) phi(x). */
 LANES_INLINE lanes own_transmittance(lanes e, lanes left, lanes enter, lanes more) {
   lanes sum = e + more, both = lanes_abs(sum);
   mean_transmittance of_both = transmittance_within(both, lanes_exp_negative(both)),
@@ -41,7 +41,7 @@ LANES_INLINE lanes own_transmittance(lanes e, lanes left, lanes enter, lanes mor
 }
 
 /* Lengths of the light's way within a volume's box, to where a section of the eye's ray begins and ends. In
- * ways_of_light(), path holds the two lengths from the slab's first sheet on, without a box. */
+ * ways_of_light(), `path` holds the two lengths measured from the slab's first sheet, whatever the box. */
 typedef struct ways_in_box {
   lanes first, last;
 } ways_in_box;
@@ -70,16 +70,17 @@ LANES_INLINE ways_in_box ways_of_light(const shade_volume *volume, lanes3 start,
                        lanes_max(leave.last - enter.last, lanes_set(0))};
 }
 
-/* The density, as a coordinate in the table, where a volume's matter is seen. */
+/* The coordinate, in the classifier's tables, of a volume's density where its matter is seen. */
 LANES_INLINE lanes coordinate_seen(const block_density *d) {
   return lanes_fma(d->after - d->before, d->seen, d->before);
 }
 
-/* The even extinction with which the light's way through the slab has the right optical depth down to where a
- * volume's matter is seen (derived). Needed because the eye's ray may run along a surface that the light's
- * ray crosses. At a distance s towards the light from the point seen, the density is f - s g.l to first
- * order, g the gradient; its mean extinction is the result, before a correction: with even extinction the eye
- * would see the slab at another position (`evenly`), and a factor makes the depths agree there. */
+/* An even extinction that gives the light's way through the slab, down to where a volume's matter is seen,
+ * the right optical depth (derived). The extinction along the eye's ray does not serve, because that ray
+ * may run along a surface which the light's ray crosses. At a distance s towards the light from the point
+ * seen, the density is f - s g.l to first order, g the gradient; its mean extinction is the result, before
+ * a correction: with even extinction the eye would see the slab at another position (`evenly`), and a
+ * factor makes the depths agree there. */
 LANES_INLINE lanes extinction_towards(const block_density *d, lanes3 towards, lanes way) {
   const classifier *classifier = d->patch->volume->classifier;
   if (lanes_bits(d->sloped) == 0) return d->sums.extinction;
@@ -123,7 +124,7 @@ typedef struct light_depths {
                                            first sheet */
   lanes_int face;                       /* lanes near a face of a box */
   lanes beside;                         /* near a face: how much the face counts, 0 to 1 */
-  /* Near a face: as enter and more, but for the light's way before the slab. */
+  /* Near a face: optical depths like `enter` and `more`, but of the light's way before the slab. */
   lanes before_enter[HL_CHANNELS], before_more[HL_CHANNELS];
 } light_depths;
 

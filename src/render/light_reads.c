@@ -34,8 +34,9 @@ typedef struct read_buffer {
   double length[3];  /* of the rows, without their last numbers */
   int32_t *until;    /* [tiles_y][tiles_x] */
   int tiles_x, tiles_y;
-  const struct read_buffer *moves; /* The light's first buffer: look-ups at surfaces move away from the
-                                    * surfaces by lengths measured in its pixels. Null: no surfaces. */
+  const struct read_buffer *moves; /* The buffer whose pixels measure how far look-ups at surfaces move
+                                    * away from the surfaces: the light's first one. Null: there are no
+                                    * surfaces. */
 } read_buffer;
 
 /* The place (w, w u, w v) of a point in a buffer. */
@@ -53,7 +54,8 @@ typedef struct read_bounds {
   double nearest; /* the least w */
 } read_bounds;
 
-/* Finds the rectangle; false where a point does not lie ahead of the light. */
+/* Finds the rectangle of a buffer's pixels that holds the images of some points. False where a point does
+ * not lie ahead of the light. */
 static bool bound_points(const read_buffer *buffer, const vec3 *points, int count, read_bounds *bounds) {
   *bounds = (read_bounds){{INFINITY, INFINITY}, {-INFINITY, -INFINITY}, INFINITY};
   for (int i = 0; i < count; i++) {
@@ -112,9 +114,9 @@ static void read_hull(const read_buffer *buffer, const vec3 *points, int count, 
     }
 }
 
-/* Points around the samples of a tile between two heights. They are eight points, or fewer points and the eye
- * where the eye lies between the heights or beyond them. There are none where a ray beside the picture does
- * not cross the sheets as the rays within it do. */
+/* Points around the samples of a tile between two heights. They are eight points, or fewer points and the
+ * eye where the eye lies between the heights or beyond them. There are no points where a ray beside the
+ * picture does not cross the sheets in the direction of the rays within the picture. */
 static int hull_of(const sweep *sweep, size_t tile, double low, double high, vec3 points[9]) {
   const view *eye = &sweep->frame->eye;
   vec3 normal = sweep->geometry->sheets.normal;
@@ -171,7 +173,8 @@ static void read_tile(const reads_task *task, size_t tile) {
   if (first > 0) read_slabs(task, tile, first, last);
 }
 
-/* Marks the tiles that the surfaces read which the eye sees in a tile, for the sectors that light them. */
+/* Marks the tiles of light buffers that are read by the surfaces which the eye sees in a tile, for the
+ * sectors that light these surfaces. */
 static void read_surfaces(const reads_task *task, size_t tile) {
   const sweep *sweep = task->sweep;
   const fragments *all = &sweep->surfaces.image;
@@ -239,7 +242,7 @@ static read_buffer *lay_out_buffers(const sweep *sweep, hl_layout *layout) {
   return hl_layout_take(layout, count, sizeof(read_buffer));
 }
 
-/* Lays out the array of the needs that all parts have of a light. */
+/* Lays out the array that says for each part until which slab it needs each tile of a light's buffer. */
 static int32_t *lay_out_needs(const light_shadow *shadow, hl_layout *layout) {
   return hl_layout_take(layout, (size_t)shadow->setup.exchange->parts * tiles_of(shadow), sizeof(int32_t));
 }
@@ -265,8 +268,9 @@ static int32_t last_touched(const occupancy *occupancy, size_t tile) {
   return 0;
 }
 
-/* The part that owns a tile: the first of the parts that need it longest. A tile that no part needs goes to a
- * part by its place. all: [parts][tiles] */
+/* The part that owns a tile of a light's buffer: among the parts that need the tile up to the latest slab,
+ * the part with the least number. A tile that no part needs gets an owner by its place. all: [parts][tiles]
+ */
 static int owner_of(const int32_t *all, size_t tile, size_t tiles, int parts) {
   int owner = 0;
   for (int part = 1; part < parts; part++)

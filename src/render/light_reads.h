@@ -10,8 +10,8 @@
  * left out are never read, so pixels do not change. */
 hl_status hl_light_reads_find(sweep *sweep, hl_error *error);
 
-/* Adds the tiles that this part of a shared picture owns, whichever part needs them. Call it after the
- * lights' surfaces have begun. */
+/* Adds to the needed tiles those that this part of a shared picture owns, because other parts may need
+ * their light. Call it after the lights' surfaces have begun. */
 hl_status hl_light_reads_find_owned(sweep *sweep, hl_error *error);
 
 /* Counts the memory that both functions above take, for lights whose shadows are planned. Sets no

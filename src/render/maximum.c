@@ -8,9 +8,9 @@
 #include "core/memory.h"
 #include "scene/scene.h"
 
-/* Coordinates come from rounded sums of floats. So the ends of the shown ranges are moved by ROUNDINGS
- * roundings of the greatest voxel, and at least by LEAST_END entries. A value at an end is then shown exactly
- * where the transfer function shows it. */
+/* Table coordinates of values come from rounded sums of floats. So the ends of the shown ranges are moved
+ * by ROUNDINGS roundings of the greatest voxel, and at least by LEAST_END entries. A value at an end is
+ * then shown exactly where the transfer function shows it. */
 static const double LEAST_END = 1e-3, ROUNDINGS = 8;
 
 enum { BISECTIONS = 30 };
@@ -41,7 +41,7 @@ void hl_maximum_count(const frame_plan *plan, hl_layout *layout) {
   if (hl_is_maximum(&plan->settings)) lay_out(&maximum, layout);
 }
 
-/* A transfer function over the coordinates of its table. */
+/* A volume's transfer function, as a function of the coordinates of the classifier's table. */
 typedef struct shown_values {
   const hl_transfer_function *function;
   double low, step; /* data values: the value of coordinate 0, and the step from one coordinate to the next */

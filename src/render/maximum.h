@@ -2,15 +2,15 @@
  * matter.
  *
  * One sweep without lights, sheets parallel to the picture, keeps for each pixel and visible volume the
- * greatest value that the volume's transfer function shows; colours are looked up when it has ended. */
+ * greatest value that the volume's transfer function shows; colours are looked up after the sweep. */
 #ifndef HL_RENDER_MAXIMUM_H
 #define HL_RENDER_MAXIMUM_H
 
 #include "render/sweep.h"
 
-/* The greatest sheet spacing of a maximum projection, voxels: the peak of a parabola through three sheets
- * then differs from the ray's greatest value by 0.2 % (root mean square, measured on noise with a B-spline:
- * tests/analytic/sheets_maximum.c). */
+/* The greatest sheet spacing of a maximum projection, in voxels: the peak of a parabola through three
+ * sheets then differs from the ray's greatest value by 0.2 % (root mean square, measured on noise with a
+ * B-spline: tests/analytic/sheets_maximum.c). */
 #define MAXIMUM_SPACING 0.5
 
 /* Makes the projection's pixels and tables for the frame of a plan. values stays null where the scene

@@ -82,7 +82,7 @@ static uint32_t measure_tile(const shade_job *job, const tile_slab *tile, float 
   return tile->blocks;
 }
 
-/* ---- opacity alone of what the eye sees, to know what lies hidden behind it ---- */
+/* ---- the opacity that the eye sees, without light, to find what is hidden ---- */
 
 /* Returns true while some pixel of the block is not opaque. bits: the pixels in which something may be
  * seen. */

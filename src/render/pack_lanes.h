@@ -6,8 +6,8 @@
 #include "render/slab_lanes.h"
 #include "simd/packing.h"
 
-/* The packed slab that a block's pixels went to. whole: the block has a slab of its own, in which all sixteen
- * pixels keep their places. */
+/* The packed slab that holds a block's pixels. whole: the packed slab holds this block alone, and all
+ * sixteen pixels keep their places. */
 typedef struct packed_block {
   lanes_packing packing;
   int slab, whole;
@@ -20,8 +20,8 @@ typedef struct packed_tile {
   packed_block blocks[TILE_BLOCKS];
 } packed_tile;
 
-/* The volumes of a block before it is packed, followed by the volumes of the packed slabs: [1 +
- * TILE_BLOCKS][patches]. */
+/* [1 + TILE_BLOCKS][patches]: the volumes of a block before the block is packed, followed by the volumes of
+ * the packed slabs. */
 _Static_assert((1 + TILE_BLOCKS) * sizeof(block_density) <= SHADE_SCRATCH_BYTES,
                "a volume's scratch holds its slabs");
 

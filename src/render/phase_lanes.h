@@ -33,14 +33,15 @@ LANES_INLINE phase_angle phase_angle_at(float g, lanes turn) {
   return angle;
 }
 
-/* The row of a table, between two rows. ratio: the cap's s^2 over the least one. */
+/* The row of a phase table for a cap of light; it may lie between two rows. ratio: the cap's s^2 divided by
+ * the least s^2 of the table. */
 LANES_INLINE lanes row_of_ratio(const phase_table *table, lanes ratio) {
   lanes row = lanes_log2(lanes_max(ratio, lanes_set(1.0f))) * table->rows_per_log2;
   return lanes_clamp(row, 0, PHASE_CAPS - 1 - 1e-3f);
 }
 
-/* The mean of the phase function over a cap. row: the row for the cap's size. The angle leads to the cap's
- * middle. */
+/* The mean of the phase function over a cap. row: the row for the cap's size. The angle is measured to the
+ * cap's middle. */
 LANES_INLINE lanes mean_in_table(const phase_table *table, lanes row, const phase_angle *angle) {
   lanes square[4];
   lanes_int first = lanes_truncate(row);
@@ -59,7 +60,8 @@ LANES_INLINE lanes row_of_cap(const phase_table *table, float size, const light_
   lanes twice = lanes_fma(way.x * spread[3], way.y, way.z * (way.x * spread[4] + way.y * spread[5]));
   lanes wide = (spread[0] + spread[1] + spread[2]) - (along + twice * 2.0f) * inverse;
   lanes h = lanes_sqrt(lanes_max(lanes_fma(wide, inverse, lanes_set(1.0f)), lanes_set(1.0f)));
-  float most = 1 / ((1 - size) * (1 - size)); /* 1 over the least s^2; the cap's cosine is 4 / (1 + h) - 1 */
+  float most = 1 / ((1 - size) * (1 - size)); /* the reciprocal of the least s^2; the cosine of the cap's
+                                               * angle is 4 / (1 + h) - 1 */
   lanes ratio = lanes_line(1.0f / (h + 1.0f), -8 * size * most, (1 + size) * (1 + size) * most);
   return row_of_ratio(table, ratio);
 }

@@ -1,7 +1,7 @@
 /* render/picture.h - the caller's picture, out of the tiles of a frame's sweeps.
  *
- * Contributions of lights add; opacity is the same in every sweep. Pixels are averaged where the frame is
- * oversampled. */
+ * The lights' contributions from all sweeps are added up; opacity is the same in every sweep. Pixels are
+ * averaged where the frame is oversampled. */
 #ifndef HL_RENDER_PICTURE_H
 #define HL_RENDER_PICTURE_H
 

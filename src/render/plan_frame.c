@@ -12,7 +12,8 @@
 
 /* ---- volumes and surfaces ---- */
 
-/* Whether a position lies in a volume's box: rays of an eye or a light there begin within it. */
+/* Whether a position lies in a volume's box, so that rays of an eye or a light at this position begin
+ * within the box. */
 static bool inside_box(const grid *grid, vec3 origin) {
   vec3 p = affine3_apply(grid->frame_to_index, origin);
   const double at[3] = {p.x, p.y, p.z};
@@ -69,8 +70,8 @@ static grid grid_of_frame(const hl_scene_volume *volume, const prepared_volume *
   return grid;
 }
 
-/* Brings the tree up to date that finds surfaces where shadow buffers leave light behind. Call it after the
- * frame's lights are placed. */
+/* Brings up to date the tree of surfaces behind which shadow buffers leave light. Call it after the frame's
+ * lights are placed. */
 static hl_status update_contact(hl_renderer *renderer, const frame *frame, hl_error *error) {
   surface_tree *tree = &renderer->cache.contact;
   double distance = hl_contact_distance(frame);
@@ -183,7 +184,8 @@ static hl_status place_eye_and_lights(const framed_scene *framed, frame_plan *pl
   if (status != HL_OK) return status;
   frame->spacing = fmin(scene->render.sheet_spacing,
                         hl_is_maximum(&scene->render) ? MAXIMUM_SPACING : GRID_MARGIN) *
-                   frame->content.voxel; /* at most the margin by which volumes continue beyond their faces */
+                   frame->content.voxel; /* the spacing is at most the margin by which volumes continue
+                                          * beyond their faces */
   hl_frame_set_up_lights(frame, framed);
   for (int i = 0; i < plan->volumes.count; i++)
     if (rays_start_inside(frame, &plan->volumes.grids[i])) plan->volumes.grids[i].cut = true;

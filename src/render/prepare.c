@@ -1,5 +1,5 @@
-/* render/prepare.c - rebuilds a grid when its voxels change, tables and relevance when the transfer function
- * does. */
+/* render/prepare.c - rebuilds a volume's grid when its voxels change, and its tables and relevant bricks
+ * when its transfer function changes. */
 #include "render/prepare.h"
 
 #include <string.h>
@@ -265,8 +265,9 @@ hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_funct
 
 /* ---- isosurfaces ---- */
 
-/* The surface of the frame before that has the value, axes and caps of the wanted one; null: there was none.
- * Where voxels, clip box or cuts changed, prepare_volume() has released all surfaces of the frame before. */
+/* Finds the surface of the frame before that has the same value, axes and caps as the wanted surface; null:
+ * there is none. Where voxels, clip box or cuts changed, prepare_volume() has released all surfaces of the
+ * frame before. */
 static const prepared_iso *known_iso(const prepared_volume *prepared, const prepared_iso *wanted) {
   for (size_t i = 0; i < prepared->iso_count; i++) {
     const prepared_iso *known = &prepared->iso[i];

@@ -60,9 +60,9 @@ LANES_INLINE void near_light(const shadow_lookup *lookup, const shadow_taps *tap
 }
 
 /* Near a box's face, the light's transmittance from the face to the slab, from the lengths of its ways.
- * found: the transmittance that the buffer holds; own: the transmittance if the box's matter were even and
- * nothing else in the way. A greater `found` means thinner matter: the depths are then scaled by the ratio of
- * the two optical depths. */
+ * found: the transmittance that the buffer holds. own: the transmittance that the box's matter would have
+ * if it were even and nothing else were in the way. If `found` is greater, the matter is thinner there: the
+ * depths are scaled by the ratio of the two optical depths. */
 LANES_INLINE void pass_face(light_depths *depths, int channel, lanes found, lanes own) {
   lanes_int some = own < 0.999f;
   lanes ratio = lanes_log2(lanes_clamp(found, 1e-6f, 1)) / lanes_log2(lanes_clamp(own, 1e-36f, 0.999f));
@@ -91,8 +91,9 @@ LANES_INLINE lanes reaching_face(const shadow_lookup *lookup, const shadow_taps 
   return lanes_select(taps->inside, reached, lanes_set(1.0f));
 }
 
-/* Does the same for sub-lights. Their pixels lie in all positions around the sample, so the mean over the
- * near pixels stands for them. */
+/* Corrects the light near a box's face for sub-lights, as reaching_face() does for one buffer. The pixels
+ * of the sub-lights' buffers lie in all positions around the sample, so the mean over the near pixels
+ * stands for them. */
 LANES_INLINE void correct_faces(light_depths *depths, int channels, color_lanes *reached) {
   for (int c = 0; c < channels; c++) {
     lanes own = lanes_set(0);
@@ -103,7 +104,7 @@ LANES_INLINE void correct_faces(light_depths *depths, int channels, color_lanes 
   }
 }
 
-/* The place where a slab's samples read a light: the first sheet below them. */
+/* The place at which a slab's samples look up a light, on the first sheet of the slab. */
 typedef struct light_place {
   const shade_light *light;
   const shadow_lookup *lookup; /* the look-up on this sheet */
@@ -129,8 +130,8 @@ LANES_INLINE color_lanes reaching(const light_place *place, light_depths *depths
       reached.c[c] = interpolated(place->lookup, &place->taps, light->cubic, c);
     if (faces == 0) continue;
     lanes at_face = reaching_face(place->lookup, &place->taps, depths, c);
-    /* Adds the difference between the cubic look-up and the bilinear one. The difference counts less, the
-     * more the face counts. */
+    /* Adds the difference between the cubic look-up and the bilinear one. The more a face of a box counts,
+     * the less the difference counts. */
     if (fades) {
       lanes differ = reached.c[c] - interpolated(place->lookup, &place->taps, 0, c);
       at_face = lanes_max(at_face + lanes_keep(faint, differ * (1.0f - depths->beside)), lanes_set(0));
@@ -140,8 +141,9 @@ LANES_INLINE color_lanes reaching(const light_place *place, light_depths *depths
   return reached;
 }
 
-/* The transmittance of one light to the media of a slab, through everything before the slab and through the
- * slab's own matter, averaged as the eye sees it. path: length of the light's way through the slab. */
+/* The transmittance from one light to the media of a slab: through everything before the slab, and through
+ * the slab's own matter, averaged with the weights with which the eye sees it. path: length of the light's
+ * way through the slab. */
 LANES_INLINE color_lanes passing_to_media(const shade_job *job, const light_place *place,
                                           const block_slab *slab, block_density *densities, int count,
                                           lanes3 towards, lanes path) {
@@ -168,13 +170,16 @@ LANES_INLINE color_lanes passing_to_media(const shade_job *job, const light_plac
 /* Where the light's way to a volume's sample begins, at the slab's first sheet: coordinates of the
  * classifier's tables. */
 typedef struct way_begin {
-  lanes start, change; /* the value there, and the change of the value per unit of the way */
-  lanes first, foot;   /* where the surface of this value begins, and where the sample's own surface begins */
-  lanes_int there;     /* the volume's matter is visible there, or may be visible */
+  lanes start, change; /* the table coordinate of the value at the way's begin, and its change per unit of
+                        * the way */
+  lanes first, foot;   /* coordinates where the surface to which the first value belongs begins, and where
+                        * the sample's own surface begins */
+  lanes_int there; /* lanes in which the volume's matter is visible at the way's begin, or may be visible */
 } way_begin;
 
-/* A value from which values rise too little to have come from lower ones within the slab counts as the value
- * of a layer below the sample's surface. way: the length of the light's way within the slab. */
+/* Finds the value where the light's way begins. If values rise so little from it that they cannot have
+ * risen from lower values within the slab, the value counts as belonging to a layer below the sample's
+ * surface. way: the length of the light's way within the slab. */
 LANES_INLINE way_begin find_begin(const block_density *d, lanes3 towards, lanes way) {
   const classifier *classifier = d->patch->volume->classifier;
   lanes seen = lanes_clamp(coordinate_seen(d), 0, CLASSIFIER_ENTRIES),
@@ -194,12 +199,14 @@ LANES_INLINE way_begin find_begin(const block_density *d, lanes3 towards, lanes 
 
 /* How much of the light at the slab's first sheet lights a sample's surface. */
 typedef struct own_surface {
-  lanes kept;    /* the fraction of the light taken before the slab that lights the surface again */
-  lanes passing; /* the fraction of the other light that reaches the surface within the slab */
+  lanes kept;    /* the fraction of the light that was taken before the slab but still lights the sample's
+                  * surface */
+  lanes passing; /* of the light that was not taken before the slab, the fraction that reaches the surface
+                  * within the slab */
 } own_surface;
 
-/* Where the light's way leaves another surface of the volume within the slab, that surface has taken the
- * light which was taken before the slab. A sample near a face which cuts matter belongs to the face's
+/* Where the light's way leaves another surface of the volume within the slab, that other surface has taken
+ * the light that was taken before the slab. A sample near a face which cuts matter belongs to the face's
  * surface. light, outside: at the slab's first sheet. */
 LANES_INLINE own_surface find_own_surface(const block_density *d, const way_begin *begin, lanes light,
                                           lanes outside) {

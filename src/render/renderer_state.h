@@ -60,8 +60,8 @@ typedef struct frame_request {
   size_t row_stride;       /* counted in floats */
 } frame_request;
 
-/* Lets the renderer make one part of each picture, as hl_renderer_share() does, where the renderers of the
- * parts exchange light. All of them must render the same scenes in the same order. */
+/* Lets the renderer make one part of each picture, as hl_renderer_share() does, for renderers that exchange
+ * light among the parts. The renderers of all parts must render the same scenes in the same order. */
 void hl_renderer_exchange(hl_renderer *renderer, const light_exchange *exchange);
 
 /* Refuses a frame that does not fit. Before that, it releases blocks kept for later frames if they are in the

@@ -53,8 +53,8 @@ LANES_INLINE int is_faced(const block_density *densities, int count, lanes_int s
   return lanes_bits(faced & seen) != 0;
 }
 
-/* Finds the direction from which a light's rays come at a position, and the light's strength there, without
- * colour, in arriving->full. Returns the length of the light's way through the slab. */
+/* Finds the direction from which a light's rays come at a position, and stores the light's strength there,
+ * without colour, in arriving->full. Returns the length of the light's way through the slab. */
 LANES_INLINE lanes find_direction(const shade_job *job, const shade_light *light, lanes3 position,
                                   arriving_light *arriving) {
   lanes path = lanes_set(light->path), strength = lanes_set(1.0f);

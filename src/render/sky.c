@@ -64,8 +64,8 @@ static field_surface surface_of(const surfaces *all, const surface_mesh *mesh) {
       .cut_count = mesh->is_cut ? all->cut_count : 0};
 }
 
-/* The number of channels of the field. One channel is enough where the sky has one colour and all matter
- * takes light of all colours alike. */
+/* The number of channels of the sky's field. One channel is enough where the sky has one colour and all
+ * matter takes the same fraction of red, green and blue light. */
 static int channels_of(const hl_scene_description *scene) {
   if (scene->sky.type != HL_SKY_UNIFORM) return 3;
   for (size_t v = 0; v < scene->volume_count; v++)

@@ -18,8 +18,8 @@ typedef struct frame_sky {
                                    * renderer finds all light */
 } frame_sky;
 
-/* Checks whether a field fits a frame, and makes it anew where it does not. Without a sky the field is
- * released. `room` is asked first whether the bytes may be taken. */
+/* Checks whether the sky's field fits a frame, and makes it anew where it does not. Without a sky the field
+ * is released. `room` is a function that is called before memory is taken, and that may refuse. */
 typedef struct sky_room {
   hl_status (*check)(void *data, uint64_t bytes, hl_error *error);
   void *data;

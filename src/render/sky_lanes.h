@@ -33,16 +33,16 @@ LANES_INLINE lanes way_to_outside(const block_density *d) {
          (1.0f - d->skin);
 }
 
-/* The sky's light at a sample, in each channel: as it lights a medium, as it lights a surface, and its mean
- * over all directions. */
+/* The sky's light at a sample, in each channel: the light that a medium receives, the light that a surface
+ * receives, and the mean over all directions. */
 typedef struct sky_parts {
   lanes medium[3], surface[3], mean[3];
 } sky_parts;
 
-/* The fraction of the sky's light that a volume sends on, without its colour. For a medium it is the albedo.
- * Where the medium scatters light more than once, the fraction w of its light is in the grid of scattered
- * light (scatter/parts.h), where w is the albedo with the colour. For a surface, which the sky lights by its
- * own law, w of the mean is in the grid. */
+/* The fraction of the sky's light that a volume sends on, without its colour. For a medium it is the
+ * albedo. Where the medium scatters light more than once, the fraction w of its light is in the grid of
+ * scattered light (scatter/parts.h), where w is the albedo with the colour. The sky lights a surface by
+ * another law; there the grid holds the fraction w of the sky's mean light. */
 LANES_INLINE lanes sent_on(const shade_volume *volume, const sky_parts *parts, lanes surface, int c,
                            lanes color) {
   lanes medium = parts->medium[c], on_surface = parts->surface[c];

@@ -20,7 +20,7 @@ typedef struct sky_cap {
 /* The cap whose light has the mean and the flux that the harmonics give, and their second degree along the
  * flux. Derived: where x is the cosine to the cap's middle and c the cosine of its edge, the mean of x over
  * the cap is (1 + c) / 2, and the mean of (3 x^2 - 1) / 2 is c (1 + c) / 2. So c is the ratio of the two,
- * whatever part of the light is even. The cap never gets more than all light. */
+ * whatever part of the light is even. The cap is given all light at most. */
 LANES_INLINE sky_cap cap_of_sky(const lanes *light) {
   sky_cap cap;
   lanes mean = light[0] * (float)HARMONIC_0, least = lanes_set(1e-12f);

@@ -20,7 +20,8 @@ struct surface_samples;
 
 /* The colours of a volume's voxels, or of its mask. */
 typedef struct voxel_colors {
-  const unsigned char *voxels; /* [k][j][i][4] (volume/colors.h, label/mask.h); null: there are none */
+  const unsigned char *voxels; /* owned by the volume or mask; [k][j][i][4] colours of voxels
+                                * (volume/colors.h, label/mask.h); null: there are none */
   int32_t last[3];             /* the greatest index along i, j, k */
   int32_t step_bytes[3];       /* bytes from a voxel to the next along i, j, k */
   const float *decode;         /* [256]: the linear values of codes */
@@ -37,9 +38,9 @@ typedef struct shade_volume {
   float voxel; /* the smallest edge of a voxel; frame units */
   float ambient, diffuse, specular, shininess; /* ka kd ks n */
   float emission;                              /* ke; 1 for a volume shaded flat */
-  float cast[HL_CHANNELS];               /* extinction towards the lights over extinction towards the eye; 0:
-                                          * casts no shadow */
-  float to_index[3][4], low[3], high[3]; /* frame space to index space, and the volume's box there */
+  float cast[HL_CHANNELS];                     /* factors of the extinction towards the lights over the
+                                                * extinction towards the eye; 0: the volume casts no shadow */
+  float to_index[3][4], low[3], high[3];       /* frame space to index space, and the volume's box there */
   int32_t face_cuts[3][2]; /* [axis][low, high]: -1 where the face of the box cuts visible matter, else 0 */
   int any_face;            /* some face of the box cuts visible matter */
   const float (*shown)[4]; /* in a maximum projection: SHOWN_FROM and so on, per table entry; else null */
@@ -81,8 +82,9 @@ typedef struct shade_light {
                       * which makes no highlights; else 0 */
   int inverse_square;
   int shadowed;
-  float path; /* length of the light's way through the slab. Parallel: sheet spacing / |l.h|. Else: the sheet
-               * spacing, which each sample divides by its own |l.h| */
+  float path; /* length of the light's way through the slab. For a parallel light it is the sheet spacing /
+               * |l.h|. For other lights it is the sheet spacing, which each sample divides by its own
+               * |l.h| */
   const shadow_lookup *lookups;     /* [planes of the buffer's ring]; for a light with shadows: how the light
                                      * that reaches a sample is looked up */
   const sublight_lookup *sublights; /* [sublight_count]; where there are any, a sample gets the mean of their
@@ -100,12 +102,12 @@ typedef struct shade_light {
 
 typedef struct shade_job {
   sheet_rays rays;      /* image pixels -> frame space, in the middle between the two sheets */
-  float through[3];     /* parallel: step from one sheet to the next along the eye's rays */
+  float through[3];     /* parallel rays: the step from one sheet to the next along the eye's rays */
   float towards_eye[3]; /* parallel: unit direction to the eye */
   float eye[3];         /* frame space; parallel: where depth is 0 */
   float normal[3];      /* h */
-  float path; /* length of the eye's ray through the slab. Parallel: sheet spacing / |w.h|. Perspective: the
-               * sheet spacing, which each pixel divides by its own |w.h| */
+  float path; /* length of the eye's ray through the slab. For parallel rays it is the sheet spacing /
+               * |w.h|. With perspective it is the sheet spacing, which each pixel divides by its own |w.h| */
   int sheet;  /* k: the slab lies between sheets k-1 and k */
   int plane;  /* plane in the lights' rings that keeps the light which reaches sheet k-1 */
   float height, spacing; /* height of sheet k above the first sheet, and distance to sheet k-1; frame units */
@@ -115,7 +117,8 @@ typedef struct shade_job {
   float ambient[3];               /* Ia; zero in all sweeps but the first */
   float emission;                 /* 1 in the first sweep, 0 in the others: volumes' emission is added once */
   int channels;                   /* number of channels of light attenuation: 1 or 3 */
-  const scatter_field *scattered; /* light scattered more than once; set in the first sweep; null: none */
+  const scatter_field *scattered; /* the light that media scatter more than once; set in the first sweep;
+                                   * null: there is none */
   const sky_light *sky;           /* null: no sky, or the sky belongs to another sweep */
   /* [lights of the sweep][channels]; for one tile, row by row: the fraction that surfaces close before the
    * samples let through (late/); null: everything. */
@@ -144,10 +147,10 @@ typedef struct tile_slab {
 typedef uint32_t shade_tile_function(const shade_job *job, const tile_slab *tile, float *pixels,
                                      uint64_t *samples);
 
-/* Measures of the layers depth, normal and object, for sheets that go front to back: alpha; the depth at
- * which alpha first reaches 0.01, infinite until then; the object that is met there, 0 until then; the
- * samples, of the pixel's sixteen, that a mesh covers there, one bit each; and sums of depth and normal,
- * weighted by the alpha that each sample adds. pixels: [16 blocks][MEASURES][16]. */
+/* What is measured in each pixel for the layers depth, normal and object, while sheets go front to back:
+ * alpha; the depth at which alpha first reaches 0.01 (infinite until then); the object that is met there (0
+ * until then); which of the pixel's sixteen samples a mesh covers there, one bit each; and the sums of
+ * depth and normal, weighted by the alpha that each sample adds. pixels: [16 blocks][MEASURES][16]. */
 enum {
   MEASURE_ALPHA,
   MEASURE_DEPTH_FIRST,
@@ -161,9 +164,10 @@ enum {
 /* The alpha at which depth_first and object are measured (halflight/layers.h). */
 #define FIRST_OPACITY 0.01f
 
-/* A maximum projection keeps for each pixel and visible volume, as coordinates in the volume's table: the
- * greatest shown value so far, -1 where there is none; the value on the sheet before the last slab; and this
- * slab's number, -1 where the box cuts the slab. A tile holds [volumes][MAXIMUM_ROWS][16 blocks][16]. */
+/* The numbers that a maximum projection keeps for each pixel and visible volume, as coordinates in the
+ * volume's table: the greatest shown value so far, -1 where there is none; the value on the sheet before
+ * the last slab; and this slab's number, -1 where the box cuts the slab. A tile holds
+ * [volumes][MAXIMUM_ROWS][16 blocks][16]. */
 enum { MAXIMUM_GREATEST, MAXIMUM_BEFORE, MAXIMUM_SHEET, MAXIMUM_ROWS };
 
 /* Which values a transfer function shows. Each entry of its table has a row of four numbers. Between an entry

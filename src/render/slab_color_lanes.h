@@ -3,18 +3,19 @@
  *
  * A slab that spans several colours shows their mean. Derived: the place in a slab where the part s of its
  * optical depth e is passed counts with the weight e exp(-e s) / (1 - exp(-e)). The mean of s with this
- * weight is u = seen_part(e), which is 1/2 in thin slabs and 1 / e in opaque ones. Even weights over the
- * first 2 u of the depth have the same mean and leave out hidden matter. Depth grows with the integral of
- * extinction over density. So the mean colour is (K(f2) - K(f1)) / (T(f2) - T(f1)): T is the integral of
- * extinction, K the integral of extinction times colour, f1 the density where the slab begins, f2 the density
- * where 2 u of its depth are passed. As f2 nears f1 this is the colour of f1. */
+ * weight is u = seen_part(e), which is 1/2 in thin slabs and 1 / e in opaque ones. Equal weights over the
+ * first part of the slab, up to 2 u of the depth, have the same mean and leave out hidden matter. Depth
+ * grows with the integral of extinction over density. So the mean colour is (K(f2) - K(f1)) / (T(f2) -
+ * T(f1)): T is the integral of extinction, K the integral of extinction times colour, f1 the density where
+ * the slab begins, f2 the density where 2 u of its depth are passed. As f2 nears f1 this is the colour of
+ * f1. */
 #ifndef HL_RENDER_SLAB_COLOR_LANES_H
 #define HL_RENDER_SLAB_COLOR_LANES_H
 
 #include "render/light_depth_lanes.h"
 
-/* The least difference of T(f2) and T(f1), as a part of T. A smaller difference of floats has lost more
- * digits. */
+/* The least difference of T(f2) and T(f1), as a part of T. A smaller difference of two floats has too few
+ * exact digits. */
 static const float LEAST_PART_OF_SHOWN = 0x1p-12f;
 
 /* Looks up K for red, green and blue, and T, in that order, at a coordinate of the tables. */

@@ -56,12 +56,13 @@ typedef struct block_density {
   const shade_patch *patch;
   int there; /* the volume may be visible in some of the pixels */
   block_way way;
-  lanes before, after; /* coordinates in the tables: where the slab's covered part starts and ends */
+  lanes before, after; /* table coordinates of the densities where the slab's covered part starts and ends */
   way_sums sums;       /* sums between the two coordinates */
-  lanes extinction;    /* extinction averaged over the slab, as 0 outside the box */
-  lanes centre;        /* in joined lanes: the extinction's centre of gravity in the slab, 0 to 1 */
-  lanes factor; /* with gradient opacity, a mask or a function of two numbers: the factor of extinction; sums
-                 * and extinction contain it */
+  lanes extinction;    /* extinction averaged over the whole slab, where it counts as 0 outside the box */
+  lanes centre;        /* in joined lanes: the centre of gravity of the extinction, as a fraction of the
+                        * slab, 0 to 1 */
+  lanes factor;        /* with gradient opacity, a mask or a function of two numbers: the factor by which
+                        * extinction and the sums were multiplied */
   lanes row;    /* row of the table for the second number, with a function of two numbers (plane_lanes.h) */
   lanes seen;   /* where the matter is seen, as a fraction of the way through the slab's covered part */
   lanes evenly; /* where the matter would be seen if its extinction were even */
@@ -135,7 +136,8 @@ typedef struct block_slab {
                             * one ends */
   lanes place;             /* where in the slab the position lies, 0 (first sheet) to 1 */
   lanes_int joined;        /* lanes where one of several volumes fills less than `part` */
-  lanes centre;            /* in joined lanes: the extinction's centre of gravity in the slab, 0 to 1 */
+  lanes centre;            /* in joined lanes: the centre of gravity of all volumes' extinction, as a
+                            * fraction of the slab, 0 to 1 */
   lanes total, depth;      /* extinction averaged over the slab; optical depth */
   lanes left;              /* exp(-depth) */
   lanes opacity;           /* 0 where nothing is seen */
@@ -152,8 +154,9 @@ LANES_INLINE lanes way_of_depth(lanes from_a, lanes from_b, lanes u) {
   return lanes_select(rising, t, 1.0f - t);
 }
 
-/* Finds where a slab is seen that several boxes share: at the place where one volume with all the matter
- * would be seen. The mean of the parts' centres, weighted by extinction, is the centre of the whole. */
+/* Finds where the matter of a slab is seen that several boxes share: where the matter would be seen if it
+ * all belonged to one volume. The mean of the parts' centres, weighted by extinction, is the centre of the
+ * whole. */
 LANES_INLINE lanes place_of_joined(block_density *densities, int count, const block_slab *slab, lanes u,
                                    lanes place) {
   lanes length = lanes_max(slab->part.length, lanes_set(1e-6f));
@@ -242,7 +245,7 @@ LANES_INLINE void find_normal(const block_slab *slab, block_density *d) {
   d->normal = scale3(slope, outward / lanes_max(steepness, lanes_set(1e-18f)));
 }
 
-/* The last face that the eye's ray comes through before it meets a point of a volume. */
+/* The last face of a box or a cut through which the eye's ray passes before it meets a point of a volume. */
 typedef struct cut_face {
   lanes way;      /* from the point back to the face; frame units */
   lanes3 outward; /* the face's unit normal */

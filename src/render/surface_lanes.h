@@ -14,16 +14,17 @@ LANES_INLINE lanes3 load3(const float v[3][SURFACE_SAMPLES]) {
 typedef struct lit_sample {
   lanes3 position, normal; /* unit normal, on the side that is lit */
   lanes3 towards;          /* unit direction to the light */
-  lanes facing;            /* the cosine between the two; greater than 0 where the light is wanted */
+  lanes facing;            /* the cosine of the angle between the normal and the light's direction; greater
+                            * than 0 where the light is wanted */
 } lit_sample;
 
 /* The direction in which a look-up moves away from a surface, at most of length 1: along the normal n, but
- * not to where the buffer meets the surface earlier than at the sample, since the buffer may hold the surface
- * there already. Derived: let t be the direction to the light and h that of growing heights of sheets. The
- * light's view moves with e, at a right angle to t. The ray of this view meets the surface's plane e + t
- * (n.e) / (n.t) farther on, so that the height there grows by e.g, where g = h - a n and a = (h.t) / (n.t); g
- * is at a right angle to t. For e = n - (n.t) t that is h.n - a. Where it is less than 0, the part of e along
- * g is left out. */
+ * not to where the buffer meets the surface earlier than at the sample, since the buffer may hold the
+ * surface there already. Derived: let t be the direction to the light and h that of growing heights of
+ * sheets. Moving the look-up along e, at a right angle to t, moves it in the light's view. The ray of this
+ * view meets the surface's plane e + t (n.e) / (n.t) farther on, so that the height there grows by e.g,
+ * where g = h - a n and a = (h.t) / (n.t); g is at a right angle to t. For e = n - (n.t) t that is h.n - a.
+ * Where it is less than 0, the part of e along g is left out. */
 LANES_INLINE lanes3 way_from_surface(const float h[3], const lit_sample *sample) {
   lanes3 sheets = {lanes_set(h[0]), lanes_set(h[1]), lanes_set(h[2])};
   lanes along = dot3(sheets, sample->normal),
@@ -74,8 +75,8 @@ LANES_INLINE color_lanes light_of_sample(const shade_job *job, const shade_light
   return passing;
 }
 
-/* The fraction of the light that surfaces close before the samples let through. The buffer may hold these
- * surfaces already, or not yet. */
+/* The fraction of the light that surfaces close before the samples let through. The buffer may hold all,
+ * some or none of these surfaces. */
 LANES_INLINE lanes contact_of(const shade_job *job, const shade_light *light, const surface_samples *samples,
                               int channel) {
   if (samples->contact == NULL) return lanes_set(1.0f);

@@ -8,7 +8,7 @@
  * there. */
 typedef struct surface_point {
   vec3 position, normal,
-      towards_eye; /* frame space; normal: towards the eye; 0 on the back of one-sided meshes */
+      towards_eye; /* frame space; the normal is turned towards the eye; 0 on the back of one-sided meshes */
   double color[3]; /* linear RGB */
 } surface_point;
 

@@ -15,9 +15,9 @@ typedef struct surface_samples {
   float color[3][SURFACE_SAMPLES];                 /* linear RGB */
   float lit[3][SURFACE_SAMPLES];                   /* the result: the light that leaves towards the eye */
   float ambient, diffuse, specular, shininess, emission; /* ka kd ks n ke */
-  float even;      /* the fraction of light that is sent on from any angle, as by a medium */
-  float behind[3]; /* of the part `even`, the fraction that is sent on where light comes from behind the
-                    * surface */
+  float even; /* the fraction of light that the material sends on equally from any angle, as a medium does */
+  float behind[3]; /* R, G, B: of the part `even`, the fraction that is sent on where light comes from
+                    * behind the surface */
   int receives_shadow;
   /* [lights of the sweep][channels]; the fraction of light that surfaces close before the samples let through
    * (late/); null: everything. */

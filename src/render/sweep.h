@@ -1,5 +1,5 @@
-/* render/sweep.h - one pass over the sheets on the processors: its state, and the stages that the sheet loop
- * calls. The plan says what the pass does (plan/frame_plan.h); the pass only reads it.
+/* render/sweep.h - one pass over the sheets on the processors: its state, and the stages that the sheet
+ * loop calls. The plan says what the pass does (plan/frame_plan.h), and the pass never changes it.
  *
  * Threads own tiles: an image tile is filled, shaded and composited by one task, a light tile filled and
  * composited by one task, always in the same order, so that the picture does not depend on threads. */
@@ -37,7 +37,8 @@ static inline bool hl_light_needs(const sweep_light *light, size_t tile, int sla
 /* The sweep advances in stretches of slabs: a tile is taken through all slabs of a stretch by one thread. The
  * lights are a stretch ahead of the picture, and both share the threads (sweep_loop.c). */
 typedef struct slab_stretch {
-  int first, end; /* the slabs before sheets first to end - 1; empty where they are equal */
+  int first, end; /* the slabs before the sheets from `first` to `end` - 1; no slabs where the two are
+                   * equal */
 } slab_stretch;
 
 /* One thread's counts, on cache lines of its own. */
@@ -82,7 +83,8 @@ typedef struct sweep_layers {
   float (*ones)[4];    /* a colour table */
 } sweep_layers;
 
-/* The points that stand for a light where samples of surfaces look for surfaces close before them (late/). */
+/* The number of points along each side of a light that stand for the light, where samples of surfaces look
+ * for surfaces close before them (late/). */
 enum { LIGHT_POINTS_SIDE = 4 };
 typedef struct light_points {
   vec3 offset[LIGHT_POINTS_SIDE * LIGHT_POINTS_SIDE]; /* [count]; from the light's centre (hl_light_point) */
@@ -131,7 +133,8 @@ typedef struct sweep_times {
 
 /* The loop over the sheets. */
 typedef struct sweep_loop {
-  int ring; /* number of sheets whose light is kept; 1: picture and lights take turns, slab by slab */
+  int ring; /* number of sheets whose light a buffer keeps; 1: picture and lights are worked on by turns,
+             * slab by slab */
   slab_stretch picture_stretch, light_stretch;
   int task_start[FRAME_LIGHTS + 2]; /* index of the picture's first task, of each light's first task, and one
                                      * past the last task */
@@ -213,13 +216,13 @@ void hl_sweep_open(sweep *sweep);
 void hl_sweep_count(const sweep *sweep, hl_render_statistics *statistics);
 void hl_sweep_end(sweep *sweep);
 
-/* The memory that hl_sweep_begin() takes for those sweeps of a frame that were counted. */
+/* The memory that hl_sweep_begin() takes, summed over the sweeps of a frame that were counted. */
 typedef struct sweeps_memory {
   hl_layout buffers;         /* the lights' shadow buffers, which the renderer keeps between frames */
   size_t kept[FRAME_LIGHTS]; /* number of bytes that shadow methods keep between frames; the sweeps use them
                               * in turn */
-  hl_layout passing; /* memory that ends with each sweep; without light textures and the lists of splatted
-                      * voxels */
+  hl_layout passing;         /* memory that a sweep releases at its end; light textures and lists of splatted
+                              * voxels are not counted */
 } sweeps_memory;
 
 /* Adds the memory that hl_sweep_begin() takes for a sweep that is set up. The sweep cannot be used any more:

@@ -38,8 +38,8 @@ static void end_light(const sweep *sweep, sweep_light *light) {
 /* ---- how long stretches are ---- */
 
 /* A stretch has LONGEST_STRETCH slabs where nothing limits it (measured: docs/laboratory/threads.md). The
- * planes that all lights of a frame keep for a stretch take at most RING_BYTES. With one thread nobody waits,
- * and picture and lights take turns. */
+ * planes that all lights of a frame keep for a stretch take at most RING_BYTES. With one thread there is no
+ * waiting, so picture and lights are worked on by turns. */
 enum { LONGEST_STRETCH = 8 };
 static const uint64_t RING_BYTES = 64 << 20;
 
@@ -211,7 +211,7 @@ static double longest_way(const sweep *sweep) {
   return least < LEAST_CLIMB ? INFINITY : sweep->geometry->sheets.spacing / least;
 }
 
-/* The distance from the faces that cut volumes, up to which the lights' surfaces depend on the faces. */
+/* The distance from the faces that cut volumes within which the lights' surfaces depend on these faces. */
 static double reach_of_faces(const sweep *sweep) {
   double greatest = 0;
   for (int g = 0; g < sweep->content.volume_count; g++)

@@ -63,7 +63,7 @@ static void set_up_cuts(const plan_volumes *volumes, sweep_constants *constants)
   }
 }
 
-/* Finds the faces of the box that cut visible matter where no other volume continues it. */
+/* Finds the faces of a volume's box that cut visible matter, where no other volume continues the matter. */
 static void find_box_faces(const grid *grid, shade_volume *shade) {
   for (int axis = 0; axis < 3; axis++) {
     const float at[2] = {grid->face_low[axis], grid->face_high[axis]};

@@ -77,8 +77,8 @@ static layer_pass *add_pass(sweep *sweep, float *pixels, const shade_light *ligh
   return pass;
 }
 
-/* Adds the passes of a light: its picture and its shadow. For a sun of the sky it adds the sun's share of the
- * sky's two pictures. */
+/* Adds the passes of a light: its picture and its shadow. For a sun of the sky it adds passes for the sun's
+ * share of the sky's two pictures. */
 static void add_light_passes(sweep *sweep, int index) {
   const light_pixels *to = &sweep->target.layers->lights[sweep->geometry->light[index]];
   const shade_light *light = &sweep->constants.lights[index];

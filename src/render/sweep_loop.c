@@ -34,8 +34,8 @@ static uint64_t carried_tiles(const shadow_buffer *buffer, slab_stretch stretch,
   return bits;
 }
 
-/* Lists the tiles of a view that a stretch needs. light: the light whose view it is; null: the picture's
- * view. */
+/* Lists the tiles of a view that a stretch needs. light: the light to which the view belongs; null: the
+ * view is the picture's. */
 static int list_tiles(const occupancy *occupancy, const sweep_light *light, slab_stretch stretch,
                       uint32_t *list) {
   int count = 0;

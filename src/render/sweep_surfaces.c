@@ -9,7 +9,7 @@
 
 /* ---- begin and end ---- */
 
-/* light: the light whose view it is; null: the eye's view. */
+/* Makes the fragments of a view. light: the light to which the view belongs; null: the eye. */
 static hl_status make_fragments(sweep *sweep, const view *view, const sweep_light *light,
                                 const occupancy *occupancy, fragments *made, hl_error *error) {
   const light_shadow *shadow = light != NULL ? &light->shadow : NULL;
@@ -137,7 +137,8 @@ static void shade_batch(const sweep *sweep, const tile_slab *slab, surface_batch
   batch->count = 0;
 }
 
-/* Finds the fragments of a slab's round: of each pixel, its fragment number `round`, counted from below. */
+/* Finds the fragments that are worked on in one round of a slab: each pixel's fragment number `round`,
+ * counted from the lowest. */
 static size_t fragments_of_round(fragment_range range, int round, fragment *list) {
   size_t count = 0;
   int number = 0;

@@ -14,8 +14,8 @@ bool hl_sweep_has_unseen(const sweep *sweep);
 hl_status hl_sweep_surfaces_begin(sweep *sweep, hl_error *error);
 hl_status hl_sweep_surfaces_begin_lights(sweep *sweep, hl_error *error);
 void hl_sweep_surfaces_end(sweep *sweep);
-/* Counts about the memory that both take (fragments.h), for lights whose shadows are planned. Sets no
- * pointers. */
+/* Counts approximately the memory that both functions above take (fragments.h), for lights whose shadows
+ * are planned. Sets no pointers. */
 void hl_sweep_surfaces_count(sweep *sweep, hl_layout *layout);
 
 /* The fragments of the eye's view in a slab of a tile. Ask for each slab once, in rising order. */

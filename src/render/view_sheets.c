@@ -85,8 +85,8 @@ static void enter_cuts(const view_sheets *sheets, slab_place place, float *enter
   }
 }
 
-/* A patch's entries: where its rays enter and leave the box. One task at a time uses a patch. Rows of entries
- * are handed out in order, so that only as much memory is touched as patches ask for. */
+/* A patch's entries: where its rays enter and leave the box. One task at a time uses a patch. Rows of
+ * entries are handed out in order, so that memory beyond the requested rows is never touched. */
 static float *entries_of(view_sheets *sheets, slab_place place) {
   uint32_t *entry = &sheets->entry_of[place.patch];
   if (*entry != NO_ENTRY) return sheets->entries + *entry * sheets->entry_floats;
@@ -386,10 +386,10 @@ static void fill_sheet(patch_bundle *b, int i, uint32_t wanted, uint32_t others)
   b->pixels += hl_pixels_of_blocks(blocks.filled);
 }
 
-/* A slab shows something where one of its two sheets does; then both sheets are wanted. First the odd sheets
- * are filled where their cells may show something. Then the even sheets, where a neighbouring odd sheet shows
- * something or their own cells may. Last the odd sheets again, where a neighbouring even sheet shows
- * something. */
+/* A slab shows something where one of its two sheets does; then both sheets are wanted. First the odd
+ * sheets are filled where their cells may show something. Then the even sheets are filled where a
+ * neighbouring odd sheet shows something or their own cells may. Last the remaining blocks of odd sheets
+ * are filled where a neighbouring even sheet shows something. */
 static void fill_sheets(patch_bundle *b) {
   for (int i = 1; i <= b->slabs; i += 2) fill_sheet(b, i, 0, relevant_beside(b, i));
   for (int i = 0; i <= b->slabs; i += 2) fill_sheet(b, i, beside_visible(b, i), relevant_beside(b, i));

@@ -40,7 +40,7 @@ typedef struct patch_run {
   uint16_t shows[RUN_SLABS]; /* per slab of the bundle: the filled blocks in which matter is visible */
 } patch_run;
 
-/* Consecutive slabs that touch a patch, from the first to the last. */
+/* A row of consecutive slabs that all touch a patch: the first and the last slab. */
 typedef struct slab_row {
   int32_t first, last;
 } slab_row;
@@ -53,28 +53,30 @@ typedef struct view_sheets {
   double beside; /* the eye's view: the longest way of light through a slab, frame units. A light's view:
                   * FACE_VOXELS where the light lights surfaces, else 0 */
   occupancy occupancy;
-  voxel_lists *lists;   /* owned; [grids]; splat only */
-  int bundle;           /* number of sheets that are filled in one go; a divisor of RUN_SLABS */
-  int ring;             /* number of sheets that are kept: bundle + 1; sheet k at k % ring */
-  void *memory;         /* borrowed from the reserve; holds all arrays below */
-  float *density;       /* [patches][ring][256], block-major */
-  kept_patch *kept;     /* [patches][ring]; says which densities are in `density` */
-  int reached;          /* number of sheets that have sources: the sheets of a stretch and of its bundles */
-  fill_source *sources; /* [reached][grids]; the source of sheet k at k % reached */
+  voxel_lists *lists; /* owned; [grids]; splat only */
+  int bundle;         /* number of sheets that are filled in one go; a divisor of RUN_SLABS */
+  int ring;       /* number of sheets whose densities are kept: bundle + 1; sheet k lies at place k % ring */
+  void *memory;   /* borrowed from the reserve; holds all arrays below */
+  float *density; /* [patches][ring][256], block-major */
+  kept_patch *kept; /* [patches][ring]; says which densities are in `density` */
+  int reached;      /* number of sheets whose sources are kept: the sheets of a stretch and of its bundles */
+  fill_source *sources; /* [reached][grids]; the source of sheet k lies in row k % reached */
   slab_run *runs; /* [run_count][grids]; runs of slabs that a stretch touches; run k is row k % run_count */
   int run_count;
   patch_run *patch_runs; /* [patches] */
   slab_row *rows;        /* [patches]; no slab from the last requested one up to the row touches the row's
                           * patch */
-  /* the next two exist only where a box cuts visible matter; else they are null */
-  uint32_t *entry_of; /* [patches]; its row of entries; NO_ENTRY where none was asked for */
+  /* the next two arrays exist only where a box cuts visible matter; else they are null */
+  uint32_t *entry_of; /* [patches]; the number of the patch's row of entries; NO_ENTRY where no row was
+                       * requested */
   box_rays *box_rays; /* [grids] */
   float *entries; /* [patches][entry_floats], used up to entry_count: where rays enter a box and leave it */
   uint32_t entry_count; /* atomic */
   /* Floats of a row: [2][256] for the box and cuts that keep an inside. Where cuts keep an outside, [2][256]
    * more for the current slab, and [2][256] for each of these cuts. */
   size_t entry_floats;
-  /* the next two: the cuts of all grids, one grid after the other; null where no cut counts in this view */
+  /* the next two arrays: the cuts of all grids, one grid after the other; null where no cut counts in this
+   * view */
   run_cut *cuts;
   box_rays *cut_rays;
 } view_sheets;
@@ -105,8 +107,8 @@ static inline bool hl_patch_is_touched(view_sheets *sheets, size_t patch, int sl
   return slab >= row->first && (slab <= row->last || hl_patch_reaches(sheets, patch, slab));
 }
 
-/* The needed blocks of a patch in which a slab, which touches the patch, may show something. There may be
- * more of them than hl_patch_slab() then finds. */
+/* The needed blocks of a patch in which a slab, which touches the patch, may show something.
+ * hl_patch_slab() may then find fewer blocks. */
 uint32_t hl_patch_relevant(const view_sheets *sheets, slab_place place, uint32_t need);
 
 /* A patch's densities on a slab's two sheets. */

@@ -12,7 +12,8 @@ typedef struct color_sums {
   lanes color[3], weight;
 } color_sums;
 
-/* offset: bytes from the first voxel to the corner; share: its trilinear weight. */
+/* Adds the colour of one of the eight voxels around a position. offset: bytes from the first voxel to this
+ * voxel; share: its trilinear weight. */
 LANES_INLINE void add_corner(const voxel_colors *colors, lanes_int offset, lanes share, color_sums *sums) {
   lanes_int packed = lanes_gather_bytes(colors->voxels, offset);
   lanes weight = share * lanes_from_int((packed >> 24) & 255);
@@ -23,10 +24,10 @@ LANES_INLINE void add_corner(const voxel_colors *colors, lanes_int offset, lanes
   }
 }
 
-/* The mean of the eight voxels' linear colours, each weighted trilinearly and by its own weight (colors.h):
- * what colours multiplied by opacity give, divided by the opacity (Porter and Duff, "Compositing digital
- * images", 1984). Beyond the outermost voxels their colours continue. Returns the mean weight, 0 to 255;
- * where it is 0 the colour is black. */
+/* The mean of the eight voxels' linear colours, each weighted trilinearly and by its own weight (colors.h).
+ * This is the interpolated colour times opacity, divided by the interpolated opacity (Porter and Duff,
+ * "Compositing digital images", 1984). Beyond the outermost voxels their colours continue. Returns the mean
+ * weight, 0 to 255; where it is 0 the colour is black. */
 LANES_INLINE lanes voxel_color_at(const voxel_colors *colors, const float to_index[3][4], lanes3 position,
                                   lanes color[3]) {
   lanes_int near[3], far[3]; /* bytes along each axis */
@@ -54,8 +55,8 @@ LANES_INLINE lanes voxel_color_at(const voxel_colors *colors, const float to_ind
   return sums.weight;
 }
 
-/* Moves colours towards a mask's, by its weights. position: frame space. Where a brick of the mask has one
- * colour, all positions in it have this colour. The result is set in the active lanes. */
+/* Mixes matter's colours with a mask's colours, by the mask's weights. position: frame space. Where a brick
+ * of the mask has one colour, all positions in it have this colour. The result is set in the active lanes. */
 LANES_INLINE void tint_matter(const voxel_colors *tints, const mask_lattice *mask, lanes3 position,
                               uint32_t active, lanes color[3]) {
   mask_places p = places_in_mask(mask, position);

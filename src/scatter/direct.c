@@ -1,8 +1,8 @@
 /* scatter/direct.c - the lights' unscattered light at the nodes.
  *
- * The nodes' extinction is summed towards each of a few points of a light, in steps as long as the nodes'
- * distance. A node holds the mean over its box: the light that reaches the box's lit side, times (1 -
- * exp(-t)) / t for the optical depth t of the box. */
+ * Light that reaches a node is found for a few points of each light: extinction is summed along the way to
+ * the point, in steps as long as the distance of the nodes. A node holds the mean over its box: the light
+ * that reaches the box's lit side, times (1 - exp(-t)) / t for the optical depth t of the box. */
 #include <math.h>
 #include <string.h>
 
@@ -34,8 +34,8 @@ typedef struct direct_job {
   int side; /* points along each side of the light's square */
 } direct_job;
 
-/* Adds the extinction at a position in the grid, in units of its spacing, to sums[channels]; false outside
- * the grid. */
+/* Adds the extinction at a position in the grid, in units of its spacing, to sums[channels]; false: the
+ * position lies outside the grid. */
 static bool add_extinction(const direct_job *job, const float at[3], float weight, float *sums) {
   const int32_t *count = job->nodes->count;
   size_t low[3];
@@ -94,7 +94,7 @@ static void meet_mesh(void *data, const surface_hit *hit) {
   for (int c = 0; c < 3; c++) passing[c] *= (float)(1 - hit->opacity * color[c]);
 }
 
-/* Adds one point of the light, which has a share of the light. */
+/* Adds the light of one point of a light, which stands for a share of it. */
 static void add_point(const direct_job *job, const int32_t at[3], size_t node, const double square[2]) {
   const light_source *source = job->source;
   vec3 offset = job->side > 1 ? hl_light_point(source, square[0], square[1]) : (vec3){0, 0, 0};

@@ -2,14 +2,14 @@
  * matter is.
  *
  * Samples are lit by the light of nodes, interpolated linearly in the distance. Between nodes with the
- * extinctions e and f, each of which covers half of the way, light is linear in the optical depth. On a line
- * that crosses the face between them, where light goes from u to v, it is u + (v - u) e / (e + f) in the
- * middle. Linear interpolation gives this value if the node of less matter, f, has v + (v - u) (e - f) / (e +
- * f) (derived). Lines along the face are another case. Beside the matter they hold the light of the sky, or
- * none; within the matter they hold the light that is scattered there. They stand for all directions that are
- * nearly along the face. At the face, one half of these directions brings v and the other half u, and soon
- * behind the face all of them bring u. So v counts a quarter there, for which the node of less matter must
- * have v + (u - v) / 2 (e - f) / (e + f).
+ * extinctions e and f, each of which covers half of the way, light is linear in the optical depth. On a
+ * line that crosses the face between them, where light goes from u to v, it is u + (v - u) e / (e + f) in
+ * the middle. Linear interpolation gives this value if the node of less matter, f, has v + (v - u) (e - f)
+ * / (e + f) (derived). Lines along the face are another case. Beside the matter such a line holds the light
+ * of the sky, or none; within the matter it holds the light that is scattered there. Each line stands for
+ * all directions that are nearly along the face. At the face, one half of these directions brings v and the
+ * other half u; a little deeper all of them bring u. So in the middle v counts a quarter, for which the
+ * node of less matter must have v + (u - v) / 2 (e - f) / (e + f).
  *
  * An empty node beside matter has the light at the matter's face. So it continues the light of the matter,
  * and light that is even stays even. Where a node has several such neighbours, the mean counts, weighted by
@@ -25,7 +25,8 @@ typedef struct face_sums {
   float change, weight;
 } face_sums;
 
-/* between: the fraction that meshes let through between the node and its neighbour along an axis. */
+/* Continues the light across the face between a node and its neighbour along an axis. between: the fraction
+ * of light that meshes let through between the two. */
 static void add_face(const faces *of, int axis, size_t node, size_t next, float between, face_sums *sums) {
   const float own = of->extinction[node], other = of->extinction[next];
   if (!(other > own)) return;

@@ -178,14 +178,15 @@ typedef struct channel {
   float *light, *flux;
 } channel;
 
-/* The albedo of all matter together: the fraction of the light met that is scattered. */
+/* The albedo of all matter together: of the light that matter takes, the fraction that is scattered. */
 static float mean_albedo(const channel *of, size_t count) {
   double met = 0, kept = 0;
   for (size_t n = 0; n < count; n++) met += of->own[n], kept += of->extinction[n] - of->scattering[n];
   return met > 0 ? (float)(1 - kept / met) : 0;
 }
 
-/* Takes (1 - w) of the sky's unscattered light off. Similarity keeps the absorbed light, so the albedo w is 1
+/* Subtracts the fraction (1 - w) of the sky's unscattered light from the grid's light (parts.h). The
+ * similarity of the two media (scatter.h) keeps the absorbed light, so the albedo w is 1
  * - (extinction - scattering) / own. Empty nodes beside matter have the albedo of all matter. */
 static void leave_sky(const channel *of, const scatter_work *work, size_t count) {
   float elsewhere = mean_albedo(of, count);
@@ -198,7 +199,7 @@ static void leave_sky(const channel *of, const scatter_work *work, size_t count)
   }
 }
 
-/* Solves one channel. begun: the lines are prepared for this extinction already. */
+/* Solves one channel. begun: the lines were prepared before, for the same extinction. */
 static void solve_channel(const scatter_scene *scene, const scatter_nodes *nodes, const channel *of,
                           bool begun, scatter_work *work) {
   const bool two = of->inflow != NULL && of->own != of->extinction;

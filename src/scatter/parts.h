@@ -16,17 +16,17 @@ enum {
   SCATTER_MOST_NODES = SCATTER_LONGEST + 2 * SCATTER_MARGIN
 };
 
-/* Rays that look for meshes pass this far beside nodes, in units of their spacing. So no ray runs along the
- * common edge of triangles that stand on the grid. */
+/* Rays that look for meshes pass beside the nodes, at this offset in units of the nodes' spacing. So no ray
+ * runs along the common edge of triangles that stand on the grid. */
 #define SCATTER_BESIDE ((vec3){0.0117, 0.0071, 0.0139})
 
 /* Matter and light at the nodes, each array [channels][nodes]. */
 typedef struct scatter_arrays {
-  float *extinction; /* per frame unit; extinction of the medium that scatters evenly */
+  float *extinction; /* extinction of the medium that scatters evenly, per frame unit */
   float *scattering; /* per frame unit; scattering of this medium */
-  float *own;        /* per frame unit; extinction of the real medium. Where all media scatter evenly, it is
-                      * `extinction` */
-  float *direct;     /* [3][nodes]: the mean over all directions of light that was not scattered */
+  float *own;        /* extinction of the real medium, per frame unit. Where all media scatter evenly, it
+                      * is the array `extinction` */
+  float *direct;     /* [3][nodes]; the mean over all directions of the light that was not scattered */
   int channels;      /* channels of extinction and scattering: 1 where all colours have the same, else 3 */
   const surface_tree *tree; /* borrowed; the tree of meshes, without boxes where there are no meshes */
 } scatter_arrays;
@@ -40,31 +40,32 @@ typedef struct scatter_inflow {
 /* The step from a node to the next node of a line. */
 const int *hl_scatter_step(int line);
 
-/* The unit direction of a line, or its opposite. The second function gives the weight of both directions
- * together in the mean over all directions. */
+/* The first function gives the unit direction of a line, or its opposite. The second gives the weight of
+ * both directions together in the mean over all directions. */
 vec3 hl_scatter_way(int line, bool onwards);
 float hl_scatter_line_weight(int line);
 
-/* The sky's light that enters in each channel. Each of the 26 directions has the mean radiance of the sky's
- * directions that are nearest to it; the sum is the whole sky's light. */
+/* Finds the sky's light that enters the grid, in each channel. Each of the 26 directions has the mean
+ * radiance of the sky's directions that are nearest to it; the sum is the whole sky's light. */
 void hl_scatter_sky_inflow(const hl_sky *sky, scatter_inflow inflow[3]);
 
-/* Where w is the albedo, samples are lit by (1 - w) of the sky's unscattered light from the field of the sky,
- * whose cells are finer than the nodes. The rest is in the grid:
+/* Where w is the albedo, the field of the sky, whose cells are finer than the nodes, lights samples with (1
+ * - w) of the sky's unscattered light. The rest is in the grid:
  *
  *
  *     all light of the grid - (1 - w) of its unscattered light.
  *
- * So details of the sky's shadow vanish where all light is scattered on. This is right: a fold that gets less
- * of the sky's light gets more scattered light. Under an even sky a medium of albedo 1 is lit by 1
- * everywhere, exactly. */
+ * So where all light is scattered on, details of the sky's shadow vanish. This is right, because a fold
+ * that gets less of the sky's light gets more scattered light. Under an even sky a medium of albedo 1 is
+ * lit by 1 everywhere, exactly. */
 
 /* The fractions of light that meshes let through along the lines, each array [nodes]; and the depths that
  * walls.c makes from them and from a channel's extinction. */
 typedef struct scatter_walls {
-  float *outside[SCATTER_LINES]; /* between the sky and the first nodes of lines; 0 at other nodes */
-  float *after[SCATTER_LINES];   /* between a node and the next one; at last nodes: between the node and the
-                                  * sky */
+  float *outside[SCATTER_LINES]; /* fractions let through between the sky and the first nodes of lines; 0
+                                  * at other nodes */
+  float *after[SCATTER_LINES];   /* fractions let through between a node and the next one; at last nodes,
+                                  * between the node and the sky */
   float *at_node[SCATTER_LINES], *between[SCATTER_LINES]; /* depths at nodes, and depths between nodes */
 } scatter_walls;
 
@@ -79,7 +80,7 @@ typedef struct scatter_work {
   scatter_walls walls; /* arrays are null without meshes */
 } scatter_work;
 
-/* Fills extinction and scattering, and sets the number of channels. */
+/* Fills the nodes' extinction and scattering, and sets the number of channels. */
 void hl_scatter_fill_matter(const scatter_scene *scene, const scatter_nodes *nodes, scatter_arrays *arrays);
 
 /* Fills direct. */
@@ -101,7 +102,7 @@ void hl_scatter_continue(const scatter_nodes *nodes, const float *extinction, co
 /* Prepares the lines for one channel of extinction. */
 void hl_scatter_begin_lines(hl_pool *pool, const scatter_nodes *nodes, const float *extinction,
                             scatter_work *work);
-/* Finds the light that enters and is not scattered, as the mean over all directions. flux: as for
+/* Finds the light that enters the grid and is not scattered, as the mean over all directions. flux: as for
  * hl_scatter_solve(). scratch: [nodes]. */
 void hl_scatter_enter(hl_pool *pool, const scatter_nodes *nodes, const float *extinction,
                       const scatter_inflow *inflow, scatter_work *work, float *scratch, float *light,

@@ -12,7 +12,7 @@
  *
  * A medium with the extinction s, anisotropy g and albedo w is replaced by a medium that scatters evenly,
  * with the extinction s (1 - w g) and the scattering s w (1 - g) (similarity; van de Hulst, "Multiple light
- * scattering", 1980). Both spread light alike after it was scattered many times. */
+ * scattering", 1980). Both media spread light alike after many scatterings. */
 #ifndef HL_SCATTER_SCATTER_H
 #define HL_SCATTER_SCATTER_H
 
@@ -28,7 +28,7 @@
 /* A volume of the scene, ready for this room. */
 typedef struct scatter_volume {
   const hl_scene_volume *scene; /* in frame space */
-  uint64_t plane_mark;          /* identifies the content of the volume's function of two numbers */
+  uint64_t plane_mark; /* a mark that identifies the content of the volume's function of two numbers */
   const grid *grid;
   const classifier *classifier;
 } scatter_volume;
@@ -38,13 +38,13 @@ typedef struct scatter_scene {
   hl_context *context;
   hl_pool *pool;
   const hl_scene_description *scene; /* in frame space */
-  const double *sun_parts;           /* [scene->light_count]; light_source.of_sky, for suns of the sky */
-  const scatter_volume *volumes;     /* [scene->volume_count] */
-  uint64_t sky_mark;                 /* identifies the pixels of the sky's image */
-  const surfaces *surfaces;          /* the scene's meshes, which take light away; null: none */
+  const double *sun_parts; /* [scene->light_count]; light_source.of_sky of each light, for suns of the sky */
+  const scatter_volume *volumes; /* [scene->volume_count] */
+  uint64_t sky_mark;             /* identifies the pixels of the sky's image */
+  const surfaces *surfaces;      /* the scene's meshes, which absorb light; null: none */
 } scatter_scene;
 
-/* Where the nodes are, in frame space: node (x, y, z) at origin + spacing * (x, y, z). */
+/* The places of the nodes, in frame space: node (x, y, z) is at origin + spacing * (x, y, z). */
 typedef struct scatter_nodes {
   int32_t count[3];
   float origin[3], spacing;
@@ -56,8 +56,8 @@ typedef struct scatter_field {
    * part of the sky's light that samples leave out (parts.h), in the units of a light's color; null: there is
    * no field. */
   float *light;
-  float *flux;  /* in the block of light; [channels][3][count z][count y][count x]: the mean of this light
-                 * times its direction of travel; null where all matter scatters evenly */
+  float *flux;  /* in the block of `light`; [channels][3][count z][count y][count x]: the mean of the light
+                 * in `light` times its direction of travel; null where all matter scatters evenly */
   int channels; /* 1: red, green and blue are the same; or 3 */
   hl_key key;   /* the key of the field's input */
 } scatter_field;

@@ -1,4 +1,4 @@
-/* scatter/sky.c - the sky's light that enters the grid, along each of its lines from either end. */
+/* scatter/sky.c - the sky's light that enters the grid at both ends of each of its lines. */
 #include "scene/light/sky.h"
 
 #include <math.h>
@@ -11,14 +11,15 @@ enum { BANDS = 64, MOST_BANDS = 512 };
 
 enum { DIRECTIONS = 2 * SCATTER_LINES };
 
-/* The light of the sky for each direction in which light travels: for all lines along their direction, then
- * for all lines against it. */
+/* The light of the sky for each direction in which light travels: first the directions of all lines, then
+ * their opposites. */
 typedef struct sky_sums {
   vec3 directions[DIRECTIONS];
   double sums[DIRECTIONS][3], samples[DIRECTIONS];
 } sky_sums;
 
-/* Light that comes from `from` travels in the opposite direction. */
+/* The number of the grid's direction in which light of the sky travels, nearly. from: where the light comes
+ * from, the opposite of its direction of travel. */
 static int nearest_direction(const sky_sums *sums, vec3 from) {
   int nearest = 0;
   double greatest = -INFINITY;

@@ -1,9 +1,10 @@
 /* scatter/transport.c - how scattered light spreads from node to node.
  *
- * Along a line through the nodes let u be the mean of the light that travels either way. With even scattering
- * and the optical depth t it obeys u'' = u - S, where S is the light scattered into either way (Feautrier,
- * "Sur la resolution numerique de l'equation de transfert", 1964). Where nodes i and i + 1 have the optical
- * distance d_{i+1/2}, and t_i is the optical depth of a node's own box,
+ * Along a line through the nodes, let u be the mean of the light that travels onwards and of the light that
+ * travels back. With even scattering and the optical depth t, u obeys u'' = u - S, where S is the light
+ * scattered into either way (Feautrier, "Sur la resolution numerique de l'equation de transfert", 1964).
+ * Where nodes i and i + 1 have the optical distance d_{i+1/2}, and t_i is the optical depth of a node's own
+ * box,
  *
  *
  *     t_i (u_i - S_i) = (u_{i+1} - u_i) / d_{i+1/2} - (u_i - u_{i-1}) / d_{i-1/2}
@@ -36,7 +37,8 @@
 
 #include "scatter/parts.h"
 
-/* The most steps of conjugate gradients, and the fraction of the first residual at which they end. */
+/* MOST_STEPS: the most steps of conjugate gradients. They end earlier where the residual has fallen to a
+ * fraction of the first residual. */
 enum { MOST_STEPS = 60 };
 static const double ENOUGH = 2e-3;
 
@@ -45,7 +47,7 @@ static const int ways[SCATTER_LINES][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},  {
                                            {1, 0, 1},  {-1, 0, 1}, {0, 1, 1},  {0, -1, 1}, {1, 1, 1},
                                            {-1, 1, 1}, {1, -1, 1}, {-1, -1, 1}};
 
-/* The weight of a line for both ways: 2 x 1/21, 4/105, 9/280. */
+/* The weight of a line, for both of its directions: 2 x 1/21, 4/105, 9/280. */
 static float weight_of(int line) { return line < 3 ? 2.0f / 21 : line < 9 ? 8.0f / 105 : 18.0f / 280; }
 
 /* The distance of neighbouring nodes on a line, in units of the spacing. */
@@ -131,7 +133,8 @@ static float entering_last(const lines_job *job, int line) {
 
 /* Sets y at each node before light goes along the line: the energy that the node sends out, plus the light
  * that enters the line. Without meshes every node gets the entering light, and go_forward() subtracts it
- * again from all nodes but the first. With meshes only the first node gets it, as far as walls let it in. */
+ * again from all nodes but the first. With meshes only the first node gets the entering light, as far as
+ * walls let it in. */
 static void begin_sums(const lines_job *job, int line, float *sums) {
   const scatter_walls *walls = walls_of(job);
   float length = length_of(line) * job->nodes->spacing, entered = entering(job, line);
@@ -219,7 +222,8 @@ static void flux_line(void *data, size_t line, int worker) {
       before[at + row.step] = before[at] * pass[at];
     }
   }
-  /* the link after a node has y - f u; the link before it has t (u - S) more (the first equation) */
+  /* the link after a node has v = y - f u; in the link before it v is greater by t (u - S) (the first
+   * equation) */
   for (size_t n = 0; n < nodes; n++) {
     float after = sent[n] - before[n] * along[n];
     if (walls != NULL) sent[n] = after + 0.5f * (walls->at_node[line][n] * along[n] - length * job->sent[n]);

@@ -1,17 +1,18 @@
 /* scatter/walls.c - meshes on the lines of the grid.
  *
- * A few rays beside each line meet meshes. The mean fraction of light that they get through counts as the
- * fraction that meshes let through between two nodes. Beyond the ends of the line the rays spread over the
- * part of the sky for which the line stands. In a channel of extinction, the fractions become depths
- * (derived). A wall lets the fraction T of light through and sends none back. With t = (1 - T) / (1 + T), the
- * mean u of both ways, and the excess v of the light that travels onwards, obey on its two sides
+ * A few rays beside each line are tested for meshes. The mean fraction of light that passes along these
+ * rays counts as the fraction that meshes let through between two nodes. Beyond the ends of the line the
+ * rays spread over the part of the sky for which the line stands. In a channel of extinction, the fractions
+ * become depths (derived). A wall lets the fraction T of light through and sends none back. With t = (1 -
+ * T) / (1 + T), the mean u of both ways, and the excess v of the light that travels onwards, obey on its
+ * two sides
  *
  *
  *     v_1 = t u_1 + (u_1 - u_2) / d,  v_2 = (u_1 - u_2) / d - t u_2,  d = 2 t / (1 - t^2)
  *
- * This means that the nodes on both sides get the depth t more, and the depth d lies between them. Where
- * matter of the depth r lies between each node and the wall, even light on both sides (u_1 = u_2) meets 1 / t
- * + r instead of 1 / t, and opposite light (u_1 = -u_2) meets t + r instead of t. So
+ * So the depth of the nodes on both sides grows by t, and the depth d lies between them. Where matter of
+ * the depth r lies between each node and the wall, even light on both sides (u_1 = u_2) meets 1 / t + r
+ * instead of 1 / t, and opposite light (u_1 = -u_2) meets t + r instead of t. So
  *
  *
  *     t' = t / (1 + r t),  d' = 2 (t + r) (1 + r t) / (1 - t^2) */
@@ -21,11 +22,11 @@
 
 enum { RAYS = 2 /* number of rays through a node's box, along each side */ };
 
-/* The sky's directions nearest to a line are about a square with sides of this angle: sqrt(4 pi / 26), in
- * radians. The rays leave the grid in different directions within this square. */
+/* The side, in radians, of the square of directions of the sky that are nearest to one line, approximately:
+ * sqrt(4 pi / 26). The rays leave the grid in different directions within this square. */
 static const double CELL_OF_SKY = 0.695;
 
-/* At least this fraction passes a wall, so that depths are finite. */
+/* The least fraction of light that a wall is taken to let through, so that depths are finite. */
 static const float LEAST_PASSING = 1.0f / 16384;
 
 typedef struct wall_job {
@@ -38,7 +39,7 @@ typedef struct wall_job {
  * node. */
 typedef struct wall_ray {
   vec3 origin, step; /* position of the first node, and step from node to node */
-  vec3 tilt;         /* the vector that turns the ray's ways to the sky, as a part of their length */
+  vec3 tilt; /* the vector by which the ray's ways to the sky are tilted, as a fraction of their length */
   double passing[SCATTER_MOST_NODES + 1];
   int count; /* number of nodes */
 } wall_ray;

@@ -13,25 +13,27 @@ typedef struct attenuate_volume {
   _Alignas(64) const classifier *classifier;
   const float *density;       /* [256], block-major; on this sheet */
   const float *before;        /* [256], block-major; on the sheet before */
-  const float *enter, *leave; /* [256], block-major; null: the box does not cut anything visible */
+  const float *enter, *leave; /* [256], block-major: the heights at which rays enter and leave the volume's
+                               * box; null: the box does not cut anything visible */
   uint32_t blocks;            /* blocks with density on either sheet */
   int surface;                /* the volume has surfaces; else it is a medium */
   float voxel;                /* the smallest edge of its voxels; frame units */
   float weight[HL_CHANNELS];  /* relative extinction of R, G, B */
   int uncut;                  /* the box does not cut the slab here */
   const slab_run
-      *faces; /* where a face of a cut that is lit as a surface is near: the run of the slab; else null */
+      *faces; /* the run of the slab, where a face of a cut that is lit as a surface is near; else null */
   int slab;   /* the slab's number in its run */
-  const grid *grid; /* with gradient opacity: the grid whose gradient counts */
+  const grid *grid; /* with gradient opacity: the grid whose gradient decides the factor */
   const kernel *kernel;
   const float (*to_index)[4]; /* frame space to index space */
 } attenuate_volume;
 
 typedef struct attenuate_job {
-  sheet_rays rays; /* light pixels -> frame space */
-  float path; /* parallel light: sheet spacing / |l.h|; point light: the sheet spacing, which pixels divide by
-                 their own |l.h| */
-  float through[3];      /* parallel: step from one sheet to the next along the light's rays; frame units */
+  sheet_rays rays;  /* light pixels -> frame space */
+  float path;       /* length of the rays' way through the slab. For parallel light it is the sheet spacing /
+                     * |l.h|. For a point light it is the sheet spacing, which pixels divide by their own |l.h| */
+  float through[3]; /* parallel light: the step from one sheet to the next along the light's rays;
+                     * frame units */
   float height, spacing; /* height of the sheet above the first, and distance to the sheet before; frame
                           * units */
   int sheet;             /* k: the slab lies between sheets k-1 and k */
@@ -40,20 +42,21 @@ typedef struct attenuate_job {
   int channels;                      /* 1: attenuation is grey; 3 */
   float *transmittance[HL_CHANNELS]; /* the tile's first pixel; rows stride apart */
   float *older[HL_CHANNELS];         /* as transmittance, multiplied alike; null: none */
-  float *outside[HL_CHANNELS];       /* as transmittance: the light at the outside of surfaces; null: none */
+  float *outside[HL_CHANNELS];       /* the light at the outside of surfaces, laid out as the
+                                      * transmittance; null: none */
   size_t stride;
-  float *moment[HL_CHANNELS]; /* the tile's first pixel; rows moment_stride apart; null: none. Raised by the
-                                 light that the slab absorbs, times `position` */
+  float *moment[HL_CHANNELS]; /* the tile's first pixel, with rows moment_stride apart; null: none. The
+                               * light that the slab absorbs, times `position`, is added to it */
   size_t moment_stride;
   float position;
-  bool marks; /* surfaces mark pixels that are dark, or that they make so; see below */
+  bool marks; /* surfaces leave marks in pixels that are dark or that they make dark; see DARK_AT_START */
 } attenuate_job;
 
-/* A volume's surface is lit by the light that arrives at its outside. Matter that light crosses while it goes
- * deeper into one and the same surface shades all that lies behind, but not this surface. So a pixel keeps,
- * beside its transmittance T, the light Y at the outside. Y - T is the light that the surface has taken so
- * far. A slab with the transmittance t, in which values go from x1 to x2, changes both numbers as follows
- * (derived):
+/* A volume's surface is lit by the light that arrives at its outside. Matter that light crosses while it
+ * goes deeper into one and the same surface shades all that lies behind, but not this surface. So a pixel
+ * keeps two numbers: its transmittance T, and the light Y at the outside. Y - T is the light that the
+ * surface has taken so far. A slab with the transmittance t, in which values go from x1 to x2, changes both
+ * numbers as follows (derived):
  *
  *
  *     Y <- T t + k (Y - T) + k' T (1 - t)      T <- T t
@@ -69,10 +72,11 @@ typedef struct attenuate_job {
  * k' by e. In a medium k = k' = 0. Where several volumes share a slab, k and k' are their means, weighted by
  * optical depth.
  *
- * A face that cuts matter is a surface, too. Its outside is the face, and light goes deeper into it whatever
- * the values behind it are: k = k' = 1 for visible matter up to a voxel behind a face through which the light
- * comes in. Deeper, the k of the values gets the power 1 - skin, where the skin falls from 1 to 0 at
- * FACE_VOXELS behind the face. There the eye, too, sees less and less of the face (render/slab_lanes.h).
+ * A face that cuts matter is a surface, too. Its outside is the face, and light goes deeper into it
+ * whatever the values behind it are: k = k' = 1 for visible matter up to a voxel behind a face through
+ * which the light comes in. Deeper, the k of the values gets the power 1 - skin, where the skin falls from
+ * 1 to 0 at FACE_VOXELS behind the face. Over the same distance the eye sees less and less of the face
+ * (render/slab_lanes.h).
  *
  * OUTWARDS_POWER: sets how soon a surface that light leaves again counts as left. Where h has fallen by a
  * tenth, .19 of the taken light still lights the surface; where it has fallen by a third, .0015 does. */
@@ -83,17 +87,18 @@ typedef struct attenuate_job {
  * matter is even, have a rule of their own. */
 #define EVEN_VOXELS 1
 
-/* A surface in the dark takes no light, but a method that blurs the light taken before needs to know that the
- * surface is there, because light from beside the shadow ends at it, too. Where less than DARK_AT_START is
- * left, the pixel becomes -DARK_MARK times the transmittance of the chunk's surfaces, at most -LEAST_MARK.
- * Where a surface takes all light, the pixel becomes -LEAST_MARK. Readers take marks as 0. */
+/* Marks of surfaces in the dark. A surface in the dark takes no light. A method that blurs the light which
+ * was taken before still needs to know where the surface is, because light from beside the shadow also ends
+ * at it. Where less than DARK_AT_START of the light is left, the pixel becomes -DARK_MARK times the
+ * transmittance of the chunk's surfaces, at most -LEAST_MARK. Where a surface takes all light, the pixel
+ * becomes -LEAST_MARK. Readers take marks as 0. */
 #define DARK_AT_START (1.0f / 256)
 #define DARK_MARK     0x1p-64f
 #define LEAST_MARK    0x1p-88f
 
 /* Blocks of a tile, one bit each. */
 typedef struct attenuated_blocks {
-  uint32_t lit;   /* blocks with density that light still reaches, or whose surface it lights */
+  uint32_t lit; /* blocks with density that some light still reaches, or whose surface is lit from outside */
   uint32_t taken; /* blocks in which some light was absorbed */
 } attenuated_blocks;
 

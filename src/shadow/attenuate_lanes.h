@@ -11,7 +11,7 @@
 /* Transmittance below which a pixel of the shadow buffer counts as dark: a quarter of a step of 8 bits. */
 static const float DARK = 1.0f / 1024;
 
-/* Lanes whose sheet lies at most `reach` behind the view's origin; reach: a height. */
+/* Lanes whose sheet lies ahead of the view's origin, or behind it by at most the height `reach`. */
 LANES_INLINE lanes_int is_ahead(const sheet_rays *rays, lanes climb, float reach) {
   return lanes_add_scaled(climb * rays->step, lanes_abs(climb), reach) > 0.0f;
 }
@@ -26,7 +26,7 @@ LANES_INLINE lanes path_through_sheet(const sheet_rays *rays, float path, lanes 
   return lanes_keep(is_ahead(rays, climb, 0), length);
 }
 
-/* The part of the slab in the volume's box, for one block. uncut: all of the slab lies in the box. */
+/* The part of the slab in the volume's box, for one block. uncut: the whole slab lies in the box. */
 LANES_INLINE covered_span covered_block(const float *enter, const float *leave, int uncut, int block,
                                         float height, float spacing) {
   if (enter == NULL) return (covered_span){lanes_set(0), lanes_set(1.0f)};
@@ -67,8 +67,8 @@ LANES_INLINE lanes3 position_in_slab(const attenuate_job *job, lanes u, lanes v,
   return add_scaled3(end, step, fraction - 1.0f);
 }
 
-/* What gradient opacity, a mask and a function of two numbers multiply a volume's extinction by, in a block:
- * at the centre of gravity of the slab's matter. corner: the block's first pixel. */
+/* The factor by which gradient opacity, a mask and a function of two numbers multiply a volume's extinction
+ * in a block. It is found at the centre of gravity of the slab's matter. corner: the block's first pixel. */
 LANES_INLINE lanes factor_in_block(const attenuate_job *job, const attenuate_volume *volume,
                                    const int corner[2], const way_sums *sums, lanes a, lanes b,
                                    covered_span span) {
@@ -90,8 +90,9 @@ LANES_INLINE lanes factor_in_block(const attenuate_job *job, const attenuate_vol
       .factor;
 }
 
-/* What is kept of the light that a surface has taken, k and k' in attenuate.h: of the light that it took
- * before the slab, and of the light that it takes in the slab. */
+/* The fractions k and k' of attenuate.h. They say how much of the light that a surface has taken still
+ * lights it after the slab: of the light that it took before the slab, and of the light that it takes
+ * within the slab. */
 typedef struct kept_light {
   lanes before, within;
 } kept_light;
@@ -109,8 +110,8 @@ LANES_INLINE lanes kept_in_skin(lanes kept, lanes skin) {
   return lanes_select(skin > 0.0f, lanes_power_of_part(kept, 1.0f - skin), kept);
 }
 
-/* Matter near a face belongs to the face's surface as far as it is visible where light leaves the slab. b:
- * the value there; corner: the block's first pixel. */
+/* The kept light near a face of a cut. Matter there belongs to the face's surface if it is visible where
+ * light leaves the slab. b: the value at this place; corner: the block's first pixel. */
 LANES_INLINE kept_light kept_by_face(const attenuate_volume *volume, kept_light kept, table_coordinate b,
                                      const int corner[2]) {
   lanes skin = skin_of_faces(volume->faces, volume->slab, block_u(corner[0]), block_v(corner[1]));
@@ -121,20 +122,23 @@ LANES_INLINE kept_light kept_by_face(const attenuate_volume *volume, kept_light 
   return (kept_light){kept_in_skin(kept.before, skin), kept_in_skin(kept.within, skin)};
 }
 
-/* The slab's part in a box that ends this near to the slab's own end is rounding. */
+/* A part of a slab in a box that ends nearer than this to the slab's own end is taken to reach the end: the
+ * difference is rounding. */
 static const float ROUNDING_OF_SPAN = 1e-3f;
 
-/* Where a face ends the matter within the slab, light leaves the surface. Where a face begins it, light comes
- * from no surface, and has lost what a surface took. Only blurs bring taken light there, across the face: the
- * shadow of the face's own matter, and with it the light that this matter took, so that the face keeps it. */
+/* The kept light where a face of the box begins or ends the matter within the slab. Where matter ends,
+ * light leaves the surface. Where matter begins, the light comes from no surface. Blurs may still have
+ * brought taken light across the face: they spread the shadow of the face's own matter, and the light that
+ * this matter took. The face keeps that light. */
 LANES_INLINE kept_light kept_in_span(const attenuate_volume *volume, kept_light kept, covered_span span) {
   if (volume->enter == NULL) return kept;
   lanes_int ends = (span.begin + span.length) < (1.0f - ROUNDING_OF_SPAN);
   return (kept_light){lanes_keep(~ends, kept.before), lanes_keep(~ends, kept.within)};
 }
 
-/* Of one volume's own values. to: of the way from a to b; path: of the light's ray through the slab;
- * extinction: of the slab; at: offset of the block's first pixel. */
+/* The kept light that follows from one volume's own values. to: the factor of the way from a to b. path:
+ * length of the light's ray through the slab. extinction: the slab's. at: offset of the block's first
+ * pixel. */
 LANES_INLINE kept_light kept_by_values(const attenuate_job *job, const attenuate_volume *volume,
                                        table_coordinate a, table_coordinate b, const way_ends *to,
                                        covered_span span, lanes path, lanes extinction, size_t at) {
@@ -173,7 +177,8 @@ LANES_INLINE kept_light kept_by_values(const attenuate_job *job, const attenuate
   return kept;
 }
 
-/* The means over volumes, weighted by optical depth. weight: of one volume. */
+/* Adds one volume's kept light to the mean over volumes, which is weighted by optical depth. weight: the
+ * volume's weight. */
 LANES_INLINE void add_kept(kept_light *sum, kept_light kept, lanes weight) {
   sum->before = lanes_fma(kept.before, weight, sum->before);
   sum->within = lanes_fma(kept.within, weight, sum->within);
@@ -183,8 +188,8 @@ typedef struct attenuated_block {
   int taken, lit;
 } attenuated_block;
 
-/* Composites a slab into a channel of the light at the outside. before, after: the transmittance. Returns the
- * new light. */
+/* Composites a slab into a channel of the light at the outside. before, after: the transmittance before and
+ * after the slab. Returns the new light. */
 LANES_INLINE lanes pass_outside(float *at, size_t stride, lanes before, lanes after, kept_light kept) {
   lanes light = lanes_max(before, lanes_set(0)), left = lanes_max(after, lanes_set(0));
   lanes taken = lanes_max(lanes_load_block(at, stride) - light, lanes_set(0));
@@ -193,15 +198,16 @@ LANES_INLINE lanes pass_outside(float *at, size_t stride, lanes before, lanes af
   return outside;
 }
 
-/* Attenuates one block. taken: whether it absorbed any light; lit: whether enough is left, or was at the
- * outside. */
+/* Attenuates one block by the slab. The result says whether the slab absorbed any light there (taken), and
+ * whether enough light is left, or was left at the outside (lit). */
 LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volume_count, int channels,
                                               int tile_x, int tile_y, int block) {
   const int x = block % 4 * BLOCK, y = block / 4 * BLOCK, corner[2] = {tile_x * TILE + x, tile_y * TILE + y};
   lanes depth[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)}, total = lanes_set(0);
   kept_light kept = {lanes_set(0), lanes_set(0)};
   lanes path = path_through_sheet(&job->rays, job->path, block_u(corner[0]), block_v(corner[1]));
-  int hidden = 0; /* a surface may have ended where its matter is hidden, not where values are low */
+  int hidden = 0; /* non-zero: a surface may have ended because its matter is hidden, not because values
+                   * are low */
   for (int i = 0; i < volume_count; i++) {
     const attenuate_volume *volume = &job->volumes[i];
     if (volume_count > 1 && (volume->blocks >> block & 1) == 0) continue;
@@ -277,7 +283,8 @@ LANES_INLINE attenuated_blocks attenuate_volumes(const attenuate_job *job, int v
   return blocks;
 }
 
-/* Compiled once more for one volume with grey shadows, the usual case, which needs no loops. */
+/* The function is compiled a second time for one volume with grey shadows, the usual case, which needs no
+ * loops. */
 static __attribute__((unused)) attenuated_blocks attenuate_tile(const attenuate_job *job, int tile_x,
                                                                 int tile_y) {
   if (job->volume_count == 1 && job->channels == 1) return attenuate_volumes(job, 1, 1, tile_x, tile_y);

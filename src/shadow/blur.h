@@ -16,7 +16,8 @@ typedef struct blur_box {
 } blur_box;
 
 typedef struct blur_job {
-  const float *from; /* pixel (0,0); rows stride apart; readable reach + 1 pixels beyond the tiles */
+  const float *from; /* pixel (0,0); rows are `stride` apart; readable up to reach + 1 pixels beyond the
+                      * tiles */
   float *to;         /* pixel (0,0); rows stride_to apart */
   size_t stride, stride_to;
   blur_box box;
@@ -44,7 +45,8 @@ typedef struct blur_functions {
   emission_tile_function *emission; /* to = sum of from */
 } blur_functions;
 
-/* The box of the given width in pixels (at least 1): even whole widths become centred by half weights. */
+/* The box of the given width in pixels (at least 1): boxes of even whole widths are centred by half weights
+ * at both ends. */
 static inline blur_box hl_blur_box(float width) {
   int reach = (int)((width - 1) / 2);
   return (blur_box){reach, (width - 1) / 2 - (float)reach, 1 / width};

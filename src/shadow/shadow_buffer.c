@@ -35,7 +35,7 @@ static void bound_points(const view *unit, const light_source *source, const vec
   }
 }
 
-/* Bounds the points, and a margin around them for penumbrae, which ends where the content ends. */
+/* Bounds the points and a margin around them for penumbrae. The margin ends where the content ends. */
 static void bound_buffer(const view *unit, const light_source *source, const shadow_extent *extent,
                          double low[2], double high[2]) {
   double content_low[2], content_high[2];
@@ -48,8 +48,8 @@ static void bound_buffer(const view *unit, const light_source *source, const sha
   }
 }
 
-/* The edge of a pixel: frame units for parallel light; at distance 1 for a near light, whose pixels grow with
- * distance and must be small enough at the farthest point. */
+/* The edge of a buffer's pixel: in frame units for parallel light; for a near light its size at distance 1.
+ * Pixels of a near light grow with distance, and must be small enough at the farthest point. */
 static double pixel_edge(const light_source *source, vec3 normal, const shadow_extent *extent,
                          const double size[2]) {
   double pixel = extent->pixel;
@@ -78,8 +78,8 @@ static pixel_row row_around(double low, double high, double size, double pixel) 
 }
 
 /* Makes pixels a little smaller, so that the middles of the first and the last pixel lie just inside the
- * bounds (borders aside): light along a box's face is then not mixed with light that passes outside. Not done
- * where the bounds are thinner than this fraction of a pixel, nor for soft shadows. */
+ * bounds (borders aside): light along a box's face is then not mixed with light that passes outside. This
+ * is not done for soft shadows, nor where the bounds are narrower than LEAST_FITTED of a pixel. */
 static const double LEAST_FITTED = 0.25;
 
 static pixel_row row_between(double low, double size, double pixel) {

@@ -1,12 +1,13 @@
 /* shadow/shadow_buffer.h - the 2D shadow buffer: transmittance from the light to the last sheets.
  *
  * It is perpendicular to the light's direction for hard shadows, parallel to the sheets for soft ones (fig.
- * 17). At the volume its pixels are little larger than the picture's. Around it is a margin of ones,
+ * 17). At the volume its pixels are hardly larger than the picture's pixels. Around it is a margin of ones,
  * unattenuated light, which blurs read.
  *
- * The light runs ahead of the picture, which reads the planes of earlier sheets: so the planes of a ring of
- * sheets are kept, sheet k's at k % ring. A tile that has changed is carried from sheet to sheet until all
- * planes of the ring hold what it became; a tile that never changes costs nothing.
+ * The light runs ahead of the picture, which reads the planes of earlier sheets: so the buffer keeps the
+ * planes of the last sheets in a ring; sheet k has the planes number k % ring. A tile that has changed is
+ * carried from sheet to sheet until all planes of the ring hold what it became; a tile that never changes
+ * costs nothing.
  *
  * Surfaces of volumes are lit by the light that arrives at their outside. Where a scene has such surfaces, a
  * pixel also holds this light: the transmittance, plus what the surface that the light's ray is in has taken
@@ -23,10 +24,10 @@
 /* The planes of one sheet. */
 typedef enum shadow_plane {
   SHADOW_TRANSMITTANCE,
-  SHADOW_OUTSIDE, /* the light at the outside of the surface that a pixel's ray is in; at least the
-                     transmittance */
-  SHADOW_SECOND   /* the method's own; for `paper` the result of half a blur, for `cascade` the light that
-                     samples   fade from */
+  SHADOW_OUTSIDE, /* the light at the outside of the surface in which a pixel's ray is; never less than the
+                   * transmittance */
+  SHADOW_SECOND   /* planes for the method's own use: for `paper` the result of half a blur, for `cascade`
+                   * the light from which samples fade */
 } shadow_plane;
 
 typedef struct shadow_buffer {
@@ -37,16 +38,18 @@ typedef struct shadow_buffer {
   size_t plane;                      /* floats of one channel, margins included */
   size_t origin;                     /* offset of pixel (0,0) in a plane */
   int ring;                          /* number of sheets that are kept */
-  bool has_outside, has_second;      /* which planes each sheet has beside the transmittance */
-  float *transmittance[HL_CHANNELS]; /* pixel (0,0); in memory; of the sheet that was reached last */
+  bool has_outside, has_second;      /* whether each sheet has planes of these two kinds beside the
+                                      * transmittance */
+  float *transmittance[HL_CHANNELS]; /* pixel (0,0) of the planes of the sheet that was reached last; a
+                                      * part of `memory` */
   float *outside[HL_CHANNELS], *second[HL_CHANNELS]; /* the same for other planes; null: there are none */
   int sheet;                                         /* that was reached last */
   float *planes;                                     /* in memory; [ring][1 to 3][channels][plane] */
   int32_t *changed;            /* in memory; [tiles]; the last sheet at which the tile's planes changed */
-  uint16_t *tile_lit;          /* in memory; [tiles]; blocks that light still reaches */
-  unsigned char *tile_touched; /* in memory; [2][tiles]; 1 where some transmittance is below 1 */
-  void *memory;                /* owned; kept from frame to frame while it is large enough */
-  size_t capacity;             /* bytes of memory */
+  uint16_t *tile_lit;          /* a part of `memory`; [tiles]; the blocks that light still reaches */
+  unsigned char *tile_touched; /* a part of `memory`; [2][tiles]; 1 where some transmittance is below 1 */
+  void *memory;    /* owned; the memory of all arrays; kept from frame to frame while it is large enough */
+  size_t capacity; /* bytes of memory */
 } shadow_buffer;
 
 /* The input that decides a buffer's position and size. */
@@ -56,10 +59,11 @@ typedef struct shadow_extent {
   double pixel;           /* wanted edge of a pixel at the volume, frame units */
   int resolution;         /* pixels along the longer side; 0: by pixel */
   size_t greatest_pixels; /* limit of width * height */
-  double margin;          /* around the points, for penumbrae: frame units; at distance 1 for a near light */
-  const vec3 *content;    /* corners of all content, beyond which no margin is needed; frame space */
+  double margin;          /* margin around the points for penumbrae: frame units; for a near light its
+                           * width at distance 1 */
+  const vec3 *content;    /* corners of all content; no margin is needed beyond the content; frame space */
   int content_count;
-  vec3 u; /* unit; the direction of the buffer's rows; zero: the light's tilt */
+  vec3 u; /* unit vector, the direction of the buffer's rows; zero: chosen by the light's tilt */
 } shadow_extent;
 
 /* Lays out the view: plane_normal is the light's direction (hard) or the sheets' normal (soft). */
@@ -79,7 +83,7 @@ hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buff
                                  const shadow_buffer_size *size, hl_error *error);
 /* Sets a buffer's view, tiles, stride, plane and origin. reach: as in shadow_buffer_size. */
 void hl_shadow_buffer_measure(const view *view, int reach, shadow_buffer *buffer);
-/* Floats of one channel of a buffer for a view, its margins included. */
+/* The number of floats of one channel of a buffer for a view, its margins included. */
 size_t hl_shadow_plane(const view *view, int reach);
 /* Counts what hl_shadow_buffer_reset() takes. */
 void hl_shadow_buffer_count(const shadow_buffer_size *size, hl_layout *layout);
@@ -90,15 +94,16 @@ uint64_t hl_shadow_sheet_bytes(const shadow_buffer_size *size);
 float *hl_shadow_plane_at(const shadow_buffer *buffer, int sheet, shadow_plane kind, int channel);
 /* Points `transmittance`, `outside` and `second` to a sheet's planes. */
 void hl_shadow_buffer_reach(shadow_buffer *buffer, int sheet);
-/* Whether a tile at a sheet, or at one after it, must still be carried. */
+/* Whether a tile must still be carried to a sheet, or to a sheet after it. */
 static inline bool hl_shadow_is_carried(const shadow_buffer *buffer, size_t tile, int sheet) {
   return buffer->changed[tile] > 0 && buffer->changed[tile] > sheet - buffer->ring;
 }
-/* Copies a tile from the sheet before to this sheet, unless its planes hold the same already. To be called
- * for each sheet in turn where hl_shadow_is_carried(), before the tile changes at this sheet. */
+/* Copies a tile from the sheet before to this sheet, unless its planes there hold the same numbers already.
+ * Where hl_shadow_is_carried() is true, call it for each sheet in turn, before the tile changes at this
+ * sheet. */
 void hl_shadow_buffer_carry(shadow_buffer *buffer, size_t tile, int sheet);
-/* Finds a tile's tile_lit again after a blur. both: a block is lit where the second planes have light, too.
- */
+/* Finds the lit blocks of a tile (tile_lit) again after a blur. both: a block is lit also where only the
+ * second planes have light. */
 void hl_shadow_buffer_find_lit(shadow_buffer *buffer, int x, int y, bool both,
                                lit_blocks_function *lit_blocks);
 void hl_shadow_buffer_release(hl_context *context, shadow_buffer *buffer);
@@ -115,10 +120,11 @@ typedef struct shadow_map {
 typedef struct shadow_lookup {
   shadow_map map;
   const float *transmittance[HL_CHANNELS]; /* pixel (0,0) */
-  const float *outside[HL_CHANNELS];       /* the same, of the light at the outside of surfaces; null: none */
-  const float
-      *older[HL_CHANNELS]; /* pixel (0,0); null: none. The earlier transmittance, from which samples fade */
-  float young;             /* how far samples have faded to `transmittance`, 0 to 1 */
+  const float *outside[HL_CHANNELS];       /* planes like `transmittance`, of the light at the outside of
+                                            * surfaces; null: none */
+  const float *older[HL_CHANNELS]; /* pixel (0,0) of the earlier transmittance, from which samples fade to
+                                    * `transmittance`; null: none */
+  float young;                     /* how far samples have faded to `transmittance`, 0 to 1 */
 } shadow_lookup;
 
 /* Transmittance in units of 1 / SUBLIGHT_ONE, to halve the memory traffic of floats. */
@@ -130,7 +136,8 @@ typedef struct sublight_lookup {
   shadow_map map;
   const sublight_pixel *transmittance[HL_CHANNELS]; /* pixel (0,0) */
   const sublight_pixel *outside[HL_CHANNELS];       /* the same, at the outside of surfaces; null: none */
-  float weight[HL_CHANNELS]; /* in the mean over all sub-lights; 1 for lights without an emission image */
+  float weight[HL_CHANNELS]; /* the sub-light's weight in the mean over all sub-lights; 1 for lights
+                              * without an emission image */
 } sublight_lookup;
 
 /* The map of a view's pixels; the caller sets its stride. */

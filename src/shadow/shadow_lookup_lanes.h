@@ -30,7 +30,7 @@ LANES_INLINE shadow_taps taps_at_position(const shadow_map *map, int nearest, la
   return taps;
 }
 
-/* Interpolates between the pixels a b and, in the next row, c d; gives `beyond` outside the buffer. */
+/* Interpolates between the pixels a b and, in the next row, c d; lanes outside the buffer get `beyond`. */
 LANES_INLINE lanes between_taps(const shadow_taps *taps, lanes a, lanes b, lanes c, lanes d, float beyond) {
   lanes top = lanes_fma(b - a, taps->fx, a), bottom = lanes_fma(d - c, taps->fx, c);
   return lanes_select(taps->inside, lanes_fma(bottom - top, taps->fy, top), lanes_set(beyond));
@@ -55,9 +55,9 @@ LANES_INLINE void cubic_weights(lanes way, lanes weight[4]) {
   weight[3] = both * way;
 }
 
-/* Interpolates between four by four pixels, clamped to the range of the nearest four: beside an edge it would
- * overshoot, and just inside a box's face it would darken too much. Not inlined, so that it does not cost the
- * bilinear look-up registers. */
+/* Interpolates between four by four pixels, clamped to the range of the nearest four: without the clamp it
+ * would overshoot beside an edge, and darken too much just inside a box's face. The function is not
+ * inlined, so that it takes no registers from the bilinear look-up. */
 static __attribute__((noinline, unused)) lanes look_up_cubic(const shadow_map *map, const shadow_taps *taps,
                                                              const float *buffer) {
   lanes across[4], down[4], pixel[4], sum = lanes_set(0);

@@ -114,8 +114,9 @@ void hl_light_shadow_end(light_shadow *shadow) {
 /* ---- the size of a shadow buffer's pixels and the region that it covers, for all methods ---- */
 
 /* Pixels of shadow buffers are as large as possible without visibly adding to the sheets' error (measured
- * against the reference, docs/experiments.md): three quarters of the sheets' distance, between three tenths
- * and three quarters of a voxel. SHADOW_PIXEL_PER_IMAGE_PIXEL is for buffers that are blurred. */
+ * against the reference, docs/experiments.md): their edge is three quarters of the sheets' distance, but at
+ * least three tenths and at most three quarters of a voxel. SHADOW_PIXEL_PER_IMAGE_PIXEL holds for buffers
+ * that are blurred. */
 static const double SHADOW_PIXEL_PER_SPACING = 0.75, LEAST_SHADOW_PIXEL = 0.3, GREATEST_SHADOW_PIXEL = 0.75;
 static const double SHADOW_PIXEL_PER_IMAGE_PIXEL = 1.4;
 /* Look-ups by cubic convolution, on pixels that are larger by this fraction of a voxel, are as exact as
@@ -143,7 +144,8 @@ double hl_sharp_pixel(const shadow_setup *setup, bool cubic) {
 
 double hl_blurred_pixel(const shadow_setup *setup, bool cubic) {
   const light_source *source = setup->source;
-  /* seen along the light, a pixel on the sheets is narrower: made as large as a hard shadow's pixel there */
+  /* seen along the light, a pixel on the sheets is narrower; it is enlarged until it is as large as a hard
+   * shadow's pixel there */
   double slant = source->parallel ? fabs(vec3_dot(source->direction, setup->sheets->normal)) : 1;
   return fmin(SHADOW_PIXEL_PER_IMAGE_PIXEL * setup->middle_pixel,
               hl_shadow_pixel(setup, cubic) / sqrt(fmax(slant, 0.5)));

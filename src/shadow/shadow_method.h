@@ -54,18 +54,18 @@ typedef struct shadow_setup {
   hl_context *context;
   const hl_render_settings *settings;
   const light_source *source;
-  light_emission *emission; /* the light's emission image; null where the light is even. The method sets its
-                               cells' positions */
+  light_emission *emission; /* the light's emission image; null where the light is even. The method sets
+                             * the positions of its cells */
   const sheet_stack *sheets;
   const view *eye;
-  const light_exchange *exchange; /* with the other parts of a shared picture; null: there are none, or they
-                                     cannot be asked */
-  bool surfaces;                  /* some volume has surfaces, which are lit by the light at their outside */
-  int channels;                   /* of attenuation: 1 or 3 */
-  double voxel;                   /* the smallest edge of a voxel, frame units */
-  double pixel;                   /* edge of a picture's pixel where the content is nearest, frame units */
-  double middle_pixel;            /* the same at the content's middle */
-  size_t picture_pixels;          /* how many the frame has */
+  const light_exchange *exchange; /* exchange with the other parts of a shared picture; null: there are no
+                                   * other parts, or they cannot be asked */
+  bool surfaces;         /* some volume has surfaces, which are lit by the light at the surfaces' outside */
+  int channels;          /* of attenuation: 1 or 3 */
+  double voxel;          /* the smallest edge of a voxel, frame units */
+  double pixel;          /* edge of a picture's pixel where the content is nearest, frame units */
+  double middle_pixel;   /* the same at the content's middle */
+  size_t picture_pixels; /* how many the frame has */
   const vec3 *
       seen; /* [seen_count]; corners of the content that the eye sees, frame space; valid in plan and begin */
   int seen_count;
@@ -82,14 +82,15 @@ typedef struct shadow_plan {
   bool outside;         /* the buffer keeps the light at the outside of surfaces, too */
   bool second;          /* the buffer has second planes */
   int reach;            /* pixels beyond a tile that the method reads */
-  double spare;         /* pixels beyond a brick's projection that the picture's look-ups may read */
+  double spare;         /* how many pixels beyond a brick's projection the picture's look-ups may read */
 } shadow_plan;
 
 /* Planes that a method may keep from frame to frame. The renderer owns them. */
 typedef struct shadow_memory {
   void *planes;    /* owned; [capacity] */
   size_t capacity; /* bytes */
-  bool zeros;      /* all bytes are zeros; false while a method uses them and after one that was cancelled */
+  bool zeros;      /* all bytes are zeros; false while a method uses the planes, and after a frame that was
+                    * cancelled */
 } shadow_memory;
 
 typedef struct shadow_method shadow_method;
@@ -107,11 +108,13 @@ typedef struct light_shadow {
   void *state;                                            /* owned; method->state_bytes */
   shadow_memory *kept;                                    /* the renderer's */
   void *passing;                                          /* lent by the reserve */
-  const int32_t *needed_until; /* [tiles]; the last slab at which this part of a shared picture needs a tile,
-                                  0: never; null: it needs all. Borrowed, set before the first slab */
-  const int32_t *sublights_until; /* [sublight_count][sublight_tiles_y][sublight_tiles_x]; the same for tiles
-                                     of the sub-lights' buffers, where there are any */
-  const unsigned char *owned;     /* [tiles]; 1 where this part tells the others of a tile; null likewise */
+  const int32_t *needed_until;    /* [tiles]; the last slab at which this part of a shared picture needs a
+                                   * tile, 0: never; null: it needs all tiles at all slabs. Borrowed; set
+                                   * before the first slab */
+  const int32_t *sublights_until; /* [sublight_count][sublight_tiles_y][sublight_tiles_x]; as needed_until,
+                                   * for the tiles of the sub-lights' buffers, where there are sub-lights */
+  const unsigned char *owned;     /* [tiles]; 1 where this part of a shared picture tells the other parts
+                                   * about a tile; null: it tells nothing */
 } light_shadow;
 
 /* A method's memory besides the buffer. */
@@ -123,60 +126,63 @@ typedef struct shadow_layouts {
 struct shadow_method {
   const char *name;
   size_t state_bytes; /* of light_shadow.state, zeros before plan */
-  int first_slab; /* for a near light within a slab. 0: the part of this slab beyond the light casts shadows;
-                     1: shadows begin with the next slab */
-  /* Surfaces take light out of the buffer that many of its pixels late (surface/late/lateness.h), where its
-   * look-ups are bilinear: methods that blur by a pixel and more take it later. */
+  int first_slab;     /* where shadows of a near light within a slab begin. 0: with the part of this slab that
+                       * lies beyond the light; 1: with the next slab */
+  /* The number of the buffer's pixels by which surfaces take light late (surface/late/lateness.h), where
+   * look-ups are bilinear. Methods that blur by a pixel or more need a greater delay. */
   double surface_delay;
-  double surface_rise; /* pixels by which surfaces stand above their place in the buffer */
+  double surface_rise; /* number of pixels by which surfaces lie higher in the buffer than they are */
   void (*plan)(light_shadow *shadow);
   hl_status (*check)(const light_shadow *shadow, hl_error *error);
   void (*lay_out)(light_shadow *shadow, shadow_layouts *layouts);
   hl_status (*begin)(light_shadow *shadow, hl_error *error);
-  /* lookup: how the slab is to be looked up, of the sheet before it. */
+  /* Prepares the look-ups of the picture in a slab. lookup: set to the way in which the light at the sheet
+   * before the slab is looked up. */
   void (*before_shading)(light_shadow *shadow, int sheet, shadow_lookup *lookup);
   /* job: of all tiles of the slab. */
   void (*before_slab)(light_shadow *shadow, int sheet, attenuate_job *job);
-  /* Finds buffer->tile_lit of a tile. Null: the sweep finds it itself. One task at a time has a tile. */
+  /* Finds the lit blocks of a tile (buffer->tile_lit). Null: the sweep finds them itself. Only one task at
+   * a time works on a tile. */
   void (*find_lit)(light_shadow *shadow, size_t tile);
   void (*before_tile)(const light_shadow *shadow, size_t tile, attenuate_job *job);
   void (*after_tile)(light_shadow *shadow, size_t tile);
   void (*advance)(light_shadow *shadow, const occupancy *occupancy, int sheet);
-  /* The parts of a shared picture each work through the tiles that they need: needed_until, or
+  /* Each part of a shared picture works through only those tiles that it needs, by needed_until or
    * sublights_until. */
   bool divides;
-  /* Raises needed_until, [tiles], where pixels of other tiles come to depend on a tile's. Null: they never
-   * do.
-   */
+  /* Raises needed_until, [tiles], for tiles on whose pixels the pixels of other, needed tiles will depend.
+   * Null: no tile depends on another. */
   void (*widen_needs)(light_shadow *shadow, int32_t *needed_until);
-  /* The parts of a shared picture work through the tiles that they need, and tell each other the rest: the
-   * setup's exchange, needed_until and owned. Of each tile that any brick touches one part is the owner,
-   * which needs the tile as long as bricks touch it. */
+  /* Each part of a shared picture works through only those tiles that it needs, and gets the rest from the
+   * other parts (the setup's exchange, needed_until, owned). Each tile that any brick touches has one owner
+   * among the parts, which needs the tile as long as bricks touch it. */
   bool exchanges;
   /* Whether `advance` changes anything at a sheet. Null: it may at every sheet. */
   bool (*advances)(const light_shadow *shadow, int sheet);
   void (*end)(light_shadow *shadow);
 };
 
-/* The method for a light: by its shadows and soft method; null where it casts none. */
+/* The method that makes a light's shadows, as the light's settings `shadows` and soft method say; null
+ * where the light casts no shadows. */
 const shadow_method *hl_shadow_method(const light_source *source);
 
 /* ---- for the sweep ---- */
 
-/* Chooses the method and plans. shadow->method is null afterwards where there are no shadows to make. */
+/* Chooses a light's shadow method, and lets it plan. shadow->method is null afterwards where there are no
+ * shadows to make. */
 hl_status hl_light_shadow_plan(light_shadow *shadow, const shadow_setup *setup, hl_error *error);
 /* Whether the planned method can be run in stretches. */
 static inline bool hl_runs_in_stretches(const shadow_method *method) {
   return method->advance == NULL || method->advances != NULL;
 }
-/* After plan: the size of the buffer where it keeps so many sheets; the renderer keeps the buffer. */
+/* The size of a planned light's buffer that keeps a given number of sheets. The renderer owns the buffer. */
 shadow_buffer_size hl_light_shadow_buffer_size(const light_shadow *shadow, int ring);
 /* After plan: the bytes of the method's memory. */
 shadow_layouts hl_light_shadow_count(light_shadow *shadow);
 /* Begins a copy of a planned shadow, which stays as it is. buffer and memory are the renderer's. */
 hl_status hl_light_shadow_begin(light_shadow *shadow, const light_shadow *planned, const shadow_means *means,
                                 int ring, shadow_buffer *buffer, shadow_memory *memory, hl_error *error);
-/* After plan or begin, even if they failed; allowed for a struct of zeros. */
+/* Releases what a planned or begun shadow holds, also after a failure; allowed for a struct of zeros. */
 void hl_light_shadow_end(light_shadow *shadow);
 
 /* ---- for methods ---- */
@@ -185,10 +191,11 @@ void hl_light_shadow_end(light_shadow *shadow);
 double hl_shadow_pixel(const shadow_setup *setup, bool cubic);
 /* Whether hard shadows, or soft ones of an even light, are best read by cubic convolution. */
 bool hl_cubic_is_better(const shadow_setup *setup);
-/* A buffer parallel to the sheets: plan->seen, and an extent with room for penumbrae. pixel: frame units. */
+/* Plans a buffer that is parallel to the sheets, and has room for penumbrae around the points that the eye
+ * sees. pixel: frame units. */
 void hl_plan_soft(light_shadow *shadow, double pixel);
-/* Edges of a buffer's pixel, frame units: where light is looked up as it is, and where the method blurs it.
- */
+/* The edge of a buffer's pixel in frame units: the first function is for light that is looked up as it is,
+ * the second for light that the method blurs. */
 double hl_sharp_pixel(const shadow_setup *setup, bool cubic);
 double hl_blurred_pixel(const shadow_setup *setup, bool cubic);
 /* An extent around what is seen. pixel: frame units. */

@@ -1,39 +1,40 @@
 /* shadow_cascade/cascade.h - soft shadows whose penumbrae have the right width (beyond the paper).
  *
- * Penumbrae. Positions and widths are measured on a plane parallel to the sheets, projected from the light's
- * centre. There a slab at height o casts a penumbra of width w = omega(r) - omega(o) onto a receiver at
- * height r: omega = (L / D) z for parallel light (the disk of its directions, on the plane), else -L / Z.
+ * Penumbrae. Positions and widths are measured on a plane parallel to the sheets, onto which everything is
+ * projected from the light's centre. On this plane a slab at height o casts a penumbra of width w =
+ * omega(r) - omega(o) onto a receiver at height r: omega = (L / D) z for parallel light (the disk of its
+ * directions, on the plane), else -L / Z.
  *
  * Absorbed light. The light absorbed on its way to a receiver is the sum of what each slab before it has
  * absorbed: 1 - T(r) = sum over o of T(o) (1 - t(o)), each term blurred by its w; T(o) is the light that
- * reached the slab, t(o) the slab's transmittance. Light is counted where it is absorbed first, so a thick
- * occluder darkens only once.
+ * reached the slab, t(o) the slab's transmittance. Light is counted only where it is absorbed first, so a
+ * thick occluder is not counted twice.
  *
- * Groups. Slabs are kept together in groups, thin ones near the receiver and thick ones far from it: groups
- * of levels 0 and 1 hold one chunk of slabs, those of level j hold 2^(j-1) chunks. From the farthest group
- * on, the sum is blurred by the variance (w(o)^2 - w(o')^2) / 12 on its way from group o to the next group
- * o', and the absorbed light of o' is added. The variances telescope: each group ends with the variance of
- * its own penumbra. Far levels have coarser pixels, since their penumbrae are wide, and are summed less
- * often, since their widths change slowly.
+ * Groups. The absorbed light of slabs is kept in groups, which are thin near the receiver and thick far
+ * from it: groups of levels 0 and 1 hold one chunk of slabs, those of level j hold 2^(j-1) chunks. From the
+ * farthest group on, the sum is blurred by the variance (w(o)^2 - w(o')^2) / 12 on its way from group o to
+ * the next group o', and the absorbed light of o' is added. The variances telescope: each group ends with
+ * the variance of its own penumbra. Far levels have coarser pixels, since their penumbrae are wide, and are
+ * summed less often, since their widths change slowly.
  *
- * Near matter. Slabs join the groups one chunk late. The slabs of the current chunk and of the one before
- * attenuate the buffer directly, without blur: their penumbrae are a few pixels wide at most, and a surface's
- * own matter is among them, which blurs would spread over the surface (derived: of a plane that sees the
- * whole light, all matter more than a chunk away lies further aside from a receiver than the light's rim
- * reaches). At each chunk's end the buffer is refilled from the sum. Its second planes keep the light from
- * before, and samples fade from the second planes to the buffer in the course of a chunk, so that no line
- * shows where a chunk ends. Each filling thus serves two chunks, most at the border between them, the
- * position that its penumbrae are made for.
+ * Near matter. Slabs join the groups one chunk late. The slabs of the current chunk and of the chunk before
+ * attenuate the buffer directly, without blur. There are two reasons: their penumbrae are at most a few
+ * pixels wide; and blurs would spread a surface's own matter, which is among them, over the surface
+ * (derived: of a plane that sees the whole light, all matter more than a chunk away lies further aside from
+ * a receiver than the light's rim reaches). At each chunk's end the buffer is refilled from the sum. Its
+ * second planes keep the light from before, and samples fade from the second planes to the buffer in the
+ * course of a chunk, so that no line shows where a chunk ends. So each filling serves two chunks. Its
+ * penumbrae are right at the border between the two, where it counts fully.
  *
- * Haze. The sum above holds for solid matter, which absorbs light at its edges. Thin matter absorbs a
- * fraction F of every ray through it, and rays towards r keep their directions: of the light on its way to r
- * it absorbs F (1 - s), s being the sum so far, blurred for o and r, and not F T(o). So a group turns s into
- * G + F + (1 - F) s, with G = T(o) (1 - t(o)) of its solid matter and F of its thin matter (derived). Two
- * groups become one with 1 - F = (1 - F1) (1 - F2), and G + F likewise.
+ * Haze. The sum above holds for solid matter, which absorbs light at its edges. Thin matter absorbs the
+ * fraction F of every ray through it. Rays towards r keep their directions, so of the light on its way to r
+ * thin matter absorbs F (1 - s), and not F T(o); s is the sum so far, blurred for o and r. So a group turns
+ * s into G + F + (1 - F) s, with G = T(o) (1 - t(o)) of its solid matter and F of its thin matter
+ * (derived). Two groups become one with 1 - F = (1 - F1) (1 - F2), and G + F likewise.
  *
- * Surfaces that let nothing pass, of meshes, count as solid matter in full light and next to their edges,
- * which is right where several edges end one behind the other. Elsewhere they have F = 1: behind them nothing
- * is left of the light that things before them leave.
+ * Surfaces of meshes that let nothing pass count as solid matter in full light and next to their edges,
+ * which is right where several edges lie one behind the other. Elsewhere they have F = 1, so that nothing
+ * remains behind them of light that things before them let pass.
  *
  * The buffer's axes are the principal axes of the light as the sheets see it; along each the width has its
  * own fraction. */
@@ -50,11 +51,12 @@
 /* CASCADE_MARGIN: pixels of zeros between rows, and rows of zeros between planes, which blurs may read. */
 enum { CASCADE_LEVELS = 16, CASCADE_GROUPS = 7, CASCADE_FEW_GROUPS = 4, CASCADE_MARGIN = 48 };
 
-/* Absorbed light over the pixels of a level, with a margin of zeros around them. One margin serves as the end
- * of a row and the beginning of the next, and likewise between fields. */
+/* Absorbed light over the pixels of a level, with a margin of zeros around them. The margin at the end of a
+ * row is also the margin before the next row, and likewise between fields. */
 typedef struct cascade_field {
   field_pixel *pixels;  /* pixel (0,0); in the level's memory */
-  unsigned char *zeros; /* [tiles]; 1 where the tile is all zeros: work skips it; in the level's flags */
+  unsigned char *zeros; /* [tiles]; 1 where all pixels of the tile are zeros, so that work skips it; a part
+                         * of the level's flags */
 } cascade_field;
 
 /* The light that a group's slabs have absorbed. */
@@ -65,7 +67,8 @@ typedef struct cascade_group {
   bool filled;                         /* not all zeros */
 } cascade_group;
 
-/* A column or row of tiles: its fraction of the greatest variance, and the box of the current blur. */
+/* How a column or row of tiles is blurred: its fraction of the greatest variance, and the box of the
+ * current blur. */
 typedef struct cascade_box {
   double fraction;
   blur_box box;
@@ -74,22 +77,24 @@ typedef struct cascade_box {
 typedef struct cascade_level {
   int scale; /* edge of this level's pixels, pixels of the buffer */
   int tiles_x, tiles_y;
-  size_t stride, plane, origin, pixels; /* pixels: of a row; of a field; before a field's pixel (0,0); of all
-                                           fields and the margin after them */
+  size_t stride, plane, origin, pixels; /* numbers of pixels: of a row; of a field; before a field's pixel
+                                         * (0,0); of all fields and the margin after them */
   cascade_group group[CASCADE_GROUPS];  /* oldest first */
   int count, capacity;
   double fraction[2],
-      greatest_fraction;             /* the boxes' fractions: means along rows and columns, the greatest */
-  cascade_field sum[2][HL_CHANNELS]; /* sum of all groups up to one of this level, for a recent receiver */
+      greatest_fraction; /* the boxes' fractions: the means along rows and columns, and the greatest */
+  cascade_field sum[2][HL_CHANNELS]; /* the sum of all groups from the farthest up to one group of this
+                                      * level, as it was made for a recent receiver */
   int newest;                        /* which of the two sums includes the newest group */
-  bool filled; /* the sum includes a group of this level; if not, the sum of the next farther level is used */
+  bool filled;      /* the sum includes a group of this level; if not, the sum of the next farther level takes
+                     * its place */
   double sum_omega; /* omega of the newest group in the sum */
-  double owed[2]; /* variance that the sum is blurred too much already, along rows and columns; pixels of the
-                     buffer squared */
-  bool renewed;   /* the sum must be made again */
+  double owed[2];   /* variance by which the sum is already blurred too much, along rows and columns; in
+                     * squared pixels of the buffer */
+  bool renewed;     /* the sum must be made again */
   cascade_field scratch;              /* for sums from farther levels; not on level 0 */
-  cascade_field mean[2][HL_CHANNELS]; /* for lights with an emission image: one group's absorbed and thin
-                                         light, averaged */
+  cascade_field mean[2][HL_CHANNELS]; /* for lights with an emission image: the absorbed and the thin light
+                                       * of one group, averaged */
   cascade_box *boxes;                 /* owned; [tiles_x], then [tiles_y] */
   field_pixel *memory;                /* the shadow_memory's */
   size_t planes;
@@ -103,7 +108,8 @@ typedef struct cascade_exchange {
   size_t slots;                       /* messages of a post, at most */
   light_post post;                    /* of the next two */
   unsigned char *outgoing, *incoming; /* owned; [post.most]; [parts][post.most] */
-  unsigned char *sends;               /* owned; [tiles]; 1 where this part tells of the last chunk */
+  unsigned char *sends;               /* owned; [tiles]; 1 where this part sends the tile's light of the
+                                       * last chunk to the other parts */
   uint32_t count;                     /* of these tiles */
   size_t tile;                        /* the next one to tell of */
   bool sent;                          /* a post of the last chunk is under way */
@@ -112,28 +118,30 @@ typedef struct cascade_exchange {
 typedef struct soft_cascade {
   bool begun; /* its memory holds more than zeros */
   bool parallel;
-  double rate; /* how fast penumbrae widen: for parallel light omega per height; for near light L, in pixels
-                  of the buffer at distance 1 */
+  double rate; /* how fast penumbrae widen: for parallel light, omega per unit of height; for near light, L
+                * in pixels that the buffer has at distance 1 */
   double light_height;
   double widest;                        /* of the light's widths along the buffer's axes */
   double least_fraction;                /* the smaller width as a fraction of the greater */
   const light_emission *emission;       /* null: the light is even, and blurs are boxes */
-  double slope_start[2], slope_step[2]; /* slope of the light's rays at the buffer's corner, and from one
-                                           pixel to the next */
+  double slope_start[2], slope_step[2]; /* the slope of the light's rays at the buffer's corner, and the
+                                         * change of the slope from one pixel to the next */
   double chunk;                         /* length of the current chunk in omega, pixels */
   double chunk_start;                   /* omega */
   double shortest_chunk;                /* of the sweep */
-  double shrink; /* the length of a chunk as a fraction of its start's -omega; 0: all are equally long */
-  double evened; /* omega from which on they are equally long, again; pixels */
+  double shrink; /* the length of a chunk, as a fraction of -omega at its start; 0: all chunks are equally
+                  * long */
+  double evened; /* the omega, in pixels, from which on chunks are equally long again */
   double lookup_variance; /* variance by which look-ups blur, pixels squared */
   uint64_t chunks;        /* finished */
   int channels;
   int level_count; /* levels with memory */
   cascade_level level[CASCADE_LEVELS];
-  cascade_field absorbed[HL_CHANNELS];   /* the absorbed light of the last filling; one of level 0's sums */
-  float *absorbed_at_start[HL_CHANNELS]; /* pixel (0,0) on level 0: 1 - the light at the chunk's start */
-  float *moment[HL_CHANNELS]; /* pixel (0,0) on level 0: light absorbed by the chunk's slabs times their
-                                 positions */
+  cascade_field absorbed[HL_CHANNELS];   /* the light that was absorbed up to the last filling of the
+                                          * buffer; one of level 0's sums */
+  float *absorbed_at_start[HL_CHANNELS]; /* pixel (0,0) on level 0: 1 - the light at the start of the chunk */
+  float *moment[HL_CHANNELS]; /* pixel (0,0) on level 0: the sum of the light that the chunk's slabs
+                               * absorbed, each times the slab's position */
   unsigned char *refilled;    /* owned; [tiles]; REFILLED_BEFORE, REFILLED_NOW */
   unsigned char *touched;     /* owned; [tiles]; 1 where the chunk's slabs absorbed light */
   cascade_reads reads;        /* the tiles that the next chunk's slabs read */
@@ -155,14 +163,14 @@ void hl_cascade_end(light_shadow *shadow);
 
 /* cascade_exchange.c */
 void hl_cascade_exchange_lay_out(soft_cascade *cascade, const light_exchange *with, shadow_layouts *layouts);
-/* Begins to tell the other parts what the groups at the last chunk's two ends hold in the tiles that this
- * part owns and the chunk has touched. */
+/* Begins to send messages to the other parts: what the groups at the last chunk's two ends hold, in those
+ * tiles that this part owns and that the chunk has touched. */
 void hl_cascade_exchange_send(soft_cascade *cascade, const unsigned char *owned);
 /* Lets what is under way get on. */
 void hl_cascade_exchange_look(const soft_cascade *cascade);
-/* Sets what these groups hold in the others' tiles, and whether the chunk has touched any tile of any part;
- * waits until the others have sent it. Before anything reads the groups. Nothing is done where nothing is
- * under way. */
+/* Waits for the messages of the other parts, and stores what the groups hold in the others' tiles, and
+ * whether the chunk has touched any tile of any part. Call it before anything reads the groups. It does
+ * nothing where no messages are under way. */
 void hl_cascade_exchange_receive(soft_cascade *cascade);
 
 /* omega at a height. */
@@ -172,8 +180,8 @@ static inline double hl_cascade_omega(const soft_cascade *cascade, double height
   return distance > 0 ? -cascade->rate / distance : -INFINITY;
 }
 
-/* omega after some more chunks (derived: a chunk from omega on ends at omega (1 - shrink); those from
- * `evened` on have the length of the one that begins there). */
+/* The value of omega some chunks later (derived: a chunk that begins at omega ends at omega (1 - shrink);
+ * chunks from `evened` on have the length of the chunk that begins there). */
 static inline double hl_cascade_chunks_on(const soft_cascade *cascade, double omega, double chunks) {
   if (!(cascade->shrink > 0)) return omega + cascade->chunk * chunks;
   if (omega < cascade->evened) {
@@ -185,8 +193,9 @@ static inline double hl_cascade_chunks_on(const soft_cascade *cascade, double om
   return omega - cascade->shrink * cascade->evened * chunks;
 }
 
-/* Finds the absorbed light for receivers around omega = receiver, through the light's emission image, in
- * cascade->absorbed where it is read (cascade_emission.c); false if nothing is in the way. */
+/* Finds the absorbed light for receivers around omega = receiver, for a light with an emission image, and
+ * stores it in cascade->absorbed in the tiles that are read (cascade_emission.c). False: nothing is in the
+ * light's way. */
 bool hl_cascade_pass_emission(soft_cascade *cascade, double receiver, const cascade_crew *crew);
 
 #endif

@@ -2,10 +2,11 @@
  * its own.
  *
  * Boxes can be blurred step by step, as only their variance matters. An emission image must appear complete
- * in every penumbra: the absorbed light of group o is weighted at once by the image's taps, scaled to w(o ->
- * r) (light_emission.h). Far groups come first: the sum s becomes K(G + F) + (1 - K(F)) s, with the group's
- * kernel K (derived as in cascade.h; without thin matter it is the sum over groups of K(G), the mean of what
- * the light's cells see). Nothing is kept from one receiver to the next; far groups are coarse. */
+ * in every penumbra: the absorbed light of group o is weighted at once by the image's taps, scaled to w(o
+ * -> r) (light_emission.h). Far groups come first: the sum s becomes K(G + F) + (1 - K(F)) s, with the
+ * group's kernel K (derived as in cascade.h; without thin matter it is the sum over groups of K(G), the
+ * mean of what the light's cells see). Sums are made anew for each receiver. This is affordable because far
+ * groups have coarse pixels. */
 #include "shadow_cascade/cascade_passes.h"
 
 #include <string.h>
@@ -18,7 +19,7 @@ typedef struct emission_pass {
   const cascade_group *group;
   double width; /* of the group's penumbra, pixels of the level */
   int step[2];
-  bool averaged; /* the level's mean holds the group's means over step pixels */
+  bool averaged; /* the level's `mean` holds the group's means over `step` pixels */
   int reach;     /* reach of the taps and the means, tiles */
   const cascade_functions *functions;
 } emission_pass;
@@ -28,8 +29,8 @@ static const cascade_field *sum_of(const soft_cascade *cascade, const cascade_le
   return level == &cascade->level[0] ? &cascade->absorbed[channel] : &level->sum[0][channel];
 }
 
-/* The tiles of a row that are read: by the next slabs, or by the next finer level, which interpolates between
- * pixels. */
+/* Finds the tiles of a row that are read by the next slabs, or by the next finer level, which interpolates
+ * between pixels. */
 static read_row row_read(const soft_cascade *cascade, const cascade_level *level, size_t y) {
   return hl_cascade_read_row(&cascade->reads, level->scale, (int)y,
                              hl_cascade_doubling_reach(level->scale, 1));
@@ -43,7 +44,8 @@ static bool any_near(const cascade_level *level, const cascade_field *field, int
 
 typedef struct start_task {
   const soft_cascade *cascade;
-  const cascade_level *level, *farther; /* farther: the next farther level with a filled sum; null: none */
+  const cascade_level *level, *farther; /* the level, and the next farther level with a filled sum; null:
+                                         * none */
   const cascade_functions *functions;
 } start_task;
 
@@ -110,8 +112,8 @@ static void average_row(void *data, size_t index, int worker) {
   }
 }
 
-/* Leaves out taps that lie outside the level for this tile, where there are only zeros. Returns how many are
- * left. */
+/* Leaves out taps that, for this tile, lie outside the level, where all pixels are zeros. Returns how many
+ * are left. */
 static int offsets_of(const cascade_level *level, const emission_taps *taps, int x, int y, ptrdiff_t *offset,
                       int *kept) {
   int count = 0;

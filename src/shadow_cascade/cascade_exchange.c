@@ -1,10 +1,10 @@
 /* shadow_cascade/cascade_exchange.c - the parts of a shared picture tell each other what their light
  * absorbed.
  *
- * A part attenuates the tiles that it needs. Penumbrae bring it the shadows of matter in other tiles, which
- * others attenuate: after each chunk the owner of each tile that the chunk has touched sends what the groups
- * at the chunk's ends hold there. So every part's groups are complete, the same as in one renderer, and each
- * blurs them where its own tiles read them.
+ * A part attenuates the tiles that it needs. Penumbrae reach into these tiles from matter in other tiles,
+ * which other parts attenuate. So after each chunk, the owner of each tile that the chunk has touched sends
+ * what the groups at the chunk's ends hold in this tile. So every part's groups are complete, the same as
+ * in one renderer, and each blurs them where its own tiles read them.
  *
  * The groups of a chunk are read first at the end of the next chunk, when matter before it is blurred (Near
  * matter, cascade.h). So the messages of a chunk are under way while the next one is filled, lit and seen,
@@ -15,7 +15,8 @@
 
 #include "shadow_cascade/cascade_passes.h"
 
-/* The posts of all parts take about so many bytes, where the exchange does not say it. */
+/* The number of bytes, approximately, that the posts of all parts take, where the exchange gives no number.
+ */
 enum { MOST_POSTED = 8 << 20 };
 
 /* The head of a post. */
@@ -31,7 +32,7 @@ enum { MESSAGE_FIELDS = 4 };
 /* The head of a message. After it: [channels][MESSAGE_FIELDS][TILE_PIXELS] pixels. */
 typedef struct message_head {
   uint32_t tile;
-  uint32_t filled; /* bits: the fields that are not all zeros, in their order */
+  uint32_t filled; /* one bit for each field that is not all zeros, in the fields' order */
 } message_head;
 
 void hl_cascade_exchange_lay_out(soft_cascade *cascade, const light_exchange *with, shadow_layouts *layouts) {
@@ -60,7 +61,7 @@ static const cascade_field *field_of(const cascade_group *start, const cascade_g
   return field % 2 == 0 ? &group->absorbed[channel] : &group->thin[channel];
 }
 
-/* One tile's pixels, from a field to a message or back. */
+/* Copies one tile's pixels from a field to a message, or back. */
 static void pack_tile(const cascade_level *level, const cascade_field *field, size_t tile, field_pixel *to) {
   const field_pixel *from = field->pixels + tile / (size_t)level->tiles_x * TILE * level->stride +
                             tile % (size_t)level->tiles_x * TILE;

@@ -6,8 +6,8 @@
 
 #include "shadow/blur.h"
 
-/* Absorbed light in units of 1 / FIELD_ONE, to halve the memory traffic of floats. At most FIELD_ONE,
- * somewhat more in sums of several groups' penumbrae. */
+/* Absorbed light in units of 1 / FIELD_ONE, to halve the memory traffic of floats. A pixel is at most
+ * FIELD_ONE, but somewhat more in sums of several groups' penumbrae. */
 typedef uint16_t field_pixel;
 enum { FIELD_ONE = 32768 };
 
@@ -19,8 +19,8 @@ static const tile_rows ALL_ROWS = {0, TILE};
 
 /* An operation on fields, given by their pixel (0,0); rows are stride apart, with zeros all around. */
 typedef struct field_job {
-  const field_pixel *a, *b; /* inputs; the function says their resolutions. Null for zeros: b unless it is
-                               coarser than the output, a if b is coarser */
+  const field_pixel *a, *b; /* inputs; each function says their resolutions. Null stands for zeros: b may
+                             * be null unless it is coarser than the output, a may be null if b is coarser */
   field_pixel *to;
   size_t stride_in, stride; /* stride_in: of inputs of another resolution */
   const field_pixel *thin;  /* the fraction of b that a's thin matter absorbs; null: none */
@@ -30,8 +30,8 @@ typedef struct field_job {
 /* Returns whether any pixel of the tile's rows is more than zero. */
 typedef int field_tile_function(const field_job *job, int tile_x, int tile_y);
 
-/* to = a + (1 - thin) * (from, blurred along rows and columns), in one pass over memory; a and thin may be
- * null: 0. */
+/* A blurred sum: to = a + (1 - thin) * (from, blurred along rows and columns), in one pass over memory; a
+ * and thin may be null, which stands for 0. */
 typedef struct field_blur_job {
   const field_pixel *from, *a; /* pixel (0,0); rows stride apart */
   const field_pixel *thin;
@@ -43,17 +43,17 @@ typedef struct field_blur_job {
 /* Returns whether any pixel of the tile is more than zero. */
 typedef int field_blur_tile_function(const field_blur_job *job, int tile_x, int tile_y);
 
-/* Refills the buffer at a chunk's end: 1 - absorbed, from 0 to 1, times the transmittance of the chunk's own
- * slabs. */
+/* Refilling the buffer at a chunk's end: a pixel becomes 1 - absorbed, limited to 0..1, times the
+ * transmittance of the chunk's own slabs. */
 typedef struct refill_job {
   const field_pixel *absorbed; /* rows stride apart */
-  float *
-      absorbed_at_start; /* rows stride apart; 1 - the light at the chunk's start; becomes 1 - the new `to` */
-  float *to;             /* rows stride_to apart; the buffer */
-  float *
-      older; /* rows stride_to apart; the second planes: become the old `to`, or the new one unless `again` */
-  float *outside; /* rows stride_to apart; the light at the outside of surfaces: what they have taken stays;
-                     null: none */
+  float *absorbed_at_start; /* rows are `stride` apart; 1 - the light at the chunk's start; afterwards 1 - the
+                             * new value of `to` */
+  float *to;                /* rows stride_to apart; the buffer */
+  float *older;   /* rows are stride_to apart; the second planes, which get the old value of `to`, or where
+                   * `again` is not set the new one */
+  float *outside; /* rows are stride_to apart; the light at the outside of surfaces, which keep what they
+                   * have taken; null: none */
   size_t stride, stride_to;
   int kept;  /* the chunk's slabs absorbed some light */
   int again; /* `to` was refilled at the chunk's start as well */
@@ -75,22 +75,24 @@ typedef int field_emission_tile_function(const field_emission_job *job, int tile
 enum { GREATEST_EDGE = 16 };
 
 /* Adds the light that a chunk's slabs have absorbed, (1 - absorbed_at_start) - now, and the fraction that
- * thin matter absorbed, to two groups: the fraction moment / (length * absorbed light) of both goes to the
- * group at the chunk's end, the rest to the one at its start. Where the chunk began in the dark, marks of
+ * thin matter absorbed, to two groups. The fraction moment / (length * absorbed light) of both goes to the
+ * group at the chunk's end, the rest to the group at its start. Where the chunk began in the dark, marks of
  * surfaces (shadow/attenuate.h) take the light that the groups before the chunk leave, half of it for each
  * group. Inside of opaque surfaces the group at the end hides all that is before it. */
 typedef struct absorbed_job {
   const float *absorbed_at_start; /* rows stride apart */
-  const float *now; /* transmittance at the chunk's end, or marks of surfaces; rows stride_now apart; has
-                     * pixels up to `edge` beside a tile */
-  float *moment;    /* sum of each slab's absorbed light times its position in the chunk; is cleared */
+  const float *now; /* transmittance at the chunk's end, or marks of surfaces; rows are stride_now apart;
+                     * readable up to `edge` pixels beside a tile */
+  float *moment;    /* sum over the slabs of absorbed light times the slab's position in the chunk; cleared
+                     * afterwards */
   float length;     /* of the chunk */
-  const field_pixel *before; /* rows stride apart; what the groups before the chunk absorbed; null: unknown */
+  const field_pixel *before; /* rows are `stride` apart; the light that the groups before the chunk
+                              * absorbed; null: unknown */
   field_pixel *start_absorbed, *start_thin; /* rows stride apart; raised */
   field_pixel *end_absorbed, *end_thin;     /* rows stride apart; written */
   size_t stride, stride_now;
-  int edge; /* pixels next to the edges of surfaces that do not hide what is before them; at most
-               GREATEST_EDGE */
+  int edge; /* width, in pixels, of the part next to the edges of surfaces that does not hide what is
+             * before it; at most GREATEST_EDGE */
 } absorbed_job;
 /* Returns which of the four fields got more than zero, one bit each in their order. */
 typedef uint32_t absorbed_tile_function(const absorbed_job *job, int tile_x, int tile_y);
@@ -110,12 +112,15 @@ typedef struct cascade_functions {
   lit_blocks_function *lit_blocks;
   field_blur_tile_function *blur_add;
   field_tile_function *add;        /* to = a + (1 - thin) b */
-  field_tile_function *add_half;   /* to (stride) = mean over 2x2 pixels of a + (1 - thin) b (stride_in) */
-  field_tile_function *add_double; /* to = a + (1 - thin) (b of half the resolution, stride_in, bilinear) */
+  field_tile_function *add_half;   /* to (rows `stride` apart) = the mean over 2x2 pixels of a + (1 - thin)
+                                    * b (rows stride_in apart) */
+  field_tile_function *add_double; /* to = a + (1 - thin) b, where b has half the resolution (rows
+                                    * stride_in apart) and is interpolated bilinearly */
   refill_tile_function *refill;
   absorbed_tile_function *absorbed;
   split_tile_function *split;
-  field_tile_function *double_tile; /* to = a of half the resolution (stride_in), bilinear */
+  field_tile_function *double_tile; /* to = a, where a has half the resolution (rows stride_in apart) and
+                                     * is interpolated bilinearly */
   field_emission_tile_function *emission_add;
 } cascade_functions;
 

@@ -37,14 +37,14 @@ LANES_INLINE lanes transmittance_of(const field_pixel *thin) {
   return lanes_line(lanes_load_short(thin), -1.0f / FIELD_ONE, 1.0f);
 }
 
-/* 1 - absorbed, made 0 below UMBRA; between UMBRA and twice UMBRA it rises twice as steeply, from there on it
- * is unchanged. */
+/* The transmittance 1 - absorbed, corrected in umbrae: it is 0 below UMBRA, and rises twice as steeply
+ * between UMBRA and twice UMBRA. Greater values are unchanged. */
 LANES_INLINE lanes transmittance_outside_umbra(const field_pixel *absorbed) {
   lanes left = transmittance_of(absorbed);
   return lanes_clamp(lanes_min(left, 2.0f * (left - UMBRA)), 0, 1.0f);
 }
 
-/* blur_sixteen() along a row of a field, whose pixels are summed as integers. */
+/* Blurs sixteen pixels along a row of a field as blur_sixteen() does, but sums pixels as integers. */
 LANES_INLINE lanes blur_field_row(const field_pixel *from, const blur_box *box) {
   lanes_int ends = lanes_load_short_int(from - (box->reach + 1)) +
                    lanes_load_short_int(from + (box->reach + 1));
@@ -54,7 +54,7 @@ LANES_INLINE lanes blur_field_row(const field_pixel *from, const blur_box *box) 
   return lanes_add_scaled(lanes_from_int(sum), lanes_from_int(ends), box->edge) * box->scale;
 }
 
-/* a + (1 - thin) b at a row of a tile; fields may be null: 0. */
+/* Computes a + (1 - thin) b at a row of a tile; a and thin may be null, which stands for 0. */
 LANES_INLINE lanes left_and_a(lanes b, const field_pixel *thin, const field_pixel *a, size_t at) {
   if (a == NULL) return thin == NULL ? b : b * transmittance_of(thin + at);
   lanes more = lanes_load_short(a + at);
@@ -156,8 +156,8 @@ static int double_tile(const field_job *job, int tile_x, int tile_y) {
 
 enum { EMISSION_ROWS = 4 };
 
-/* Weighs a few neighbouring rows of sixteen pixels at once: while one waits for memory, the processor works
- * on the others. */
+/* Weighs a few neighbouring rows of sixteen pixels at once: while one row waits for memory, the processor
+ * works on the others. */
 LANES_INLINE void weigh_rows(const emission_job *job, const float *from, lanes sum[EMISSION_ROWS]) {
   for (int row = 0; row < EMISSION_ROWS; row++) sum[row] = lanes_set(0);
   for (int tap = 0; tap < job->count; tap++) {
@@ -203,13 +203,13 @@ static void emission_tile(const emission_job *job, int tile_x, int tile_y) {
   }
 }
 
-/* What surfaces let pass in the dark: 1 where a pixel has no mark (attenuate.h). */
+/* The fraction of light that surfaces let pass in the dark; 1 where a pixel has no mark (attenuate.h). */
 LANES_INLINE lanes passing_in_dark(lanes end) {
   return lanes_select(end < 0.0f, end * (-1.0f / DARK_MARK), lanes_set(1.0f));
 }
 
-/* The transmittance of a chunk's own slabs. Where the chunk began with hardly any light only surfaces are
- * known: such blocks of volumes are not composited. */
+/* The transmittance of a chunk's own slabs. Where hardly any light was left at the chunk's start, it is the
+ * transmittance of surfaces alone: blocks of volumes are not composited there. */
 LANES_INLINE lanes chunk_transmittance(lanes end, lanes start) {
   lanes least = lanes_set(DARK_AT_START);
   return lanes_select(start < least, passing_in_dark(end),
@@ -232,9 +232,9 @@ static void refill_tile(const refill_job *job, int tile_x, int tile_y) {
   }
 }
 
-/* Splits matter at one position into matter at two, with the fraction `late` at the second (derived): thin
- * matter's transmittance 1 - F is the product of (1 - F)^(1 - late) and (1 - F)^late; the light that both
- * absorb one after the other, A2 + (1 - F2) A1, equals the A of the whole. */
+/* Splits matter at one position into matter at two, of which the second gets the fraction `late` (derived):
+ * thin matter's transmittance 1 - F is the product of (1 - F)^(1 - late) and (1 - F)^late; the light that
+ * both absorb one after the other, A2 + (1 - F2) A1, equals the A of the whole. */
 typedef struct matter_pair {
   lanes absorbed[2], thin[2];
 } matter_pair;
@@ -275,8 +275,8 @@ static uint32_t split_tile(const split_job *job, int tile_x, int tile_y) {
   return above_zero;
 }
 
-/* Matter that absorbs less than the first fraction of the light in a chunk counts as thin, more than the
- * second as solid. */
+/* Matter counts as thin if it absorbs less than THIN_MATTER of the light in a chunk, and as solid if it
+ * absorbs more than SOLID_MATTER. */
 static const float THIN_MATTER = 0.25f, SOLID_MATTER = 0.75f;
 
 /* The light that surfaces take in a chunk which began in the dark. job->before is not null. */
@@ -285,7 +285,7 @@ LANES_INLINE lanes taken_in_dark(const absorbed_job *job, size_t at, lanes start
   return lanes_keep(start < DARK_AT_START, reaching * (1.0f - passing_in_dark(end)));
 }
 
-/* Pixels up to this transmittance are opaque: each slab of a surface takes all. */
+/* Pixels whose transmittance is at most this are opaque: each slab of an opaque surface takes all light. */
 static const float OPAQUE_PASSING = 0x1p-20f;
 
 /* Whether surfaces of the chunk take all light of sixteen pixels in a row. */
@@ -294,17 +294,19 @@ LANES_INLINE lanes_int is_opaque(const float *now) {
   return (end < 0.0f) & (passing_in_dark(end) < OPAQUE_PASSING);
 }
 
-/* The same, or that the chunk began in the dark there. */
+/* Whether pixels are hidden: surfaces of the chunk take all light, or the chunk began in the dark there. */
 LANES_INLINE lanes_int is_hidden(const float *now, const float *absorbed_at_start) {
   return is_opaque(now) | (lanes_load(absorbed_at_start) > 1.0f - DARK_AT_START);
 }
 
-/* Where more than this is left of the light at a chunk's start, nothing is hidden: sums are right there. */
+/* Where more than this fraction of the light is left at a chunk's start, nothing is made to be hidden,
+ * since sums are right there. */
 static const float HARDLY_HIDDEN = 0.9f;
 
-/* Whether sixteen pixels are opaque, began the chunk with less than all light and lie so far from the edges
- * of surfaces: pixels beside them in four
- * directions, 1, 2, 4 ... and job->edge away, are hidden. at: of the first pixel, in absorbed_at_start. */
+/* Finds which of sixteen pixels lie inside an opaque surface: the pixel is opaque, began the chunk with
+ * less than all light, and is not near the surface's edge. It is not near an edge if the pixels beside it
+ * in four directions, 1, 2, 4 ... and job->edge away, are hidden. at: the place of the first pixel in
+ * absorbed_at_start. */
 LANES_INLINE lanes_int is_inside_surface(const absorbed_job *job, const float *now, size_t at) {
   const float *start = job->absorbed_at_start + at;
   lanes_int inside = is_opaque(now) & (lanes_load(start) > 1.0f - HARDLY_HIDDEN);
@@ -317,10 +319,11 @@ LANES_INLINE lanes_int is_inside_surface(const absorbed_job *job, const float *n
   return inside;
 }
 
-/* Makes the group at a chunk's end hide all that lies before it, where surfaces let nothing pass. Derived: a
- * surface at o takes T(o) of the light, and 1 - T(o) is the sum up to o, blurred for a receiver at o. A
- * receiver r far behind blurs that sum more: a little light is left beside the umbra of what is before o.
- * But rays that meet an opaque surface end there, whatever they have met before: 1 = F + (1 - F) s, F = 1. */
+/* Makes the group at a chunk's end hide everything that lies before it, where surfaces let nothing pass.
+ * Derived: a surface at o takes T(o) of the light, and 1 - T(o) is the sum up to o, blurred for a receiver
+ * at o. For a receiver r far behind, that sum is blurred more, so that a little light would be left beside
+ * the umbra of matter before o. But rays that meet an opaque surface end there, whatever they have met
+ * before: 1 = F + (1 - F) s with F = 1. */
 LANES_INLINE void hide_behind(lanes_int inside, matter_pair *to) {
   to->thin[1] = lanes_select(inside, lanes_set(1.0f), to->thin[1]);
   to->absorbed[1] = lanes_select(inside, lanes_set(1.0f), to->absorbed[1]);

@@ -4,19 +4,21 @@
 
 #include "shadow_cascade/cascade_passes.h"
 
-/* A sweep's chunks; thickness in pixels of omega. To stay below ENOUGH_CHUNKS they grow, at most to
- * THICK_CHUNK; to stay below NEAR_CHUNKS, or FAR_CHUNKS of a parallel light, at most to THICKEST_CHUNK: the
- * chunks next to a receiver cast shadows without penumbrae, which shows where things touch. With 64 chunks
- * balls under parallel lights 60 to 90 degrees wide showed rings, and with some greater numbers below 200
- * balls under 90 to 120 degrees. */
+/* Limits of a sweep's chunks; thickness is measured in pixels of omega. Chunks grow up to THICK_CHUNK so
+ * that there are no more than ENOUGH_CHUNKS. They grow up to THICKEST_CHUNK so that there are no more than
+ * NEAR_CHUNKS, or FAR_CHUNKS for a parallel light. They must not be thicker, because the chunks next to a
+ * receiver cast shadows without penumbrae, which shows where things touch. With 64 chunks, balls under
+ * parallel lights 60 to 90 degrees wide showed rings; with some greater numbers below 200, balls under
+ * lights 90 to 120 degrees wide did. */
 static const double ENOUGH_CHUNKS = 32, NEAR_CHUNKS = 64, FAR_CHUNKS = 88, GREATEST_CHUNKS = 200;
 static const double LEAST_CHUNK = 0.15, THICK_CHUNK = 1.3, THICKEST_CHUNK = 2;
 
-/* Divides omega from start to end into chunks of one length. A near light's omega grows without bound towards
- * the light, so these chunks may be more than the most allowed; then a chunk is a fixed fraction of -omega
- * (derived: at a distance z from the light a penumbra of width w in omega is w z wide in space, and -omega is
- * L / z, so all chunks have penumbrae of one width in space). Those of a lamp within the content, whose last
- * ones would be a small part of a pixel, are no shorter than `thick`. Returns how many chunks there are. */
+/* Divides omega from start to end into chunks of one length. A near light's omega grows without bound
+ * towards the light, so these chunks may be more than the most allowed; then a chunk is a fixed fraction of
+ * -omega (derived: at a distance z from the light a penumbra of width w in omega is w z wide in space, and
+ * -omega is L / z, so all chunks have penumbrae of one width in space). For a lamp within the content the
+ * last chunks would be a small part of a pixel long; its chunks are no shorter than `thick`. Returns how
+ * many chunks there are. */
 static double divide(soft_cascade *cascade, double start, double end, bool within) {
   double length = end - start, few = cascade->parallel ? FAR_CHUNKS : NEAR_CHUNKS;
   double thick = fmin(fmax(length / ENOUGH_CHUNKS, LEAST_CHUNK), THICK_CHUNK);
@@ -24,8 +26,8 @@ static double divide(soft_cascade *cascade, double start, double end, bool withi
   cascade->chunk_start = start;
   cascade->chunk = cascade->shortest_chunk = fmax(thick, length / most);
   cascade->shrink = 0;
-  bool even = cascade->emission ==
-              NULL; /* an image keeps equal chunks: errors 0.024, not 0.026, over an edge */
+  bool even = cascade->emission == NULL; /* lights with an emission image keep equal chunks: this gives errors
+                                          * of 0.024, not 0.026, over an edge */
   if (cascade->parallel || !even || cascade->chunk <= thick) return length / cascade->chunk;
   cascade->shrink = 1 - pow(end / start, 1 / most);
   cascade->chunk = cascade->shrink * -start;
@@ -36,13 +38,14 @@ static double divide(soft_cascade *cascade, double start, double end, bool withi
   return log(cascade->evened / start) / log(1 - cascade->shrink) + (end - cascade->evened) / thick;
 }
 
-/* The least number of chunks between a receiver and a level's groups: level 0 keeps three groups, level 1
- * two, every other level five. */
+/* The least number of chunks between a receiver and a level's groups. It follows from the number of groups
+ * that levels keep: three on level 0, two on level 1, five on every other level. */
 static double chunks_before(int level) { return level < 2 ? 3 * level : 4 * (pow(2, level - 1) - 1); }
 
-/* The scale of a level: the narrowest penumbra on it is at least one and a half of its pixels wide, as the
- * blur by resampling is taken off the penumbra (resampled_by); with an emission image, where the blur is not
- * taken off, at least four pixels. */
+/* The scale of a level, in pixels of the buffer. It is chosen so that the narrowest penumbra on the level
+ * is at least one and a half of its pixels wide; the blur by resampling is subtracted from the penumbra
+ * (resampled_by). With an emission image the blur cannot be subtracted, and the narrowest penumbra is at
+ * least four pixels wide. */
 static int level_scale(const soft_cascade *cascade, int level) {
   double penumbra = cascade->shortest_chunk * chunks_before(level) * cascade->least_fraction,
          own = cascade->emission == NULL ? 1.5 : 4;
@@ -143,7 +146,7 @@ static void begin_level(soft_cascade *cascade, int index, const sheet_light *lig
  * average. Cubic convolution has none. */
 static double lookup_variance(bool cubic) { return cubic ? 0 : 1.0 / 6; }
 
-/* Chunks and levels for a buffer whose view is planned. */
+/* Plans the chunks and levels of a buffer whose view is planned. */
 static void plan_levels(soft_cascade *cascade, const light_shadow *shadow) {
   const sheet_light *light = &shadow->plan.seen;
   const view *view = &shadow->plan.view;
@@ -166,12 +169,12 @@ static void plan_levels(soft_cascade *cascade, const light_shadow *shadow) {
     cascade->slope_step[axis] = vec3_dot(axis == 0 ? view->du : view->dv, along[axis]);
   }
   double start = hl_cascade_omega(cascade, first), end = hl_cascade_omega(cascade, last);
-  /* near a light, omega grows without bound, and penumbrae wider than twice the buffer make no difference; of
-   * a parallel light even the first slabs may be receivers, which would get shadows without penumbrae */
+  /* near a light, omega grows without bound, and penumbrae wider than twice the buffer make no difference.
+   * With a parallel light even the first slabs may be receivers, and would get shadows without penumbrae */
   if (!cascade->parallel) start = fmax(start, end - 2 * TILE * fmax(tiles_x, tiles_y));
   double chunks = divide(cascade, start, end, shadow->setup.source->sectors != NULL);
-  /* level j > 1 is first used after 5 * 2^(j-1) - 4 chunks (derived: five groups are kept, here or in levels
-   * 0 and 1) */
+  /* level j > 1 is first used after 5 * 2^(j-1) - 4 chunks (derived: five groups are kept, on this level or
+   * on levels 0 and 1 together) */
   int levels = 2 + (int)floor(log2(fmax(chunks + 7, 5) / 5));
   cascade->level_count = levels < CASCADE_LEVELS ? levels : CASCADE_LEVELS;
   for (int i = 0; i < cascade->level_count; i++) plan_level(cascade, i, tiles_x, tiles_y);
@@ -183,8 +186,8 @@ static bool is_read_cubic(const shadow_setup *setup) {
   return lookup == HL_LOOKUP_AUTO ? setup->emission == NULL : lookup == HL_LOOKUP_CUBIC;
 }
 
-/* The greatest tangent of a view's rays against the sheets' normal (a quadrangle's rays meet a sheet in one:
- * corners are farthest). Infinite where some rays run along the sheets. */
+/* The greatest tangent of a view's rays against the sheets' normal (the rays of a quadrangle meet a sheet
+ * in a quadrangle, whose corners are farthest away). Infinite where some rays run along the sheets. */
 static double steepest_tangent(const view *view, vec3 normal) {
   double greatest = 0, first = 0;
   for (int corner = 0; corner < 4; corner++) {
@@ -275,8 +278,9 @@ static void clear_plane(void *data, size_t index, int worker) {
     for (int x = 0; x < level->tiles_x; x++) hl_cascade_clear_tile(level, &field, x, y);
 }
 
-/* Clears the moments and the light at the start of the last, unfinished chunk. Of all tiles: dark pixels have
- * moments that no chunk's end clears, of what rounding left there and of matter behind surfaces' marks. */
+/* Clears the moments and the light at the start of the last, unfinished chunk. All tiles are cleared, also
+ * those that the chunk has not touched: dark pixels have moments that no chunk's end clears, which come
+ * from rounding and from matter behind surfaces' marks. */
 static void clear_moments(const soft_cascade *cascade, hl_pool *pool) {
   const cascade_level *level = &cascade->level[0];
   size_t bytes = (size_t)level->tiles_y * TILE * level->stride * sizeof(float);

@@ -7,7 +7,8 @@
 /* Chunks after which a level's sums are made again. */
 static uint64_t period_of(int level) { return level < 2 ? 1 : (uint64_t)1 << (level - 2); }
 
-/* The difference of two boxes' variances, where the light is widest; pixels of the buffer squared. */
+/* The difference of two boxes' variances, at the place where the light is widest; in squared pixels of the
+ * buffer. */
 static double variance_between(double wide, double narrow) {
   return fmax(wide * wide - narrow * narrow, 0) / 12;
 }
@@ -19,8 +20,8 @@ static double resampled_by(const cascade_level *level) {
   return ((double)level->scale * level->scale - 1) / 3;
 }
 
-/* The blur from a level's sum to omega on a level as fine or finer. Variance that resampling adds beyond this
- * blur is taken off the next one (owed). */
+/* The blur from a level's sum to omega on a level as fine or finer. If resampling blurs by more than this,
+ * the rest is subtracted from the next blur (owed). */
 static cascade_blur blur_towards(const cascade_level *from, double receiver, double omega,
                                  cascade_level *to) {
   double variance = variance_between(receiver - from->sum_omega, receiver - omega),
@@ -147,11 +148,12 @@ static void absorb_piece(void *data, size_t index, int worker) {
   }
 }
 
-/* Pixels at the edges of surfaces that hide nothing before them. Derived: where two edges lie one behind the
- * other, a chunk apart, as at the rim of a ball, the sum of what both take is about right; the sum before the
- * second edge has, for a receiver w behind it, a penumbra of width sqrt((c + w)^2 - w^2), c being the chunk's
- * length, and in its dark half the second must not hide what is left. Half of this half is enough: wider
- * edges leave light where the pieces of a surface meet that lie in two chunks. */
+/* The number of pixels at the edges of surfaces that hide nothing that is before them. Derived: where two
+ * edges lie one behind the other, a chunk apart, as at the rim of a ball, the sum of the light that both
+ * take is about right. For a receiver w behind the second edge, the sum before this edge has a penumbra of
+ * width sqrt((c + w)^2 - w^2), where c is the chunk's length. In the penumbra's dark half the second edge
+ * must not hide the light that is left. Half of this half is enough: wider edges would leave light where
+ * pieces of one surface that lie in two chunks meet. */
 static int edge_of(double length, double behind) {
   return (int)fmin(round(sqrt(length * (length + 2 * behind)) / 4), GREATEST_EDGE);
 }
@@ -190,8 +192,8 @@ static double slab_omega(const soft_cascade *cascade, const sheet_stack *sheets,
   return hl_cascade_omega(cascade, (hl_sheet_height(sheets, sheet - 1) + hl_sheet_height(sheets, sheet)) / 2);
 }
 
-/* The reach of a sum (pixels around the tiles that are read) where its field `b` is still to be doubled, from
- * `scale` on. */
+/* The reach of a sum, as pixels around the tiles that are read, where the sum's field `b` is still to be
+ * doubled from `scale` on. */
 static int reach_at(const cascade_sum *sum, int scale) {
   int doubling = hl_cascade_doubling_reach(scale, sum->level->scale);
   return sum->reach == READ_EVERYWHERE ? sum->reach : sum->reach + doubling;
@@ -246,8 +248,8 @@ static void pass_group(int channels, cascade_level *from, cascade_level *level, 
           blur, crew);
 }
 
-/* Starts the sum with the farthest group. The blur of look-ups is owed: the group's own blur is reduced by
- * it. */
+/* Starts the sum with the farthest group. Look-ups blur, too: their blur is subtracted from the group's own
+ * blur. */
 static void pass_first(const soft_cascade *cascade, cascade_level *level, const cascade_group *group,
                        const cascade_crew *crew) {
   level->owed[0] = level->owed[1] = cascade->lookup_variance;
@@ -257,7 +259,7 @@ static void pass_first(const soft_cascade *cascade, cascade_level *level, const 
 
 /* ---- where the next slabs read ---- */
 
-/* Finds the tiles that sheets up to the next chunk's end can touch. */
+/* Finds the tiles that sheets up to the end of the next chunk can touch. */
 static void find_reads(soft_cascade *cascade, const occupancy *occupancy, const light_shadow *shadow,
                        int sheet) {
   const sheet_stack *sheets = shadow->setup.sheets;
@@ -268,15 +270,16 @@ static void find_reads(soft_cascade *cascade, const occupancy *occupancy, const 
   hl_cascade_reads_find(&cascade->reads, occupancy, shadow->needed_until, sheet, last);
 }
 
-/* How many pixels of the buffer the blur and the resampling reach, which bring one group's sum to the level
- * of the next group. */
+/* How far the blur and the resampling reach that bring one group's sum to the level of the next group, in
+ * pixels of the buffer. */
 static int reach_of(const cascade_level *level, double variance, const cascade_level *next) {
   double own = variance * level->greatest_fraction / ((double)level->scale * level->scale);
   return (hl_blur_box_of_variance(own).reach + 1) * level->scale +
          hl_cascade_doubling_reach(level->scale, next->scale);
 }
 
-/* The reach of all blurs from group g of a level to the buffer, pixels of the buffer. */
+/* The reach of all blurs together on the way from group g of a level to the buffer; in pixels of the
+ * buffer. */
 static int reach_behind(const soft_cascade *cascade, int index, int g, double receiver) {
   const cascade_level *from = &cascade->level[index];
   double omega = from->group[g].omega;
@@ -305,8 +308,8 @@ static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cas
     uint64_t period = period_of(i);
     due = due || level->renewed || cascade->chunks % period == 0;
     if (due) level->filled = false;
-    /* between two renewals of this level, receivers move on by a period less one chunk: the sum is made for
-     * the middle one */
+    /* receivers move on by a period less one chunk until this level is renewed: the sum is made for the
+     * receiver in the middle */
     double served = hl_cascade_chunks_on(cascade, receiver, (double)(period - 1) / 2);
     for (int g = 0; g < level->count && due; g++) {
       const cascade_group *group = &level->group[g];
@@ -326,7 +329,8 @@ static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cas
   return sum;
 }
 
-/* Bits of cascade->refilled: the tile was refilled at the last chunk's end, at this chunk's end. */
+/* Bits of cascade->refilled: the tile was refilled at the end of the chunk before; the tile was refilled at
+ * this chunk's end. */
 enum { REFILLED_BEFORE = 1, REFILLED_NOW = 2 };
 
 typedef struct refill_task {
@@ -373,8 +377,8 @@ static void refill_piece(void *data, size_t index, int worker) {
 /* The least variance that is worth a blur, pixels squared: a third of the variance of a bilinear look-up. */
 static const double LEAST_VARIANCE = 0.05;
 
-/* Finds cascade->absorbed for receivers around omega = receiver, where it is read; false if nothing is in the
- * way. */
+/* Finds the absorbed light (cascade->absorbed) for receivers around omega = receiver, in the tiles that are
+ * read. False: nothing is in the light's way. */
 static bool find_shade(soft_cascade *cascade, double receiver, const cascade_crew *crew) {
   if (cascade->emission != NULL) return hl_cascade_pass_emission(cascade, receiver, crew);
   cascade_level *level = pass_all(cascade, receiver, crew);

@@ -48,7 +48,7 @@ typedef struct add_task {
   cascade_sum sum;
   field_job job;
   field_tile_function *function;
-  bool doubled; /* b is coarser than the output; an `a` of zeros may then be left out */
+  bool doubled; /* b is coarser than the output; where b is zeros, an `a` of zeros may then be left out */
 } add_task;
 
 /* Whether a sum is all zeros in a row of tiles, from x0 to x1, both included. */
@@ -171,7 +171,7 @@ static void blur_piece(void *data, size_t index, int worker) {
   }
 }
 
-/* Boxes of each column or row; returns the greatest reach in tiles. */
+/* Fills the blur's box for each column or row of tiles; returns the greatest reach in tiles. */
 static int fill_boxes(cascade_box *boxes, int count, double variance, double resampled) {
   int reach = 0;
   for (int i = 0; i < count; i++) {
@@ -254,7 +254,7 @@ void hl_cascade_merge(const cascade_crew *crew, const cascade_merger *merger) {
                       *of_spare[2] = {spare->absorbed, spare->thin};
   const cascade_field *to[2] = {second->absorbed, second->thin}, *old[2] = {first->absorbed, first->thin};
   for (int i = 0; i < 2; i++) {
-    /* the matter for the first goes by way of the second's fields */
+    /* the matter for the first field goes by way of the second's fields */
     const cascade_sum sums[3] = {
         {level, of_b[i], of_b[1], level, of_a[i], next, to[i], READ_EVERYWHERE},
         {next, to[i], to[1], next, old[i], next, old[i], READ_EVERYWHERE},

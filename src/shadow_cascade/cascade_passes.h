@@ -22,16 +22,18 @@ static inline row_piece hl_cascade_row_piece(const cascade_level *level, size_t 
 
 /* The blur of a pass. */
 typedef struct cascade_blur {
-  double variance; /* where the light is widest, pixels of the level squared; columns and rows have fractions
-                      of it */
-  double resampled[2]; /* along rows and columns: variance of the resampling itself, which is taken off */
+  double variance;     /* the variance of the blur where the light is widest, in squared pixels of the level;
+                        * columns and rows have fractions of it */
+  double resampled[2]; /* along rows and columns: the variance that resampling adds by itself, which is
+                        * subtracted */
 } cascade_blur;
 
 /* The sum to = a + (1 - thin) b. Either a and b are both on levels twice as fine as the level of `to`, or b
  * alone is on a level twice as coarse. */
 typedef struct cascade_sum {
   const cascade_level *level_a;  /* level of a and thin */
-  const cascade_field *a, *thin; /* a: null: zeros; only where b is coarser than `to`. thin: null: zeros */
+  const cascade_field *a, *thin; /* a: null stands for zeros, allowed only where b is coarser than `to`.
+                                  * thin: null stands for zeros */
   const cascade_level *level_b;  /* level of b; null where b is null */
   const cascade_field *b;        /* null: zeros; only where a is not coarser than `to` */
   const cascade_level *level;    /* level of `to` */
@@ -55,8 +57,8 @@ typedef struct cascade_matter {
   const cascade_field *absorbed, *thin;
 } cascade_matter;
 
-/* Moves two groups' matter to the next level, which may be twice as coarse: a's and b's are added to `first`
- * there, except a fraction of b's, which becomes `second`. */
+/* Moves the matter of two groups, a and b, to the next level, which may be twice as coarse. There a's and
+ * b's matter is added to `first`, except for a fraction of b's, which becomes `second`. */
 typedef struct cascade_merger {
   const cascade_level *level;
   cascade_matter a, b;  /* on level; b is changed */
@@ -68,10 +70,11 @@ typedef struct cascade_merger {
 /* Each row of tiles goes through all steps at once. */
 void hl_cascade_merge(const cascade_crew *crew, const cascade_merger *merger);
 
-/* How far beyond its output doubling reads, from one scale down to another; pixels of the buffer. */
+/* How far beyond its output doubling reads, where it leads from one scale down to another; in pixels of the
+ * buffer. */
 int hl_cascade_doubling_reach(int from, int to);
 
-/* True if all tiles of a rectangle are zeros; tiles outside the level are. */
+/* True if all tiles of a rectangle are zeros; tiles outside the level count as zeros. */
 bool hl_cascade_all_zeros(const cascade_level *level, const cascade_field *field, int x0, int x1, int y0,
                           int y1);
 

@@ -3,7 +3,8 @@
 
 #include <string.h>
 
-/* Writes 1 for each tile that is read, one row and one column further on. */
+/* Writes 1 for each tile that is read. The number stands one row and one column further on, as summed-area
+ * tables need. */
 static void mark_tiles(cascade_reads *reads, const occupancy *occupancy, const int32_t *needed_until,
                        int first_sheet, int last_sheet) {
   size_t width = (size_t)reads->tiles_x, words = (size_t)occupancy->tile_words;

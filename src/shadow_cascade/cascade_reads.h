@@ -9,24 +9,26 @@
 /* A summed-area table of the tiles that are read: the sum over a rectangle takes four of its entries. */
 typedef struct cascade_reads {
   int tiles_x, tiles_y;
-  uint32_t *before; /* owned; [tiles_y + 1][tiles_x + 1]; how many tiles above and to the left are read */
+  uint32_t *before; /* owned; [tiles_y + 1][tiles_x + 1]; the number of tiles above and to the left that
+                     * are read */
 } cascade_reads;
 
-/* The reach of a pass that must compute all tiles, as its results are kept. */
+/* The reach of a pass that must compute all tiles, because its results are kept. */
 enum { READ_EVERYWHERE = -1 };
 
-/* Marks the tiles that these sheets touch in the light's view: their slabs are looked up there. needed_until:
- * [tiles]; only tiles that a shared picture's part needs at the first sheet's slab are marked; null: all. */
+/* Marks the tiles that the next sheets touch in the light's view, since the picture's slabs look up the
+ * buffer there. needed_until: [tiles]; of a shared picture, only tiles that this part needs at the slab of
+ * the first sheet are marked; null: all tiles may be marked. */
 void hl_cascade_reads_find(cascade_reads *reads, const occupancy *occupancy, const int32_t *needed_until,
                            int first_sheet, int last_sheet);
 
-/* The table's rows above and below a band of rows of tiles. */
+/* The rows of the summed-area table above and below a band of rows of tiles. */
 typedef struct read_band {
   const uint32_t *upper, *lower;
 } read_band;
 
-/* For a row of tiles of a level with pixels `scale` wide: what is read within `reach` pixels of the buffer
- * around it. */
+/* What is read around a row of tiles of a level: the tiles within `reach` pixels of the buffer. scale:
+ * width of the level's pixels. */
 typedef struct read_row {
   int scale, reach, tiles_x;
   int around;                     /* reach in tiles */
@@ -46,7 +48,7 @@ static inline bool hl_cascade_is_read(const read_row *row, const read_band *band
   return band->lower[x1] - band->lower[x0] != band->upper[x1] - band->upper[x0];
 }
 
-/* The rows of tile x that must be computed, in steps of four; the tile is read. */
+/* The rows of pixels of tile x that must be computed, in steps of four. Some of the tile is read. */
 static inline tile_rows hl_cascade_rows_read(const read_row *row, int x) {
   tile_rows rows = ALL_ROWS;
   if (row->reach == READ_EVERYWHERE) return rows;

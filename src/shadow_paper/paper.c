@@ -19,10 +19,10 @@ typedef struct soft_paper {
   bool parallel;
   double size;         /* L of the virtual light; parallel: L / Z */
   double light_height; /* distance of the light along the sheets' normal (not parallel) */
-  double pixel;        /* buffer pixel: frame units; not parallel: at distance 1 */
+  double pixel;        /* edge of a buffer pixel: frame units; for near light, its size at distance 1 */
   double last;         /* height of the last convolved sheet */
   double remainder;    /* accumulated width not yet convolved, pixels */
-  int reach;           /* pixels beyond a tile that blurs may read: the buffer's margin is as wide */
+  int reach;           /* pixels beyond a tile that blurs may read, and the width of the buffer's margin */
   int32_t *reached;    /* [slabs]; of widen_needs() */
   int32_t *far;        /* [tiles of the buffer]; likewise */
 } soft_paper;
@@ -55,8 +55,8 @@ static double width_between(const soft_paper *soft, double from, double to) {
   return soft->size * (1 / near - 1 / far) / soft->pixel;
 }
 
-/* The widest box that the sheets of a sweep can need, pixels. The first convolution comes after two sheets.
- */
+/* The width, in pixels, of the widest box that the sheets of a sweep can need. The first convolution takes
+ * place after two sheets. */
 static int widest_reach(const soft_paper *soft, const sheet_stack *sheets) {
   double first = sheets->first, spacing = sheets->spacing;
   double widest = width_between(soft, first, first + 2 * spacing);
@@ -147,8 +147,8 @@ static void copy_back(void *data, size_t index, int worker) {
   }
 }
 
-/* Convolves the planes of one kind, and leaves planes of other kinds as they are. last: these are the last
- * planes of the sheet, so that the lit blocks of tiles are found again. */
+/* Convolves the planes of one kind; planes of other kinds stay as they are. last: no other planes of the
+ * sheet follow, so that the lit blocks of tiles are found again afterwards. */
 static void convolve_planes(const soft_paper *soft, convolution *task, shadow_plane kind, bool last,
                             hl_pool *pool) {
   size_t rows = (size_t)task->buffer->tiles_y;
@@ -204,8 +204,9 @@ static bool any_below_one(const shadow_buffer *buffer, int x, int y, int reach) 
   return false;
 }
 
-/* Marks the tiles of a row that can change. It depends on pixels within reach alone, so that parts of a
- * picture, which know no others, mark the same: the sum of an image's weights is not quite 1. */
+/* Marks the tiles of a row that can change. The marks depend only on pixels within reach. So the parts of a
+ * shared picture, which know only the pixels within their reach, set the same marks. Marks matter for
+ * bytes, because the sum of an image's weights is not exactly 1. */
 static void find_wanted(void *data, size_t index, int worker) {
   (void)worker;
   const convolution *task = data;
@@ -226,8 +227,8 @@ static int reach_of(const soft_paper *soft, int width) {
   return box.reach + (box.edge > 0);
 }
 
-/* Convolves the tiles that can change. All others hold 1 in the buffer and in its second planes, or are not
- * needed. */
+/* Convolves the tiles that can change. All other tiles hold 1 in the buffer and in its second planes, or
+ * are not needed. */
 static void convolve(const soft_paper *soft, const light_shadow *shadow, int sheet, int width) {
   shadow_buffer *buffer = shadow->buffer;
   hl_pool *pool = shadow->means.pool;
@@ -248,10 +249,10 @@ static void convolve(const soft_paper *soft, const light_shadow *shadow, int she
   for (size_t tile = 0; tile < tiles; tile++) buffer->tile_touched[tile] |= task.wanted[tile];
 }
 
-/* Section 5.2, (2): accumulates dx until it exceeds two pixels, convolves by its integer part and carries the
- * rest. An emission image has one tap per pixel and no more taps than cells: wider steps take several
- * convolutions. shadow: null: nothing is convolved. Returns how far the convolutions after a sheet reach
- * together, pixels. */
+/* Section 5.2, (2): accumulates dx until it exceeds two pixels, convolves by its integer part and carries
+ * the rest. An emission image has one tap per pixel and no more taps than cells: wider steps take several
+ * convolutions. shadow: null: only the reach is found, and nothing is convolved. Returns the sum of the
+ * reaches of the convolutions after a sheet, in pixels. */
 static int pass_sheet(soft_paper *soft, const sheet_stack *sheets, int sheet, const light_shadow *shadow) {
   double next = hl_sheet_height(sheets, sheet + 1);
   double width = soft->remainder + width_between(soft, soft->last, next);
@@ -301,7 +302,7 @@ static int32_t greatest_beside(const shadow_buffer *buffer, const int32_t *far, 
   return greatest;
 }
 
-/* The last slab of which pixels come no further than to `far`. reached: [slabs], never falling. */
+/* The last slab whose reach is at most `far`. reached: [slabs], never falling; the reach of each slab. */
 static int32_t last_slab(const int32_t *reached, int slabs, int32_t far) {
   int32_t low = 0, high = slabs;
   while (high - low > 1) {
@@ -313,11 +314,11 @@ static int32_t last_slab(const int32_t *reached, int slabs, int32_t far) {
 }
 
 /* Raises needed_until in the tiles whose pixels the convolutions bring to those that the picture reads.
- * Derived: let reached(k) be how far the convolutions before slab k reach together. A pixel of slab k comes
- * to one that is read in slab s, d pixels away, if d <= reached(s) - reached(k): its tile is needed until the
- * last k with reached(k) <= reached(s) - d. Of a tile n tiles beside, d is at least 16 (n - 1) + 1. The
- * greatest reached(s) - 16 n is found by going through the tiles twice, each time from neighbour to
- * neighbour. */
+ * Derived: let reached(k) be how far the convolutions before slab k reach together. A pixel of slab k
+ * affects a pixel d away that is read in slab s, if d <= reached(s) - reached(k). Its tile is therefore
+ * needed until the last k with reached(k) <= reached(s) - d. For a tile that is n tiles away, d is at least
+ * 16 (n - 1) + 1. The greatest reached(s) - 16 n is found by going through the tiles twice, each time from
+ * neighbour to neighbour. */
 static void widen_needs(light_shadow *shadow, int32_t *needed_until) {
   const shadow_buffer *buffer = shadow->buffer;
   const sheet_stack *sheets = shadow->setup.sheets;

@@ -5,8 +5,9 @@
 
 #include "shadow/shadow_buffer.h"
 
-/* Copies of a slab's transmittance: bit 0 of a copy's index shifts it by half a pixel along u, bit 1 along v.
- * Given by pixel (0,0); rows slab_stride apart; ones all around. */
+/* The number of copies of a slab's transmittance. A copy whose index has bit 0 is shifted by half a pixel
+ * along u, one with bit 1 along v. A copy is given by its pixel (0,0); its rows are slab_stride apart, and
+ * its margin holds ones. */
 enum { SLAB_COPIES = 4 };
 
 typedef struct half_pixel_job {
@@ -23,26 +24,27 @@ typedef slab_rows half_pixel_tile_function(const half_pixel_job *job, int tile_x
 
 typedef struct sublight_job {
   const float *slab[HL_CHANNELS][SLAB_COPIES];
-  const float *slab_outside[HL_CHANNELS][SLAB_COPIES]; /* the fraction of full light at the outside that is
-                                                        * left after the slab */
+  /* the fraction of full light that is left at the outside of surfaces after the slab */
+  const float *slab_outside[HL_CHANNELS][SLAB_COPIES];
   size_t slab_stride;
   const slab_rows *rows; /* [slab_tiles_y][slab_tiles_x] */
   int slab_tiles_x, slab_tiles_y;
   float slab_width, slab_height; /* pixels; around them are up to 32 pixels of ones */
-  float scale[2], shift[2];      /* maps a pixel (u, v) of the sub-light to the slab: scale * pixel + shift;
-                                    continuous coordinates */
+  float scale[2], shift[2];      /* maps a pixel (u, v) of the sub-light to the slab, as scale * pixel +
+                                  * shift in continuous coordinates */
   int half[2];                   /* shift in half pixels, rounded */
   sublight_pixel *transmittance[HL_CHANNELS]; /* pixel (0,0) of the sub-light's buffer; rows stride apart */
-  sublight_pixel *outside[HL_CHANNELS];       /* the same pixels, for the light at the outside; null: none */
+  sublight_pixel *outside[HL_CHANNELS];       /* pixel (0,0) of the light at the outside, laid out as the
+                                               * transmittance; null: none */
   size_t stride;                              /* a tile's margin on either side */
   int tiles_x;
-  float
-      carry; /* above 0 and below 1: added before a pixel's new value is truncated. It varies from slab to
-                slab, so that haze of which each slab absorbs less than 1 / SUBLIGHT_ONE counts on average */
+  float carry; /* added to a pixel's new value before the value is truncated; between 0 and 1. It varies from
+                * slab to slab, so that haze of which each slab absorbs less than 1 / SUBLIGHT_ONE is
+                * absorbed on average */
   int channels;
 } sublight_job;
 
-/* Multiplies a tile by the slab. Returns whether that absorbed any light. */
+/* Multiplies a tile by the slab. Returns whether the slab absorbed any light. */
 typedef int sublight_tile_function(const sublight_job *job, int tile_x, int tile_y);
 
 /* Multiplies a row of the sub-light's tiles by the slab's tiles from first to last, where scale is 1. lit:

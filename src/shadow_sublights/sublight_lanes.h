@@ -27,8 +27,9 @@ LANES_INLINE lanes middle_along(const float *at, ptrdiff_t step) {
 
 LANES_INLINE slab_rows any_below_one(lanes x) { return lanes_bits(x < 1.0f) != 0; }
 
-/* The rows of a tile, and the first one below it, with a pixel below 1, the right neighbour's first pixel
- * included. Pixels further away have negative weights and bring no value in the middle below 1. */
+/* Finds the rows that have a pixel below 1, among the rows of a tile and the first row below it; the first
+ * pixel of the right neighbour counts, too. Pixels further away have negative weights, so they cannot bring
+ * a value in the middle below 1. */
 LANES_INLINE uint32_t rows_below_one(const float *corner, ptrdiff_t stride) {
   uint32_t rows = 0;
   for (int row = 0; row <= TILE; row++) {
@@ -68,10 +69,10 @@ LANES_INLINE lanes_int nearest_halves(float scale, float start, float size) {
 
 enum { SUBLIGHT_TAPS = 8 };
 
-/* How sixteen pixels in a row read a row of the slab's copies. Without a difference in size, pixel i would
- * lie 2 i half pixels after the first one. The slab's pixels are a little larger or smaller: pixel i deviates
- * by `first` to first + count - 1 half pixels. weight[k] is 1 for pixels that deviate by first + k, else 0.
- */
+/* How sixteen pixels in a row read a row of the slab's copies. If the slab's pixels had the same size,
+ * pixel i would lie 2 i half pixels after the first one. The slab's pixels are a little larger or smaller:
+ * pixel i deviates by `first` to first + count - 1 half pixels. weight[k] is 1 for pixels that deviate by
+ * first + k, else 0. */
 typedef struct row_taps {
   int first, count; /* count 0: too many */
   lanes_int half;   /* of each pixel, held inside the slab */
@@ -92,7 +93,8 @@ LANES_INLINE row_taps taps_of_row(const sublight_job *job, int tile_x) {
   return taps;
 }
 
-/* Sixteen pixels along a row of the slab. copies: the row of two, the second half a pixel further along. */
+/* Reads sixteen pixels along a row of the slab. copies: the row in two copies, of which the second is
+ * shifted by half a pixel. */
 LANES_INLINE lanes slab_row(const row_taps *taps, const float *const copies[2]) {
   if (taps->count == 0) {
     lanes_int column = taps->half >> 1;
@@ -116,14 +118,14 @@ LANES_INLINE void tiles_of_row(const sublight_job *job, const row_taps *taps, in
   if (*last >= job->slab_tiles_x) *last = job->slab_tiles_x - 1;
 }
 
-/* The rows in which either copy at this vertical half pixel is below 1. */
+/* The rows in which a pixel is below 1 in either of the two copies with this vertical half pixel. */
 LANES_INLINE uint32_t rows_of_either(slab_rows rows, int between) {
   rows >>= 2 * TILE * between;
   return (uint32_t)(rows | rows >> TILE) & EVERY_ROW;
 }
 
-/* The rows of a tile, one bit each, over which some of the slab's pixels are below 1. half: each row's
- * position in the slab, half pixels. */
+/* The rows of a sub-light's tile, one bit each, that some pixels of the slab below 1 will darken. half:
+ * each row's position in the slab, in half pixels. */
 LANES_INLINE uint32_t present_rows(const sublight_job *job, const int32_t half[TILE], int first, int last) {
   int y0 = half[0] < 0 ? 0 : half[0] / (2 * TILE), y1 = half[TILE - 1] < 0 ? -1 : half[TILE - 1] / (2 * TILE);
   uint32_t present = 0;
@@ -170,7 +172,7 @@ static uint32_t sublight_lit(const sublight_job *job, int tile_x, int tile_y, ui
   return lit & left;
 }
 
-/* Multiplies sixteen of a sub-light's pixels by the slab's, `offset` pixels after the first one. */
+/* Multiplies sixteen of a sub-light's pixels, `offset` pixels after its first one, by the slab's pixels. */
 LANES_INLINE lanes composite_sublight(const sublight_job *job, int channel, ptrdiff_t offset,
                                       lanes slab_transmittance) {
   sublight_pixel *at = job->transmittance[channel] + offset;
@@ -179,11 +181,11 @@ LANES_INLINE lanes composite_sublight(const sublight_job *job, int channel, ptrd
   return light;
 }
 
-/* A slab that takes less than this does not tell what of it surfaces keep. */
+/* Where a slab takes less light than this, the fraction that surfaces keep of it cannot be computed. */
 static const float LEAST_TAKEN = 1e-5f;
 
 /* Composites the slab into the light at the outside. light: the transmittance before. Derived: with k = k'
- * (attenuate.h), Y becomes T t + k (Y - T t), and full light becomes Y' = t + k (1 - t), which tells k. */
+ * (attenuate.h), Y becomes T t + k (Y - T t). Full light becomes Y' = t + k (1 - t), from which k follows. */
 LANES_INLINE void composite_outside(const sublight_job *job, int channel, ptrdiff_t offset, lanes light,
                                     lanes slab_transmittance, lanes slab_outside) {
   sublight_pixel *at = job->outside[channel] + offset;
@@ -231,10 +233,10 @@ static int sublight_tile(const sublight_job *job, int tile_x, int tile_y) {
  *
  * Multiplies a row of tiles of one sub-light's buffer by a slab that is only shifted, not scaled: for a
  * parallel light, or a sub-light as high above the sheets as the light's centre. It goes through the slab's
- * tiles, whose rows that are below 1 somewhere are known; each such row multiplies sixteen of the sub-light's
- * pixels, wherever these begin. */
+ * tiles, for which the rows with pixels below 1 are known. Each such row multiplies sixteen of the
+ * sub-light's pixels, wherever these begin. */
 
-/* Tiles of the slab whose pixels are fetched before the first is used. */
+/* The number of the slab's tiles whose pixels are prefetched before the first tile is used. */
 enum { SHIFTED_TILES = 16 };
 
 /* The index of the copy of the slab that is read. */
@@ -242,7 +244,7 @@ LANES_INLINE int copy_of_shift(const sublight_job *job) {
   return (job->half[0] & 1) + 2 * (job->half[1] & 1);
 }
 
-/* Of the sixteen rows of the slab from `top` on, those with a pixel below 1 in a tile's columns: one bit
+/* Finds which of the slab's sixteen rows from `top` on have a pixel below 1 in a tile's columns: one bit
  * each. */
 LANES_INLINE uint32_t rows_from(const sublight_job *job, int tile_x, int top, int copy) {
   const slab_rows *tile = job->rows + tile_x;

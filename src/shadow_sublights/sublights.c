@@ -7,12 +7,13 @@
 #include "light/light_extent.h"
 #include "shadow/shadow_method.h"
 
-/* The most memory for the sub-lights' buffers; more is refused. */
+/* The greatest number of bytes of the sub-lights' buffers; a frame that needs more is refused. */
 static const double GREATEST_BYTES = 4294967296.0;
 
 enum { MOVED_COPIES = SLAB_COPIES - 1 };
 
-/* The view of sub-light i; raises *tiles_x and *tiles_y to its numbers of tiles. */
+/* The view of sub-light i; raises *tiles_x and *tiles_y to the view's numbers of tiles, where they are
+ * smaller. */
 static void view_of_sublight(const light_shadow *shadow, int i, view *view, int *tiles_x, int *tiles_y) {
   const shadow_setup *setup = &shadow->setup;
   const light_source *source = setup->source;
@@ -38,7 +39,7 @@ static void lay_out_planes(sublights *sublights) {
   sublights->plane = ((size_t)sublights->tiles_y * TILE + ROWS_BEYOND) * sublights->stride;
 }
 
-/* The planes of one sub-light: all channels of each kind. */
+/* The number of planes of one sub-light: all channels of each kind of plane. */
 static size_t planes_of_sublight(const sublights *all) { return (size_t)all->channels * (size_t)all->kinds; }
 
 static void lay_out_sublights(light_shadow *shadow, shadow_layouts *layouts) {
@@ -140,17 +141,17 @@ static bool slab_position(const sublight *sublight, const view *slab, vec3 norma
   return hl_view_project(slab, vec3_add(start, vec3_scale(way, distance)), uv);
 }
 
-/* The carry for the current slab. The fractional parts of multiples of the golden ratio are spread evenly,
- * however many there are. */
+/* The carry for the current slab (sublight_field.h): the fractional part of a multiple of the golden ratio.
+ * Such numbers are spread evenly, however many slabs there are. */
 static float carry_of_slab(const sublights *sublights, const sublight *sublight) {
   double turn = sublights->slabs * 0.6180339887498949 +
                 (double)(sublight - sublights->sublight) / sublights->count;
-  return (float)(1.0 / 128 +
-                 (turn - floor(turn)) * 63 / 64); /* far enough from 0 and 1 that integers stay the same */
+  return (float)(1.0 / 128 + (turn - floor(turn)) * 63 / 64); /* far enough from 0 and 1 that whole numbers
+                                                               * stay the same */
 }
 
-/* The greatest shift, in pixels, for the functions that only shift; grazing light shifts further, and the
- * general functions clamp it. */
+/* The greatest shift, in pixels, for the functions that only shift. Grazing light may shift further; the
+ * general functions then clamp the shift. */
 static const double FARTHEST_SHIFT = 1 << 20;
 
 /* Prepares a sub-light's job for a slab. Both views are parallel to the sheets and have the same axes, so
@@ -197,13 +198,13 @@ typedef struct sublight_task {
   shadow_buffer *slab;
   const sublight_functions *functions;
   int x0, x1, y0, y1;          /* bounds of the slab's tiles with any pixel below 1 */
-  bool ends_run;               /* the slab is the last of its run: lit blocks are found after it */
+  bool ends_run;               /* the slab is the last of its run: the lit blocks are found after it */
   const int32_t *needed_until; /* light_shadow's sublights_until */
   int slab_after;              /* the next slab's number, as needed_until counts them */
 } sublight_task;
 
-/* The first and last tile that pixels x to x + TILE fall on along one axis, scaled and shifted, with a pixel
- * to spare. */
+/* Finds the first and the last tile, along one axis, onto which the pixels x to x + TILE fall after scaling
+ * and shifting, and one pixel more on either side. */
 static void tiles_under(double x, double scale, double shift, int tiles, int *first, int *last) {
   double low = (scale * x + shift - 1) / TILE, high = (scale * (x + TILE) + shift + 1) / TILE;
   *first = low < 0 ? 0 : low > tiles ? tiles : (int)low;
@@ -252,7 +253,7 @@ static void sublight_tiles(const sublight *sublight, int axis, int low, int high
   tiles_under((double)high * TILE, scale, shift, tiles, &unused, last);
 }
 
-/* Limits a range of the slab's tiles to those over a sub-light's lit tiles, in a row of these. */
+/* Limits a range of the slab's tiles to the tiles that lie over lit tiles in a row of a sub-light's tiles. */
 static void lit_range(const sublight_task *task, const sublight *sublight, int y, int *x0, int *x1) {
   const int tiles = task->sublights->tiles_x;
   const uint16_t *lit = sublight->lit + (size_t)y * (size_t)tiles;
@@ -324,8 +325,9 @@ static void advance_row(void *data, size_t index, int worker) {
   const sublight_task *task = data;
   const sublights *all = task->sublights;
   sublight *sublight =
-      &all->sublight[index % (size_t)all->count]; /* row by row, all sub-lights in turn: the slab's
-                                                     pixels under a row stay in the cache */
+      &all->sublight[index % (size_t)all->count]; /* the order is row by row, with all sub-lights for each
+                                                   * row, so that the slab's pixels under a row stay in the
+                                                   * cache */
   int y = (int)(index / (size_t)all->count);
   if (task->ends_run && task->needed_until != NULL) forget_tiles(task, sublight, y);
   if (!sublight->reaches) return;
@@ -341,7 +343,8 @@ static void fill_ones(float *pixels, size_t stride, slab_rows of_copies) {
     for (size_t i = 0, row = (size_t)__builtin_ctz(rows); i < TILE; i++) pixels[row * stride + i] = 1;
 }
 
-/* Fills the shifted copies of one row of tiles. A tile's copies depend on pixels of the next tiles too. */
+/* Fills the shifted copies of one row of tiles. A tile of a copy depends on pixels of the neighbouring
+ * tiles, too. */
 static void move_row(void *data, size_t index, int worker) {
   (void)worker;
   const sublight_task *task = data;
@@ -381,8 +384,8 @@ static void clear_row(void *data, size_t index, int worker) {
   }
 }
 
-/* Lit blocks are found once for a run of slabs: the first slab is a run of its own, then each LIT_SLABS are
- * one. */
+/* Lit blocks are found once for a run of slabs. The first slab is a run of its own; each later run has
+ * LIT_SLABS slabs. */
 enum { LIT_SLABS = 4 };
 static int run_of_slab(int slab) { return (slab + LIT_SLABS - 1) / LIT_SLABS + 1; }
 
@@ -435,8 +438,8 @@ static void advance_sublights(light_shadow *shadow, const occupancy *occupancy, 
  * on two pixels on either side. */
 enum { BLOCK_SPARE = 2 };
 
-/* For each of the four rows (or columns) of blocks of a slab's tile: the rows (or columns) of a sub-light's
- * blocks under it. */
+/* The rows (or columns) of a sub-light's blocks that lie under each of the four rows (or columns) of blocks
+ * of a slab's tile. */
 typedef struct blocks_under {
   int first[TILE / BLOCK], last[TILE / BLOCK];
 } blocks_under;
@@ -464,7 +467,8 @@ static blocks_under find_under(const sublight *sublight, int axis, int tile, int
   return under;
 }
 
-/* A sub-light's lit blocks in a row of blocks, from block `first` on, one bit each; at most 64. */
+/* The lit blocks of a sub-light in a row of blocks, one bit each, beginning with block `first`; at most 64.
+ */
 static uint64_t lit_in_row(const sublights *all, const sublight *sublight, int row, int first, int last) {
   const uint16_t *tiles = sublight->lit + (size_t)(row / 4) * (size_t)all->tiles_x;
   uint64_t bits = 0;

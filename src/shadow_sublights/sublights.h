@@ -11,7 +11,7 @@
 #include "shadow/shadow_buffer.h"
 #include "shadow_sublights/sublight_field.h"
 
-enum { SUBLIGHT_REACH = 31 /* pixels beyond a tile that are read of the slab's buffer */ };
+enum { SUBLIGHT_REACH = 31 /* number of pixels beyond a tile of the slab's buffer that are read */ };
 
 /* Maps pixels of the slab to those of a sub-light, along u and v: scale * (pixel - shift). */
 typedef struct sublight_map {
@@ -21,10 +21,12 @@ typedef struct sublight_map {
 /* One sub-light's buffer. */
 typedef struct sublight {
   view view;
-  sublight_pixel *pixels; /* pixel (0,0) of the first channel. The other channels follow, each a plane apart,
-                           * and then the channels of the light at the outside; a part of `memory` */
+  sublight_pixel *pixels; /* pixel (0,0) of the first channel of the transmittance; a part of `memory`. The
+                           * other channels follow, each a plane apart, and then the channels of the light
+                           * at the outside */
   uint16_t *lit; /* [tiles]; blocks with light at the end of the last run of slabs; a part of `flags` */
-  unsigned char *touched; /* [tiles]; 1 where slabs have absorbed light since; a part of `marks` */
+  unsigned char *touched; /* [tiles]; 1 where slabs have absorbed light since the lit blocks were found; a
+                           * part of `marks` */
   sublight_job job;       /* the current slab's */
   bool reaches;           /* the sub-light lies before the slab */
   bool shifted;           /* the job's scale is 1 */
@@ -47,11 +49,11 @@ typedef struct sublights {
   size_t moved_floats;
   slab_rows *rows; /* [tiles of the slab] */
   uint32_t
-      *found; /* [tiles of the slab]; the run of slabs that the tile's lit blocks were found for; 0: none */
+      *found; /* [tiles of the slab]; the run of slabs for which the tile's lit blocks were found; 0: none */
 } sublights;
 
-/* Sets slab->tile_lit of a tile: the blocks of the next slab that some sub-light still reaches. One task has
- * a tile. */
+/* Sets slab->tile_lit of a tile: the blocks of the next slab that some sub-light still reaches. Only one
+ * task works on a tile. */
 void hl_sublights_find_lit(const sublights *sublights, shadow_buffer *slab, size_t tile);
 
 #endif

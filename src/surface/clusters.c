@@ -80,8 +80,9 @@ static void find_box(const surfaces *all, surface_cluster *cluster) {
 
 /* ---- cones ---- */
 
-/* The mean of the normals, and the greatest angle from it. Triangles without an area have no normal and are
- * not seen. Primitives without corners have normals of all directions. */
+/* Finds the cone of a cluster's normals: the mean of the normals, and the greatest angle between a normal
+ * and the mean. Triangles without an area have no normal and are not seen. Primitives without corners have
+ * normals of all directions. */
 static void find_cone(const surfaces *all, surface_cluster *cluster) {
   vec3 normals[CLUSTER_SIZE], sum = {0, 0, 0};
   double least = 1;
@@ -117,7 +118,7 @@ static uint8_t number_of(vertex_set *set, uint32_t vertex) {
   return (uint8_t)(set->count - 1);
 }
 
-/* Numbers the vertices of cluster number c, which is of triangles. */
+/* Numbers the vertices of cluster number c, which consists of triangles. */
 static void number_vertices(surfaces *all, size_t c, vertex_set *set) {
   surface_cluster *cluster = &all->clusters[c];
   memset(set->slot, 0, sizeof set->slot);
@@ -199,7 +200,8 @@ static void cut_all(hl_pool *pool, surfaces *all, uint32_t *spare) {
     }
 }
 
-/* Says where the vertices of each cluster of triangles go; returns how many they are. */
+/* Gives each cluster of triangles the place of its own copy of the vertices; returns the number of these
+ * vertices. */
 static size_t place_vertices(surfaces *all, size_t triangles) {
   size_t vertices = 0;
   for (size_t c = 0; c < triangles; c++) {
@@ -236,7 +238,8 @@ void hl_clusters_release(hl_context *context, surfaces *all) {
   hl_release(context, all->cluster_positions);
 }
 
-/* Degrees by which triangles are turned away at least, as a sine. */
+/* The least angle, as a sine, by which a triangle must be turned away from the view to count as turned
+ * away. */
 static const double AWAY = 0.02;
 
 /* Derived: a normal m within the angle a of the axis n, and a way v from the eye to the middle of the box,

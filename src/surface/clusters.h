@@ -1,8 +1,8 @@
 /* surface/clusters.h - clusters: up to 64 triangles, or spheres, of a mesh that lie beside each other, with a
  * box around them and a cone that holds their normals.
  *
- * What a view sees of primitives is asked once for each cluster where it can be. A cluster of triangles has
- * its own copy of their vertices, so that a view sees them without a search in memory. */
+ * Where possible, a test of what a view sees is made once for a whole cluster. A cluster of triangles has
+ * its own copy of the triangles' vertices, so that they lie beside each other in memory. */
 #ifndef HL_SURFACE_CLUSTERS_H
 #define HL_SURFACE_CLUSTERS_H
 
@@ -16,19 +16,22 @@ enum { CLUSTER_SIZE = CLUSTER_TRIANGLES };
 struct surface_cluster {
   float low[3], high[3]; /* of the box; frame space */
   float axis[3];         /* of the cone; unit */
-  float cosine;          /* of the greatest angle between the axis and a normal; below 0: the normals may have
-                            any direction */
-  uint32_t first; /* of all->order: its primitives; the order keeps each kind's numbers together, so that
-                     primitive `first` has the kind of all of them */
+  float cosine;          /* the cosine of the greatest angle between the axis and a normal; below 0: the
+                          * normals may have any direction */
+  uint32_t first; /* the place in all->order of the cluster's first primitive; the order keeps primitives
+                   * of one kind together, so that all primitives of the cluster have the kind of the first
+                   * one */
   uint16_t count, mesh;
   uint16_t vertices;   /* of triangles: as in cluster_shape */
   size_t first_vertex; /* in all->cluster_positions */
 };
 
-/* Counts what hl_clusters_create() takes at most: as if triangles shared their vertices with few others. */
+/* Counts the memory that hl_clusters_create() takes at most, which it takes where triangles share their
+ * vertices with few others. */
 void hl_clusters_count(const hl_scene_description *scene, hl_layout *layout);
 
-/* Makes the clusters of all meshes, in the order of meshes, those of triangles first. */
+/* Makes the clusters of all meshes, in the order of the meshes. Clusters of triangles come before clusters
+ * of spheres. */
 hl_status hl_clusters_create(hl_context *context, hl_pool *pool, surfaces *all, hl_error *error);
 void hl_clusters_release(hl_context *context, surfaces *all);
 
@@ -39,11 +42,10 @@ static inline cluster_shape hl_cluster_shape(const surfaces *all, const surface_
                          all->cluster_corners[number], all->cluster_normals[number]};
 }
 
-/* The least height above the first sheet of a cluster's box. */
+/* The least height of a cluster's box above the first sheet. */
 double hl_lowest_height(const sheet_stack *sheets, const surface_cluster *cluster);
 
-/* Whether every triangle of a cluster turns its back to the view, by some degrees. False where it is not
- * known. */
+/* Whether every triangle of a cluster surely turns its back to the view, by at least some degrees. */
 bool hl_cluster_faces_away(const surface_cluster *cluster, const view *view);
 
 #endif

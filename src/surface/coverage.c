@@ -8,16 +8,17 @@
 
 enum { SAMPLES = 16 };
 
-/* One edge: value + x * across + y * down is at least 0 inside; pixels from the tile's corner. */
+/* An edge of a polygon, as a function that is at least 0 inside: value + x * across + y * down, where x and
+ * y are pixels from the tile's corner. */
 typedef struct edge {
   int64_t value, across, down;
   int64_t offset[SAMPLES]; /* the edge function at each sample of a pixel, from the pixel's corner */
   int64_t least, greatest; /* the least and the greatest offset */
 } edge;
 
-/* Sets the edge from a to b. With y down and x to the right, the inside is to its left or to its right, as
- * the caller's order of corners says. A sample on an edge belongs to the triangle on one of its sides only:
- * the function of the edge is less by 1 if the edge runs the other way. */
+/* Sets the edge from a to b. The caller's order of corners says on which side of the edge the inside lies.
+ * A sample on an edge belongs to the triangle on one of its sides only: the function of the edge is less by
+ * 1 if the edge runs the other way. */
 static void set_edge(edge *e, int64_t ax, int64_t ay, int64_t bx, int64_t by) {
   int64_t dx = bx - ax, dy = by - ay;
   bool owns = dy > 0 || (dy == 0 && dx < 0);

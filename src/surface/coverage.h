@@ -12,9 +12,9 @@ typedef struct pixel_span {
   int x0, y0, x1, y1;
 } pixel_span;
 
-/* covered: [TILE rows][TILE columns]; one bit for each sample; set within *span, outside which nothing is
- * covered. Returns whether any sample is covered. The polygon must be convex; its corners may go round it in
- * either direction. */
+/* Finds the samples of a tile that a polygon covers. covered: [TILE rows][TILE columns], one bit for each
+ * sample; set only within *span, because nothing is covered outside of it. Returns whether any sample is
+ * covered. The polygon must be convex; its corners may go round it in either direction. */
 bool hl_cover_tile(const seen_polygon *polygon, int tile_x, int tile_y, pixel_span *span,
                    uint16_t covered[TILE_PIXELS]);
 

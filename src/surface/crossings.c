@@ -6,15 +6,16 @@
 #include "surface/sample_rows.h"
 #include "surface/shown_surface.h"
 
-/* Of a pixel's fragments only so many are looked at: a pixel that has more is a thicket. */
+/* A pixel with more fragments than this is not parted: so many surfaces in one pixel are a thicket, in
+ * which nobody sees their order. */
 enum { MOST_FRAGMENTS = 32 };
 
-/* The fragments of a pixel, and the surfaces of those that may cross others. */
+/* The fragments of a pixel, and the surfaces of the fragments that may cross others. */
 typedef struct pixel_fragments {
   const crossing_tile *tile;
-  fragment
-      list[2 * MOST_FRAGMENTS];    /* [count]; first those given, then their parts that come before others */
-  uint8_t part_of[MOST_FRAGMENTS]; /* of each part: the fragment whose surface it shows */
+  fragment list[2 * MOST_FRAGMENTS]; /* [count]; first the given fragments, then those of their parts that
+                                      * come before other fragments */
+  uint8_t part_of[MOST_FRAGMENTS];   /* of each part: the fragment whose surface it shows */
   size_t given, count;
   shown_surface surfaces[MOST_FRAGMENTS];
   uint32_t has_surface, changed; /* one bit for each of those given */
@@ -44,7 +45,7 @@ static const shown_surface *surface_of(pixel_fragments *pixel, size_t i) {
   return surface;
 }
 
-/* The samples, among those given, at which fragment i lies before fragment j. */
+/* The samples, among some given samples, at which fragment i lies before fragment j. */
 static uint32_t samples_before(pixel_fragments *pixel, size_t i, size_t j, uint32_t samples) {
   const shown_surface *own = surface_of(pixel, i), *other = surface_of(pixel, j);
   uint32_t before = 0;
@@ -71,8 +72,8 @@ static void set_height(const pixel_fragments *pixel, const shown_surface *surfac
   f->height = (float)fmin(fmax(height_at(pixel, surface, u, v), surface->lowest), surface->highest);
 }
 
-/* Puts samples of fragment i, which lets light through, before fragment j. There are at most as many parts as
- * fragments. */
+/* Parts some samples of fragment i, which lets light through, into a fragment of their own that comes
+ * before fragment j. There are at most as many parts as fragments. */
 static void add_part(pixel_fragments *pixel, size_t i, size_t j, uint32_t samples) {
   fragment part = pixel->list[i], *other = &pixel->list[j];
   size_t number = pixel->count - pixel->given;
@@ -86,7 +87,7 @@ static void add_part(pixel_fragments *pixel, size_t i, size_t j, uint32_t sample
   pixel->list[pixel->count++] = part;
 }
 
-/* Parts fragment i, which lets light through, from those before it. */
+/* Parts fragment i, which lets light through, where it crosses fragments that come before it. */
 static void part_translucent(pixel_fragments *pixel, size_t i) {
   for (size_t j = 0; j < i; j++) {
     const fragment *own = &pixel->list[i], *other = &pixel->list[j];
@@ -96,7 +97,8 @@ static void part_translucent(pixel_fragments *pixel, size_t i) {
   }
 }
 
-/* Parts fragment i, which is opaque, and those before it: each loses the samples that the other hides. */
+/* Parts fragment i, which is opaque, from the fragments before it: each loses the samples that the other
+ * one hides. */
 static void part_opaque(pixel_fragments *pixel, size_t i) {
   const float *least = pixel->tile->order->least;
   fragment *own = &pixel->list[i];
@@ -112,7 +114,8 @@ static void part_opaque(pixel_fragments *pixel, size_t i) {
   }
 }
 
-/* Writes a pixel's fragments in the order of their depths; parts come before what has the same. */
+/* Writes a pixel's fragments in the order of their depths; a part comes before a fragment of the same
+ * depth. */
 static size_t write_pixel(pixel_fragments *pixel, fragment *to) {
   size_t kept = 0, parts = pixel->count - pixel->given;
   for (size_t n = 0; n < pixel->count; n++) {

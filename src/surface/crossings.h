@@ -1,8 +1,8 @@
 /* surface/crossings.h - fragments of a pixel whose surfaces cut into each other there.
  *
  * Fragments are composited by one height each. Where two surfaces cross within a pixel, each sample has an
- * order of its own: there the fragments are parted, so that the line between the surfaces is as smooth as
- * their edges are. */
+ * order of its own: there the fragments are cut into parts, so that the line between the surfaces is as
+ * smooth as edges of surfaces are. */
 #ifndef HL_SURFACE_CROSSINGS_H
 #define HL_SURFACE_CROSSINGS_H
 
@@ -18,10 +18,11 @@ typedef struct crossing_tile {
   int x, y; /* its first pixel */
 } crossing_tile;
 
-/* Parts the fragments of a tile, which are sorted by pixels and in the view's order, where their surfaces
- * cross. Where three surfaces cross in one pixel, two or more of which let light through, their order may be
- * wrong; a pixel of more than 32 fragments is left as it is. to: room for 2 count; gets them in the same
- * order. *parted: some changed, and may lie in other slabs. Returns how many they are. */
+/* Parts the fragments of a tile where their surfaces cross. The fragments are sorted by pixels and in the
+ * view's order. Where three surfaces cross in one pixel, and two or more of them let light through, their
+ * order may be wrong. A pixel of more than 32 fragments is left as it is. to: room for 2 count fragments;
+ * gets the result, sorted likewise. *parted: set where some fragment changed; it may then lie in another
+ * slab. Returns the number of fragments in `to`. */
 size_t hl_part_crossings(const crossing_tile *tile, const fragment *list, size_t count, fragment *to,
                          bool *parted);
 

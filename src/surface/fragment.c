@@ -12,8 +12,8 @@ static uint64_t count_bits(uint64_t words) {
   return (words + (words >> 8)) & 0x00ff00ff00ff00ffu;
 }
 
-/* The sum of the columns, or of the rows, of samples. Bit b of a sample's column or row is set where the
- * sample is in word b of `set`. */
+/* The sum of the columns, or of the rows, of some samples. Bit b of a sample's column or row is set where
+ * the sample is in word b of `set`. */
 static int sum_places(uint16_t samples, uint64_t set) {
   uint64_t count = count_bits(samples * 0x0001000100010001u & set);
   return (int)((count & 255) + 2 * (count >> 16 & 255) + 4 * (count >> 32 & 255) + 8 * (count >> 48));

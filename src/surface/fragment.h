@@ -24,11 +24,10 @@ typedef struct fragment {
   uint32_t primitive;
   int32_t slab;     /* number k of the slab between sheets k-1 and k */
   uint16_t samples; /* covered samples, one bit each */
-  uint16_t seen;    /* of the eye's view: the covered samples that no opaque fragment before this one
-                     * covers */
-  uint16_t mesh;    /* the mesh of the primitive */
-  uint8_t pixel;    /* number in its tile, block after block: 16 * block + lane */
-  uint8_t reach;    /* of the eye's view: see REACH_PARTS */
+  uint16_t seen; /* in the eye's view: the covered samples that no opaque fragment before this one covers */
+  uint16_t mesh; /* the mesh of the primitive */
+  uint8_t pixel; /* the pixel's number in its tile, block after block: 16 * block + lane */
+  uint8_t reach; /* of the eye's view: see REACH_PARTS */
 } fragment;
 
 /* The mean position of the covered samples in their pixel, 0 to 1. */

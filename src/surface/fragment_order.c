@@ -57,9 +57,9 @@ static bool may_meet(const fragment_order *order, float apart, uint8_t reach, ui
   return fabs((double)apart) <= hl_reach_of(reach, order->spacing) + hl_reach_of(other, order->spacing);
 }
 
-/* Copies a pixel's fragments in the order of their keys. Leaves out fragments of which opaque fragments
- * before them cover all samples, whatever the slopes of their surfaces are. most: the greatest reach of any
- * fragment. Returns the number of fragments that are left. */
+/* Copies a pixel's fragments in the order of their keys. Leaves out a fragment where opaque fragments
+ * before it cover all its samples for certain, whatever the slopes of the surfaces are. most: the greatest
+ * reach of any fragment. Returns the number of fragments that are left. */
 static size_t copy_uncovered(const fragment *list, const order_key *keys, size_t count, uint8_t most,
                              const fragment_order *order, fragment *to) {
   size_t kept = 0;
@@ -151,8 +151,8 @@ static size_t resolve_opaque(fragment *list, size_t count, const float *least, u
   return i;
 }
 
-/* Finds the opacities of one pixel's fragments, which are in the order that the light or the eye meets them.
- * Those that take nothing get opacity 0. */
+/* Finds the opacities of one pixel's fragments, which are in the order that the light or the eye meets
+ * them. Fragments that take no light get opacity 0. */
 static void resolve_pixel(fragment *list, size_t count, const float *least) {
   uint32_t open;
   size_t first = resolve_opaque(list, count, least, &open);
@@ -175,23 +175,23 @@ static void resolve_pixel(fragment *list, size_t count, const float *least) {
   }
 }
 
-/* Does the same for a light's view whose buffer is also used for rays of other directions. A pixel that
- * opaque surfaces cover in a slab, or in a slab and the slab before it, is opaque there. This holds even
- * where surfaces before it have taken all light of the view's own ray, because the other rays pass beside
- * these surfaces. Otherwise light would come through a surface where two of its triangles share a pixel and
- * lie in neighbouring slabs: each triangle would take its part of the light, one after the other, and some
- * light would be left. The fragments of one slab become one fragment. Returns the number of fragments that
- * are left. */
+/* Does the work of resolve_pixel() for a light's view whose buffer is also used for rays of other
+ * directions. A pixel that opaque surfaces cover in a slab, or in a slab and the slab before it, is opaque
+ * there. This holds even where surfaces before it have taken all light of the view's own ray, because the
+ * other rays pass beside these surfaces. Otherwise light would come through a surface where two of its
+ * triangles share a pixel and lie in neighbouring slabs: each triangle would take its part of the light,
+ * one after the other, and some light would be left. The fragments of one slab become one fragment. Returns
+ * the number of fragments that are left. */
 static size_t resolve_slabs(fragment *list, size_t count, const float *least) {
   size_t kept = 0;
-  uint32_t before = 0, covered = 0; /* covered samples, in the slab before and in this slab */
+  uint32_t before = 0, covered = 0; /* samples covered in the slab before, and samples covered in this slab */
   for (size_t i = 0; i < count; i++) {
     if (i == 0 || list[i].slab != list[i - 1].slab) {
       before = i > 0 && list[i].slab == list[i - 1].slab + 1 ? covered : 0;
       covered = 0;
     }
     if (hl_is_opaque(&list[i], least)) covered |= list[i].samples;
-    /* the primitive of a light's fragment is not needed any more */
+    /* the number of the primitive is no longer needed in a light's fragment */
     list[i].primitive = covered != 0 && (before | covered) == 0xffff;
   }
   resolve_pixel(list, count, least);
@@ -204,9 +204,9 @@ static size_t resolve_slabs(fragment *list, size_t count, const float *least) {
   return kept;
 }
 
-/* Makes one fragment of neighbouring triangles of a coloured pane that cover different samples of a pixel. So
- * each colour loses the same light to the pane, however the triangles share the pixel. Returns the number of
- * fragments that are left. */
+/* Joins fragments of neighbouring triangles of a coloured pane that cover different samples of one pixel to
+ * one fragment. So each colour loses the same light to the pane, however the triangles share the pixel.
+ * Returns the number of fragments that are left. */
 static size_t join_panes(fragment *list, size_t count, const float *least) {
   size_t kept = 0;
   for (size_t i = 0; i < count; i++) {
@@ -223,8 +223,9 @@ static size_t join_panes(fragment *list, size_t count, const float *least) {
   return kept;
 }
 
-/* Lets each fragment take its part of the pixel. Neighbouring triangles of a mesh that cover different
- * samples become one fragment. Returns the number of fragments that are left. */
+/* Lets each fragment take the light of the part of the pixel that it covers, as if no fragment hid another.
+ * Neighbouring triangles of a mesh that cover different samples become one fragment. Returns the number of
+ * fragments that are left. */
 static size_t resolve_apart(fragment *list, size_t count) {
   size_t kept = 0;
   for (size_t i = 0; i < count; i++) {

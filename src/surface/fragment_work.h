@@ -7,18 +7,20 @@
 #include "surface/primitive_bins.h"
 #include "surface/small_triangles.h"
 
-/* Memory for the fragments of many tiles: a chain of blocks. No block is copied when the next one begins. */
+/* A block of memory for the fragments of many tiles. Blocks form a chain, so that no fragments are copied
+ * when memory grows. */
 typedef struct fragment_block {
   struct fragment_block *before; /* owned */
   size_t count, room;
   fragment list[]; /* [room]; count of them are in use */
 } fragment_block;
 
-/* The fragments of one tile, by slab, then pixel, then height. */
+/* The fragments of one tile, sorted by slab, then by pixel, then by height. */
 typedef struct tile_list {
   const fragment *list; /* [count]; in a block */
   uint32_t count;
-  uint32_t reached; /* number of fragments before the next slab that the sweep asks for */
+  uint32_t reached; /* number of the tile's fragments that lie before the next slab that the sweep will ask
+                     * for */
 } tile_list;
 
 /* The input of hl_fragments_create(); borrowed. */
@@ -31,24 +33,27 @@ typedef struct fragments_source {
   const sheet_stack *sheets;
   bool falling;  /* the view meets great heights first */
   bool of_light; /* a light's view sees the meshes that cast shadows; other views see the visible meshes */
-  bool unseen;   /* the eye's view sees only meshes that are not visible and cast shadows. No fragment hides
-                  * another, and opacities are parts of a pixel */
-  double delay;  /* pixels of the view: a fragment takes light from the height that its surface's plane has
-                  * this far away. So a surface does not darken itself where look-ups interpolate */
-  /* Pixels of the view: a fragment of a light's view fills all slabs that its surface's plane crosses within
-   * this distance, so that rays of other directions than the view's find no gap between pixels of a slanted
-   * surface; 0: it fills one slab. */
+  bool unseen;   /* the eye's view, of only those meshes that are not visible and cast shadows. Then no
+                  * fragment hides another, and an opacity is a fraction of the pixel */
+  double delay;  /* pixels of the view by which a fragment is delayed: it takes light from the height on
+                  * that its surface's plane has this far away. So a surface does not darken itself where
+                  * look-ups interpolate */
+  /* Distance in pixels of the view: a fragment of a light's view fills all slabs that its surface's plane
+   * crosses within this distance. So rays of other directions than the view's find no gap between the
+   * pixels of a slanted surface. 0: a fragment fills one slab. */
   double rise;
-  uint64_t *marks; /* [sheets][tile_words], bit = tile; may be null. Bits are set for each sheet that ends a
-                      slab with a visible or shadow-casting surface in the tile, and in tiles beside it */
+  uint64_t *marks; /* [sheets][tile_words], bit = tile; may be null. A sheet's bits are set for tiles in
+                    * which, or beside which, the slab that ends at the sheet has a visible or
+                    * shadow-casting surface */
   int tile_words;
-  const int32_t *needed; /* [tiles]; 0: nobody asks for the tile's fragments; null: all tiles are needed */
+  const int32_t *needed; /* [tiles]; 0: nobody needs the tile's fragments; null: all tiles are needed */
 } fragments_source;
 
-/* The last opaque fragments that a tile's pixel got in a light's view: consecutive ones, each in a slab of
+/* The opaque fragments that were added last to a pixel of a tile in a light's view; each lies in a slab of
  * its own. */
 typedef struct latest_fragments {
-  uint32_t end; /* one past the first of them, in the worker's scratch; 0: there are none */
+  uint32_t end; /* the place in the worker's scratch one past the first of these fragments; 0: there are
+                 * none */
   int32_t last; /* the slab of the last of them */
 } latest_fragments;
 
@@ -68,7 +73,8 @@ typedef struct fragment_worker {
   order_key *runs; /* [2][run_room]; in a light's view: a tile's runs, the lowest first */
   size_t run_room;
   uint32_t *places; /* [sheets + 2]; for sorting */
-  uint16_t *near;   /* [sheets]; for each slab, the tiles to be marked: bit 3 (1 + down) + 1 + across */
+  uint16_t *near;   /* [sheets]; for each slab, the tiles to be marked around the current tile: bit 3 (1 +
+                     * down) + 1 + across */
   int32_t nearest, farthest; /* the first and the last slab in which near is not 0 */
   fragment_block *out;       /* fragments of the tiles that the thread has made; null: none yet */
   bool failed;
@@ -83,12 +89,11 @@ typedef struct fragment_work {
   small_view small;         /* all members but those that depend on the mesh */
   fragment_worker *workers; /* [threads] */
   float *least;             /* [mesh_count]; as in fragment_order */
-  bool *dark_backs;         /* [mesh_count]; in a light's view: whether the light lights nothing where it
-                             * leaves the mesh */
-  tile_list *tiles;         /* [tiles] */
+  bool *dark_backs; /* [mesh_count]; in a light's view: whether the light leaves the mesh's backs dark */
+  tile_list *tiles; /* [tiles] */
   int tiles_x, tiles_y;
-  uint16_t near[TILE_PIXELS]; /* for each pixel, block after block: the tiles that look-ups around the pixel
-                               * may read */
+  uint16_t near[TILE_PIXELS]; /* for each pixel of a tile, block after block: the tiles that look-ups
+                               * around the pixel may read */
 } fragment_work;
 
 #endif

@@ -56,7 +56,7 @@ static bool is_outside(const view *view, const surface_mesh *mesh) {
   return !view->perspective || hl_surface_is_outside(mesh, view->origin, 0);
 }
 
-/* Whether the eye sees none of a mesh's backs: it is closed, opaque, and the eye is outside. */
+/* Whether the eye sees none of a mesh's backs: the mesh is closed and opaque, and the eye is outside. */
 static bool has_hidden_backs(const fragments_source *source, const surface_mesh *mesh) {
   return !source->of_light && !source->unseen && hl_surface_is_closed(mesh) && mesh->colors == NULL &&
          mesh->face_colors == NULL && is_outside(source->view, mesh);
@@ -69,7 +69,7 @@ static bool has_dark_backs(const fragments_source *source, const surface_mesh *m
          is_outside(source->view, mesh);
 }
 
-/* Which primitives of a mesh a view's fragments are made of. */
+/* Finds from which primitives of a mesh a view's fragments are made. */
 static binned wanted_of(const fragments_source *source, const surface_mesh *mesh) {
   bool shades = mesh->look.casts_shadow, seen_here = source->unseen
                                                          ? shades && !mesh->look.visible

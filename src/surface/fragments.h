@@ -16,8 +16,8 @@ typedef struct fragments {
   size_t tiles;
 } fragments;
 
-/* Counts about the memory that hl_fragments_create() takes. The number of fragments is known only when they
- * are made. It is estimated as one for each primitive and two for each pixel. */
+/* Counts approximately the memory that hl_fragments_create() takes. The number of fragments is known only
+ * when they are made. It is estimated as one for each primitive and two for each pixel. */
 void hl_fragments_count(const surfaces *all, const view *view, int threads, hl_layout *layout);
 
 hl_status hl_fragments_create(const fragments_source *source, fragments *made, hl_error *error);
@@ -32,7 +32,7 @@ typedef struct fragment_range {
 /* The fragments of a tile in one slab. The tile's owner asks for slabs in rising order. */
 fragment_range hl_fragments_reach(const fragments *all, size_t tile, int slab);
 
-/* The fragments that were reached and lie in slabs from `first` on. */
+/* The fragments of a tile in the slabs from `first` to the slab that was last asked for. */
 fragment_range hl_fragments_reached(const fragments *all, size_t tile, int first);
 
 #endif

@@ -94,14 +94,13 @@ static void place_mesh(hl_pool *pool, surfaces *made, const surface_mesh *mesh) 
   hl_pool_run(pool, task_count(d->vertex_count), place_vertices, &placing);
   hl_pool_run(pool, task_count(d->triangle_count), place_triangles, &placing);
   if (d->normals == NULL)
-    add_face_normals(made, mesh); /* this is no task, so that each vertex's sum has one
-                                   * order */
+    add_face_normals(made, mesh); /* this runs in one thread, so that each vertex's sum has one order */
   hl_pool_run(pool, task_count(d->vertex_count), make_units, &placing);
 }
 
 /* ---- memory ---- */
 
-/* Counts the primitives. Describes the meshes where there is memory for their descriptions. */
+/* Counts the primitives. If the array of meshes is allocated already, the meshes are described, too. */
 static hl_status count_primitives(const hl_scene_description *scene, surfaces *made, hl_error *error) {
   uint64_t vertices = 0, triangles = 0, spheres = 0, edge_normals = 0;
   for (size_t m = 0; m < scene->mesh_count; m++) {

@@ -13,8 +13,8 @@ hl_status hl_surfaces_update(hl_context *context, hl_pool *pool, const hl_scene_
                              surfaces *kept, hl_error *error);
 void hl_surfaces_release(hl_context *context, surfaces *kept);
 
-/* Counts the memory that hl_surfaces_update() takes where nothing is kept. Fails where there are too many
- * primitives to number. */
+/* Counts the memory that hl_surfaces_update() takes where nothing is kept. Fails where 32 bits cannot
+ * number all primitives. */
 hl_status hl_surfaces_count_memory(const hl_scene_description *scene, hl_layout *layout, hl_error *error);
 
 /* Whether the same meshes stand in the same places as in the earlier frame. The update then allocates only a

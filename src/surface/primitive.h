@@ -1,5 +1,5 @@
-/* surface/primitive.h - the interface of a kind of primitive: of triangles, and of spheres. (Tubes are
- * triangles and spheres: mesh/tubes.c.)
+/* surface/primitive.h - the interface of a kind of primitive: triangles or spheres. (Tubes are triangles
+ * and spheres: mesh/tubes.c.)
  *
  * A kind is a table in a file of its own. Other code asks the table and names no kind. The functions for
  * sixteen primitives at a time (small_triangles.h, small_spheres_lanes.h) are made for one kind each: the
@@ -25,41 +25,43 @@ typedef struct hull_ball {
 
 typedef struct primitive_kind {
   const char *noun; /* what people call several of them */
-  /* Whether primitives are flat between three corners, which all->triangles lists: they have one normal and
-   * one plane, and clusters of them keep a copy of their vertices. */
+  /* Whether primitives are flat between three corners, which all->triangles lists: such a primitive has one
+   * normal and one plane, and its cluster keeps a copy of its vertices. */
   bool has_corners;
   const primitive_raster *raster; /* what views see of it */
-  /* The number of a mesh's first primitive of this kind, and how many it has. */
+  /* The number of a mesh's first primitive of this kind, and the number of such primitives that the mesh
+   * has. */
   uint32_t (*first)(const surfaces *all, const surface_mesh *mesh);
   uint32_t (*count)(const surface_mesh *mesh);
   /* A point of it; [3]. */
   const float *(*place)(const surfaces *all, uint32_t primitive);
   /* A box around it, wider by what rounding may take. */
   void (*bound)(const surfaces *all, uint32_t primitive, float low[3], float high[3]);
-  /* The fraction of light that it stops, at its middle. */
+  /* The fraction of light that a primitive stops, at its middle. */
   double (*opacity)(const surfaces *all, const surface_mesh *mesh, uint32_t primitive);
-  /* Its unit normal where a ray met it; *from: a point's distance from the plane there, on the normal's side
-   * above 0. */
+  /* The unit normal where a ray met a primitive. *from: a point's distance from the plane there, above 0 on
+   * the normal's side. */
   vec3 (*normal)(const surfaces *all, uint32_t primitive, vec3 met, vec3 point, double *from);
-  /* The plane in which it lies, or which touches it where it was met, as a view sees it. */
+  /* The plane of a primitive, or the plane that touches it where a ray met it, as a view sees the plane. */
   void (*plane)(const view *view, const sheet_stack *sheets, const surfaces *all, uint32_t primitive,
                 vec3 met, surface_plane *plane);
-  /* The interpolated unit normal and the linear RGB colour of its mesh at a point of it; returns the unit
-   * normal of the primitive itself, on the side of *normal. */
+  /* Finds the interpolated unit normal and the linear RGB colour at a point of a primitive; returns the
+   * unit normal of the primitive itself, on the side of *normal. */
   vec3 (*look)(const surfaces *all, const surface_mesh *mesh, uint32_t primitive, vec3 at, vec3 *normal,
                double color[3]);
-  /* How much the surface is bent towards a light: the turn of its normal, which lies on the eye's side, per
-   * length of the unit way `along` it; above 0 in a hollow. 0: flat, rough, or light passes it. */
+  /* How much the surface is bent towards a light: the turn of the normal (on the eye's side) per length on
+   * the way `along`, a unit vector on the surface. It is above 0 in a hollow, and 0 where the surface is
+   * flat or rough or lets light pass. */
   double (*bend)(const surfaces *all, const surface_mesh *mesh, uint32_t primitive, vec3 at, vec3 normal,
                  vec3 along);
-  /* Where a ray meets it: [return value], in lengths of the ray's way. */
+  /* Finds where a ray meets a primitive, in lengths of the ray's way. Returns how many places were stored. */
   int (*intersect)(const surfaces *all, uint32_t primitive, const surface_ray *ray, double distance[2]);
-  /* Whether the convex hull of balls has points on both sides of it; what lies beyond it by less than `least`
-   * counts as being on it. */
+  /* Whether the convex hull of some balls has points on both sides of a primitive. Points beyond the
+   * primitive by less than `least` count as lying on it. */
   bool (*parts)(const surfaces *all, uint32_t primitive, const hull_ball *balls, int count, double least);
 } primitive_kind;
 
-/* The registry of kinds, in the order of their primitives' numbers. A kind "sphere" has the table
+/* The list of kinds of primitives, in the order of their primitives' numbers. A kind "sphere" has the table
  * hl_primitive_sphere in sphere.c, and the table hl_raster_sphere in sphere_raster.c. The build reads the
  * names here. */
 /* clang-format off */
@@ -92,16 +94,17 @@ static inline const float *hl_sphere_of(const surfaces *all, uint32_t primitive)
   return all->spheres[primitive - all->triangle_count];
 }
 
-/* The index of the mesh that a primitive belongs to. Slow: fragments know theirs. */
+/* The index of the mesh that a primitive belongs to. This is slow; a fragment knows its mesh. */
 size_t hl_surface_mesh_of(const surfaces *all, uint32_t primitive);
 
-/* The first primitive after those of the mesh that are of this one's kind. */
+/* One past the last primitive of a mesh that has the same kind as a given primitive of the mesh. */
 uint32_t hl_surface_mesh_end(const surfaces *all, size_t mesh, uint32_t primitive);
 
 /* The fraction of light that a primitive stops, at its middle. */
 float hl_primitive_opacity(const surfaces *all, const surface_mesh *mesh, uint32_t primitive);
 
-/* The colour of a mesh's material times a row of the mesh's colours; null: white. Linear RGB. */
+/* Multiplies the colour of a mesh's material by a row of the mesh's colours, linear RGB. row: null stands
+ * for white. */
 static inline void hl_primitive_color(const surface_mesh *mesh, const float *own, double color[3]) {
   for (int c = 0; c < 3; c++) color[c] = mesh->look.color[c] * (own != NULL ? (double)own[c] : 1);
 }

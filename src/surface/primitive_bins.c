@@ -8,12 +8,13 @@
 
 enum { LEAST_A_TASK = 1 << 8, MOST_TASKS = 32 };
 
-/* The greatest number of tiles that a cluster of primitives with corners may touch and stay whole; views
- * project its vertices together. Primitives of other clusters are listed one by one, and so are all clusters
- * without corners that touch more than one tile. */
+/* A cluster of primitives with corners is put into tiles as a whole if it touches at most this many tiles;
+ * its vertices are then projected together. A cluster of primitives without corners stays whole only in a
+ * single tile. The primitives of all other clusters are listed one by one. */
 enum { MOST_TILES_TOGETHER = 9 };
 
-/* The tiles that a primitive touches, the last ones included; none where x0 is greater than x1. */
+/* The tiles that a primitive touches, from x0 and y0 to x1 and y1, both included; no tiles where x0 is
+ * greater than x1. */
 typedef struct tile_span {
   uint16_t x0, y0, x1, y1;
 } tile_span;
@@ -23,7 +24,8 @@ typedef struct bin_work {
   const binned *wanted;
   primitive_bins *bins;
   tile_span *spans; /* [primitives]; of those that are binned one by one */
-  uint32_t *places; /* [tasks][tiles]; first how many runs a task has for a tile, then where they go */
+  uint32_t *places; /* [tasks][tiles]; first the number of runs that a task has for a tile, later the place
+                     * of the task's next run */
   size_t tiles, tasks;
   size_t a_task; /* clusters of a task */
   int tiles_x, tiles_y;
@@ -55,7 +57,8 @@ static int tiles_of(const tile_span *span) {
   return span->x0 > span->x1 ? 0 : (span->x1 - span->x0 + 1) * (span->y1 - span->y0 + 1);
 }
 
-/* The tiles of a cluster; *whole: all its primitives may be put into each of them together. */
+/* Finds the tiles that a cluster touches. *whole: the cluster's primitives may be put into each of these
+ * tiles together. */
 static void find_cluster_span(const bin_work *work, const surface_cluster *cluster, tile_span *span,
                               bool *whole) {
   const view *view = work->seen->view;
@@ -95,7 +98,8 @@ static void add_one_by_one(const bin_work *work, uint32_t *places, const surface
   }
 }
 
-/* Counts how many runs of a task touch each tile; then, where there is room for them, places them. */
+/* Counts how many of a task's runs touch each tile. When there is memory for the runs, a second call stores
+ * them. */
 static void bin_task(void *data, size_t index, int worker) {
   (void)worker;
   const bin_work *work = data;
@@ -114,7 +118,7 @@ static void bin_task(void *data, size_t index, int worker) {
 }
 
 /* Turns the numbers of runs into the index of each bin's first run. False where there are more than 2^32
- * of them. */
+ * runs. */
 static bool find_places(bin_work *work) {
   uint64_t sum = 0;
   for (size_t tile = 0; tile < work->tiles; tile++) {

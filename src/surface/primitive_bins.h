@@ -1,5 +1,5 @@
-/* surface/primitive_bins.h - triangles and spheres sorted by the tiles of a view that they touch: clusters of
- * them whole where they touch few tiles, else one by one. */
+/* surface/primitive_bins.h - triangles and spheres sorted by the tiles of a view that they touch. Clusters
+ * that touch few tiles are sorted whole, the primitives of other clusters one by one. */
 #ifndef HL_SURFACE_PRIMITIVE_BINS_H
 #define HL_SURFACE_PRIMITIVE_BINS_H
 
@@ -7,7 +7,8 @@
 #include "surface/clusters.h"
 #include "surface/seen.h"
 
-/* One primitive, or those of a cluster, of which some may lie beside the tile, or turn their backs. */
+/* One primitive, or all primitives of a cluster. Some of a cluster's primitives may lie beside the tile, or
+ * turn their backs to the view. */
 typedef struct primitive_run {
   uint32_t primitive; /* of a cluster the first */
   uint32_t cluster;   /* NO_CLUSTER: this primitive alone */
@@ -23,10 +24,11 @@ typedef struct primitive_bins {
 /* What of a mesh is binned. */
 typedef enum binned { BINNED_NOTHING, BINNED_FRONTS, BINNED_ALL } binned;
 
-/* wanted: [mesh_count]; of BINNED_FRONTS the triangles that face the view. */
+/* Sorts primitives into tiles. wanted: [mesh_count]; for each mesh which primitives; BINNED_FRONTS: only
+ * triangles that face the view. */
 hl_status hl_primitive_bins_create(hl_context *context, hl_pool *pool, const seen_surfaces *seen,
                                    const binned *wanted, primitive_bins *bins, hl_error *error);
-/* Counts what hl_primitive_bins_create() takes where each primitive lies in one tile. */
+/* Counts the memory that hl_primitive_bins_create() takes if each primitive lies in one tile. */
 void hl_primitive_bins_count(const surfaces *all, const view *view, hl_layout *layout);
 void hl_primitive_bins_release(hl_context *context, primitive_bins *bins);
 

@@ -19,8 +19,8 @@ bool hl_tile_make_room(hl_context *context, fragment_worker *worker, size_t more
   return true;
 }
 
-/* Adds the samples of an opaque fragment to those that its pixel got last, where both are of one mesh and
- * fill the same slabs: there they take what one surface takes. Returns whether it did. */
+/* Joins an opaque fragment to the fragments that its pixel got last, if all belong to one mesh and fill the
+ * same slabs: together they take the light that one surface takes. Returns whether they were joined. */
 static bool join_latest(fragment_worker *worker, const fragment *f, int32_t first, int32_t last) {
   latest_fragments *latest = &worker->latest[f->pixel];
   fragment *own = worker->scratch + latest->end - 1;
@@ -32,7 +32,7 @@ static bool join_latest(fragment_worker *worker, const fragment *f, int32_t firs
   return false;
 }
 
-/* Remembers what an opaque fragment covers of its pixel from a height on. */
+/* Remembers the samples of its pixel that an opaque fragment covers from a height on. */
 static void cover_pixel(fragment_worker *worker, const fragment *f, double height) {
   covered_so_far *covered = &worker->covered[f->pixel];
   if (covered->samples == 0xffff) return;
@@ -43,7 +43,9 @@ static void cover_pixel(fragment_worker *worker, const fragment *f, double heigh
 /* Derived: n slabs that take 1 - (1 - a)^(1/n) each take a together. */
 void hl_add_to_slabs(const fragment_work *work, fragment_worker *worker, fragment f, double start,
                      int32_t first, int32_t last) {
-  if (work->least[f.mesh] < 1) last = first; /* opacities by colour cannot be shared out among slabs */
+  if (work->least[f.mesh] < 1)
+    last = first; /* opacities that differ by colour cannot be divided among
+                   * slabs */
   if (last - first >= MOST_SLABS) last = first + MOST_SLABS - 1;
   if (f.opacity >= 1 && work->least[f.mesh] >= 1) {
     cover_pixel(worker, &f, start);
@@ -58,9 +60,9 @@ void hl_add_to_slabs(const fragment_work *work, fragment_worker *worker, fragmen
   }
 }
 
-/* Adds a fragment of a light's view: to the slab at its delayed height, and to those above it that the plane
- * crosses within the pixel, or up to where another triangle begins at a corner. Where the backs are dark
- * there is no delay. */
+/* Adds a fragment of a light's view to the slab at its delayed height, and to the slabs above which the
+ * plane crosses within the pixel, or to the slabs up to the height where another triangle begins at a
+ * corner. There is no delay at backs that the light leaves dark. */
 static void add_of_light(const fragment_work *work, fragment_worker *worker, const surface_plane *plane,
                          fragment f, double slope, const covered_pixel *at, const seen_seams *seams) {
   const fragments_source *source = work->source;

@@ -1,8 +1,9 @@
 /* surface/primitive_raster.h - what a view sees of a kind of primitive, and how it becomes fragments.
  *
- * Each kind of primitive (primitive.h) has one such table. The rooms' files that bin, rasterise and part
- * fragments ask it. A kind is rasterised in two ways: a small primitive together with up to fifteen others of
- * its mesh (collect, cover_small), any other primitive by itself (cover). */
+ * Each kind of primitive (primitive.h) has one such table. The files of this room that sort primitives into
+ * tiles, rasterise them and part fragments call it. A kind is rasterised in two ways: a small primitive
+ * together with up to fifteen others of its mesh (collect, cover_small), any other primitive by itself
+ * (cover). */
 #ifndef HL_SURFACE_PRIMITIVE_RASTER_H
 #define HL_SURFACE_PRIMITIVE_RASTER_H
 
@@ -18,21 +19,24 @@ typedef struct small_batch small_batch;         /* small_batch.h */
 typedef struct shown_surface shown_surface;     /* shown_surface.h */
 
 struct primitive_raster {
-  /* A rectangle around what the view sees of a primitive; false: nothing. fronts: what faces away from the
-   * view is not seen. */
+  /* Finds a rectangle around the part of a primitive that the view sees; false: the view sees nothing of
+   * it. fronts: sides that face away from the view do not count. */
   bool (*see)(const seen_surfaces *seen, uint32_t primitive, bool fronts, seen_bounds *bounds);
   /* Its least height above the first sheet, or less. */
   float (*lowest)(const surfaces *all, const sheet_stack *sheets, uint32_t primitive);
-  /* Adds a primitive to a batch of small ones; false where it may be rasterised by itself alone. */
+  /* Adds a primitive to a batch of small ones; false where it must be rasterised by itself. */
   bool (*collect)(const fragment_work *work, const tile_part *part, small_batch *batch, uint32_t primitive);
-  /* Covers a batch's small primitives; returns which are small, one bit each. */
+  /* Finds the samples that the small primitives of a batch cover; returns which primitives are small, one
+   * bit each. */
   uint32_t (*cover_small)(const surface_functions *functions, small_batch *batch);
-  /* Adds one primitive's fragments in a tile; f: what they have in common. The worker has room for them. */
+  /* Adds one primitive's fragments in a tile. f: a fragment with the members that all of them share. The
+   * worker has room for them. */
   void (*cover)(const fragment_work *work, fragment_worker *worker, tile_part *part, const fragment *f);
-  /* The surface that a fragment shows, whose samples have their middle at continuous pixel (u, v). */
+  /* Finds the surface that a fragment shows. The fragment's samples have their mean position at the
+   * continuous pixel (u, v). */
   void (*show)(const seen_surfaces *seen, const sheet_stack *sheets, const fragment *f, double u, double v,
                shown_surface *shown);
-  /* Its height above the first sheet at a continuous pixel. */
+  /* The height of a shown surface above the first sheet at a continuous pixel. */
   double (*height)(const sheet_stack *sheets, const shown_surface *shown, double u, double v);
 };
 

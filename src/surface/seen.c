@@ -1,7 +1,7 @@
 /* surface/seen.c - see seen.h. */
 #include "surface/seen.h"
 
-/* Pixels around the view within which triangles are kept whole. */
+/* The width, in pixels, of the frame around the view within which triangles are not cut. */
 static const double FRAME_AROUND = 4096;
 /* The least distance in front of a perspective view's eye, as a fraction of the distance at which rays have
  * length 1. */
@@ -17,8 +17,8 @@ static corner corner_in_view(const view *view, vec3 point) {
   return (corner){view->perspective ? p.x : 1, p.y, p.z};
 }
 
-/* The distance of a corner from a side of the frame, above 0 inside. Side 0 is the eye, 1 and 2 are left and
- * right, 3 and 4 above and below. */
+/* The distance of a corner from a side of the frame, above 0 inside. Side 0 is the plane of the eye; sides
+ * 1 and 2 are left and right, 3 and 4 above and below. */
 static double inside(const view *view, int side, corner c) {
   switch (side) {
     case 0: return c.w - NEAREST;

@@ -1,4 +1,5 @@
-/* surface/shown_surface.h - the surface that a fragment of the eye's view shows, and its heights there. */
+/* surface/shown_surface.h - the surface that a fragment of the eye's view shows, and the surface's heights
+ * there. */
 #ifndef HL_SURFACE_SHOWN_SURFACE_H
 #define HL_SURFACE_SHOWN_SURFACE_H
 
@@ -6,12 +7,13 @@
 #include "surface/sphere_coverage.h"
 
 struct shown_surface {
-  const primitive_raster *raster; /* of the primitive's kind; the members of other kinds are not set */
+  const primitive_raster *raster; /* the table of the primitive's kind; members below that belong to other
+                                   * kinds are not set */
   double lowest, highest;         /* of the primitive; above the first sheet */
   /* Of a triangle. */
   surface_plane plane;
-  bool by_corners;         /* none of the corners is cut: the height is rise / part */
-  double rise[3], part[3]; /* linear functions of the pixel, as those of surface_plane */
+  bool by_corners;         /* none of the triangle's corners was cut by the view: the height is rise / part */
+  double rise[3], part[3]; /* linear functions of the pixel, like those of surface_plane */
   /* Of a sphere. */
   sphere_rays rays;
   bool leaving; /* the side where rays leave it */

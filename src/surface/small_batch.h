@@ -14,7 +14,8 @@ struct small_batch {
   int count;
   const primitive_kind *kind; /* of the primitives */
   size_t mesh;
-  bool may_be_covered; /* of a light's view: clusters may lie behind what covers all of their pixels */
+  bool may_be_covered; /* in a light's view: clusters may lie behind fragments that cover all of their
+                        * pixels */
 };
 
 #endif

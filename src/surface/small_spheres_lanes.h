@@ -1,6 +1,6 @@
-/* surface/small_spheres_lanes.h - opaque spheres of few pixels, seen from outside, eight at a time. The sums
- * of seen.c, sphere_coverage.c, surface_plane.c and tile_fragments.c are made in the same order, in
- * doubles. */
+/* surface/small_spheres_lanes.h - opaque spheres of few pixels, seen from outside, eight at a time. Sums
+ * are made in doubles, in the order of seen.c, sphere_coverage.c, surface_plane.c and tile_fragments.c, so
+ * that bytes are the same. */
 #ifndef HL_SURFACE_SMALL_SPHERES_LANES_H
 #define HL_SURFACE_SMALL_SPHERES_LANES_H
 
@@ -23,7 +23,8 @@ LANES_INLINE doubles3 less(doubles3 a, doubles3 b) { return (doubles3){a.x - b.x
 LANES_INLINE eight_doubles choose(eight_longs mask, eight_doubles a, eight_doubles b) {
   return (eight_doubles)(((eight_longs)a & mask) | ((eight_longs)b & ~mask));
 }
-/* As fmax() and fmin(): where one argument is not a number, the result is the other. */
+/* The greater and the lesser number, as fmax() and fmin() give them: where one argument is not a number,
+ * the result is the other one. */
 LANES_INLINE eight_doubles at_least(eight_doubles a, double least) {
   return choose(a > least, a, (eight_doubles){0} + least);
 }

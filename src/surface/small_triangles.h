@@ -15,7 +15,7 @@
 
 enum { SMALL_TRIANGLES = 16, SMALL_SIDE = 4, SMALL_PIXELS = SMALL_SIDE * SMALL_SIDE };
 
-/* A view, and how the fragments of one mesh enter it. Vectors are in frame space. */
+/* A view, and how fragments of one mesh are placed in it. Vectors are in frame space. */
 typedef struct small_view {
   float normal[3], first; /* the sheets' normal; a point's height is normal.X - first */
   float spacing, last_slab;
@@ -23,15 +23,16 @@ typedef struct small_view {
   int of_light;          /* else the next members, down to rise, are not used */
   int perspective;       /* the rays come from `from`; else they go along it */
   float from[3], du[3], dv[3];
-  float depth[3];    /* perspective: a point's distance in lengths of its ray is depth.(X - from) */
+  float depth[3];    /* in a perspective view: the distance of a point X, in lengths of its ray, is
+                      * depth.(X - from) */
   float delay, rise; /* as in fragments_source */
-  double inverse[3][3], origin[3]; /* for clusters: w, w u and w v are the products with point - origin; w is
-                                    * 1 where the view is not a perspective one */
+  double inverse[3][3], origin[3]; /* for clusters: w, w u and w v are the rows of `inverse` times (point -
+                                    * origin); w is 1 where the view is no perspective one */
   int32_t left, top;               /* for clusters: the tile's corner; 1/256 pixels */
   const view *view;                /* for spheres; borrowed */
   const sheet_stack *sheets;       /* for spheres; borrowed */
   int fronts;                      /* only triangles that face the view are covered */
-  int dark_backs;                  /* as in fragment_work: there is no delay where the rays leave the mesh */
+  int dark_backs; /* as in fragment_work: there is no delay where the light's rays leave the mesh */
 } small_view;
 
 typedef struct small_triangles {
@@ -40,7 +41,8 @@ typedef struct small_triangles {
   float height[3][SMALL_TRIANGLES]; /* heights of the corners: normal.X -
                                      * first */
   float normal[3][SMALL_TRIANGLES]; /* for a light's view: hl_corner_product() */
-  float corner[3][SMALL_TRIANGLES]; /* for a light's perspective view: the first corner; frame space */
+  float corner[3][SMALL_TRIANGLES]; /* for a light's perspective view: the triangles' first corners; frame
+                                     * space */
 } small_triangles;
 
 /* The cross product of a triangle's sides; frame space. */
@@ -59,8 +61,8 @@ static inline void hl_corner_product(const float *const corner[3], float normal[
 /* Numbers of a cluster of triangles; each triangle has a column. */
 enum { CLUSTER_TRIANGLES = 64, CLUSTER_VERTICES = 3 * CLUSTER_TRIANGLES };
 typedef struct cluster_shape {
-  const float *positions;                      /* [3][vertices]; axis by axis; frame space */
-  size_t vertices;                             /* a multiple of 16; vertices that fill it up repeat others */
+  const float *positions; /* [3][vertices]; axis by axis; frame space */
+  size_t vertices;        /* number of vertices, a multiple of 16; the last ones may repeat others */
   const uint8_t (*corners)[CLUSTER_TRIANGLES]; /* [3]; numbers of vertices */
   const float (*normals)[CLUSTER_TRIANGLES];   /* [3]; hl_corner_product() */
 } cluster_shape;
@@ -73,7 +75,7 @@ typedef struct seen_cluster {
 
 /* Pixel k of a triangle is k % SMALL_SIDE columns and k / SMALL_SIDE rows from the first pixel of its box. */
 typedef struct small_cover {
-  uint32_t large;                 /* the triangles that touch the tile and are not small, one bit each */
+  uint32_t large; /* the triangles that touch the tile and are too large for this function, one bit each */
   uint32_t covered[SMALL_PIXELS]; /* for each pixel, the triangles that cover some of its samples, one bit
                                    * each; the members below are set only for these */
   /* Number of the pixel in the tile, block after block. */
@@ -97,8 +99,8 @@ typedef uint32_t cover_small_function(const small_view *view, const small_triang
 
 typedef void see_cluster_function(const small_view *view, const cluster_shape *shape, seen_cluster *seen);
 
-/* Does the same for triangles `first` to first + 15 of a cluster, of which those in `wanted` are covered, one
- * bit each. */
+/* Does the work of cover_small_function for the triangles `first` to first + 15 of a cluster. wanted: the
+ * triangles that count, one bit each. */
 typedef uint32_t cover_cluster_function(const small_view *view, const cluster_shape *shape,
                                         const seen_cluster *seen, int first, uint32_t wanted,
                                         small_cover *cover);
@@ -108,8 +110,9 @@ typedef struct small_spheres {
   _Alignas(64) float centre[3][SMALL_TRIANGLES], radius[SMALL_TRIANGLES]; /* frame space */
 } small_spheres;
 
-/* Does the same for sixteen spheres. A sphere is small if its box touches at most four by four pixels of the
- * tile and the view sees it from outside. Not for lights' views whose fragments fill several slabs. */
+/* Does the work of cover_small_function for sixteen spheres. A sphere is small if its box touches at most
+ * four by four pixels of the tile and the view sees it from outside. The function does not serve lights'
+ * views whose fragments fill several slabs. */
 typedef uint32_t cover_spheres_function(const small_view *view, const small_spheres *spheres,
                                         small_cover *cover);
 

@@ -11,7 +11,7 @@
 #include "surface/sample_rows.h"
 #include "surface/small_triangles.h"
 
-/* SMALL_STEP: 1/256 pixels from one sample to the next column or row. */
+/* SMALL_STEP: the distance between columns or rows of samples, in 1/256 pixels. */
 enum { SMALL_SUBPIXELS = 256, SMALL_STEP = SMALL_SUBPIXELS / 16, SMALL_TILE = 16 };
 /* As in seen.c. */
 static const double SMALL_NEAREST = 1e-4;
@@ -87,9 +87,10 @@ LANES_INLINE void find_heights(const small_triangles *t, const small_shape *shap
   heights->highest = lanes_max(lanes_max(height[0], height[1]), height[2]);
 }
 
-/* The change of the height of the triangle's plane from pixel to pixel. *leaving: whether the rays leave by
- * its front. Derived: along the ray A + s B, a step D aside in the picture moves the point of the plane with
- * normal n by s D - B s (n.D) / (n.B). It moves the height by s (h.D - (h.B) (n.D) / (n.B)). */
+/* How much the height of the triangle's plane changes from pixel to pixel. *leaving: whether the rays leave
+ * the mesh at the triangle. Derived: along the ray A + s B, a step D aside in the picture moves the point
+ * of the plane with normal n by s D - B s (n.D) / (n.B). It moves the height by s (h.D - (h.B) (n.D) /
+ * (n.B)). */
 LANES_INLINE lanes find_slope(const small_view *view, const small_triangles *t, lanes_int *leaving) {
   lanes normal[3], way[3], depth = lanes_set(1.0f);
   for (int axis = 0; axis < 3; axis++) {
@@ -168,8 +169,8 @@ LANES_INLINE void count_samples(lanes_int bits, small_samples *samples) {
   *samples = (small_samples){bits, count, sum, 3 * count - sum + 8 * ((rows + (rows >> 8)) & 255)};
 }
 
-/* The first column, or row, of samples whose middle lies at or after the least coordinate; *count: the number
- * of columns up to the greatest coordinate. Coordinates are in 1/256 pixels. */
+/* Finds the first column (or row) of samples whose middle lies at or after the least of three coordinates.
+ * *count: the number of columns from there up to the greatest coordinate. Coordinates are in 1/256 pixels. */
 LANES_INLINE lanes_int sample_range(const lanes at[3], lanes_int *count) {
   lanes least = lanes_min(lanes_min(at[0], at[1]), at[2]),
         greatest = lanes_max(lanes_max(at[0], at[1]), at[2]);
@@ -187,9 +188,10 @@ LANES_INLINE int greatest_of(lanes_int x, lanes_int of) {
 
 typedef uint32_t small_words __attribute__((vector_size(64)));
 
-/* Covers triangles that are at most a pixel high and two pixels wide. In each column of samples only the one
- * sample is tried that lies within the triangle's rows. bits: for each of two rows of pixels, the samples of
- * two pixels, 16 bits each. Returns whether the triangles in `of` are so small. */
+/* Finds the samples that triangles cover which are at most a pixel high and two pixels wide. In each column
+ * of samples only one sample can lie within the triangle's rows, and only this sample is tested. bits: for
+ * each of two rows of pixels, the samples of two pixels, 16 bits each. Returns whether the triangles in
+ * `of` are so small. */
 LANES_INLINE int cover_columns(const small_shape *shape, lanes_int of, lanes_int bits[2]) {
   lanes_int columns, rows, column = sample_range(shape->x, &columns), row = sample_range(shape->y, &rows);
   if (lanes_bits(of & ((rows > 16) | (column + columns > 32) | (row + rows > 32))) != 0) return 0;
@@ -329,7 +331,7 @@ LANES_INLINE void store_subpixels(int32_t *to, eight_doubles pixels) {
   memcpy(to, &whole, sizeof whole);
 }
 
-/* Sees vertices `at` to at + 7, with the sums of seen.c in the same order. */
+/* Projects the vertices `at` to at + 7 of a cluster into the view, with sums in the order of seen.c. */
 LANES_INLINE void see_eight(const small_view *view, const cluster_shape *shape, size_t at,
                             seen_cluster *seen) {
   eight_doubles p[3], c[3];

@@ -26,8 +26,8 @@ static vec3 at_pixel(vec3 at, vec3 by_u, vec3 by_v, double u, double v) {
   return vec3_add(at, vec3_add(vec3_scale(by_u, u), vec3_scale(by_v, v)));
 }
 
-/* |A + s B|^2 = r^2 is B.B s^2 + 2 A.B s + A.A - r^2 = 0. A ray meets the sphere where a quarter of this
- * equation's discriminant is at least 0. */
+/* A quarter of the discriminant of |A + s B|^2 = r^2, which is B.B s^2 + 2 A.B s + A.A - r^2 = 0. The ray A
+ * + s B meets the sphere where it is at least 0. */
 static double discriminant(const sphere_rays *rays, double u, double v) {
   vec3 a = at_pixel(rays->start, rays->start_u, rays->start_v, u, v),
        b = at_pixel(rays->way, rays->way_u, rays->way_v, u, v);
@@ -37,9 +37,9 @@ static double discriminant(const sphere_rays *rays, double u, double v) {
 
 static int clamp_pixel(double pixel) { return pixel < 0 ? 0 : pixel > TILE - 1 ? TILE - 1 : (int)pixel; }
 
-/* The discriminant as the quadratic function c0 + c1 u + c2 v + c3 uu + c4 uv + c5 vv, found from its values
- * about a point. This is exact for both kinds of views, in which the discriminant has degree 2 (derived: A is
- * constant in a perspective view, and B in a parallel one). */
+/* The discriminant as a quadratic function of the pixel: c0 + c1 u + c2 v + c3 uu + c4 uv + c5 vv. It is
+ * found from the discriminant's values about a point, and is exact for both kinds of views (derived: A is
+ * constant in a perspective view, and B in a parallel one, so that the discriminant has degree 2). */
 typedef struct quadratic {
   double c[6];
 } quadratic;
@@ -51,12 +51,13 @@ static quadratic quadratic_of(const sphere_rays *rays, double u, double v) {
   return (quadratic){{m, (e - w) / 2, (s - n) / 2, (e + w) / 2 - m, se - e - s + m, (s + n) / 2 - m}};
 }
 
-/* A rectangle that holds everything that is covered, in pixels from the corner of the current pixel. */
+/* A rectangle that holds all covered samples, in pixels from the corner of the current pixel. */
 typedef struct sample_bounds {
   double x0, y0, x1, y1;
 } sample_bounds;
 
-/* The first column of samples whose middle lies at or after x, or 16. x: in pixels. */
+/* The number of the first column of samples whose middle lies at or after x; 16 if there is none. x: in
+ * pixels. */
 static int first_column(double x) {
   double column = x * SAMPLES - 0.5;
   return column <= 0 ? 0 : column > SAMPLES - 1 ? SAMPLES : (int)column + ((int)column < column);
@@ -74,7 +75,7 @@ static uint32_t cover_pixel(const quadratic *q, double u, double v, const sample
   return bits;
 }
 
-/* Pixels by which bounds are widened, which is far more than their rounding. */
+/* The number of pixels by which bounds are widened; the rounding of bounds is far less. */
 static const double AROUND = 1e-3;
 
 bool hl_cover_sphere(const view *view, const float sphere[4], const seen_bounds *bounds, int tile_x,

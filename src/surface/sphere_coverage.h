@@ -4,7 +4,8 @@
 
 #include "surface/coverage.h"
 
-/* As hl_cover_tile(), for a sphere that a view sees within bounds. */
+/* Finds the samples of a tile that a sphere covers, as hl_cover_tile() does for polygons. The view sees the
+ * sphere within the given bounds. */
 bool hl_cover_sphere(const view *view, const float sphere[4], const seen_bounds *bounds, int tile_x,
                      int tile_y, pixel_span *span, uint16_t covered[TILE_PIXELS]);
 
@@ -18,8 +19,8 @@ typedef struct sphere_rays {
 sphere_rays hl_sphere_rays(const view *view, const float sphere[4]);
 
 /* Finds where the ray of the continuous pixel (u, v) enters and leaves a sphere. For a ray that misses the
- * sphere both are its point nearest to the ray. False where the point lies behind a perspective view's
- * eye. */
+ * sphere, both places are the sphere's point nearest to the ray. False where the point lies behind a
+ * perspective view's eye. */
 bool hl_meet_sphere(const sphere_rays *rays, double u, double v, bool leaving, vec3 *point);
 
 #endif

@@ -12,7 +12,7 @@ static bool see(const seen_surfaces *seen, uint32_t primitive, bool fronts, seen
   return hl_see_sphere(seen->view, hl_sphere_of(seen->all, primitive), bounds);
 }
 
-/* Nothing is told about the height: spheres are rasterised before triangles. */
+/* A sphere's least height is not used: spheres are rasterised before triangles. */
 static float lowest(const surfaces *all, const sheet_stack *sheets, uint32_t primitive) {
   (void)all, (void)sheets, (void)primitive;
   return (float)-INFINITY;
@@ -111,7 +111,7 @@ static double height(const sheet_stack *sheets, const shown_surface *shown, doub
   return vec3_dot(sheets->normal, point) - sheets->first;
 }
 
-/* Shows the side of the sphere that is nearer to the fragment's height. */
+/* Of the sphere's two sides, shows the one that is nearer to the fragment's height. */
 static void show(const seen_surfaces *seen, const sheet_stack *sheets, const fragment *f, double u, double v,
                  shown_surface *shown) {
   double away[2];

@@ -13,7 +13,7 @@ typedef struct surface_plane {
   double rise[3], way[3], above[3], climb[3]; /* d - n.A, n.B, h.A, h.B */
   double lowest, highest;                     /* the least and greatest height of the surface, above the first
                                                * sheet */
-  bool leaving; /* here the light's rays leave a surface whose inside they do not light */
+  bool leaving; /* at this place the light's rays leave a surface whose inside they do not light */
 } surface_plane;
 
 /* A function of surface_plane at a pixel. */

@@ -7,8 +7,8 @@
 #include "surface/surface_cuts.h"
 #include "surface/triangle.h"
 
-/* A range is halved at the middle of its primitives' middles, and by their number where this would make the
- * tree too deep. */
+/* How the tree is made: a range of primitives is halved at the mean of the primitives' middles, or by
+ * number from depth DEEP on, so that the tree does not become too deep. */
 enum { LEAF_PRIMITIVES = 4, DEEP = 32, DEEPEST = DEEP + 40 };
 
 static float lower(float a, float b) { return a < b ? a : b; }
@@ -74,8 +74,9 @@ static mesh_held held_of(const surface_mesh *mesh, double distance) {
   return isinf(distance) || !mesh->mesh->closed ? HELD_WHOLE : HELD_NOT;
 }
 
-/* Whether a tree for a distance takes a mesh's primitive number i of those of its kind. near: which
- * primitives with corners it takes, beside the others that are cut; null: all. */
+/* Whether a tree for a given distance holds a mesh's primitive number i, counted among the mesh's
+ * primitives of one kind. near: the primitives with corners that the tree holds, beside other primitives
+ * that are cut; null: all primitives. */
 static bool takes(const surfaces *all, const surface_mesh *mesh, const primitive_kind *kind, uint32_t i,
                   const bool *near) {
   if (near == NULL) return true;
@@ -149,7 +150,7 @@ bool hl_surface_tree_count(const surfaces *all, double distance, hl_layout *layo
 
 /* ---- making it ---- */
 
-/* Remembers the cuts, on which it depends what the tree holds. */
+/* Remembers the cuts, because the tree's content depends on them. */
 static void keep_cuts(surface_tree *tree) {
   const surfaces *all = tree->all;
   for (size_t i = 0; i < all->cut_count; i++) tree->cuts[i] = all->cuts[i];
@@ -285,11 +286,11 @@ bool hl_surface_tree_reaches(const surface_tree *tree, const hull_ball *balls, i
 
 /* ---- rays ---- */
 
-/* A ray, or a bundle of rays about it, as boxes are asked for it. */
+/* A ray, or a bundle of rays around it, in the form that is tested against boxes. */
 typedef struct box_ray {
   double origin[3], way[3], inverse[3];
   double first, last;
-  double aside[3]; /* of a bundle: how far its rays lie from this one, along each axis */
+  double aside[3]; /* for a bundle: how far its rays lie from the middle ray, along each axis */
 } box_ray;
 
 static box_ray ray_of_boxes(const surface_ray *ray) {
@@ -301,7 +302,7 @@ static box_ray ray_of_boxes(const surface_ray *ray) {
   return made;
 }
 
-/* The slab method. Of a bundle: whether any of its rays may meet the box. */
+/* Whether a ray meets a box (slab method). For a bundle: whether any of its rays may meet the box. */
 static bool meets_box(const surface_box *box, const box_ray *ray) {
   double nearest = ray->first, farthest = ray->last;
   for (int a = 0; a < 3; a++) {
@@ -356,8 +357,9 @@ void hl_surface_tree_cast(const surface_tree *tree, const surface_ray *ray, surf
   }
 }
 
-/* Rays from one point lie about the way to the middle of their ends, as far from it along each axis as the
- * ends do (derived: the point at the part t of a ray is origin + t end). */
+/* Makes a bundle of rays from one point: the middle ray leads to the middle of the rays' ends, and no ray
+ * is farther from it along an axis than the ends are (derived: the point at the part t of a ray is origin +
+ * t end). */
 static box_ray bundle_of_rays(const surface_ray *rays, int count) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, middle[3];
   for (int k = 0; k < count; k++) vec3_bound_ball(vec3_scale(rays[k].way, rays[k].last), 0, low, high);

@@ -1,7 +1,7 @@
 /* surface/surface_tree.h - a tree of boxes over triangles and spheres: where single rays meet them.
  *
- * For rays that belong to no view: those between a light and the nodes of a coarse grid, the grid's lines,
- * and short ones from points of surfaces towards a light. The tree holds what casts shadows. */
+ * It serves rays that belong to no view: rays between a light and the nodes of a coarse grid, the lines of
+ * this grid, and short rays from points of surfaces towards a light. The tree holds what casts shadows. */
 #ifndef HL_SURFACE_SURFACE_TREE_H
 #define HL_SURFACE_SURFACE_TREE_H
 
@@ -10,11 +10,13 @@
 
 typedef struct surface_box {
   float low[3], high[3];
-  uint32_t first, count; /* of a leaf: among the tree's primitives; of others count is 0 and `first` the
-                            second child: the first one follows its parent */
+  uint32_t first, count; /* for a leaf: the range of its primitives among the tree's primitives. Of other
+                          * nodes count is 0, and `first` is the second child; the first child follows its
+                          * parent */
 } surface_box;
 
-/* What a tree holds of a mesh: nothing, or something, of a mesh that cuts leave whole or that they cut. */
+/* Whether a tree holds primitives of a mesh: none; some, and cuts leave the mesh whole; some, and cuts cut
+ * the mesh. */
 typedef enum mesh_held { HELD_NOT, HELD_WHOLE, HELD_CUT } mesh_held;
 
 typedef struct surface_tree {
@@ -28,20 +30,20 @@ typedef struct surface_tree {
   uint32_t count, box_count;
 } surface_tree;
 
-/* Of what a tree is made: of all meshes that take light away, with their spheres; or only of triangles of
- * meshes that are not closed, or that cuts cut, within a distance of an open edge, a cut or a corner
- * (late/surface_rims.h), in frame units, and of the spheres that cuts cut. */
+/* How much a tree holds is a distance. ALL_SURFACES: all meshes that take light away, with their spheres. A
+ * finite distance, in frame units: only triangles within this distance of an open edge, a cut or a corner
+ * (late/surface_rims.h), of meshes that are not closed or that cuts cut, and spheres that cuts cut. */
 #define ALL_SURFACES INFINITY
 
-/* all: null for none. A tree that was not created is all zero, and may be released. */
+/* Makes a tree. all: the surfaces; null: none. A tree of zeros, which was not created, may be released. */
 hl_status hl_surface_tree_create(hl_context *context, const surfaces *all, double distance,
                                  surface_tree *tree, hl_error *error);
-/* Whether a tree, of all that stays where it is, is the one that would be created. */
+/* Whether a kept tree is the same as the tree that would be created now. */
 bool hl_surface_tree_current(const surface_tree *tree, const surfaces *all, double distance);
 void hl_surface_tree_release(hl_context *context, surface_tree *tree);
 
-/* Counts what hl_surface_tree_create() takes at most: as if each triangle of a mesh that is not closed lay
- * within the distance. False: the tree holds nothing. */
+/* Counts what hl_surface_tree_create() takes at most: which it takes if each triangle of a mesh that is not
+ * closed lies within the distance. False: the tree holds nothing. */
 bool hl_surface_tree_count(const surfaces *all, double distance, hl_layout *layout);
 
 /* Whether a mesh takes light away. */
@@ -65,15 +67,16 @@ typedef void surface_met(void *data, const surface_hit *hit);
 /* Whether some primitive's box meets a box. */
 bool hl_surface_tree_overlaps(const surface_tree *tree, const double low[3], const double high[3]);
 
-/* Whether some primitive may meet the convex hull of balls. Triangles on whose one side all lies do not, nor
- * do spheres that all lies within, or beyond a plane that touches them; what lies beyond a surface by less
- * than `least` counts as being on it. */
+/* Whether some primitive may meet the convex hull of balls. A triangle does not meet it where the hull lies
+ * on one side of the triangle. A sphere does not where the hull lies within the sphere, or beyond a plane
+ * that touches the sphere. Points beyond a surface by less than `least` count as lying on it. */
 bool hl_surface_tree_reaches(const surface_tree *tree, const hull_ball *balls, int count, double least);
 
 void hl_surface_tree_cast(const surface_tree *tree, const surface_ray *ray, surface_met *met, void *data);
 
-/* The same for at most MOST_BUNDLED rays from one point, whose ends are finite: what none of them can meet is
- * passed over once for all. Each ray has the hits, and in the order, that hl_surface_tree_cast() tells. */
+/* Does the work of hl_surface_tree_cast() for at most MOST_BUNDLED rays from one point, whose ends are
+ * finite. Boxes that none of the rays can meet are passed over once for all rays. Each ray gets the same
+ * hits as from hl_surface_tree_cast(), in the same order. */
 enum { MOST_BUNDLED = 16 };
 void hl_surface_tree_cast_bundle(const surface_tree *tree, const surface_ray *rays, int count,
                                  surface_met *met, void *data);

@@ -17,7 +17,8 @@
 typedef struct surface_look {
   double color[3];             /* linear RGB */
   double opacity;              /* times the opacity of its vertices */
-  double attenuation_color[3]; /* the fractions of `opacity` that it takes of red, green and blue light */
+  double attenuation_color[3]; /* R, G, B: the parts of red, green and blue light that the mesh takes, as
+                                * factors of `opacity` */
   hl_material material;
   bool smooth;    /* normals are interpolated between vertices */
   bool two_sided; /* the side that faces away from the eye is lit like the front */
@@ -48,10 +49,10 @@ typedef struct surface_seam surface_seam;       /* late/surface_seams.h */
 /* A primitive is a triangle or a sphere. Numbers below triangle_count are triangles; higher numbers are
  * spheres. */
 typedef struct surfaces {
-  surface_mesh *meshes;      /* owned with the next five; [mesh_count]; the primitives of a mesh follow the
-                              * primitives of the mesh before */
+  surface_mesh *meshes;      /* owned, in one block with the next five arrays; [mesh_count]; the primitives
+                              * of a mesh follow the primitives of the mesh before */
   float (*positions)[3];     /* [vertex_count]; frame space */
-  float (*normals)[3];       /* [vertex_count]; unit, or 0 where a vertex has none; frame space */
+  float (*normals)[3];       /* [vertex_count]; unit normals, or 0 where a vertex has none; frame space */
   float (*edge_normals)[3];  /* [edge_normal_count]; unit; frame space */
   uint32_t (*triangles)[3];  /* [triangle_count]; indices of positions */
   float (*spheres)[4];       /* [sphere_count]; centre and radius; frame space */

@@ -8,8 +8,8 @@
 #include "surface/primitive_fragments.h"
 #include "surface/small_batch.h"
 
-/* Fragments of a thread's first block, and the most of one whose tiles are smaller (6 MiB): each block is
- * twice as large as the one before. */
+/* FIRST_BLOCK: the number of fragments for which a thread's first block has room. Each block is twice as
+ * large as the block before, up to GREATEST_BLOCK (6 MiB); a tile with more fragments gets a larger block. */
 enum { FIRST_BLOCK = 1 << 12, GREATEST_BLOCK = 1 << 18 };
 
 /* Room for a tile's fragments in one block. */
@@ -44,7 +44,7 @@ static void mark_tile(const fragment_work *work, int x, int y, int32_t slab) {
   if ((__atomic_load_n(word, __ATOMIC_RELAXED) & bit) == 0) __atomic_fetch_or(word, bit, __ATOMIC_RELAXED);
 }
 
-/* Writes the marks about a tile's pixels, and clears the worker's. */
+/* Writes a worker's marks of the tiles around a tile to the view's marks, and clears them. */
 static void write_marks(const fragment_work *work, fragment_worker *worker, int tile_x, int tile_y) {
   for (int32_t slab = worker->nearest; slab <= worker->farthest; slab++) {
     uint32_t near = work->source->marks != NULL ? worker->near[slab] : 0;
@@ -63,7 +63,7 @@ static void write_marks(const fragment_work *work, fragment_worker *worker, int 
 static int least(int a, int b) { return a < b ? a : b; }
 static int greatest(int a, int b) { return a > b ? a : b; }
 
-/* Adds what primitive number `lane` of a batch covers of its pixel number k. */
+/* Adds the fragment of primitive number `lane` of a batch at the primitive's pixel number k. */
 static void add_small_pixel(const fragment_work *work, fragment_worker *worker, const small_batch *batch,
                             int lane, int k) {
   const small_cover *cover = &batch->cover;
@@ -93,7 +93,7 @@ static void find_opacities(const fragment_work *work, small_batch *batch, uint32
   }
 }
 
-/* Adds what small primitives of a batch cover, one bit each in `small`. */
+/* Adds the fragments of the batch's small primitives, which have one bit each in `small`. */
 static void add_small(const fragment_work *work, fragment_worker *worker, small_batch *batch,
                       uint32_t small) {
   if (small == 0) return;
@@ -119,8 +119,8 @@ static void add_batch(const fragment_work *work, fragment_worker *worker, tile_p
   batch->count = 0;
 }
 
-/* Whether opaque fragments of a light's view cover all pixels of a tile that a cluster touches, before the
- * cluster: each of its fragments would be left out when they are sorted. */
+/* Whether opaque fragments of a light's view cover all pixels of a tile that a cluster touches, at places
+ * before the cluster. Each of the cluster's fragments would then be left out when fragments are sorted. */
 static bool is_covered(const fragment_work *work, const fragment_worker *worker, const tile_part *part,
                        const cluster_shape *shape, const seen_cluster *seen) {
   const view *view = work->source->view;
@@ -143,7 +143,7 @@ static bool is_covered(const fragment_work *work, const fragment_worker *worker,
   return true;
 }
 
-/* Adds the triangles of a whole cluster, of which none is cut. */
+/* Adds the fragments of a whole cluster of triangles, none of which is cut. */
 static void add_cluster(const fragment_work *work, fragment_worker *worker, tile_part *part,
                         small_batch *batch, const surface_cluster *cluster) {
   const surfaces *all = work->source->surfaces;
@@ -171,8 +171,8 @@ static void add_cluster(const fragment_work *work, fragment_worker *worker, tile
 
 /* ---- all primitives of a tile ---- */
 
-/* Begins with the mesh of a primitive; of_mesh: the first of the mesh's primitives of this kind, and the
- * first after them. */
+/* Prepares a batch for the mesh of a primitive. of_mesh: the mesh's first primitive of this kind, and one
+ * past its last one. */
 static void begin_mesh(const fragment_work *work, small_batch *batch, uint32_t primitive,
                        uint32_t of_mesh[2]) {
   const surfaces *all = work->source->surfaces;
@@ -185,7 +185,7 @@ static void begin_mesh(const fragment_work *work, small_batch *batch, uint32_t p
   of_mesh[1] = hl_surface_mesh_end(all, batch->mesh, primitive);
 }
 
-/* Adds the primitives of a cluster, of which cuts may leave a part. */
+/* Adds the fragments of a cluster's primitives, parts of which cuts may remove. */
 static void add_run(const fragment_work *work, fragment_worker *worker, tile_part *part, small_batch *batch,
                     primitive_run run) {
   const surfaces *all = work->source->surfaces;
@@ -232,7 +232,8 @@ static bool make_room_for_runs(hl_context *context, fragment_worker *worker, siz
   return true;
 }
 
-/* Adds a tile's runs; the lowest first where the higher ones may be covered. */
+/* Adds the fragments of a tile's runs. Where higher runs may be covered by lower ones, the lowest come
+ * first. */
 static void add_runs(const fragment_work *work, fragment_worker *worker, tile_part *part, size_t tile,
                      small_batch *batch) {
   const primitive_run *runs = work->bins->runs + work->bins->first[tile];
@@ -264,8 +265,8 @@ static void add_primitives(const fragment_work *work, fragment_worker *worker, t
   add_runs(work, worker, part, tile, &batch);
 }
 
-/* Sorts a tile's fragments, and parts those of the eye's view that cross. Returns how many are left in
- * *sorted, which the worker owns. */
+/* Sorts a tile's fragments, and in the eye's view parts those that cross. Returns the number of fragments
+ * in *sorted, which the worker owns. */
 static size_t order_fragments(const fragment_work *work, fragment_worker *worker, const fragment_order *order,
                               const tile_part *part, fragment **sorted) {
   const fragments_source *source = work->source;
@@ -335,7 +336,8 @@ static void set_small_view(const fragments_source *source, small_view *small) {
   small->origin[0] = origin.x, small->origin[1] = origin.y, small->origin[2] = origin.z;
 }
 
-/* The tiles that look-ups about a pixel may read: its own, and those beside it by less than three pixels. */
+/* The tiles that look-ups around a pixel may read: the pixel's own tile, and tiles that are less than three
+ * pixels away from the pixel. */
 static uint16_t tiles_near(int column, int row) {
   uint32_t across = 2u | (column < 3) | (uint32_t)(column >= TILE - 3) << 2;
   return (uint16_t)((row < 3 ? across : 0) | across << 3 | (row >= TILE - 3 ? across << 6 : 0));

@@ -9,10 +9,10 @@
 
 void hl_fragment_blocks_release(hl_context *context, fragment_block *latest);
 
-/* Fills what depends on the view alone: `small` and `near`. */
+/* Fills the members `small` and `near`, which depend on the view alone. */
 void hl_fragment_work_begin(fragment_work *work);
 
-/* A worker's arrays that do not grow; false: there is no memory for them. */
+/* Allocates those arrays of a worker that do not grow; false: there is no memory. */
 bool hl_fragment_worker_begin(hl_context *context, fragment_worker *worker, int sheets);
 /* Releases all but the blocks of the tiles made. */
 void hl_fragment_worker_end(hl_context *context, fragment_worker *worker);

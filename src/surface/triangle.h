@@ -1,20 +1,22 @@
-/* surface/triangle.h - of triangles alone: their normals, and where rays meet them. Loops inline these. */
+/* surface/triangle.h - functions for triangles alone: their normals, and where rays meet them. They are
+ * inlined into loops. */
 #ifndef HL_SURFACE_TRIANGLE_H
 #define HL_SURFACE_TRIANGLE_H
 
 #include "mesh/mesh.h"
 #include "surface/primitive.h"
 
-/* A triangle's unit normal; *from: a point's distance from its plane, on the normal's side above 0. */
+/* A triangle's unit normal; *from: a point's distance from its plane, above 0 on the normal's side. */
 vec3 hl_triangle_normal(const surfaces *all, uint32_t triangle, vec3 point, double *from);
 
-/* As in primitive.h: triangle_look.c and late/triangle_bend.c. */
+/* The functions `look` and `bend` of primitive.h for triangles (triangle_look.c, late/triangle_bend.c). */
 vec3 hl_triangle_look(const surfaces *all, const surface_mesh *mesh, uint32_t triangle, vec3 at, vec3 *normal,
                       double color[3]);
 double hl_triangle_bend(const surfaces *all, const surface_mesh *mesh, uint32_t triangle, vec3 at,
                         vec3 normal, vec3 along);
 
-/* The normal of a triangle's corner: its own where it is at an edge, else its vertex's. */
+/* The normal of a triangle's corner: the triangle's own normal where the corner is at a sharp edge, else
+ * the vertex's normal. */
 static inline vec3 hl_corner_normal(const surfaces *all, const surface_mesh *mesh, uint32_t triangle, int i) {
   uint32_t edge = mesh->edges != NULL ? mesh->edges[triangle - mesh->first_triangle][i] : HL_NO_EDGE;
   return hl_surface_vector(edge != HL_NO_EDGE ? all->edge_normals[mesh->first_edge_normal + edge]
@@ -30,7 +32,8 @@ static inline vec3 hl_rounded_normal(const surfaces *all, const surface_mesh *me
   return along < 0 ? vec3_scale(own, -1) : own;
 }
 
-/* Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection" (1997). */
+/* Finds where a ray meets a triangle, by Moeller and Trumbore, "Fast, minimum storage ray/triangle
+ * intersection" (1997). */
 static inline int hl_meet_triangle(const surfaces *all, uint32_t primitive, const surface_ray *ray,
                                    double distance[2]) {
   const uint32_t *corners = all->triangles[primitive];

@@ -1,6 +1,7 @@
 /* surface/triangle_look.c - see triangle.h: the normal and the colour at a point of a triangle.
  *
- * In: a triangle, and a point of its plane. Out: what is interpolated there between its corners. */
+ * In: a triangle, and a point of its plane. Out: the normal and the colour there, interpolated between the
+ *     triangle's corners. */
 #include "surface/triangle.h"
 
 /* The weights of a triangle's corners at a point of its plane. */

@@ -105,7 +105,8 @@ static void cover(const fragment_work *work, fragment_worker *worker, tile_part 
 
 /* ---- heights within a pixel ---- */
 
-/* A linear function that has these values at three points, with so much area, twice, between them. */
+/* Finds the linear function that has given values at three points. area: twice the area of the triangle
+ * between the points. */
 static void set_linear(double f[3], const double x[3], const double y[3], double area,
                        const double value[3]) {
   double a = value[1] - value[0], b = value[2] - value[0];
@@ -114,10 +115,10 @@ static void set_linear(double f[3], const double x[3], const double y[3], double
   f[0] = value[0] - f[1] * x[0] - f[2] * y[0];
 }
 
-/* Heights between a triangle's corners where these are seen: on the grid by which samples are covered. So a
- * triangle that is seen from its edge has heights between those of its corners at all its samples, and meets
- * its neighbours, which its plane does not. Derived: heights over the distance are linear in the picture, as
- * is one over the distance. */
+/* Finds the heights of a triangle as linear functions between its corners, which are rounded to the grid of
+ * 1/256 pixels by which samples are covered. So even a triangle that is seen from its edge has, at all its
+ * samples, heights between the heights of its corners, and meets its neighbours; the heights of its plane
+ * would not. Derived: heights over the distance are linear in the picture, as is one over the distance. */
 static void set_corners(const seen_surfaces *seen, const sheet_stack *sheets, uint32_t triangle,
                         shown_surface *shown) {
   const view *view = seen->view;

@@ -66,8 +66,8 @@ static void number_patches(occupancy *o, int grid_count) {
   o->first_patch[(size_t)o->tiles_x * (size_t)o->tiles_y] = patch;
 }
 
-/* Rounds an affine function to floats; returns a bound of its rounding error: a small multiple of 2^-24 of
- * the greatest sum of its terms' magnitudes over the grid. */
+/* Rounds an affine function to floats. Returns a bound of the rounding error: the greatest sum of the
+ * magnitudes of the function's terms over the grid, times a small multiple of 2^-24. */
 static float set_row(const double row[4], const double middle[3], const double half[3], double scale,
                      float rounded[4]) {
   double offset = row[3], greatest = 0;

@@ -23,17 +23,18 @@ typedef struct sheet_range {
 /* A patch is one grid in one tile. A tile's patches follow each other, in the order of the grids. */
 typedef struct occupancy {
   int tiles_x, tiles_y, sheets;
-  int words;                 /* 64-bit words of one patch: a bit for each sheet, rounded up */
-  int tile_words;            /* 64-bit words of one sheet: a bit for each tile, rounded up */
-  double spare;              /* pixels: margin around each brick's projection that counts as touched */
+  int words;                 /* number of 64-bit words of one patch, which hold a bit for each sheet */
+  int tile_words;            /* number of 64-bit words of one sheet, which hold a bit for each tile */
+  double spare;              /* margin, in pixels, around each brick's projection that counts as touched */
   tile_rectangle *rectangle; /* [grids]; owns the block that also holds the arrays below */
   size_t patch_count;
-  uint32_t *patch_of;     /* [patches]; the patch of each tile of each grid's rectangle */
+  uint32_t *patch_of;     /* [patches]; for each tile of each grid's rectangle, the number of its patch */
   uint32_t *first_patch;  /* [tiles + 1]; where a tile's patches begin */
   uint32_t *patch_grid;   /* [patches]; the patch's grid */
   uint64_t *by_patch;     /* [patches][words]; bit = sheet */
   sheet_range *sheets_of; /* [grids]; the sheets that a grid touches anywhere */
-  uint64_t *by_sheet;     /* [words * 64][tile_words]; bit = tile, all grids together */
+  uint64_t *by_sheet;     /* [words * 64][tile_words]; for each sheet one bit for each tile that some grid
+                           * touches */
 } occupancy;
 
 /* ---- tiles and sheets of sixteen bricks: compiled for each instruction set ---- */
@@ -41,16 +42,16 @@ typedef struct occupancy {
 enum { BRICKS_AT_ONCE = 16, RANGE_AXES = 3 };
 enum range_axis { RANGE_X, RANGE_Y, RANGE_SHEETS };
 
-/* One grid in one view, as affine functions of a point of the grid's index space. The point is counted from
+/* One grid in one view, as affine functions of a point of the grid's index space. Points are counted from
  * `middle`. */
 typedef struct brick_view {
-  float view[3][4]; /* rows for w, for w times tiles across, and for w times tiles down */
+  float view[3][4]; /* rows of the functions for w, for w times tiles across, and for w times tiles down */
   float height[4];  /* row for the height, in sheets */
-  float slack[4];   /* for each of the four functions: a bound of the function's rounding error */
+  float slack[4];   /* for each of the four functions, a bound of its rounding error */
   float middle[3];  /* a point of index space */
-  float spare;      /* tiles: margin around each brick's projection that counts as touched */
-  int32_t first[RANGE_AXES],
-      last[RANGE_AXES]; /* greatest values: the grid's tiles across and down, and the view's sheets */
+  float spare;      /* margin, in tiles, around each brick's projection that counts as touched */
+  int32_t first[RANGE_AXES], last[RANGE_AXES]; /* the greatest values that ranges may have: the grid's last
+                                                * tile across and down, and the view's last sheet */
 } brick_view;
 
 /* The first and last tile across, tile down and sheet that each brick touches. A brick with an empty range
@@ -79,7 +80,7 @@ typedef struct occupancy_source {
   int grid_count;
   const view *view;
   const sheet_stack *sheets;
-  double spare; /* becomes the occupancy's `spare`; pixels, at least PIXEL_TO_SPARE */
+  double spare; /* margin for the occupancy's `spare`; in pixels, at least PIXEL_TO_SPARE */
 } occupancy_source;
 
 /* Fills an empty occupancy. Call hl_occupancy_release() even after a failure. */
@@ -87,8 +88,8 @@ hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, brick_ranges_fu
                              const occupancy_source *source, occupancy *occupancy, hl_error *error);
 void hl_occupancy_release(hl_context *context, occupancy *occupancy);
 
-/* Counts what hl_occupancy_build() takes; sets the number of patches of an occupancy of zeros, and no
- * pointers. */
+/* Counts the memory that hl_occupancy_build() takes. The occupancy must be zeros; its number of patches is
+ * set, but no pointers. */
 void hl_occupancy_count(const occupancy_source *source, occupancy *occupancy, hl_layout *layout);
 
 /* The first slab, from the given one on, in which a patch is touched by the slab's sheet or by the sheet

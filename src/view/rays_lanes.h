@@ -81,7 +81,8 @@ LANES_INLINE ray_section section_in_box(const box_rays *rays, lanes u, lanes v) 
     lanes start = linear_in_view(rays->start[axis], rays->start_u[axis], rays->start_v[axis], u, v);
     lanes direction = linear_in_view(rays->direction[axis], rays->direction_u[axis], rays->direction_v[axis],
                                      u, v);
-    /* a ray parallel to two faces: a tiny direction sends its crossings far away, to the right sides */
+    /* a ray that is parallel to two faces gets a tiny direction instead, which moves its crossings far
+     * away, to the right sides */
     direction = lanes_select(lanes_abs(direction) < 1e-12f, lanes_set(1e-12f), direction);
     lanes a = (rays->low[axis] - start) / direction, b = (rays->high[axis] - start) / direction;
     section.first = lanes_max(section.first, lanes_min(a, b));

@@ -90,8 +90,8 @@ void hl_view_sheet_rays(const view *view, vec3 normal, double height, affine3 fr
 
 /* ---- where rays enter and leave a box ---- */
 
-/* The s at which the middle ray is closest to the origin of frame space. Numbers counted from this point stay
- * as small as the visible scene, however far away the eye is. */
+/* The parameter s of the point at which the middle ray is closest to the origin of frame space. Coordinates
+ * counted from this point stay as small as the visible scene, however far away the eye is. */
 static double way_to_middle(const view *view) {
   vec3 start, way;
   hl_view_ray(view, view->width / 2.0, view->height / 2.0, &start, &way);

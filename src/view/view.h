@@ -85,10 +85,10 @@ void hl_view_homogeneous(const view *view, affine3 to_frame, double rows[3][4]);
 
 /* The points where pixels see one sheet, in a space that the maker chooses. (u, v) counts pixels from the
  * first pixel's centre. In a perspective view, the position is base + P / H and the direction is W; in a
- * parallel view the position is P; with P = p0 + u pu + v pv, W = w0 + u wu + v wv and H = h.W = h0 + u hu +
- * v hv. Derived: the ray E + s W meets the sheet h.X = z at s = (z - h.E) / H; with any t and Wc, base = E +
- * t Wc gives P = (z - h.E) W - t H Wc, linear as H is. Where Wc is the middle ray and base its point on the
- * sheet, P stays as small as the visible area, however far away the eye is. */
+ * parallel view the position is P; with P = p0 + u pu + v pv, W = w0 + u wu + v wv and H = h.W = h0 + u hu
+ * + v hv. Derived: the ray E + s W meets the sheet h.X = z at s = (z - h.E) / H; with any t and Wc, base =
+ * E + t Wc gives P = (z - h.E) W - t H Wc, linear as H is. If Wc is the middle ray's direction and base its
+ * point on the sheet, P stays as small as the visible area, however far away the eye is. */
 typedef struct sheet_rays {
   int perspective;
   float base[3], p0[3], pu[3], pv[3];
@@ -126,8 +126,8 @@ typedef struct box_rays {
   float start_height, start_height_u, start_height_v;
   float climb, climb_u, climb_v;
   float low[3], high[3]; /* the box, in index space */
-  float least;           /* the least s: the place of the eye in a perspective view */
-  int sphere;            /* if set, the points nearer than 1 to the origin take the place of the box */
+  float least;           /* the least s that counts, which belongs to the eye of a perspective view */
+  int sphere;            /* if set, a sphere of radius 1 around the origin takes the place of the box */
 } box_rays;
 
 /* Finds where the rays of one tile enter and leave the box. enter, leave: [256], block after block; heights

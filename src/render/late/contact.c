@@ -51,8 +51,8 @@ static bool are_neighbours(const surfaces *all, uint32_t a, uint32_t b) {
   return false;
 }
 
-/* Takes the light that a surface hides, if the surface is close to the sample. A neighbour that continues the
- * sample's own rounded surface hides nothing. */
+/* Takes the light that a surface hides, if the surface is close to the sample. A neighbouring triangle that
+ * continues the sample's own rounded surface hides nothing. */
 static void meet(void *data, const surface_hit *hit) {
   contact_ray *ray = data;
   double distance;

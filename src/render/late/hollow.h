@@ -1,11 +1,11 @@
 /* render/late/hollow.h - points of hollow surfaces that light almost grazes: whether the surface shades
  * itself there.
  *
- * The more light grazes a surface, the later a shadow buffer takes the surface into account (surface_plane.h:
- * the slope of the surface's heights grows without end). A ray that grazes a hollow surface meets the surface
- * again close by, where the buffer does not hold it yet. Without this file, the wall within a cut ball would
- * get a streak of light where it turns away from the light. In: how the normal turns in a triangle or a
- * sphere. Out: how much the surface is bent towards a light.
+ * The more light grazes a surface, the later a shadow buffer takes the surface into account
+ * (surface_plane.h: the slope of the surface's heights grows without end). A ray that grazes a hollow
+ * surface meets the surface again close by, where the buffer does not hold it yet. Without this correction,
+ * the inner wall of a cut ball would get a streak of light where the wall turns away from the light. In:
+ * how the normal turns in a triangle or a sphere. Out: how much the surface is bent towards a light.
  *
  * Derived: where the normal turns towards the light by k per length along the light's way (k = 1 / radius
  * within a ball), the surface is a circle of radius 1 / k in the plane of its normal and the light. A ray

@@ -2,9 +2,10 @@
  * its reason.
  *
  * A look-up for a sample of a surface also reads pixels beside the sample, and the surface must not darken
- * itself there. So a surface takes light out of a shadow buffer only some pixels behind its place. Right
- * behind the surface, light leaks. The folders surface/late/ and render/late/ mend these leaks, and use the
- * constants of this file. docs/experiments.md tells how they were found ("Meshes").
+ * itself there. So a shadow buffer takes a surface into account only some pixels behind the surface's
+ * place. This lets light leak right behind the surface. The folders surface/late/ and render/late/ mend
+ * these leaks, and use the constants of this file. docs/experiments.md tells how they were found
+ * ("Meshes").
  *
  * Two kinds of constants stand elsewhere. The table of each method of shadows says by how many pixels
  * surfaces are delayed and rise (shadow/shadow_method.h). The marks of dark pixels belong to the cascade
@@ -17,8 +18,8 @@
 /* The greatest number of slabs that a fragment fills. With 64, no picture changed. */
 enum { MOST_SLABS = 16 };
 
-/* The greatest slope of a surface by which its delay is reckoned; frame units a pixel. A surface that light
- * almost grazes has an endless slope and would be delayed without end; such a surface is hardly lit. */
+/* The greatest slope of a surface by which its delay is reckoned; frame units a pixel. Without this limit,
+ * a surface that light grazes would have an unlimited slope and delay; such a surface is hardly lit. */
 #define STEEPEST_SLOPE 12
 
 /* How far above its triangle a fragment's slabs may lie, in distances of sheets. A pixel on the edge between
@@ -47,11 +48,13 @@ enum { MOST_SEAMED = 1 << 14, MOST_AT_EDGE = 4, MOST_SEAMS_ASKED = 64 };
 /* The greatest number of seams of a triangle that a light's view looks at: MOST_AT_EDGE for each edge. */
 enum { MOST_SEEN_SEAMS = 12 };
 
-/* Fragments that are nearer to a corner than this fill the slabs up to the other triangle; pixels. */
+/* Fragments nearer than this to a corner, in pixels, fill all slabs up to the other triangle of the corner.
+ */
 static const double BESIDE_SEAM = 1.5;
 
-/* How far these fragments overlap with the other triangle, in heights that its plane rises over a pixel: the
- * height at a pixel's middle may differ so much from the height at the corner. */
+/* How far fragments beside a corner overlap with the other triangle. The unit is the height by which the
+ * other triangle's plane rises over a pixel: the height at a pixel's middle may differ by so much from the
+ * height at the corner. */
 static const double SEAM_OVERLAP = 1;
 
 /* ---- rims: triangles near boundary edges and corners (surface_rims.h) ---- */
@@ -72,7 +75,8 @@ enum { MOST_CORNERS = 4096, MOST_PARTS = 8 };
  * the light behind the surface, and of the light that the surface itself has taken. */
 static const float LOOKUP_OFFSET = 1.25f;
 
-/* The delay of surfaces where look-ups use cubic convolution, which reaches so far; pixels. */
+/* The delay of surfaces, in pixels, where look-ups use cubic convolution: it is how far such look-ups
+ * reach. */
 static const double CUBIC_DELAY = 1.75;
 
 /* How far around a volume's sample its look-up reads, in pixels of the buffer. Behind an opaque surface, the
@@ -85,12 +89,12 @@ enum { NEAR_SLABS = 2 };
 
 /* ---- rays to what is close (render/late/contact.c) ---- */
 
-/* Lengths in units of one pixel of the buffer plus one distance of sheets, by which a buffer is late. A
- * surface is close to a point where its plane is at most CLOSE units away. A ray ends after FARTHEST_CLOSE
- * units. */
+/* Limits of the search for close surfaces. The unit is the length by which a buffer is late: one pixel of
+ * the buffer plus one distance of sheets. A surface is close to a point where its plane is at most CLOSE
+ * units away. A ray ends after FARTHEST_CLOSE units. */
 static const double CLOSE = 3, FARTHEST_CLOSE = 10;
 
-/* How far from its point a ray begins, in pixels of the buffer; more than the error of rounding. */
+/* How far from its point a ray begins, in pixels of the buffer. It is more than the errors of rounding. */
 static const double RAY_START = 0.0005;
 
 /* How far the middle of the visible part of a pixel may lie from the sample's place, in pixels of the picture
@@ -103,8 +107,8 @@ static const double MOST_PIXELS_ASIDE = 8;
  * surface shades itself. At greater angles the buffer is hardly late. */
 static const double GRAZING = 0.2;
 
-/* The greatest bend of a hollow surface that may shade itself: its bend times the length by which the buffer
- * is late. A sharper bend is roughness. */
+/* The greatest bend of a hollow surface that may shade itself, as the bend times the length by which the
+ * buffer is late. A sharper bend counts as roughness. */
 static const double SHARPEST_BEND = 0.12;
 
 /* A triangle is rough, or a saddle, where it bends the other way along one of its edges by more than this

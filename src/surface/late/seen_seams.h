@@ -1,9 +1,10 @@
 /* surface/late/seen_seams.h - how far fragments of a light's view reach where triangles meet at a corner.
  *
- * A fragment takes light from a delayed height on (fragment_work.h: delay). The steeper its triangle is, the
- * longer is the delay. So the delays of two triangles that meet at a corner differ, and slanted rays could
- * pass between the end of one and the start of the other. Fragments beside the corner therefore fill the
- * slabs between, too. They do not darken the lit side of the other triangle, which is delayed as far. */
+ * A fragment takes light from a delayed height on (fragment_work.h: delay). The steeper its triangle is,
+ * the longer is the delay. So the delays of two triangles that meet at a corner differ, and slanted rays
+ * could pass between the end of one and the start of the other. Fragments beside the corner therefore fill
+ * the slabs between, too. The lit side of the other triangle stays bright, because that triangle is delayed
+ * as far. */
 #ifndef HL_SURFACE_LATE_SEEN_SEAMS_H
 #define HL_SURFACE_LATE_SEEN_SEAMS_H
 
@@ -14,7 +15,7 @@
 /* A corner as a light's view sees it. */
 typedef struct seen_seam {
   double at[2][2],
-      height[2];       /* places of the corner's two ends, pixels; their heights above the first sheet */
+      height[2]; /* places of the corner's two ends in pixels, and the ends' heights above the first sheet */
   surface_plane other; /* the plane of the other triangle */
 } seen_seam;
 

@@ -9,7 +9,7 @@
 #include "surface/surface_cuts.h"
 
 /* Adds each edge's hash to both of its vertices, with the sign of its direction (derived as in mesh.c: the
- * sum is 0 where each edge runs as often one way as the other). */
+ * sum is 0 at a vertex where each edge is used equally often in both directions). */
 static void sum_edges(const surfaces *all, const surface_mesh *mesh, uint64_t *sum) {
   for (uint32_t t = 0; t < mesh->triangle_count; t++) {
     const uint32_t *corner = all->triangles[mesh->first_triangle + t];

@@ -19,7 +19,7 @@ typedef struct seam_search {
   large_edge *edges;  /* [edge_room] */
   size_t edge_count, edge_room;
   order_key *order;       /* [2][edge_count] */
-  surface_seam *found;    /* [found_count]; in the order in which they were found */
+  surface_seam *found;    /* [found_count]; the seams, in the order in which they were found */
   order_key *found_order; /* [2][found_count] */
   size_t found_count;
 } seam_search;
@@ -40,7 +40,8 @@ static void set_scale(seam_search *search) {
   search->same = SAME_PLACE * diagonal;
 }
 
-/* An edge's key: the coordinate of its middle along a direction that walls seldom have. */
+/* An edge's key, by which edges are sorted: the coordinate of the edge's middle along a direction that
+ * edges of walls seldom have. */
 static double key_of(const surfaces *all, const uint32_t ends[2]) {
   const vec3 direction = {0.57735, 0.70711, 0.40825};
   return vec3_dot(direction, vec3_add(position_of(all, ends[0]), position_of(all, ends[1]))) / 2;
@@ -90,7 +91,8 @@ static bool is_near(const seam_search *search, uint32_t a, uint32_t b) {
   return vec3_length(apart) <= search->same;
 }
 
-/* Whether two edges lie in one place, and their triangles bend much there. */
+/* Whether two edges lie in one place, and the surface bends much there from one edge's triangle to the
+ * other's. */
 static bool is_corner(const seam_search *search, const large_edge *a, const large_edge *b) {
   if (a->triangle == b->triangle) return false;
   if (!(is_near(search, a->ends[0], b->ends[0]) && is_near(search, a->ends[1], b->ends[1])) &&

@@ -23,8 +23,9 @@ static bent_triangle bent_triangle_of(const surfaces *all, const surface_mesh *m
   return bent;
 }
 
-/* Derived: along a way, the weight of corner i grows by cross x edge / cross^2, where `edge` is the edge
- * opposite to the corner. The normal is the weighted sum of the corners' normals. */
+/* How much the normal turns along a way on the triangle. Derived: along a way, the weight of corner i grows
+ * by cross x edge / cross^2, where `edge` is the edge opposite to the corner. The normal is the weighted
+ * sum of the corners' normals. */
 static double bend_along(const bent_triangle *bent, vec3 along) {
   vec3 turn = {0, 0, 0};
   double square = vec3_dot(bent->cross, bent->cross);
@@ -37,7 +38,8 @@ static double bend_along(const bent_triangle *bent, vec3 along) {
   return -vec3_dot(turn, along);
 }
 
-/* Whether the triangle bends the other way along one of its edges: then it is rough, or a saddle. */
+/* Whether the surface bends the other way along one of the triangle's edges: then it is rough, or a saddle.
+ */
 static bool bends_both_ways(const bent_triangle *bent, double bend) {
   for (int i = 0; i < 3; i++) {
     vec3 edge = vec3_subtract(bent->at[(i + 1) % 3], bent->at[i]),
