@@ -18,8 +18,8 @@
  * a sparse file's may, has an origin of some whole number. Beyond the directory's faces the values at the
  * faces go on.
  *
- * In:  who builds a field (meshes of cells, adaptive grids, particles, sparse files) makes the bricks.
- * Out: who samples a field (grid/, fill/, the reference) looks a cell's brick up in the directory. */
+ * In:  the builders of fields (meshes of cells, adaptive grids, particles, sparse files) make the bricks.
+ * Out: what samples a field (grid/, fill/, the reference) looks a cell's brick up in the directory. */
 #ifndef HL_BRICKS_BRICKS_H
 #define HL_BRICKS_BRICKS_H
 

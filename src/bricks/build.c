@@ -14,7 +14,7 @@
 enum {
   SHIFT_LEAST = 2,
   SHIFT_MOST = 8,
-  ACTIVE_CELLS = 4, /* cells along an axis on which a coefficient depends: i - 2 .. i + 1 */
+  ACTIVE_CELLS = 4, /* number of cells along an axis on which a coefficient depends: i - 2 .. i + 1 */
   CELLS_BEFORE = 2
 };
 

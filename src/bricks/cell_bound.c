@@ -22,7 +22,8 @@ enum {
   TAPS = 4,
   COEFFICIENTS = TAPS * TAPS * TAPS,
   HALVINGS = 2, /* of a lattice cell */
-  FUNCTIONS = 7 /* affine functions that bound a cell: along the axes, and of its places */
+  FUNCTIONS = 7 /* number of affine functions that bound a cell, three along the axes and four of the
+                 * places in the cell */
 };
 
 typedef struct range {
@@ -142,7 +143,7 @@ static void along(double c[COEFFICIENTS], int axis, void (*change)(double *line,
 
 /* ---- the bound ---- */
 
-/* Whether coefficients of field - L allow for a greater difference than what was found. */
+/* Whether the coefficients of field - L allow a greater difference than the greatest one found so far. */
 static bool may_be_greater(const cell_search *search, const double c[COEFFICIENTS], double *bound) {
   range found = range_of(c, COEFFICIENTS);
   *bound = fmax(found.high - search->departure.low, search->departure.high - found.low);

@@ -99,8 +99,9 @@ static int level_of(double edge, double spacing) {
   return level < 0 ? 0 : level > LEVELS_MOST - 1 ? LEVELS_MOST - 1 : (int)level;
 }
 
-/* About how many bytes the bricks need: the bytes of the directory and the bytes of cells by their own
- * volume, with borders and partly filled bricks. size: the size of the mesh's box. */
+/* The number of bytes that the bricks need, approximately: those of the directory, and those of the cells,
+ * estimated by the cells' volumes with an addition for borders and partly filled bricks. size: the size of
+ * the mesh's box. */
 static double bytes_of(const cell_field *field, double spacing, const double size[3]) {
   double points = 0, blocks = 1;
   for (int axis = 0; axis < 3; axis++) blocks *= ceil(size[axis] / spacing / SIDE) + 1;
@@ -173,7 +174,7 @@ static hl_status make_tree(cell_field *field, hl_error *error) {
         box.low[axis] = fminf(box.low[axis], (float)(at - margin));
         box.high[axis] = fmaxf(box.high[axis], (float)(at + margin));
       }
-    if (!sound) /* a box far away from all others, for a cell that no brick meets */
+    if (!sound) /* a cell that no brick shall meet gets a box far away from all others */
       box = (hl_cell_box){{-3e30f, -3e30f, -3e30f}, {-3e30f, -3e30f, -3e30f}};
     boxes[n] = box;
   }
@@ -222,7 +223,7 @@ static bool fill_from_cell(void *data, uint32_t n) {
   return true;
 }
 
-/* The box of lattice points in lattice coordinates of level 0. */
+/* The bounds, in lattice coordinates of level 0, of a box of lattice points of any level. */
 static void bounds_of(int level, const ptrdiff_t first[3], const size_t count[3], double low[3],
                       double high[3]) {
   for (int axis = 0; axis < 3; axis++) {

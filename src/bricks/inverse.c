@@ -82,7 +82,7 @@ double hl_cell_volume(const hl_cell_shape *shape) {
   return fabs(determinant(matrix));
 }
 
-/* The slopes of the values within the unit cell: of a hexahedron at its middle. */
+/* The slopes of the values within the unit cell; for a hexahedron they are the slopes at its middle. */
 static void unit_slopes(const hl_cell_shape *shape, const double values[8], double slopes[3]) {
   static const double middle[3] = {0.5, 0.5, 0.5};
   double weights[8], corner_slopes[8][3];

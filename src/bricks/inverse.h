@@ -9,26 +9,27 @@
 typedef struct hl_cell_shape {
   bool is_tetrahedron;
   double corner[8][3];
-  double inverse[3][3]; /* of a tetrahedron: maps differences from the first corner to weights */
+  double inverse[3][3]; /* for a tetrahedron: maps differences from the first corner to weights */
 } hl_cell_shape;
 
 /* Completes a shape whose corners are set. False if the cell has no volume. */
 bool hl_cell_shape_ready(hl_cell_shape *shape);
 
-/* The corners' weights at a point, whose sum is 1: [8], of a tetrahedron [4]. False if the point lies
- * outside. */
+/* Finds the corners' weights at a point: [8], or [4] for a tetrahedron. Their sum is 1. False if the point
+ * lies outside. */
 bool hl_cell_weights(const hl_cell_shape *shape, const double point[3], double weights[8]);
 
-/* An affine function near the values that a cell interpolates, which are the function itself in a
- * tetrahedron, and affine functions that bound the cell. */
+/* An affine function that is near the values which a cell interpolates (in a tetrahedron it equals them),
+ * and affine functions that bound the cell. */
 typedef struct hl_cell_affine {
   double middle[3];   /* the mean of the corners */
   double value;       /* the function's, at `middle` */
   double slope[3];    /* the function's, along x, y, z */
-  double place[3][3]; /* slopes of the three places within the unit cell; of a hexahedron near its middle */
+  double place[3][3]; /* slopes of the three places within the unit cell; for a hexahedron near its middle */
 } hl_cell_affine;
 
-/* Of a shape that hl_cell_shape_ready() completed. values: of its corners. */
+/* Finds the affine functions of a shape that hl_cell_shape_ready() has completed. values: the values at the
+ * shape's corners. */
 void hl_cell_affine_of(const hl_cell_shape *shape, const double values[8], hl_cell_affine *affine);
 
 /* The volume of a cell. For a hexahedron it is estimated by the determinant of the map's derivative in its

@@ -210,10 +210,11 @@ static float cell_value(const hl_patches *patches, int level, const size_t cell[
   return last->block != NULL ? last->block->value[cell_in_block(cell[0], cell[1], cell[2])] : NAN;
 }
 
-/* The weights in a corner's coefficient of the four cells around it along an axis. The mean of the two middle
- * cells would blur: means over cells, means at corners and the cubic B-spline have the variances 1/12, 1/4
- * and 1/3 of the squared edge of a cell. The weights -1/6, 2/3, 2/3, -1/6 have the variance -5/12, so that
- * the field equals the source to the fourth order of the edge (derived). */
+/* AROUND: the number of cells around a corner along an axis that enter the corner's coefficient, with their
+ * weights. The mean of the two middle cells would blur: means over cells, means at corners and the cubic
+ * B-spline have the variances 1/12, 1/4 and 1/3 of the squared edge of a cell. The weights -1/6, 2/3, 2/3,
+ * -1/6 have the variance -5/12, so that the field equals the source to the fourth order of the edge
+ * (derived). */
 enum { AROUND = 4 };
 static const double around[AROUND] = {-1.0 / 6, 2.0 / 3, 2.0 / 3, -1.0 / 6};
 

@@ -31,9 +31,9 @@ hl_status hl_patches_add(hl_patches *patches, int level, const size_t first[3], 
 
 /* Makes the field. *bricks is empty on failure. Its origin is {.5, .5, .5}: voxels of level 0 are cells.
  * Where no patch has a value, the field is NaN. *difference: the greatest difference of a cell's value and
- * the field's mean over the cell, of all cells that no finer cells cover and over which the field has a mean;
- * NaN if there is no such cell. The call overwrites coarser cells by means of finer ones, so that a second
- * call would make another field: it is for one call. */
+ * the field's mean over the cell, over all cells that no finer cells cover and over which the field has a
+ * mean; NaN if there is no such cell. Call the function only once: it overwrites coarser cells by means of
+ * finer ones, so that a second call would make another field. */
 hl_status hl_patches_build(hl_patches *patches, hl_pool *pool, const char *subject, hl_bricks *bricks,
                            double *difference, hl_error *error);
 

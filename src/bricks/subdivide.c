@@ -19,7 +19,7 @@ size_t hl_subdivision_scratch(const hl_lattice_box *box) {
   return box->count[0] * coarse.count[2] * (coarse.count[1] + box->count[1]);
 }
 
-/* other - d, or 0 where the other coefficient is not a number. */
+/* The difference other - d, or 0 if `other` is not a number. */
 static inline float difference(float other, float d) {
   float change = other - d;
   return change == change || d != d ? change : 0;

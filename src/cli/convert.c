@@ -94,7 +94,7 @@ static int read_options(const cli_value *values, hl_volume_save_options *options
   return read_crop(&values[CONVERT_CROP], options);
 }
 
-/* The box is inside the volume: here, so that the error names the option. */
+/* Checks that the box is inside the volume. The check is made here, so that the error names the option. */
 static int check_crop(const cli_value *crop, const hl_volume_save_options *options, const hl_volume *volume) {
   hl_volume_info info = {.struct_size = sizeof info};
   if (hl_volume_get_info(volume, &info) != HL_OK) return EXIT_CODE_OK;

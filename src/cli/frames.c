@@ -1,5 +1,5 @@
-/* cli/frames.c - many pictures: a picture carries its scene, so that a run goes on where the last one
- * stopped, and several runs can share a folder. */
+/* cli/frames.c - shared by commands that make many pictures. A picture carries its scene, so that a run
+ * goes on where the last one stopped, and several runs can share a folder. */
 #define _GNU_SOURCE
 #include "frames.h"
 

@@ -24,17 +24,18 @@
     .help = "leave the scene, with the names of its files, out of\nthe pictures" \
   }
 
-/* Reads --part K/N: *part is K - 1; without the option 0 of 1. ranks: --frames-over-ranks, by which a
- * launcher's variables of the environment say K and N. Returns the exit code. */
+/* Reads --part K/N: *part becomes K - 1. Without the option there is one part, number 0. ranks: the option
+ * --frames-over-ranks, with which a launcher's environment variables give K and N. Returns the exit code. */
 int frames_read_part(const cli_value *value, const cli_value *ranks, int *part, int *parts);
 
 /* A picture's bytes, owned by the caller (free); null where it cannot be read. */
 unsigned char *frames_read_picture(const char *path, size_t *length);
 
-/* Whether the picture is there and carries this scene. */
+/* Whether a picture is there and carries this scene. */
 bool frames_have_scene(const cli_host *host, const char *path, const hl_scene *scene);
 
-/* Draws the bar. done of wanted pictures are there; `rendered` of them took `seconds` in this run. */
+/* Draws the bar. done, wanted: the number of pictures that are there, and of all pictures. rendered: the
+ * number of pictures that this run made, in `seconds`. */
 void frames_draw_bar(cli_host *host, int done, int wanted, int rendered, double seconds);
 
 /* How pictures are written. */

@@ -84,7 +84,7 @@ static hl_status on_convert(void *user_data, const char *format, const char *pat
   return openvdb_convert(path, host->memory_limit, on_cancelled, user_data, bytes, byte_count, error);
 }
 
-/* Brings files of a store that the command line names. What a file names is not asked for. */
+/* Fetches files of a store that the command line names. Stores that only a file names are not fetched. */
 static hl_status on_fetch(void *user_data, const char *url, const char *const *names, size_t count,
                           uint64_t most, hl_fetched_file *files, hl_error *error) {
   const uint64_t copies_limit = (uint64_t)4 << 30;
@@ -122,7 +122,7 @@ static void listen_to_signals(void) {
   struct sigaction action, before;
   memset(&action, 0, sizeof action);
   action.sa_handler = on_signal;
-  action.sa_flags = SA_RESTART; /* interrupted reads resume; the cancel callback ends them */
+  action.sa_flags = SA_RESTART; /* reads that a signal interrupts go on; the cancel callback ends them */
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);

@@ -21,8 +21,8 @@ typedef struct cli_host {
   uint64_t memory_limit;               /* bytes; 0: unknown */
   cli_read_files read;                 /* the files that the context has read */
   char *const *operands;               /* see cli_host_options */
-  char copies_folder[1100];            /* of copies of servers' files; "" where there is no place for it */
-  char subject[32];                    /* the input's name beside the bar, cut to keep the line short */
+  char copies_folder[1100]; /* folder of the copies of servers' files; "" where no folder can be made */
+  char subject[32];         /* the input's name beside the bar, cut to keep the line short */
 } cli_host;
 
 typedef struct cli_host_options {
@@ -33,11 +33,12 @@ typedef struct cli_host_options {
   hl_instruction_set instruction_set;
   const char *device;      /* null: the processors */
   hl_mpi mpi;              /* launcher_mpi() (ranks.h) where processes may join */
-  bool (*cancelled)(void); /* may be null; else asked, in addition to signals, on the thread that renders */
+  bool (*cancelled)(void); /* may be null; else it is asked, in addition to signals, on the thread that
+                            * renders */
   void (*progressed)(double fraction); /* told by the thread that calls the library; or null */
   const char *data_folder;             /* null: HALFLIGHT_DATA, or ../shared/data */
-  char *const *operands; /* null-terminated, and to stay where it is; the command line's INPUTs: servers are
-                          * asked for those that are URLs, and for no others. May be null */
+  char *const *operands; /* the command line's INPUTs; null-terminated; must stay where it is. Files are
+                          * fetched only from those of them that are URLs. May be null */
 } cli_host_options;
 
 /* Rows of a subcommand's table of options, for what the context needs to know. heading: the group that begins

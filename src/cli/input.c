@@ -116,9 +116,9 @@ static int open_standard_input(cli_input *input, uint64_t limit) {
   return open_pipe(input, STDIN_FILENO, limit);
 }
 
-/* Opens an input that is an ordinary file: finds out its kind, and reads pictures, and scenes whose name, as
- * /dev/stdin, is not in the folder that their files' names start in. Where it is missing (descriptor < 0), a
- * later reader reports the error. */
+/* Opens an input that is an ordinary file: finds out its kind, and reads pictures into memory, and also
+ * scenes whose name (as /dev/stdin) does not lie in the folder from which their files' names start. If the
+ * file is missing (descriptor < 0), a later reader reports the error. */
 static int open_file(cli_input *input, int descriptor, uint64_t limit) {
   unsigned char first[1024];
   ssize_t got = descriptor >= 0 ? pread(descriptor, first, sizeof first, 0) : 0;

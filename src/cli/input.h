@@ -67,7 +67,8 @@ typedef struct cli_input {
     .help = "distance of voxels in world units (default: the\nfile's)", .count = 3, .separator = ',', \
     .low = 0, .above = true, .high = INFINITY                                                         \
   }
-/* All of these rows but the channel and the spacing, from `first` on in this order. */
+/* The rows of all options for reading except the channel and the spacing, in this order, beginning with row
+ * `first`. */
 #define INPUT_OPTIONS(first, heading)                                                         \
   [first] = INPUT_OPTION_ARRAY(heading), [(first) + READ_COMPONENT] = INPUT_OPTION_COMPONENT, \
   [(first) + READ_SERIES] = INPUT_OPTION_SERIES, [(first) + READ_TIME] = INPUT_OPTION_TIME,   \
@@ -84,17 +85,18 @@ int input_open(const char *path, uint64_t limit, cli_input *input);
 void input_close(cli_input *input);
 
 /* The load options that the options of enum input_reading and --spacing ask for. spacing null: the command
- * does not have --spacing. Of `render` the channels are a text (render_load_options()). */
+ * does not have --spacing. For `render`, the channels are a text (render_load_options()). */
 void input_load_options(const cli_value *reading, const cli_value *spacing, hl_volume_load_options *options);
 
-/* Reads an input that is a volume. options: without bytes, which are the input's; null: the defaults. */
+/* Reads an input that is a volume. options: all but `bytes`, which the input has; null: the defaults. */
 hl_status input_load_volume(hl_context *context, const cli_input *input,
                             const hl_volume_load_options *options, hl_volume **volume, hl_error *error);
 
 /* Replaces a volume by the smoothed volume that --smooth asks for. */
 hl_status input_smooth(double sigma, hl_volume **volume, hl_error *error);
 
-/* Writes into a scene's volume how it was read, as the scene's text will say. Its strings are borrowed. */
+/* Writes into a scene's volume the options with which it was read, for the scene's text. Its strings are
+ * borrowed. */
 void input_name_source(const hl_volume_load_options *options, hl_scene_volume *volume);
 
 /* The scene of an input: read from it, or made for a bare volume, which is read by `options` (null: the

@@ -9,7 +9,8 @@ enum {
   EXIT_CODE_FAILURE = 1, /* while running; or a limit of `diff` was exceeded */
   EXIT_CODE_USAGE = 2,
   EXIT_CODE_INPUT = 3,       /* a file that was given is missing or malformed */
-  EXIT_CODE_UNSUPPORTED = 4, /* understood, but not in this version or on this machine */
+  EXIT_CODE_UNSUPPORTED = 4, /* the input was understood, but this version or this machine cannot do what
+                              * is asked */
   EXIT_CODE_INTERRUPTED = 130
 };
 

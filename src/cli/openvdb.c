@@ -1,7 +1,7 @@
 /* cli/openvdb.c - runs a converter, our own openvdb_helper.cpp or else Debian's nanovdb_convert, in a
  * temporary folder and gives its file as memory.
  *
- * The converter sees names of this file's choice only: the input is a link in the folder. */
+ * The converter sees only names that this file chooses: it gets the input as a link in the folder. */
 #define _GNU_SOURCE
 #include "openvdb.h"
 
@@ -27,8 +27,8 @@ static hl_status fail_io(hl_error *error, const char *what) {
   return HL_ERROR_IO;
 }
 
-/* Finds the converter: the program in HALFLIGHT_OPENVDB, or halflight-openvdb beside this program, or
- * nanovdb_convert in the PATH. */
+/* Finds the converter: the program that HALFLIGHT_OPENVDB names, else halflight-openvdb beside this
+ * program, else nanovdb_convert in the PATH. */
 static void find_converter(char path[PATH_MAX]) {
   static const char name[] = "halflight-openvdb";
   const char *named = getenv("HALFLIGHT_OPENVDB");
@@ -73,7 +73,7 @@ static void remove_workplace(const workplace *w) {
   rmdir(w->folder);
 }
 
-/* Waits for the end; the user may ask to stop before. */
+/* Waits until the process ends, or until the user asks to stop. */
 static hl_status await(process *p, int (*cancelled)(void *), void *user_data, hl_error *error) {
   const struct timespec pause = {.tv_nsec = 5000000};
   char said[400];

@@ -23,14 +23,14 @@ static const char *choice_name(const void *choices, size_t index) {
 /* The number of rows of a command: the rows of its own table and of the table that it shares. */
 static size_t row_count(const cli_command *command) { return command->option_count + command->shared_count; }
 
-/* The option in a row; null: the command has not the option of this row. */
+/* The option in a row; null: the command does not have the option of this row. */
 static const cli_option *option_in(const cli_command *command, size_t row) {
   if (row < command->option_count) return &command->options[row];
   row -= command->option_count;
   return command->has_shared(row) ? &command->shared[row] : NULL;
 }
 
-/* Names for suggestions: an option that is not there, or reserved, is passed over. */
+/* Names of options for suggestions; options that the command lacks, and reserved options, are passed over. */
 static const char *option_name(const void *data, size_t index) {
   const cli_command *command = data;
   size_t count = row_count(command);
@@ -179,7 +179,7 @@ static int parse_value(const cli_option *option, const char *text, cli_value *va
   return EXIT_CODE_OK;
 }
 
-/* False for a value that begins with a dash: "-30,20", "-.5". */
+/* Whether a text looks like an option. A value may begin with a dash, too: "-30,20", "-.5". */
 static bool looks_like_option(const char *text) {
   return text[0] == '-' && text[1] != '\0' && strchr("0123456789.", text[1]) == NULL;
 }
@@ -203,8 +203,8 @@ static size_t find_letter(const cli_command *command, char letter) {
   return row;
 }
 
-/* A copy of the option with the range and the choices of its setting, or the choices of the library's option.
- */
+/* A copy of an option that has the range and the choices of its scene setting, or the choices of the
+ * library's option of the same name. */
 static cli_option with_setting(const cli_option *option) {
   cli_option full = *option;
   const hl_setting *setting = option->setting != NULL ? hl_setting_find(option->setting_kind, option->setting)

@@ -16,13 +16,15 @@
 typedef enum cli_option_kind {
   OPTION_SWITCH,  /* takes no value */
   OPTION_TEXT,    /* any text but an empty one */
-  OPTION_CHOICE,  /* one of `choices`; null: of the library's option of this name */
+  OPTION_CHOICE,  /* one of `choices`; where `choices` is null, one of the choices of the library's option
+                   * of this name */
   OPTION_NUMBERS, /* `count` numbers joined by `separator`; or one of `choices`, if there are any */
   OPTION_BYTES,   /* a whole number with an optional K, M, G or T (powers of 1024) */
   OPTION_COLOR /* linear R,G,B or a grey, #rgb, #rrggbb, a CSS name; or one of `choices`, if there are any */
 } cli_option_kind;
 
-/* The value of a choice that this version does not have yet: not listed, refused when given. */
+/* The value of a choice that this version does not have yet: the choice is not listed, and is refused when
+ * given. */
 enum { CHOICE_RESERVED = -1 };
 
 typedef hl_setting_choice cli_choice; /* a null name ends the list */
@@ -36,14 +38,13 @@ typedef struct cli_option {
   const char *group;    /* heading above this option in help; null: the option belongs to the group of the
                          * option before */
   const cli_choice *choices;
-  int count;        /* OPTION_NUMBERS: how many numbers, 1 to 3 */
-  char separator;   /* between the numbers: ',' or 'x' */
-  bool whole;       /* whole numbers only */
-  bool above;       /* low itself is excluded */
-  bool percent;     /* OPTION_NUMBERS: each may also be a percentile, from 0% to 100% */
-  double low, high; /* the accepted range */
-  const char
-      *setting; /* key of a scene's setting: its range, and its choices if any, replace these; or null */
+  int count;           /* OPTION_NUMBERS: how many numbers, 1 to 3 */
+  char separator;      /* between the numbers: ',' or 'x' */
+  bool whole;          /* whole numbers only */
+  bool above;          /* low itself is excluded */
+  bool percent;        /* OPTION_NUMBERS: each may also be a percentile, from 0% to 100% */
+  double low, high;    /* the accepted range */
+  const char *setting; /* key of a scene's setting, whose range and choices replace these; or null */
   hl_setting_kind setting_kind;
   bool repeatable; /* OPTION_TEXT: may be given again; every text is kept */
   bool reserved;   /* not in this version yet: the option is not shown in help, and is refused when given */
@@ -72,12 +73,12 @@ typedef struct cli_command {
   const char *description;
   const cli_option *options;
   size_t option_count;
-  const cli_option *shared; /* another subcommand's table, some of whose options this subcommand has, too; or
-                             * null */
+  const cli_option *shared; /* another subcommand's table; this subcommand has some of its options, too;
+                             * null: none */
   size_t shared_count;
   bool (*has_shared)(size_t row); /* whether it has the option in this row of `shared` */
-  /* values: [option_count + shared_count], of its own table first; operands: null after the last. Returns the
-   * exit code. */
+  /* values: [option_count + shared_count]; those of the command's own table come first. operands: null
+   * after the last. Returns the exit code */
   int (*run)(const cli_value *values, char **operands);
 } cli_command;
 

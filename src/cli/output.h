@@ -50,8 +50,8 @@ typedef struct cli_read_files {
 void read_files_add(cli_read_files *read, const char *path);
 void read_files_release(cli_read_files *read);
 
-/* Refuses to write to a path that leads to one of the files that were read, or is too long for a file;
- * reader: the input that needs these files ("scene.json"). Returns the exit code. */
+/* Refuses to write to a path that leads to one of the files that were read, or that is too long. reader:
+ * the input that needs these files ("scene.json"). Returns the exit code. */
 int read_files_protect(const cli_read_files *read, const char *path, const char *reader);
 
 #endif

@@ -56,7 +56,8 @@ hl_status overlay_check_scene(hl_context *context, const cli_overlay *overlay, c
   return status;
 }
 
-/* Sets the size that a file of pixels states; false: the picture is written as it is, without a figure. */
+/* Begins a picture's file by setting the size that a file of pixels states. False: the picture is written
+ * as it is, without a figure. */
 static bool begin(const cli_overlay *overlay, const hl_image *image, const hl_scene *scene, bool vectors,
                   hl_image_write_options *options, hl_figure *figure, hl_figure_panel *panel) {
   if (overlay == NULL) return false;

@@ -13,7 +13,8 @@ typedef struct cli_overlay {
   char *texts[MAXIMUM_REPEATS]; /* owned; of `notes` */
   char unit[40];                /* unit of --scale-bar */
   double width;                 /* width from --width, millimetres; 0: not stated */
-  double pixels_per_inch;       /* that files state, of --dpi; 0: as --width wants, or none */
+  double pixels_per_inch;       /* the pixels per inch that files state, as --dpi gives them; 0: chosen by
+                                 * --width, or none */
   double font_points;           /* 0: the default */
   bool drawn;                   /* anything is drawn over pictures */
 } cli_overlay;
@@ -37,7 +38,7 @@ hl_status overlay_write(hl_context *context, const cli_overlay *overlay, const h
                         const hl_scene *scene, const char *path, hl_image_write_options *options,
                         hl_error *error);
 
-/* Writes the same bytes to memory. format: "png" and so on. */
+/* Writes the bytes of a picture's file to memory, with overlays. format: "png" and so on. */
 hl_status overlay_encode(hl_context *context, const cli_overlay *overlay, const hl_image *image,
                          const hl_scene *scene, const char *format, hl_image_write_options *options,
                          unsigned char **bytes, size_t *length, hl_error *error);

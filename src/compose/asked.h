@@ -76,7 +76,7 @@ enum {
 /* The value of one option. */
 typedef struct hl_asked {
   bool given;
-  const char *text;                     /* the text as given; where an option is repeated, the last text */
+  const char *text; /* the text as it was given; the last text where an option is repeated */
   const char *texts[HL_ASK_MOST_TEXTS]; /* [count] */
   int count;
   bool chosen; /* one of the choices was given; `choice` is its value */

@@ -24,7 +24,7 @@ typedef struct scene_change {
   float *sky;            /* owned; the pixels of the image of "sky"; null: none */
 } scene_change;
 
-/* "floor": adds a mesh below everything that is seen. The camera is placed before. */
+/* "floor": adds a mesh below everything that is seen. The camera must have been placed before. */
 static hl_status add_floor(const hl_composer *composer, scene_change *change) {
   hl_scene_description *description = &change->description;
   if (!composer->asked[HL_ASK_FLOOR].given) return HL_OK;

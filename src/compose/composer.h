@@ -15,7 +15,7 @@ typedef struct hl_composer {
   hl_error *error;       /* may be null */
 } hl_composer;
 
-/* The status of a call whose options are to blame, not a file. */
+/* The status of a failed call for whose failure options are to blame, and not a file. */
 static inline hl_status hl_blame_options(hl_status status) {
   return status == HL_ERROR_INPUT ? HL_ERROR_ARGUMENT : status;
 }
@@ -39,7 +39,7 @@ hl_status hl_check_volume_names(const hl_composer *composer, const hl_scene_desc
 bool hl_text_is_for(const hl_composer *composer, const char *text, const hl_scene_volume *volume,
                     size_t index, const char **rest);
 
-/* The value that a repeated option gives one volume: the last one of several; null: none. */
+/* The value that a repeated option gives one volume; the last one counts; null: it gives none. */
 const char *hl_text_for(const hl_composer *composer, hl_ask option, const hl_scene_volume *volume,
                         size_t index);
 
@@ -67,8 +67,8 @@ size_t hl_count_cuts(const hl_asked *asked);
 /* Adds the options' cuts to a volume's own cuts. cuts: an array for all of them; the volume borrows it. */
 hl_status hl_compose_cuts(const hl_composer *composer, hl_scene_volume *volume, hl_cut *cuts);
 
-/* Adds the options' cuts to a scene's own cuts, which cut all volumes. Fractions are fractions of the box
- * around all volumes. cuts: an array for all of them; the scene borrows it. */
+/* Adds the options' cuts to a scene's own cuts, which cut all volumes. Numbers without a unit are fractions
+ * of the box around all volumes. cuts: an array for all of them; the scene borrows it. */
 hl_status hl_compose_scene_cuts(const hl_composer *composer, hl_scene_description *scene, hl_cut *cuts);
 
 /* ---- sky.c ---- */
@@ -103,12 +103,12 @@ void hl_compose_rest(hl_scene_volume *volume);
 
 /* ---- labels.c ---- */
 
-/* Whether the options ask for a label map, or the only volume is bare and is one of several layers of
- * labels. */
+/* Whether hl_compose_labels() has work: the options ask for a label map, or the only volume is bare and is
+ * one of several layers of labels. */
 bool hl_asks_for_labels(const hl_composer *composer, const hl_scene_description *description);
 
-/* Replaces *scene by a scene with the label map of "labels", by one with the mask of "mask", or by one whose
- * bare volume is shown as a label map. */
+/* Replaces *scene by a scene with the label map of "labels" or the mask of "mask", or by a scene in which
+ * the bare volume is shown as a label map. */
 hl_status hl_compose_labels(const hl_composer *composer, hl_scene **scene);
 
 /* ---- idle.c ---- */

@@ -31,7 +31,7 @@ static bool is_known(const char *name, const char *(*known)(const void *, size_t
   return false;
 }
 
-/* Names that other programs use, and names of this program's that mean nearly the same. */
+/* Names that other programs use, each with the name that means nearly the same in this program. */
 static const char *const meanings[][2] = {
     {"jet", "turbo"},
     {"rainbow", "turbo"},
@@ -93,8 +93,8 @@ static void name_of(const hl_scene_volume *volume, size_t index, char *name, siz
   }
 }
 
-/* The text after "NAME="; null: the text has no name and is for every volume. A text that names an existing
- * file is this file, even with a '=' in its name. */
+/* The text after "NAME="; null: the text has no name and is for every volume. A text that is the name of an
+ * existing file stands for this file, even if it has a '=' in it. */
 static const char *after_name(const hl_context *context, const char *text) {
   const char *equals = strchr(text, '=');
   return equals == NULL || hl_file_kind(context, text) != 0 ? NULL : equals + 1;

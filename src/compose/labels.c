@@ -98,8 +98,9 @@ static hl_status add_layers(const hl_composer *composer, const hl_label_layers *
   return status;
 }
 
-/* How the file of labels is read. itself: the label map takes the place of the scene's only, bare volume and
- * is read as this volume was. Otherwise it is turned into the space of the scene's first volume. */
+/* The options with which the file of labels is read. itself: the label map takes the place of the scene's
+ * only, bare volume and is read as this volume was. Otherwise the map is turned into the space of the
+ * scene's first volume. */
 static hl_volume_load_options reading_of(const hl_scene_description *description, bool itself) {
   hl_volume_load_options reading;
   hl_volume_info info = {.struct_size = sizeof info};
@@ -197,7 +198,7 @@ static hl_status add_map(const hl_composer *composer, hl_shown_list *show, hl_la
                          : status;
 }
 
-/* Whether the scene's only volume was read without any choice of what to read. */
+/* Whether the scene's only volume was read without options that choose a part of its file. */
 static bool is_read_plainly(const hl_scene_volume *volume) {
   hl_scene_volume plain;
   hl_scene_volume_defaults(&plain);

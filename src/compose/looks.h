@@ -21,7 +21,7 @@ hl_status hl_compose_volume_look(const struct hl_composer *composer, hl_scene_vo
  * matter that hardly shows is not seen. They end at black or white, whichever is farther from it. */
 void hl_fit_projection(const struct hl_composer *composer, hl_transfer_function *function);
 
-/* Logs what "tf" and "look" each give the picture, where both are asked for. */
+/* Logs which of the picture's properties come from "tf" and which from "look", where both are asked for. */
 void hl_tell_of_function(const struct hl_composer *composer);
 
 /* Makes the picture a maximum projection, or a picture with light. */

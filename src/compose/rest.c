@@ -10,7 +10,8 @@
 #include "scene/geometry/placement.h"
 #include "volume/volume.h"
 
-#define MOST_OPACITY 0.9999 /* limit, because an opacity of 1 has no finite extinction per unit distance */
+/* A limit of opacities, because an opacity of 1 has no finite extinction per unit of distance. */
+#define MOST_OPACITY 0.9999
 
 /* The optical depth along a typical way: the mean extinction of the visible voxels times the edge of a cube
  * of as many voxels. The result is 0 where opacity does not depend on the value alone. */

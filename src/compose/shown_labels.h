@@ -6,8 +6,9 @@
 
 /* One of the labels that "show" names: NAME|NUMBER|all|rest[=COLOR][:OPACITY]. */
 typedef struct hl_shown_label {
-  char name[128], whole[128]; /* whole: the text as a whole, which may be a name with ":" or "=" in it */
-  const char *wrong;          /* advice for the error where the text is not a name; null: the text is sound */
+  char name[128], whole[128]; /* the name alone, and the whole text, which may itself be a name with ":" or
+                               * "=" in it */
+  const char *wrong; /* advice for an error, where the text is no valid name; null: the text is valid */
   bool all, colored, found;
   double color[3], opacity;
 } hl_shown_label;

@@ -13,8 +13,8 @@
 #include <linux/openat2.h>
 #endif
 
-/* Takes the next component of a name, without slashes, and moves *name past it. False if the component is too
- * long. */
+/* Takes the next component of a path, without slashes, and moves *name past it. False if the component is
+ * too long. */
 static int next_component(const char **name, char component[NAME_MAX + 1]) {
   const char *begin = *name + strspn(*name, "/");
   size_t length = strcspn(begin, "/");

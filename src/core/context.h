@@ -9,7 +9,8 @@
 
 struct hl_context {
   hl_context_options options;       /* callbacks filled in; instruction_set resolved */
-  atomic_uint_least64_t held, peak; /* bytes of the context's blocks of memory: now, and the most so far */
+  atomic_uint_least64_t held, peak; /* bytes of the context's blocks of memory: at present, and the most so
+                                     * far */
   char *scratch_folder;             /* owned; the folder given to hl_context_limit_memory(); may be null */
   atomic_uint_least64_t paged; /* bytes of the pages of scratch files (volume/store/pages.h) held in memory */
   struct hl_ranks *ranks;      /* borrowed; the ranks over which loaded volumes lie (halflight/ranks.h);
@@ -18,7 +19,7 @@ struct hl_context {
                              * it, else this one */
   int folder;               /* a confined context's folder, as a descriptor; -1 if the context may open no
                              * file */
-  atomic_size_t users;      /* the users of a confined context are its owner and its blocks of memory */
+  atomic_size_t users;      /* number of users of a confined context: its owner and its blocks of memory */
 };
 
 /* Whether the context opens only files below a folder. */

@@ -5,14 +5,17 @@
 
 #if defined(__x86_64__)
 
-/* Intel 64 and IA-32 Architectures Software Developer's Manual, volume 1, 10.2.3 and 8.1.5: all exceptions
- * masked, to nearest, neither DAZ (bit 6) nor FZ (bit 15); the lowest six bits are flags. */
+/* Intel 64 and IA-32 Architectures Software Developer's Manual, volume 1, 10.2.3 and 8.1.5: values and bits
+ * of MXCSR, the control register for vectors: all exceptions are masked, rounding is to nearest, and
+ * neither DAZ (bit 6) nor FZ (bit 15) is set; the lowest six bits are flags. */
 static const unsigned int VECTOR_CONTROL = 0xffc0, VECTOR_DEFAULT = 0x1f80;
-/* All exceptions masked, 64 bits of precision, to nearest. */
+/* The control word of the x87 unit: all exceptions are masked, precision is 64 bits, and rounding is to
+ * nearest. */
 static const unsigned short SCALAR_CONTROL = 0x0f3f, SCALAR_DEFAULT = 0x033f;
 
 static bool is_default(unsigned int vector) {
-  unsigned short scalar = 0; /* the memory sanitizer does not see that the instruction writes it */
+  unsigned short scalar = 0; /* set to 0 first, because the memory sanitizer does not see that the
+                              * instruction writes the variable */
   __asm__ volatile("fnstcw %0" : "=m"(scalar));
   return (vector & VECTOR_CONTROL) == VECTOR_DEFAULT && (scalar & SCALAR_CONTROL) == SCALAR_DEFAULT;
 }

@@ -27,7 +27,7 @@ static hl_status fail_system(hl_error *error, const char *path, const char *verb
  * opened. */
 static int open_allowed(const hl_context *context, const char *path, int flags) {
   flags |= O_CLOEXEC;
-  /* opening does not wait for a pipe's writer or for a device */
+  /* with these flags, opening does not wait for the writer of a pipe, or for a device */
   if ((flags & O_PATH) == 0) flags |= O_NONBLOCK | O_NOCTTY;
   if (!hl_is_confined(context)) return open(path[0] != 0 ? path : ".", flags);
   errno = EXDEV;

@@ -11,8 +11,8 @@
 /* Opens a file for reading and calls the context's `reads` callback. Does not block on a pipe that has no
  * writer. */
 hl_status hl_file_open(hl_context *context, const char *path, int *descriptor, hl_error *error);
-/* Opens a file like hl_file_open(), but does not call `reads`. For threads other than the caller's, which may
- * not call it, and for files that were opened before. */
+/* Opens a file like hl_file_open(), but does not call `reads`. It serves threads other than the caller's,
+ * which may not call `reads`, and files that were opened before. */
 hl_status hl_file_open_again(hl_context *context, const char *path, int *descriptor, hl_error *error);
 /* Opens a folder, for hl_beneath_open() and fdopendir(). "" is the current folder, or the folder of a
  * confined context. */
@@ -59,7 +59,7 @@ void hl_output_abort(hl_output *output);
 
 /* An output in growing memory, for encoders that write to a FILE. */
 typedef struct hl_output_memory {
-  hl_output output;     /* path: a name for messages; file: writes to this memory */
+  hl_output output;     /* path: a name for messages; file: a stream that writes to this memory */
   unsigned char *bytes; /* owned; [capacity]; the first `length` are written */
   size_t length, capacity, place;
   bool full;             /* an allocation failed */
@@ -75,8 +75,8 @@ hl_status hl_output_memory_commit(hl_output_memory *memory, unsigned char **byte
 /* Releases everything; harmless after a commit. */
 void hl_output_memory_abort(hl_output_memory *memory);
 
-/* folder + "/" + path, or path itself where it is absolute or a URL, or folder is null or empty; null without
- * memory. */
+/* folder + "/" + path, or `path` itself if it is absolute or a URL, or if `folder` is null or empty. Owned
+ * by the caller; null if memory is short. */
 char *hl_path_join(hl_context *context, const char *folder, const char *path);
 /* The folder part of a path ("" if none), owned by the caller; null without memory. */
 char *hl_path_folder(hl_context *context, const char *path);

@@ -10,8 +10,9 @@ void hl_key_add(hl_key *key, const void *bytes, size_t count) {
   key->count += count;
 }
 
-/* The bits of a double, read as a whole number, rise with its size. The sign decides which way that is:
- * negative numbers have all bits turned, others the sign's bit. The highest byte comes first. */
+/* The bits of a double, read as a whole number, grow with the double's magnitude. So that they grow with
+ * the double itself, all bits of a negative number are inverted, and only the sign's bit of other numbers.
+ * The highest byte comes first. */
 void hl_key_add_numbers(hl_key *key, const double *numbers, size_t count) {
   for (size_t n = 0; n < count; n++) {
     uint64_t bits;
@@ -23,8 +24,8 @@ void hl_key_add_numbers(hl_key *key, const double *numbers, size_t count) {
   }
 }
 
-/* Fowler, Noll and Vo's FNV-1a, over words of 64 bits. Four sums run beside each other, so that one need not
- * wait for another. */
+/* Computes a hash of the bytes: Fowler, Noll and Vo's FNV-1a, over words of 64 bits. Four sums run beside
+ * each other, so that one need not wait for another. */
 uint64_t hl_key_mark(const void *bytes, size_t count) {
   enum { WORD = sizeof(uint64_t), SUMS = 4 };
   const uint64_t prime = 0x100000001b3u;

@@ -27,7 +27,8 @@ static inline void hl_key_add_affine(hl_key *key, const affine3 *map) {
   hl_key_add_numbers(key, &map->offset.x, 3);
 }
 
-/* A number that stands for bytes in keys. Other bytes have the same number with a chance of one in 2^64. */
+/* A number that stands for some bytes in keys. The chance that other bytes have the same number is one in
+ * 2^64. */
 uint64_t hl_key_mark(const void *bytes, size_t count);
 
 /* Adds everything that a result depends on to a key. Must add the same bytes each time it is called for the

@@ -31,7 +31,7 @@ typedef struct light_exchange {
   void (*look)(void *data, const light_post *post);
   void (*receive)(void *data, const light_post *post);
   size_t post_bytes;  /* size of a post's memory */
-  size_t most_posted; /* bytes of the posts of all parts together, approximately; 0 for some megabytes */
+  size_t most_posted; /* bytes that the posts of all parts take together, approximately; 0: some megabytes */
 } light_exchange;
 
 static inline void hl_light_send(const light_exchange *exchange, const light_post *post) {

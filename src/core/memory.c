@@ -90,7 +90,8 @@ char *hl_copy_text(hl_context *context, const char *text) {
 
 /* ---- blocks kept from frame to frame ---- */
 
-/* Smaller blocks are not worth keeping: the allocator serves them from pages that the process has already. */
+/* The size in bytes from which a block is worth keeping. The allocator serves smaller blocks from pages
+ * that the process has already. */
 enum { LEAST_KEPT = 1 << 16 };
 
 static bool fits(size_t bytes, size_t wanted) { return bytes >= wanted && bytes / 2 <= wanted; }

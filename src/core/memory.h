@@ -9,8 +9,8 @@
 
 #include "core/error.h"
 
-/* count * size bytes, uninitialised; null on overflow, at the limit, or when the allocator has no
- * more. A request for 0 bytes gives a valid block. */
+/* Allocates count * size bytes, uninitialised. Returns null on overflow, at the limit, or when the
+ * allocator has no more. A request for 0 bytes gives a valid block. */
 void *hl_allocate(hl_context *context, size_t count, size_t size);
 
 /* Allocates like hl_allocate(), with all bytes zero. */
@@ -48,8 +48,8 @@ typedef struct hl_reserve {
   reserve_block block[RESERVE_BLOCKS]; /* a count of 0 means: not yet measured */
 } hl_reserve;
 
-/* count * size uninitialised bytes, from the reserve or else from hl_allocate(); null when hl_allocate()
- * fails. */
+/* Takes a block of count * size uninitialised bytes from the reserve, or else from hl_allocate(); null when
+ * hl_allocate() fails. */
 void *hl_reserve_take(hl_reserve *reserve, size_t count, size_t size);
 /* Returns a block of hl_reserve_take(); null is allowed. */
 void hl_reserve_return(hl_reserve *reserve, void *memory);

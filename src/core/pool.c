@@ -3,13 +3,14 @@
  *
  * Each thread owns a share: a run of consecutive indices of the job, the same run in every job of the same
  * length, so that the thread meets the same memory again. A share is one 64-bit word on its own cache line:
- * generation, end, next index. The owner claims indices from one end by compare-and-swap; a thread whose own
- * share is empty claims indices from the other end of another thread's share. Every second thread starts with
- * its last index: two threads with neighbouring shares then meet near the border of their shares, and an
- * index that one thread takes from the other is one that it also took in the job before. No thread waits for
- * a worker that the system has not woken yet: on a busy machine the caller does all the work. Jobs alternate
- * between two slots, by the generation's parity. A job's description stays in its slot until all workers have
- * reported the indices that they claimed; only then can a later job of the same parity start.
+ * generation, end, next index. The owner claims indices from one end by compare-and-swap; a thread whose
+ * own share is empty claims indices from the other end of another thread's share. Every second thread
+ * starts with its last index: two threads with neighbouring shares then meet near the border of their
+ * shares, and the indices that one thread takes from the other are mostly those that it took in the job
+ * before. No thread waits for a worker that the system has not woken yet: on a busy machine the caller does
+ * all the work. Jobs alternate between two slots, by the generation's parity. A job's description stays in
+ * its slot until all workers have reported the indices that they claimed; only then can a later job of the
+ * same parity start.
  *
  * An offer has shares of its own. Workers claim its indices where the current job has none left, and look for
  * a new job after each. The caller claims none before it ends the offer: jobs wait for the caller. */
@@ -48,13 +49,13 @@ typedef struct worker {
 typedef struct job {
   void (*function)(void *, size_t, int);
   void *data;
-  size_t base;                     /* index of the job that index 0 of the shares stands for */
+  size_t base;                     /* the index of the job for which index 0 of the shares stands */
   _Alignas(64) atomic_size_t done; /* the number of indices that workers have reported as finished */
 } job;
 
 enum {
   INDEX_BITS = 20
-}; /* number of bits of each index in a share's `range`; jobs with more indices run in pieces */
+}; /* number of bits of an index in a share's `range`; a job with more indices runs in pieces */
 static const uint64_t INDEX_MASK = ((uint64_t)1 << INDEX_BITS) - 1, ONE_OF_END = (uint64_t)1 << INDEX_BITS;
 
 typedef struct share {
@@ -86,10 +87,10 @@ struct hl_pool {
   pthread_cond_t wake; /* signalled when `generation` or `stop` has changed */
   /* Used by the calling thread only. */
   _Alignas(64) int64_t asked,
-      read;       /* last call of the cancel callback and last reading of the clock, nanoseconds */
+      read;       /* when the cancel callback was last called and the clock was last read, in nanoseconds */
   uint64_t waits; /* number of runs that other threads took part in */
-  int readings,
-      unread; /* calls from one reading of the clock to the next; calls left until the next reading */
+  int readings, unread; /* number of calls between two readings of the clock; number of calls that are left
+                         * until the next reading */
 };
 
 static inline void relax(void) {
@@ -282,7 +283,7 @@ void hl_pool_offer(hl_pool *pool, size_t count, void (*function)(void *, size_t,
   job->function = function;
   job->data = data;
   pool->offer.count = count;
-  /* a generation of its own, of the parity of the last job, whose shares are empty */
+  /* the offer has a generation of its own, of the parity of the last job, whose shares are empty */
   begin_job(pool, job, pool->offer.shares, atomic_load(&pool->generation) + 2, count);
 }
 

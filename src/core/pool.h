@@ -28,8 +28,8 @@ int hl_pool_threads(const hl_pool *pool);
 /* How often, since the pool was made, a run ended with a wait for other threads. */
 uint64_t hl_pool_waits(const hl_pool *pool);
 
-/* Calls function(data, index, worker) for each index in [0, count), worker in [0, threads). Returns
- * when all are done. Not to be called from inside such a function. */
+/* Calls function(data, index, worker) for each index in [0, count), worker in [0, threads). Returns when
+ * all calls are done. It must not be called from inside such a function. */
 void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *data, size_t index, int worker),
                  void *data);
 
@@ -47,14 +47,15 @@ void hl_pool_fill(hl_pool *pool, float *floats, size_t count, float value);
 void hl_pool_set(hl_pool *pool, void *memory, size_t bytes, int value);
 void hl_pool_clear(hl_pool *pool, void *memory, size_t bytes);
 
-/* Whether to stop. Polls the cancel callback. For the calling thread, between runs. */
+/* Whether work must stop; polls the cancel callback. It is for the calling thread, between runs. */
 bool hl_pool_cancelled(hl_pool *pool);
 
-/* The same as a status: HL_ERROR_CANCELLED, "cancelled while DOING", where the pool stops. */
+/* Returns HL_ERROR_CANCELLED, with the line "cancelled while DOING", if hl_pool_cancelled() is true; else
+ * HL_OK. */
 hl_status hl_pool_check(hl_pool *pool, const char *doing, hl_error *error);
 
-/* Whether to stop, for functions that spend long on a single index. Cheap: only worker 0 polls the cancel
- * callback. */
+/* Whether work must stop, for functions that spend long on a single index. The call is cheap: only worker 0
+ * polls the cancel callback. */
 bool hl_pool_stops(hl_pool *pool, int worker);
 
 /* Clears the pool's stop state, so that it works again. */

@@ -65,7 +65,8 @@ static inline mat3 mat3_transpose(mat3 m) { return mat3_from_columns(m.row[0], m
 static inline double mat3_row_sizes(mat3 m) {
   return vec3_length(m.row[0]) * vec3_length(m.row[1]) * vec3_length(m.row[2]);
 }
-/* Returns false if m is singular to working precision, independent of the scales of its rows and columns. */
+/* Inverts a matrix. Returns false if m is singular to working precision, whatever the scales of its rows
+ * and columns. */
 static inline bool mat3_invert(mat3 m, mat3 *inverse) {
   vec3 c0 = vec3_cross(m.row[1], m.row[2]), c1 = vec3_cross(m.row[2], m.row[0]),
        c2 = vec3_cross(m.row[0], m.row[1]);
@@ -76,7 +77,7 @@ static inline bool mat3_invert(mat3 m, mat3 *inverse) {
                                vec3_scale(c2, 1 / determinant));
   return true;
 }
-/* Right-handed turn by angle_rad about the unit axis (Rodrigues). */
+/* The matrix of a right-handed rotation by angle_rad about the unit vector `axis` (Rodrigues). */
 static inline mat3 mat3_rotation(vec3 axis, double angle_rad) {
   double c = cos(angle_rad), s = sin(angle_rad), t = 1 - c;
   return (mat3){

@@ -17,7 +17,8 @@
 #define MARK     "\nhalflight-copy 1\n"
 #define NEW_NAME "new-"
 
-/* The lines after the bytes: MARK, the URL, the condition, the number of bytes, the length of these lines. */
+/* The lines after the bytes of a copy: MARK, the URL, the condition, the number of bytes, and the length of
+ * these lines. */
 enum { LENGTH_DIGITS = 8, LINES_MOST = FETCH_URL_BYTES + FETCH_CONDITION_BYTES + 64 };
 
 static hl_status fail(hl_error *error, const char *path) {
@@ -120,7 +121,8 @@ static int by_use(const void *a, const void *b) {
   return first->used < second->used ? -1 : first->used > second->used ? 1 : strcmp(first->name, second->name);
 }
 
-/* Appends a file of the folder to the list; removes what a run left behind that ended a day ago. */
+/* Appends a file of the folder to the list. A file that an interrupted run left unfinished more than a day
+ * ago is removed. */
 static bool note(int folder, const char *name, old_copy **list, size_t *count, size_t *capacity) {
   enum { DAY = 86400 };
   struct stat about;

@@ -22,7 +22,7 @@ void copies_touch(const char *folder, const char *url);
 /* Makes an empty file for new bytes, with a name of its own. path: [COPIES_PATH_BYTES]. */
 hl_status copies_begin(const char *folder, char *path, hl_error *error);
 
-/* Turns such a file into the copy of a URL, and opens it. */
+/* Turns a file of copies_begin() into the copy of a URL, and opens it. */
 hl_status copies_keep(const char *folder, const char *url, const char *condition, const char *path,
                       hl_fetched_file *file, hl_error *error);
 

@@ -27,7 +27,7 @@ static void write_option(FILE *list, const char *name, const char *text) {
   fputs("\"\n", list);
 }
 
-/* Options are a transfer's own, but for those of all transfers, which come first. */
+/* Writes curl's list: first the options of all transfers, then for each transfer the options of its own. */
 static void write_list(FILE *list, const curl_transfer *transfers, size_t count, uint64_t most) {
   fputs("parallel\nparallel-max = 16\n", list);
   for (size_t n = 0; n < count; n++) {

@@ -12,7 +12,7 @@ enum { CURL_TOO_LONG = 63 };
 typedef struct curl_transfer {
   char url[FETCH_URL_BYTES];             /* printable ASCII */
   const char *output;                    /* borrowed; the file that curl writes to */
-  char condition[FETCH_CONDITION_BYTES]; /* a line of the request's header, by which the server finds out
+  char condition[FETCH_CONDITION_BYTES]; /* a line of the request's header that lets the server find out
                                           * whether its file has changed; "" for none */
   /* Results. */
   int problem; /* curl's exit code for this transfer; -1 if curl ended before */

@@ -1,8 +1,8 @@
-/* fetch/fetch.c - brings files of a store: asks the server for each, also for those of which there is a copy,
- * and asks again where a transfer failed in a way that may pass.
+/* fetch/fetch.c - fetches files of a store. The server is asked for each file, even if there is a copy, and
+ * is asked again if a transfer failed in a way that may pass.
  *
- * The server answers 304 where the copy is still its file. It answers 404 or 410 where there is no file. Any
- * other end than a whole file is an error, because a store means something by a file that is not there. */
+ * The server answers 304 if the copy is up to date. It answers 404 or 410 where there is no file. Any other
+ * answer without a whole file is an error, because an absent file has a meaning in a store. */
 #define _GNU_SOURCE
 #include "fetch.h"
 
@@ -111,7 +111,7 @@ static hl_status fail_transfer(const fetching *t, const wanted *file, bool tried
   return fail(t, file->name, what);
 }
 
-/* Takes the result of a transfer: the file is brought, absent, or to be asked for again. */
+/* Takes the result of a transfer: the file has come, is absent, or must be asked for again. */
 static hl_status take(fetching *t, wanted *file, hl_fetched_file *result) {
   curl_transfer *transfer = &file->transfer;
   bool whole = transfer->problem == 0;

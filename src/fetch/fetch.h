@@ -7,8 +7,8 @@
 
 #include "fetcher.h"
 
-/* Brings files: what hl_context_options.fetch is to do. Descriptors are the caller's, also after a failure,
- * where those of files that were not brought are -1. */
+/* Fetches files, as hl_context_options.fetch must do. The caller owns the descriptors, also after a
+ * failure; they are -1 for files that did not come. */
 hl_status fetch_files(const fetcher *f, const char *url, const char *const *names, size_t count,
                       uint64_t most, hl_fetched_file *files, hl_error *error);
 

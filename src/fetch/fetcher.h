@@ -6,7 +6,7 @@
 
 typedef struct fetcher {
   const char *folder; /* the folder of copies, which is made where its parent folder is there */
-  uint64_t limit;     /* bytes; older copies are removed where all copies together have more */
+  uint64_t limit;     /* in bytes; older copies are removed if all copies together have more */
   int (*cancelled)(void *user_data); /* asked while curl runs */
   void *user_data;
 } fetcher;

@@ -7,7 +7,8 @@
 #include "figure/overlay.h"
 #include "scene/geometry/camera.h"
 
-/* The names of the ends of the world's axes: [axis][end]; end 0 is the negative one, 1 the positive one. */
+/* The names of the ends of the world's axes: [axis][end]; end 0 is the negative end, end 1 the positive
+ * end. */
 typedef const char *axis_names[3][2];
 
 static const axis_names *names_of(hl_space space) {

@@ -17,7 +17,7 @@ enum { LABEL_BYTES = 96 };
 typedef struct bar_unit {
   const char *name;    /* the unit's name in the files */
   const hl_unit *unit; /* null: the name is not known */
-  double per_scene;    /* lengths in the files' unit per length 1 of the scene */
+  double per_scene;    /* the length, in the files' unit, of the length 1 of the scene */
 } bar_unit;
 
 static const char *name_of(const hl_scene_volume *volume) {

@@ -11,7 +11,7 @@
 #include "image/srgb.h"
 
 enum { MOST_BYTES = 2000 };
-/* Width of the halo, as a fraction of the letters' size; its opacity. */
+/* The width of the halo, as a fraction of the letters' size, and the halo's opacity. */
 static const double halo_width = 0.22, halo_alpha = 0.55;
 
 /* Returns a copy of a text (g_free()), in which U+FFFD stands for everything that is no plain text: control

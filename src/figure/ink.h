@@ -23,7 +23,7 @@ typedef struct hl_line_of_text {
                               bottom edge */
   double scale;            /* factor of the letters' size; 0 counts as 1 */
   bool bold;
-  bool paragraphs;  /* a line break begins a new line; else it is drawn as a character */
+  bool paragraphs;  /* a line break begins a new line; otherwise it is drawn as a character */
   double wide_most; /* greatest width of a line, points; a longer line ends in "..."; 0: any width */
 } hl_line_of_text;
 

@@ -19,7 +19,7 @@ typedef struct hl_overlay_place {
 hl_status hl_overlay_draw(const hl_ink *ink, const hl_overlay *overlay, const hl_scene *scene,
                           hl_rectangle picture, hl_error *error);
 
-/* Each of these draws one part, if the overlay has it. */
+/* Each of these functions draws one part of the overlay, if the overlay has this part. */
 hl_status hl_overlay_bar(const hl_ink *ink, const hl_overlay_place *place, hl_error *error);
 hl_status hl_overlay_legend(const hl_ink *ink, const hl_overlay_place *place, hl_error *error);
 hl_status hl_overlay_axes(const hl_ink *ink, const hl_overlay_place *place, hl_error *error);

@@ -4,7 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-/* From the longest unit to the shortest. "\u00b5" is the micro sign, "\u03bc" the Greek letter. */
+/* The units of length, from the longest to the shortest. "\u00b5" is the micro sign, "\u03bc" the Greek
+ * letter. */
 static const hl_unit units[] = {
     {"Mpc", {"Mpc"}, 3.0856775814913673e22, 0},
     {"kpc", {"kpc"}, 3.0856775814913673e19, 0},

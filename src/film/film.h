@@ -19,7 +19,8 @@ typedef struct film_options {
   const hl_scene *scene;
   const char *const *keys; /* [key_count]: "PATH=FRAME:VALUE,..." */
   size_t key_count;
-  bool smooth;   /* keys move slowly at both ends of each stretch; if false, at an even pace */
+  bool smooth;   /* numbers change slowly at both ends of each stretch between keys; if false, at an even
+                  * pace */
   int turntable; /* frames of a whole turn about the picture's vertical axis; 0 for no turn */
   int frames;    /* number of frames; 0 for as many as the turntable has, or up to the last key's last
                   * frame */

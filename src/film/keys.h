@@ -7,8 +7,8 @@
 
 enum { FILM_MOST_FRAMES = 1000000, FILM_MOST_POINTS = 1000 };
 
-/* A value at each frame: between the given frames linear, or smooth: slow at both; constant before the first
- * and after the last. */
+/* A number that changes from frame to frame. Between two given frames it changes linearly, or smoothly
+ * (slowly near both). It is constant before the first given frame and after the last. */
 typedef struct film_key {
   char *path;     /* owned; path of a number: "camera.azimuth", or keys and numbers of elements as in
                      "lights.0.intensity" */

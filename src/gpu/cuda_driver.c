@@ -157,7 +157,7 @@ static bool fails(gpu_device *device, cuda_status code, const char *what) {
   return true;
 }
 
-/* Makes the context the thread's own for the time of one call. */
+/* Makes the device's context current in the calling thread, for the time of one call. */
 static bool enter(gpu_device *device) {
   cuda_device *state = device->state;
   return !fails(device, state->api->cuCtxPushCurrent_v2(state->context), "entering");

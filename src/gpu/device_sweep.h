@@ -48,30 +48,30 @@ typedef struct plan_light {
   /* the shadow buffer */
   int width, height;  /* size in pixels */
   int tiles_x, tiles; /* number of its tiles */
-  int first_tile;     /* index of its first tile among the tiles of all lights */
+  int first_tile;     /* index of the light's first tile among the tiles of all lights */
   int first_slab;     /* the first slab that the light reaches */
   int stride;         /* floats from row to row of a plane */
-  int plane, origin;  /* floats of a plane, and the offset of pixel (0, 0) in it */
+  int plane, origin;  /* number of floats of a plane, and the place of pixel (0, 0) in it */
   /* Where the light's planes begin, in units of 16 floats: [ring][1 or 2][channels][plane]. The first planes
    * of a sheet are the transmittance, the second ones the light at the outside of surfaces. */
   unsigned planes;
   float map[3][4]; /* frame space to (w, w u, w v) of the buffer */
   float slab_path; /* as path in attenuate_job (shadow/attenuate.h) */
   plan_box box, content;
-  float margin[3]; /* voxels: at a sample that is farther than this from the box's faces, no light passes
-                    * beside them to the pixels around it */
+  float margin[3]; /* in voxels: if a sample is farther than this from the box's faces, no light passes
+                    * beside the faces to the pixels around it */
 } plan_light;
 
 typedef struct plan_volume {
   int dimension[3], brick_count[3];
-  unsigned row_bytes, slice_rows; /* for the device's voxels: bytes from row to row; rows from slice to
-                                   * slice */
+  unsigned row_bytes, slice_rows; /* for the device's voxels: bytes from row to row, and number of rows of
+                                   * a slice */
   float empty;                    /* stored units */
   int has_cell_bits;
   float inner[PLAN_KERNEL_POWERS], outer[PLAN_KERNEL_POWERS]; /* the kernel's polynomials */
   float to_index[3][4];
-  float low[3], high[3], face_low[3], face_high[3]; /* index space: the box, and those of its faces that cut
-                                                     * matter */
+  /* the box and its faces that cut matter, in index space */
+  float low[3], high[3], face_low[3], face_high[3];
   float steps[3]; /* the distances between voxels along the axes, in units of the smallest edge */
   /* the transfer function's tables (grid/classifier.h) */
   float scale, offset, first_visible, last_visible, normal_edge;
@@ -105,7 +105,8 @@ typedef struct device_sweep {
   plan_light lights[PLAN_LIGHTS];
 } device_sweep;
 
-/* The variant for which kernels are compiled: values of the macros that have the same names in capitals. */
+/* The variant for which kernels are compiled. A member is the value of the macro that has the same name in
+ * capitals. */
 typedef struct plan_variant {
   int storage; /* 0: u8, 1: u16, 2: f32 */
   int bspline; /* 1: the kernel is the cubic B-spline; else it is any polynomial of degree 5 */

@@ -63,7 +63,7 @@ struct hl_gpu {
   known_program programs[MOST_VARIANTS];
   int program_count, launches;
   int32_t brick_count[3];
-  bool has_distances; /* the buffer holds distances of bricks; else it says which bricks are relevant */
+  bool has_distances; /* the buffer holds distances of bricks; else it holds which bricks are relevant */
 };
 
 const gpu_device *hl_gpu_device(const hl_gpu *gpu) { return &gpu->device; }
@@ -182,14 +182,15 @@ void hl_gpu_close(hl_gpu *gpu) {
 
 /* ---- memory ---- */
 
-/* Makes a buffer large enough. Its content is lost where it grows. */
+/* Makes a buffer large enough. Where the buffer grows, its content is lost. */
 static bool reserve(hl_gpu *gpu, enum buffer_use use, size_t bytes) {
   gpu_buffer *buffer = &gpu->buffers[use];
   if (bytes < 64) bytes = 64;
   if (buffer->bytes >= bytes) return true;
   gpu->device.driver->release(&gpu->device, buffer);
   if (use >= BUFFER_PIXELS || use == BUFFER_RAYS)
-    bytes += bytes / 4; /* while a camera turns, frames need slightly different sizes */
+    bytes += bytes / 4; /* a quarter more is reserved, because frames need slightly different sizes while a
+                         * camera turns */
   return gpu->device.driver->allocate(&gpu->device, bytes, buffer);
 }
 

@@ -16,12 +16,13 @@
 #include "guess/sample.h"
 
 #define BINS 32 /* bins of the histogram whose shape tells the kind of data */
-/* Roughness (hl_roughness) that divides simulations, which are smoother, from turbulence and noise. */
+/* The roughness (hl_roughness) below which data are simulations; turbulence and noise are rougher. */
 #define ROUGH  0.65
-#define SMOOTH 0.18  /* a roughness that every scanner's data exceed */
-#define FOG    0.4   /* least roughness of smoke on fine grids; 0.50 to 0.58 measured on 200 to 320 voxels */
-#define NOISY  1.2   /* a roughness that no simulated turbulence exceeds; white noise has 1.7 */
-#define TAIL   0.005 /* fraction of the voxels below `lower`, and fraction of the voxels above `upper` */
+#define SMOOTH 0.18 /* a roughness that every scanner's data exceed */
+/* The least roughness of smoke on fine grids; 0.50 to 0.58 was measured on grids of 200 to 320 voxels. */
+#define FOG   0.4
+#define NOISY 1.2   /* a roughness that no simulated turbulence exceeds; white noise has 1.7 */
+#define TAIL  0.005 /* fraction of the voxels below `lower`, and fraction of the voxels above `upper` */
 /* A noise that every scanner's data exceed, as a fraction of top; 8-bit values have half of it by
  * rounding. */
 #define CALM 0.003
@@ -183,9 +184,9 @@ static bool is_filled_up(const distances *d, const hl_data_analysis *a) {
   return (double)greatest > 0.3 * (double)things;
 }
 
-/* True if the objects are a smooth quantity that falls off. Where the histogram leaves this open, the noise
- * of a scanner decides: bumps of the histogram are materials in a scan, and saddles between summits in a
- * field. */
+/* True if the objects are a smooth quantity that falls off. Where the histogram does not tell this, noise
+ * decides: with a scanner's noise, bumps of the histogram are materials; without it, they are saddles
+ * between the summits of a field. */
 static hl_status falls_off(const hl_volume *volume, const hl_sample *sample, const distances *d,
                            const hl_data_analysis *a, bool *falling, hl_error *error) {
   double noise = 0;
@@ -264,8 +265,8 @@ static void find_middle(const hl_sample *sample, double mode, hl_data_analysis *
 static hl_status analyse_values(const hl_volume *volume, const hl_sample *sample, float *memory,
                                 hl_data_analysis *a, hl_error *error) {
   distances d = {memory, sample->count};
-  bool bordered = sample->border_count > 0; /* else the border is NaN, and the commonest value counts
-                                             * instead */
+  bool bordered = sample->border_count > 0; /* else the border's value is NaN, and the commonest value of
+                                             * all voxels counts instead */
   a->background = bordered ? hl_mode(sample->border, sample->border_count)
                            : hl_mode(sample->values, sample->count);
   spread s = spread_of(sample, a->background);
@@ -321,7 +322,7 @@ static hl_status analyse(const hl_volume *volume, hl_data_analysis *analysis, hl
     return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while looking at a volume");
   }
   if (sample.count == 0 || sample.values[0] == sample.values[sample.count - 1]) {
-    /* All sampled voxels are equal: the volume is shown like a constant. */
+    /* All sampled voxels are equal: the volume is shown as constant. */
     hl_sample_release(&sample);
     return HL_OK;
   }
@@ -366,8 +367,8 @@ hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, h
 
 typedef struct tally {
   int64_t value;
-  unsigned int seen, shared; /* number of neighbours of voxels with this value, and number of these that have
-                              * the value, too */
+  unsigned int seen, shared; /* number of neighbours of voxels with this value, and number of these
+                              * neighbours that have the value, too */
 } tally;
 
 enum { TALLIES = 4 * HL_MOST_LABELS, NO_ROOM = -1 };
@@ -379,7 +380,8 @@ typedef struct value_table {
   size_t count;
 } value_table;
 
-/* The place of a value, known or new; NO_ROOM where there are more values than a label map may have. */
+/* The place of a value, known or new; NO_ROOM where the table already has as many values as a label map may
+ * have. */
 static int place_of(value_table *table, int64_t value) {
   size_t place = (size_t)(((uint64_t)value * 0x9e3779b97f4a7c15u) >> 32) % TALLIES;
   while (table->tallies[place].seen != 0 && table->tallies[place].value != value)
@@ -389,11 +391,12 @@ static int place_of(value_table *table, int64_t value) {
   return (int)place;
 }
 
-/* LEAST_REPEATED: a row of fewer voxels may look repeated by chance, as in a map of a few plates. */
+/* MOST_REPEATED: the greatest number of repetitions that is looked for. LEAST_REPEATED: a shorter row of
+ * voxels is not examined, because it may look repeated by chance, as in a map of a few plates. */
 enum { MOST_REPEATED = 8, LEAST_REPEATED = 8 };
 
-/* Whether each voxel stands `count` times in a row along an axis, as in a volume that was enlarged by
- * repeating its voxels; count: a power of two. It looks at the places of a lattice. */
+/* Whether along an axis each voxel is repeated `count` times, as in a volume that was enlarged by repeating
+ * its voxels; count: a power of two. The function looks at the places of a lattice. */
 static bool is_repeated(const hl_volume *volume, int axis, size_t count) {
   const size_t *n = volume->dimension, step = hl_lattice_step(n, HL_LATTICE_PLACES);
   if (n[axis] < LEAST_REPEATED * count || n[axis] % count != 0) return false;
@@ -411,8 +414,8 @@ static bool is_repeated(const hl_volume *volume, int axis, size_t count) {
   return true;
 }
 
-/* Fills in tallies. False at a value that is no whole number, and where there are too many values. The
- * neighbours of a voxel that is repeated are those of the volume that was enlarged. */
+/* Fills in tallies. False at a value that is no whole number, and where there are too many values. Where
+ * voxels are repeated, the neighbours are those in the volume from which this one was enlarged. */
 static bool count_neighbours(const hl_volume *volume, value_table *table) {
   const size_t *n = volume->dimension;
   size_t step = hl_lattice_step(n, HL_LATTICE_PLACES), apart[3] = {1, 1, 1};

@@ -42,12 +42,11 @@ typedef struct hl_data_analysis {
   double zeroed;       /* fraction of the voxels that have exactly the background's value */
   double filled;       /* fraction of the voxels beyond solid */
   double middle;       /* the commonest data value */
-  double lower, upper; /* how far values lie below and above the middle at most, but for a few
-                        * voxels */
+  double lower, upper; /* how far values lie below and above the middle at most, apart from a few voxels */
   double labels[HL_MOST_LABELS]; /* ascending data values, without the background */
   size_t label_count;
   double valleys[HL_MOST_MATERIALS - 1]; /* distances that divide materials, rising; [material_count - 1] */
-  int material_count;                    /* number of materials of scanned objects; 0: not asked */
+  int material_count; /* number of materials of scanned objects; 0: they were not looked for */
 } hl_data_analysis;
 
 /* Looks at the voxels once; the volume keeps the result. Fails for lack of memory, and when cancelled. */
@@ -62,9 +61,10 @@ void hl_data_find_materials(const hl_volume *volume, hl_data_analysis *analysis)
 double hl_data_find_vessels(const hl_volume *volume, const hl_sample *sample, const float *distances,
                             const hl_data_analysis *analysis);
 
-/* Moves the thresholds faint and solid of scanned objects down to the rim of their outer matter where they
- * cut through that matter, as they do where skin is much darker than what it covers. Returns whether it moved
- * them. All distances are relative. noise: a distance that the noise around the objects hardly reaches. */
+/* Moves the thresholds faint and solid of scanned objects down to the rim of the objects' outer matter, if
+ * the thresholds cut through that matter. They do so where skin is much darker than the matter that it
+ * covers. Returns whether it moved them. All distances are relative. noise: a distance that the noise
+ * around the objects hardly reaches. */
 bool hl_data_find_rim(const hl_volume *volume, const hl_sample *sample, double noise,
                       hl_data_analysis *analysis);
 

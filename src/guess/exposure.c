@@ -34,10 +34,11 @@ typedef struct exposure {
   vec3 right, up, forward; /* the camera's axes; `right` and `up` are as long as half the picture's width and
                             * height at distance 1, `forward` is a unit vector */
   vec3 towards[MOST_LIGHTS]; /* unit vectors to the lights */
-  double left;               /* fraction of the sky and of lights with shadows that reaches bright media */
+  double left;               /* the fraction of the light of the sky, and of lights with shadows, that
+                              * shadows leave on bright media */
   double step;               /* world units */
   double empty;              /* a value of the invisible surroundings */
-  double flat;               /* a gradient up to this, in values per world unit, belongs to no surface */
+  double flat; /* a gradient up to this length belongs to no surface; in values per world unit */
   double opacity[TABLE], color[TABLE][3]; /* entries over the volume's range */
 } exposure;
 
@@ -164,7 +165,7 @@ typedef struct ray_face {
 } ray_face;
 
 /* Finds the face that a ray comes through between two points. before, here: points of index space, one step
- * apart; `here` lies at t. */
+ * apart; t: the place of `here` on the ray. */
 static void pass_face(const exposure *e, ray_face *face, double t, vec3 before, vec3 here) {
   vec3 outward;
   if (!hl_cut_face_between(e->volume, e->cuts, before, here, &outward)) return;
@@ -209,8 +210,8 @@ static void light_reaching_face(const exposure *e, vec3 point, vec3 normal, samp
   }
 }
 
-/* Lights a sample by the face where it lies within a voxel and a half behind the face. There the renderer has
- * turned half way from the face's normal to the normal of the data. */
+/* Lights a sample by the face where it lies within a voxel and a half behind the face. At this depth the
+ * renderer's normal is half way between the face's normal and the normal of the data. */
 static void light_by_face(const exposure *e, const ray_face *face, double t, vec3 point, vec3 to_eye,
                           sample_light *lit) {
   bool behind = (t - face->at) * vec3_dot(face->normal, to_eye) < 1.5 * e->step;

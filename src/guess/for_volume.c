@@ -22,8 +22,8 @@
 #define LIGHT_ELEVATION 45
 #define FILL_AZIMUTH    0 /* fill light from the eye: it suits a key light from any direction */
 #define FILL_ELEVATION  0
-/* Least memory limit for a sky, beside the memory that a volume takes. The sky's field and the making of it
- * take less than half of this. */
+/* The memory, beside the memory of a volume, for which the memory limit must have room so that a sky is
+ * chosen. The sky's field and the making of it take less than half of this. */
 #define ROOM_FOR_SKY (512u << 20)
 /* Constant light in place of a sky, as a fraction of the sky's strength. */
 #define INSTEAD 0.35
@@ -34,8 +34,8 @@
 /* Sheet spacing as a part of a surface's thickness (hl_exposure). Rings grow with the square of the spacing
  * over the thickness. */
 #define SPACING_PER_THICKNESS 0.28
-/* As SPACING_PER_THICKNESS, for small grids. Even with closer sheets they have no more sheets than other
- * grids. */
+/* A number like SPACING_PER_THICKNESS, for small grids. Even with closer sheets, small grids have no more
+ * sheets than other grids. */
 #define SMALL_GRIDS_SPACING_PER_THICKNESS 0.1
 /* Least spacing in all grids, and least spacing for surfaces in small grids; smallest voxel edges. */
 #define LEAST_SPACING       0.25
@@ -149,9 +149,9 @@ static hl_status expose(const hl_look *look, const hl_data_analysis *analysis, h
   return status;
 }
 
-/* Gives a volume cuts that remove what holds the object. The holders are searched for as the look `base`
- * shows them, which suits the volume, so that any look has the same cuts. planes: memory of the cuts, which
- * must live as long as the volume's description. */
+/* Gives a volume cuts that remove what holds the object. The search uses the look `base`, which suits the
+ * volume, so that cuts are the same with any look. planes: memory of the cuts, which must live as long as
+ * the volume's description. */
 static hl_status leave_holders_out(hl_context *context, const hl_look *base, const hl_data_analysis *analysis,
                                    hl_cut planes[HL_HOLDER_PLANES], hl_scene_volume *volume,
                                    hl_error *error) {

@@ -167,7 +167,7 @@ static double make_room(const frame_job *job, const frame_job *few, const hl_vie
   /* Seen from above or below, the picture turns about the line of sight, and every depth needs the same
    * room. */
   bool depth_matters = fabs(vec3_dot(job->forward, vec3_normalise(vec3_of(view->up)))) < 1 - 1e-9;
-  /* repeated, because the middle depends a little on the distance. */
+  /* repeated, because the middle depends slightly on the distance */
   for (int round = 0; round < 3; round++) {
     centre(job, place);
     double room = room_of(job, place, depth),

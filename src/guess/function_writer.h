@@ -16,7 +16,7 @@ typedef struct hl_function_writer {
 /* Begins a function. The analysis must outlive the writer. */
 void hl_begin_function(hl_function_writer *w, const hl_data_analysis *analysis);
 
-/* These two add a point. Distances must rise; points beyond the arrays' ends are left out. */
+/* These two functions add a point. Distances must rise; points beyond the arrays' ends are left out. */
 void hl_add_opacity(hl_function_writer *w, double distance, double opacity);
 void hl_add_color(hl_function_writer *w, double distance, const double color[3]); /* linear RGB */
 /* Adds a part of a named colormap, from start to end (0 to 1), over the distances from..to. */

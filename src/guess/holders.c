@@ -11,15 +11,17 @@
 #include "guess/sample.h"
 #include "guess/seen_cells.h"
 
-#define OBJECT_CELLS  0.8   /* least fraction of all visible cells that the object has */
-#define OBJECT_DEPTH  0.95  /* least fraction of the visible cells' optical depth that the object has */
-#define LEAST         0.005 /* smaller bodies are specks; a fraction of the object's cells */
+#define OBJECT_CELLS 0.8  /* least fraction of all visible cells that the object has */
+#define OBJECT_DEPTH 0.95 /* least fraction of the visible cells' optical depth that the object has */
+/* Least number of cells of a body, as a fraction of the object's cells; smaller bodies are specks. */
+#define LEAST         0.005
 #define LONG          0.5   /* least length of a holder, as a fraction of the object's length */
 #define THIN          0.25  /* greatest thickness of a holder, as a fraction of its length */
 #define DENSEST       0.9   /* quantile of the object's matter that counts as dense */
 #define DENSE_AT_MOST 0.005 /* greatest fraction of a holder that is as dense */
 #define RIM           1.0   /* cells from the centres of the object's outermost cells to a plane */
-/* Cells from a plane to the centres of a holder's cells, which lie wholly beyond it. */
+/* The least number of cells from a plane to the centres of a holder's cells, which then lie wholly beyond
+ * the plane. */
 #define CLEAR 1.5
 
 #define LEFT      0.01 /* fraction of a holder that may remain in the gap beside the object */

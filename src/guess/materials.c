@@ -9,7 +9,10 @@ static const double DEEPEST = 0.35;
 /* The least fraction of the objects' voxels that a peak holds. */
 static const double LEAST_SHARE = 0.03;
 
-enum { BINS = HL_HISTOGRAM_BINS, REACH = 4 /* number of bins to each side that smoothing takes in */ };
+enum {
+  BINS = HL_HISTOGRAM_BINS,
+  REACH = 4 /* REACH: number of bins to each side over which counts are smoothed */
+};
 
 /* The counts of the objects' bins, by rising distance, smoothed by a tent so that the gaps of quantised data
  * close. Returns the number of bins. *first: the distance of the first bin. */
@@ -69,7 +72,9 @@ void hl_data_find_materials(const hl_volume *volume, hl_data_analysis *a) {
     end = end_of_peak(counts, count, from);
     for (int n = from; n < end; n++) pending += counts[n];
     if (end == count || a->material_count == HL_MOST_MATERIALS) break;
-    if (pending < LEAST_SHARE * all) continue; /* too few voxels for a material; they join the next one */
+    if (pending < LEAST_SHARE * all)
+      continue; /* too few voxels for a material: they are added to the next
+                 * one */
     double rest = 0;
     for (int n = end; n < count; n++) rest += counts[n];
     if (rest < LEAST_SHARE * all) break;

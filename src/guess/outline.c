@@ -112,7 +112,7 @@ static hl_status add_volume(hl_outline *outline, const hl_scene_volume *volume, 
   return add_shown(outline, &solid, error);
 }
 
-/* Adds the visible part of a volume, of the part that its scene's cuts leave. */
+/* Adds the visible part of a volume, without the part that the scene's cuts remove. */
 static hl_status add_cut_volume(hl_outline *outline, const hl_scene_description *scene,
                                 const hl_scene_volume *volume, hl_error *error) {
   if (scene->cut_count == 0) return add_volume(outline, volume, error);
@@ -212,7 +212,8 @@ hl_status hl_outline_thin(const hl_outline *outline, hl_outline *thinned, hl_err
   return status;
 }
 
-/* The points of a mesh that lie farthest in both directions along the axes and the diagonals between them. */
+/* AXES: number of the axes and the diagonals between them. The function finds the points of a mesh that lie
+ * farthest in both directions along each of them. */
 enum { AXES = 13 };
 typedef struct farthest_points {
   vec3 along[AXES], point[2][AXES];
@@ -255,8 +256,8 @@ static void look_at_mesh(farthest_points *far, const hl_scene_mesh *mesh, bool *
   }
 }
 
-/* Adds the farthest of all corners and spheres of a mesh: a floor touches them, and even a single one of them
- * can be seen. */
+/* Adds the farthest of all corners and spheres of a mesh. All are compared, because a floor touches the
+ * lowest one, and even a single one can be seen. */
 static hl_status add_farthest(hl_outline *outline, const hl_scene_mesh *mesh, hl_error *error) {
   size_t vertices = hl_mesh_describe(mesh->mesh)->vertex_count;
   bool *used = hl_allocate_zeroed(outline->context, vertices, sizeof *used);

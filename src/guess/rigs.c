@@ -55,8 +55,8 @@ static const rig rigs[RIGS] = {
     [OVERCAST] = {1, {{0, 80, 60, 0.30, WHITE, true}}, 2.2}};
 /* clang-format on */
 
-/* Strength of the sky over the intensity of the key light, for scenes that had no sky. Bare volumes have the
- * same ratio. */
+/* The ratio of the sky's strength to the intensity of the key light, for scenes that had no sky. Bare
+ * volumes have the same ratio. */
 #define SKY_OVER_KEY 0.43
 
 const char *hl_light_rig_name(size_t index) { return index < RIGS ? hl_light_rig_choices[index].name : NULL; }
@@ -67,8 +67,8 @@ static const rig *rig_named(const char *name) {
   return NULL;
 }
 
-/* The intensity whose shares the rig's lights have: the intensity of the scene's strongest light, or of the
- * light that a scene without lights gets. */
+/* The intensity of which the rig's lights have shares: that intensity is the scene's strongest light's, or
+ * the one of the light that a scene without lights gets. */
 static double key_intensity(const hl_scene_description *description) {
   hl_light key;
   double strongest = 0;

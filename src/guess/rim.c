@@ -8,7 +8,10 @@
 
 #include "guess/analysis.h"
 
-enum { LEVELS = 64 }; /* values for which areas are counted, from the background to the threshold solid */
+enum {
+  LEVELS = 64
+}; /* number of values, from the background to the threshold solid, for which areas are
+    * counted */
 
 /* The area at an outer material's value is at least this many times the areas on both sides. A head whose
  * skin is dark has 1.31; the greatest of eight other scans is 1.05 (measured). */
@@ -21,8 +24,8 @@ static int levels_below(double distance, double solid) {
   return (int)fmin(fmax(ceil(distance / solid * LEVELS - 0.5), 0), LEVELS);
 }
 
-/* Counts, for each level, the pairs of neighbours that lie on both sides of it: they are the surface's area.
- * Every second place of the sample along each axis is enough for 64 levels. */
+/* Counts, for each level, the pairs of neighbours that lie on both sides of it: they are the surface's
+ * area. To examine every second place of the sample along each axis is enough for 64 levels. */
 static void count_areas(const hl_volume *volume, const hl_sample *sample, const hl_data_analysis *a,
                         double areas[LEVELS]) {
   const size_t *n = volume->dimension, step = 2 * sample->step;

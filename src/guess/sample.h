@@ -27,8 +27,8 @@ void hl_sample_release(hl_sample *sample);
 /* The value that a fraction (0..1) of an ascending array does not reach. */
 double hl_quantile(const float *ascending, size_t count, double fraction);
 
-/* The commonest value: the densest half of the densest half of ... an ascending array (half-sample mode;
- * Bickel and Fruehwirth 2006). */
+/* The commonest value: found by halving an ascending array again and again, each time to its densest half
+ * (half-sample mode; Bickel and Fruehwirth 2006). */
 double hl_mode(const float *ascending, size_t count);
 
 /* The threshold (of values greater than `above`) with the greatest variance between the two classes that it

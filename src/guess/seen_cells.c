@@ -13,12 +13,12 @@
 #define FAINT  0.02   /* fraction of the greatest opacity below which voxels at the rim do not count */
 #define LOST   0.04   /* least optical depth of a column that counts as seen */
 #define OPAQUE 0.9999 /* limit of opacities, because an opacity of 1 has no finite depth */
-/* Greatest fraction of the seen cells that specks have; more of them are matter. */
+/* The greatest fraction of the seen cells that may be specks; if there are more, they are matter. */
 #define SPECKS_AT_MOST 0.03
 #define FAINT_RATIO    200 /* a body is a speck if another body has this many times its optical depth */
 
-#define TISSUE          (-300)      /* Hounsfield units: tissue is denser, foam and clothes are not */
-#define BODY_AT_LEAST   0.8         /* least fraction of the dense cells that a patient's body has */
+#define TISSUE          (-300) /* a limit in Hounsfield units: tissue is denser, foam and clothes are not */
+#define BODY_AT_LEAST   0.8    /* least fraction of the dense cells that a patient's body has */
 #define HOLDER_AT_LEAST (1.0 / 500) /* least fraction of the body's cells that a holder has */
 #define HOLDER_AT_MOST  (1.0 / 30)
 
@@ -58,7 +58,7 @@ static hl_status make_table(hl_seen *seen, hl_error *error) {
   }
   for (size_t p = 0; p < seen->function->opacity_count; p++) {
     double bin = (seen->function->opacity[p].value - seen->low) * seen->scale;
-    /* A point on the border between two bins bends the function in both. */
+    /* a point on the border between two bins bends the function in both */
     for (int side = -1; side <= 1; side++)
       if (bin + side * 1e-6 >= 0 && bin + side * 1e-6 < BINS) seen->bends[(int)(bin + side * 1e-6)] = 1;
   }
@@ -103,7 +103,7 @@ static void add_row(hl_seen *seen, ptrdiff_t j, ptrdiff_t k) {
   }
 }
 
-/* The number of voxels of a cell that are examined along an axis; at least 1. */
+/* The number of a cell's voxels along an axis that are examined; at least 1. */
 static double looked_at(const hl_seen *seen, int axis, int cell) {
   ptrdiff_t step = (ptrdiff_t)seen->step, stride = axis == 0 ? 1 : (ptrdiff_t)seen->stride,
             begin = seen->first[axis];

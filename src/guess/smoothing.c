@@ -13,8 +13,8 @@
 #include "guess/looks.h"
 #include "volume/smooth.h"
 
-/* The standard deviation, in voxels, by which such volumes are smoothed: the least one that leaves no stairs
- * on the gyri of real brains. */
+/* The standard deviation, in voxels, of the Gaussian that smooths volumes of both kinds: the least one that
+ * leaves no stairs on the gyri of real brains. */
 #define SIGMA 0.8
 /* The greatest accepted standard deviation. */
 #define GREATEST_SIGMA 16
@@ -22,8 +22,8 @@
 #define LEAST_ZEROED 0.2
 /* A cliff is a step higher than this part of the way from the background to matter. */
 #define CLIFF 0.3
-/* The least fraction of steps from the background's value to another one that are cliffs. A brain that was
- * cut out has .47. Among scans with natural rims the stent has the most, .08. */
+/* The least fraction of steps from the background's value to another one that are cliffs. In a brain that
+ * was cut out the fraction is .47; in scans with natural rims it is at most .08 (a stent). */
 #define LEAST_CLIFFS 0.25
 /* Slices that are thicker than their pixels by this factor make terraces. */
 #define THICK_SLICES 1.5

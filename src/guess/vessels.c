@@ -14,7 +14,8 @@
 #define LEAST_TUBES 0.5  /* least fraction of the bright voxels that lies in tubes */
 #define MOST_BRIGHT 0.06 /* greatest fraction of the object's voxels that is bright */
 #define SPREAD      0.4  /* least fraction of the object over which tubes reach, along two axes */
-#define ELONGATED   2.5  /* a line is long if it stays inside this many times as far as the shortest line */
+/* A line is long if it stays within bright matter this many times as far as the shortest line. */
+#define ELONGATED 2.5
 
 enum { LONG = 5 /* a long line has at least this many voxels */, REACH = 32, DIRECTIONS = 13, LEVELS = 4 };
 enum { MOST_SEEDS = 4000, LEAST_SEEDS = 60 };
@@ -102,8 +103,8 @@ static bool are_spread(const met *tubes, const met *things) {
   return tubes->count > 0 && axes >= 2;
 }
 
-/* True if the voxels beyond the level are vessels. expected: about their number in the sample. *few: they are
- * few enough to be vessels. */
+/* True if the voxels beyond the level are vessels. expected: their number in the sample, approximately.
+ * *few: set where they are few enough to be vessels. */
 static bool are_vessels(const vessel_search *s, size_t expected, bool *few) {
   met things, bright, tubes;
   size_t every = expected / MOST_SEEDS + 1;

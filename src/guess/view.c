@@ -80,8 +80,8 @@ static void fill(const hl_volume *volume, const hl_data_analysis *analysis, size
       }
 }
 
-/* Keeps only the largest connected body, without a board beside it, for example. Many small bodies are all
- * kept. */
+/* Keeps only the largest connected body, so that a board beside it, for example, does not count. Where
+ * there are only many small bodies, all are kept. */
 static hl_status forget_others(hl_context *context, shape *s, hl_error *error) {
   hl_bodies bodies;
   hl_status status = hl_bodies_find(context, s->solid, s->size, &bodies, error);
@@ -133,7 +133,8 @@ static double touch(const shape *s, int axis, int end) {
   return s->area[axis][end ? s->size[axis] - 1 : 0] / face;
 }
 
-/* How blunt the objects are at one end: mean area of the last slices over the greatest slice's. */
+/* How blunt the objects are at one end: the mean area of the last slices, divided by the area of the
+ * greatest slice. */
 static double bluntness(const shape *s, int axis, int end) {
   double greatest = 1e-9, sum = 0;
   for (int n = s->first[axis]; n <= s->last[axis]; n++) greatest = fmax(greatest, s->area[axis][n]);

@@ -23,8 +23,8 @@
 #include "core/door.h"
 #include "image/format.h"
 
-/* The 8 x 8 ordered (Bayer) pattern: the bits of x ^ y and y, interlaced and mirrored, give each of 0..63
- * once. Offsets in codes, -63/128 .. 63/128. */
+/* The offset, in codes, of the 8 x 8 ordered (Bayer) dither at a pixel, from -63/128 to 63/128. The bits of
+ * x ^ y and of y, interlaced and mirrored, give each number of 0..63 once. */
 static float dither_offset(int x, int y) {
   int order = 0;
   for (int bit = 0; bit < 3; bit++)
@@ -72,7 +72,7 @@ static float tone_factor(hl_tone tone, const float light[3]) {
   return shoulder(brightest) / brightest;
 }
 
-/* The factor on a pixel's light: the exposure times the tone factor of light this bright. */
+/* The factor on a pixel's light: the exposure times the tone factor for light as bright as the pixel's. */
 static float factor_of(const hl_codes *codes, const float pixel[4]) {
   const float light[3] = {pixel[0] * codes->exposure, pixel[1] * codes->exposure, pixel[2] * codes->exposure};
   return codes->exposure * tone_factor(codes->tone, light);

@@ -35,7 +35,7 @@ typedef struct exr_reading {
   size_t length;
   hl_error *error;
   exr_context_t file;
-  unsigned present;        /* bit i: the file has the channel of that channel_index */
+  unsigned present;        /* bit i is set if the file has the channel whose channel_index is i */
   uint64_t pixel_bytes;    /* bytes of all channels of one pixel */
   exr_attr_box2i_t window; /* the data window */
   hl_image *image;

@@ -20,7 +20,7 @@ static const hl_image_format *const formats[] = {&hl_png_format, &hl_exr_format,
 
 enum { FORMAT_COUNT = sizeof formats / sizeof formats[0] };
 
-/* The first format from n on whose title is not that of the one before. */
+/* The first format, from number n on, whose title differs from the title of the format before it. */
 static size_t next_title(size_t n) {
   while (n > 0 && n < FORMAT_COUNT && strcmp(formats[n]->title, formats[n - 1]->title) == 0) n++;
   return n;
@@ -181,8 +181,8 @@ static hl_status fail_unknown(const char *path, hl_error *error) {
       "%s: byte 0: unknown picture format: expected a PNG, OpenEXR, Radiance HDR or NPY file", path);
 }
 
-/* Limits the length of a file by the size in its header. Compressed pixels are never longer than one and a
- * half times the plain ones. */
+/* Limits the length of a file by the size in its header. Compressed pixels never take more than one and a
+ * half times the bytes of plain pixels. */
 static hl_status judge(const char *path, const unsigned char *bytes, size_t length, size_t *limit,
                        hl_error *error) {
   const hl_image_format *format = format_by_content(bytes, length);

@@ -28,8 +28,8 @@ typedef struct hl_image_format {
   hl_status (*encode)(const hl_image *image, const hl_image_write_options *options, hl_output *output,
                       hl_error *error);
 
-  /* Decodes a file from its bytes, which may be anything; name: the file's name in errors. null: the format
-   * is written alone. */
+  /* Decodes a file from its bytes, which may be anything; name: the file's name in errors. Null if the
+   * format can only be written. */
   hl_status (*decode)(hl_context *context, const char *name, const unsigned char *bytes, size_t length,
                       hl_image **image, hl_error *error);
 

@@ -26,7 +26,8 @@ enum { MARK_BYTES = 8 };
 
 /* The keyword of the text chunk that holds the scene. */
 static const char keyword[] = "halflight:scene";
-/* Of the one that tells how far the scene's fields are from their sources. */
+/* The keyword of the text chunk that says how much the fields of the scene's volumes differ from their
+ * files. */
 static const char field_errors_keyword[] = "halflight:field_errors";
 
 static uint32_t load_32(const unsigned char *bytes) {
@@ -48,8 +49,8 @@ typedef struct png_reading {
   png_structp png;
   png_infop info;
   hl_image *image;
-  float *linear; /* owned; [maximum + 1]; linear value of each code; negative until it is computed, at its
-                  * first use */
+  float *linear; /* owned; [maximum + 1]; the linear value of each code, which is computed when it is first
+                  * needed; negative until then */
   unsigned char *rows; /* owned; one row of RGBA samples, or all rows where the file is interlaced */
 } png_reading;
 

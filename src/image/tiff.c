@@ -32,7 +32,7 @@ static toff_t on_size(thandle_t file) {
   return fseeko(file, here, SEEK_SET) == 0 ? (toff_t)size : 0;
 }
 
-/* The caller says what went wrong, in the words of all outputs. */
+/* Drops libtiff's messages: the caller says what went wrong, in the words that all outputs use. */
 static int on_message(TIFF *tiff, void *data, const char *module, const char *format, va_list arguments) {
   (void)tiff, (void)data, (void)module, (void)format, (void)arguments;
   return 1;

@@ -85,7 +85,7 @@ static msh msh_of(const double srgb[3]) {
   return (msh){m, s, s > 0.001 ? atan2(lab[2], lab[1]) : 0};
 }
 
-/* The hue that an unsaturated colour of magnitude m takes, so that colours change evenly towards the
+/* The hue that an unsaturated colour of magnitude m is given, so that colours change evenly towards the
  * saturated colour. */
 static double spun_hue(msh saturated, double m) {
   if (saturated.m >= m - 0.1) return saturated.h;

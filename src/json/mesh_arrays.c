@@ -38,8 +38,8 @@ static hl_status read_rows(hl_json_reader *reader, const json_t *rows, const row
   return status;
 }
 
-/* Reads an array of rows. An absent array leaves *to alone. wanted: the number of rows that the array must
- * have; SIZE_MAX for any number. */
+/* Reads an array of rows. If the array is absent, *to is not changed. wanted: the number of rows that the
+ * array must have; SIZE_MAX for any number. */
 static hl_status read_array(hl_json_reader *reader, const json_t *object, const char *key,
                             const row_kind *kind, size_t wanted, size_t *count, void *to) {
   const json_t *rows = json_object_get(object, key);

@@ -15,8 +15,8 @@ static bool same_text(const char *a, const char *b) {
   return a == NULL || b == NULL ? a == b : strcmp(a, b) == 0;
 }
 
-/* A known mesh with this path: of the scene that `like` names, or an earlier mesh of this scene. Null if
- * there is none. */
+/* A mesh with this path that is known already: from the scene `like`, or from an earlier place of this
+ * scene. Null if there is none. */
 static hl_mesh *known_mesh(const hl_json_reader *reader, const hl_mesh_shelf *shelf, const char *path) {
   for (size_t m = 0; m < shelf->count; m++)
     if (same_text(shelf->meshes[m].file, path)) return shelf->meshes[m].mesh;

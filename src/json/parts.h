@@ -51,12 +51,12 @@ typedef struct hl_volume_shelf {
   hl_loaded_volume *loaded; /* owned; [count]; has room for one more element whenever a volume is read */
   size_t count;
   const json_t *groups; /* the groups of shapes; may be null */
-  json_t *stood_in; /* owned; volumes whose file was absent, with the keys of their stand-ins; null if there
-                     * are none */
-  hl_space space;   /* the scene's space, which is the space of the first volume that states one; later
-                     * volumes are turned into it */
-  bool projected;   /* whether the picture is a maximum projection */
-  int threads;      /* threads for sampling shapes; 0 for one per processor */
+  json_t *stood_in;     /* owned; volumes whose file was absent, each with the keys of its stand-in; null if
+                         * there are none */
+  hl_space space;       /* the scene's space, which is the space of the first volume that states one; later
+                         * volumes are turned into it */
+  bool projected;       /* whether the picture is a maximum projection */
+  int threads;          /* threads for sampling shapes; 0 for one per processor */
 } hl_volume_shelf;
 
 /* Reads one volume. Its texts are borrowed from the JSON tree. Its voxels, file and shapes are borrowed from

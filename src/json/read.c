@@ -53,7 +53,7 @@ hl_status hl_json_parse(const char *text, size_t length, const char *name, json_
   if (status != HL_OK) return status;
   *root = hl_plain_json_load(text, length, JSON_REJECT_DUPLICATES, &fault);
   if (*root != NULL) return HL_OK;
-  /* jansson gives neither a reason nor a line if it has no memory for its first buffer */
+  /* jansson states neither a reason nor a line if it has no memory for its first buffer */
   if (json_error_code(&fault) == json_error_out_of_memory || fault.line < 1)
     return hl_fail_memory(error, length, name);
   return hl_fail_at(error, HL_ERROR_INPUT, fault.line, fault.column, "%s:%d:%d: %s%s", name, fault.line,

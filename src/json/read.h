@@ -1,8 +1,9 @@
 /* json/read.h - strict reading of JSON: values of the right type, no unknown keys, errors that name the
  * place.
  *
- * A reader keeps its place in the text as a JSON pointer. Getters leave their target alone where the key is
- * absent: set targets to their defaults first. Every getter returns a status; stop at the first error. */
+ * A reader keeps its place in the text as a JSON pointer. Where a key is absent, getters do not change
+ * their target: set targets to their defaults first. Every getter returns a status; stop at the first
+ * error. */
 #ifndef HL_JSON_READ_H
 #define HL_JSON_READ_H
 

@@ -63,7 +63,7 @@ static hl_status read_rotate(hl_json_reader *reader, const json_t *value, hl_set
   return status;
 }
 
-/* Reads one factor. A volume may also have three factors, along the axes of its own file. */
+/* Reads "scale": one factor, or for a volume also three factors along the axes of its own file. */
 static hl_status read_scale(hl_json_reader *reader, const json_t *value, hl_setting_kind kind, void *target) {
   const json_t *scale = json_object_get(value, "scale");
   bool three = kind == HL_SETTINGS_VOLUME;
@@ -242,7 +242,7 @@ static bool stays_as_it_is(const hl_scene_volume *volume) {
          volume->translate[2] == 0;
 }
 
-/* Replaces a volume by a smoother one; without it after a failure. */
+/* Replaces a volume by a smoother one; *volume is null after a failure. */
 static hl_status smooth_loaded(hl_json_reader *reader, double smooth, hl_volume **volume) {
   hl_volume *smoothed = NULL;
   hl_status status = hl_volume_smooth(*volume, smooth, &smoothed, reader->error);

@@ -80,8 +80,8 @@ static void measure_slice(void *data, size_t z, int worker) {
 
 void hl_label_enclose(hl_pool *pool, label_enclosed *enclosed) {
   enum { STEPS_OF_NEWTON = 2 };
-  static const double FARTHEST = 0.01; /* a level farther from 1/2 would make things a voxel thin thinner than
-                                        * sheets can show */
+  static const double FARTHEST = 0.01; /* a level farther from 1/2 would make things that are a voxel thin
+                                        * too thin for sheets */
   measuring job = {.enclosed = enclosed};
   find_weights(job.weights);
   enclosed->level = 0.5f;

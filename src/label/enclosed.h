@@ -8,7 +8,7 @@
 typedef struct label_enclosed {
   const label_field *field;                 /* holds the coefficients of the B-spline */
   double (*measures)[HL_ENCLOSED_MEASURES]; /* [size z]; working space */
-  double wanted;                            /* the volume that the surface shall enclose, in voxels */
+  double wanted;                            /* the volume that the surface must enclose, in voxels */
   float level;                              /* result: the level, near 1/2 */
   double slope; /* result: the mean length of the gradient at the surface, per voxel */
 } label_enclosed;

@@ -13,7 +13,7 @@ enum { LEVEL_SUMS = HL_LEVEL_FALL + 1, LEVEL_BLENDED = HL_LEVEL_THIN + 1 };
 static const label_filter BLUR = {2, {0.5f, 0.25f, 0}};
 
 /* Weight of the faces of an imagined flat border with the field 1/2, which are added everywhere. They keep
- * the field as it is away from any border. */
+ * the field unchanged far from any border. */
 static const float FAINT = 1e-3f;
 
 /* Falls across the border's faces count as at least this much, so that no field is made too steep. */

@@ -34,9 +34,10 @@ typedef struct mask_job {
   size_t slice_floats;
 } mask_job;
 
-/* Sums over the labels at the voxels of a slice, each [j][i]. The sums are of occupancies (SUM_OCCUPANCY), of
- * their squares, of the squares times opacity (SUM_FACTOR), of the latter times tint (SUM_TINT), and of the
- * latter times each colour. Space for a line of occupancy follows. */
+/* Sums over the labels at the voxels of a slice, each [j][i]. The sums add up, for each label: the
+ * occupancy (SUM_OCCUPANCY), its square (SUM_SQUARES), the square times opacity (SUM_FACTOR), this product
+ * times tint (SUM_TINT), and that product times each channel of the colour. Space for a line of occupancy
+ * follows. */
 enum { SUM_OCCUPANCY, SUM_SQUARES, SUM_FACTOR, SUM_TINT, SUM_RED, SUM_GREEN, SUM_BLUE, SUM_LINE, SUMS };
 
 static void add_voxel(float *const sums[SUMS], size_t at, const hl_label *label, float occupancy) {

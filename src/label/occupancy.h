@@ -18,7 +18,7 @@ typedef struct hl_label_part {
 hl_status hl_label_parts(hl_context *context, hl_pool *pool, const hl_volume *map, const int64_t *labels,
                          size_t count, hl_label_part *parts, hl_error *error);
 
-/* The smallest part that holds several parts. Parts without voxels do not count. */
+/* The smallest part that holds several parts. Parts of size 0 do not count. */
 hl_label_part hl_label_part_of_all(const hl_label_part *parts, size_t count);
 
 /* The place of a voxel's label in a rising list; `count` if the list lacks it. */

@@ -8,7 +8,8 @@
 #include "core/vector.h"
 #include "mesh/mesh.h"
 
-/* The cosine of the angle below which two triangles at a crease's vertex share a normal: 60 degrees. */
+/* The cosine of 60 degrees: two triangles at a crease's vertex share a normal if the angle between them is
+ * smaller. */
 static const double SHARED = 0.5;
 
 /* A vertex with more triangles keeps one normal for all of them. */

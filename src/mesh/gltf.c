@@ -17,7 +17,7 @@ enum { DEEPEST_NODE = 100, MODE_TRIANGLES = 4, MODE_STRIP = 5, MODE_FAN = 6 };
 typedef struct gltf_reader {
   gltf_file file;
   mesh_parts *parts;
-  unsigned char *visited; /* owned; [nodes]; whether a node was visited: a node has one parent */
+  unsigned char *visited; /* owned; [nodes]; whether a node was visited; a node must have only one parent */
   bool has_normals, has_colors;
   hl_error *error;
 } gltf_reader;

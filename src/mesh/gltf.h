@@ -27,8 +27,8 @@ typedef struct gltf_file {
 hl_status hl_gltf_read_buffers(gltf_file *file, hl_error *error);
 void hl_gltf_release_buffers(gltf_file *file);
 
-/* Reads a file beside the glTF file, or beside the file `file->path`. The block ends with a zero byte and is
- * owned by the caller. Names that lead out of the folder are refused. */
+/* Reads a file in the folder of the glTF file (file->path). The block ends with a zero byte and is owned by
+ * the caller. Names that lead out of the folder are refused. */
 hl_status hl_gltf_read_beside(const gltf_file *file, const char *name, gltf_buffer *buffer, hl_error *error);
 
 /* An accessor: numbers in a buffer. */

@@ -143,7 +143,7 @@ static hl_status meet_array(hl_legacy_vtk *file, const hl_legacy_array *array, h
   bool active = hl_text_is_one_of(array->kind, "SCALARS|COLOR_SCALARS");
   cell_values *values = hl_polydata_claim(&reader->data, name, &shape,
                                           array->of_points ? AT_POINTS : AT_CELLS, active);
-  /* an array of the whole file's FIELD has a size of its own */
+  /* an array of the FIELD of the whole file has a size of its own */
   if (values == NULL || array->tuples != file->tuples) return hl_legacy_vtk_skip_array(file, array, error);
   shape.values = values->values;
   size_t count = array->tuples * array->components;

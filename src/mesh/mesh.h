@@ -23,15 +23,15 @@ struct hl_mesh {
   hl_context *context;
   atomic_int references;
   hl_mesh_description description;        /* its arrays are owned */
-  size_t given_vertices, given_triangles; /* numbers of vertices and triangles before the tubes' own */
+  size_t given_vertices, given_triangles; /* numbers of vertices and triangles before those of tubes */
   /* owned; [triangle_count]; for each corner the index of its normal in edge_normals, or HL_NO_EDGE for its
    * vertex's normal; null if all corners have their vertices' normals */
   uint32_t (*edges)[3];
   float (*edge_normals)[3]; /* owned; [edge_normal_count]; unit */
   size_t edge_normal_count;
   double low[3], high[3]; /* bounds of the visible elements; world units */
-  bool closed; /* whether each edge has a triangle on either side, or parts that meet enclose an inside: the
-                * mesh then has an inside, and its fronts face outwards */
+  bool closed;     /* whether the mesh has an inside, with fronts that face outwards: each edge has a triangle
+                    * on either side, or parts that meet enclose an inside together */
   int8_t *insides; /* owned; [triangle_count]; the side of a triangle that is inside of the triangle's closed
                     * part: -1 is its back, 1 its front, 0 means that the part is open */
   bool opaque;     /* whether no triangle's colour lets light through */
@@ -100,8 +100,8 @@ hl_status hl_mesh_find_edges(hl_mesh *mesh, hl_error *error);
 /* Finds the closed parts of a mesh: sets insides and closed. */
 hl_status hl_mesh_find_insides(hl_mesh *mesh, hl_error *error);
 
-/* Takes a mesh as closed whose maker knows that its parts enclose an inside together, though they share no
- * edges where they meet; the fronts face outwards. */
+/* Marks a mesh as closed. For makers of meshes who know that the parts enclose an inside together, though
+ * they share no edges where they meet. The fronts must face outwards. */
 void hl_mesh_take_as_closed(hl_mesh *mesh);
 
 /* A description whose arrays are borrowed from the parts. */

@@ -1,10 +1,10 @@
 /* mesh/polydata.c - converts VTK's PolyData to the parts of a mesh.
  *
  * Colours are those of points where there are any, else those of cells. Arrays of bytes with three or four
- * components are sRGB, as VTK's mappers take them; other scalars go through the colormap viridis, from their
- * least to their greatest value. Radii of spheres and tubes are the point array "radius", or else a fraction
- * of the size of all points. Normals of cells say that the mesh is to look as flat as its cells: triangles
- * show their own normals. */
+ * components are sRGB, as VTK's mappers take them; other scalars go through the colormap viridis, from
+ * their least to their greatest value. Radii of spheres and tubes are the point array "radius", or else a
+ * fraction of the size of all points. Where cells have normals, the mesh shall look as flat as its cells:
+ * triangles show their own normals. */
 #include "mesh/polydata.h"
 
 #include <math.h>

@@ -32,8 +32,8 @@ typedef struct polydata {
   cells cells[CELL_KINDS];
   cell_values colors[VALUE_PLACES]; /* RGB, RGBA, or scalars */
   cell_values normals, radii;       /* at points */
-  bool flat;                        /* whether cells have normals: where points have none, triangles show
-                                     * their own normals */
+  bool flat;                        /* whether cells have normals: triangles then show their own normals,
+                                     * unless points have normals */
 } polydata;
 
 /* The place in the data for an array, which follows from its name and shape. Null if the array is of no use

@@ -66,7 +66,8 @@ static hl_status hold_as_it_is(held_scene *held, const char *stem, const char **
 
 /* ---- volumes ---- */
 
-/* Writes voxels, and reads them again: the text is of the volume that the page will have. */
+/* Writes voxels to a file and reads the file, so that the scene's text describes the volume that the page
+ * will have. */
 static hl_status write_voxels(held_scene *held, const char *stem, const hl_volume *voxels,
                               const hl_volume_save_options *options, hl_volume **read, const char **file,
                               hl_error *error) {
@@ -83,7 +84,8 @@ static hl_status write_voxels(held_scene *held, const char *stem, const hl_volum
   return HL_OK;
 }
 
-/* The file that was written has one array, of one time. */
+/* Forgets with which options the volume was read from its old file: the file that was written has one array
+ * of one time step. */
 static void forget_reading(hl_scene_volume *volume) {
   hl_scene_volume plain;
   hl_scene_volume_defaults(&plain);

@@ -17,7 +17,7 @@ typedef struct held_file {
 
 typedef struct held_scene {
   hl_context *context;
-  char *folder;     /* owned; of what is written for the page alone; null: not yet made */
+  char *folder;     /* owned; the folder of files that are written for the page alone; null: not yet made */
   held_file *files; /* owned; [count] */
   size_t count, room;
   hl_scene_volume *volumes; /* owned; as the text has them */

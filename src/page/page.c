@@ -54,7 +54,7 @@ static hl_status put_packed(hl_context *context, FILE *out, const unsigned char 
   stream.next_in = (unsigned char *)bytes;
   size_t left = count;
   int state;
-  do { /* each piece but the last is full, and so a multiple of 3 */
+  do { /* each piece except the last is full, and therefore a multiple of 3 bytes */
     stream.next_out = packed;
     stream.avail_out = PACKED_BYTES;
     do {
@@ -96,7 +96,7 @@ static hl_status put_files(const held_scene *held, FILE *out, hl_error *error) {
 
 /* ---- the page ---- */
 
-/* Where the page without a scene has its title, and where its head ends. */
+/* Finds the places of the title, and of the head's end, in the page without a scene. */
 static hl_status find_places(const char *viewer, const char *text, const char **title, const char **end,
                              hl_error *error) {
   *title = strstr(text, own_title);

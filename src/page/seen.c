@@ -14,7 +14,7 @@
 #include "core/memory.h"
 #include "volume/volume.h"
 
-enum { AROUND = 3 }; /* voxels that kernels and normals reach, beyond what shows */
+enum { AROUND = 3 }; /* number of voxels beyond the visible ones that kernels and normals need */
 
 /* ---- what a value shows ---- */
 

@@ -11,8 +11,8 @@ enum {
   OCTAVES = 320, /* floats have exponents from -149 to 128 */
   LEVELS_MOST = 8,
   LEAST_CELLS = 4, /* least number of cells of the coarsest level along the longest axis */
-  /* the lattice goes beyond the outermost places by at most the longest extent over this number, plus the
-   * reach of a kernel of middling size */
+  /* the lattice extends beyond the outermost places by the reach of a kernel of middling size, and at most
+   * by the longest extent divided by this number */
   PART_OF_EXTENT = 8
 };
 

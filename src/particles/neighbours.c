@@ -5,7 +5,7 @@
  * box around its particles. A search visits near nodes first, and leaves out nodes that are farther than the
  * k-th of the distances found so far.
  *
- * Only one particle of each leaf is searched for in this way. A little more than its k-th distance is the
+ * Only one particle of each leaf is searched for in this way. Its k-th distance, made a little longer, is a
  * guess for the other particles of the leaf. All particles that are nearer to the leaf's box than the guess
  * are gathered once, and each other particle of the leaf looks at them one by one. A particle that finds
  * fewer than k neighbours within the guess is searched for alone. */
@@ -19,8 +19,8 @@ enum {
   LEAF = 16,          /* number of particles of a leaf */
   FANOUT = 8,         /* number of child nodes of a node */
   LAYERS = 12,        /* the most layers: enough for 16 * 8^11 particles */
-  FOUND_MOST = 4096,  /* most distances that are collected before the farthest are dropped; most particles of
-                       * a crowd */
+  FOUND_MOST = 4096,  /* the greatest number of distances that are collected before the farthest are
+                       * dropped, and of particles in a crowd */
   AT_ONCE = 64 * LEAF /* number of particles of one call */
 };
 
@@ -33,8 +33,8 @@ typedef struct tree {
   box *layer[LAYERS]; /* owned; layer 0 has the leaves */
   size_t count[LAYERS];
   int layers;
-  float unit[3];     /* size of a unit of places, in the least unit of the three axes; so distances are 0 or
-                      * at least 1 */
+  float unit[3];     /* size of a unit of places, divided by the least unit of the three axes; so squared
+                      * distances are 0 or at least 1 */
   double least_unit; /* the least unit; world */
   size_t neighbours; /* k */
 } tree;

@@ -69,8 +69,8 @@ hl_status hl_particles_find_lengths(hl_context *context, hl_pool *pool, const ch
 
 /* Limits of a lattice. */
 typedef struct hl_particle_limits {
-  double spacing; /* world units: the wanted spacing of the finest level. 0: half of a smoothing length such
-                   * that one particle in fifty has a smaller one */
+  double spacing; /* world units: the wanted spacing of the finest level. 0: half of the smoothing length
+                   * that one particle in fifty stays below */
   size_t points;  /* the most points of level 0 */
   size_t side;    /* the most cells of level 0 along an axis; 0: no limit */
 } hl_particle_limits;

@@ -23,8 +23,8 @@ enum {
   LEAST_TILE = 16
 };
 #define NARROWING 1.11 /* a little less than 10/9 */
-/* The least h' in spacings, for kernels that the level does not resolve: some point is always nearer than 2
- * h'. */
+/* The least h', in spacings, for kernels that the level does not resolve. With it, some point always lies
+ * nearer than 2 h'. */
 #define LEAST_LENGTH 0.7
 /* The greatest h in least spacings. The level above takes wider kernels; where there is none, they are
  * narrowed. */

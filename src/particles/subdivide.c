@@ -1,9 +1,9 @@
 /* particles/subdivide.c - the coefficients of a spline on a lattice of half the spacing.
  *
  * Along each axis the even points get (d[j-1] + 6 d[j] + d[j+1]) / 8 and the odd ones (d[j] + d[j+1]) / 2:
- * the two-scale relation of the cubic B-spline. There are no points beyond the outermost ones. Points there
- * would have got 5/8 of the outermost coefficient. The outermost point gets this part, so that no weight is
- * lost (derived). */
+ * the two-scale relation of the cubic B-spline. There are no points beyond the outermost ones. Points
+ * beyond would have received 5/8 of the outermost coefficient. The outermost point receives this part, so
+ * that no weight is lost (derived). */
 #include "particles/particles.h"
 
 #include "core/memory.h"

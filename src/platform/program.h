@@ -2,8 +2,8 @@
 #ifndef HL_PLATFORM_PROGRAM_H
 #define HL_PLATFORM_PROGRAM_H
 
-/* Makes the arguments of main() UTF-8, and the standard streams streams of bytes, where the system has
- * others. */
+/* Converts the arguments of main() to UTF-8, and lets the standard streams carry plain bytes, on systems
+ * where they are not so already. */
 void hl_program_begin(int *count, char ***arguments);
 
 #endif

@@ -14,7 +14,7 @@ enum { FETCHES = 8, REPLIES = 8 };
 
 /* A request for a part of another rank's block. */
 typedef struct block_request {
-  uint64_t id, from, tag; /* number of the array of blocks; rank that asks; tag of the reply */
+  uint64_t id, from, tag; /* number of the array of blocks; the rank that asks; the tag of the reply */
   hl_box box;             /* the wanted part, in indices of the asked rank's block */
 } block_request;
 
@@ -227,7 +227,7 @@ hl_status hl_blocks_share(hl_ranks *ranks, const hl_blocks_shape *shape, const h
                           hl_blocks **blocks, hl_error *error) {
   hl_status status = make_blocks(ranks, shape, source, blocks, error);
   if (status == HL_OK) {
-    set_first(ranks, *blocks, true); /* must happen before any rank knows that all are ready */
+    set_first(ranks, *blocks, true); /* this must happen before any rank knows that all are ready */
     hl_ranks_gather(ranks, &source->box, sizeof source->box, (*blocks)->boxes);
     status = check_boxes(*blocks, error);
   }

@@ -29,7 +29,7 @@ struct hl_ranks {
 /* Waits until a request is done. Other threads can call MPI meanwhile. */
 void hl_ranks_wait(hl_ranks *ranks, mpi_handle request);
 
-/* Pauses between two tests of a request. Pauses grow with the number of tests so far. */
+/* Pauses between two tests of a request. asked: the number of tests so far; pauses grow with it. */
 void hl_ranks_pause(int asked);
 
 /* Tags of messages. The tags of replies to requests (blocks.c) begin at TAG_REPLY. */

@@ -6,7 +6,7 @@
 
 static const double TOUCHING = 1e-3; /* distance in voxels up to which faces touch */
 
-/* The bounds of another volume's box in this one's index space. */
+/* The bounds of another volume's box in the index space of this volume. */
 static void bounds_of(const hl_scene_volume *other, affine3 world_to_index, double low[3], double high[3]) {
   affine3 placement = affine3_multiply(world_to_index, hl_scene_volume_index_to_world(other));
   double box[2][3];

@@ -15,7 +15,7 @@
 typedef struct taps {
   size_t voxel[3][4];
   double weight[3][4];
-  double slope[3][4]; /* derivative of the weights by the point's coordinate */
+  double slope[3][4]; /* derivatives of the weights by the point's coordinate */
 } taps;
 
 static inline double stored_at(const reference_volume *volume, hl_storage storage, const void *row,

@@ -10,7 +10,8 @@ enum { HALVINGS = 40 };
 /* A search along a ray through one volume, and the greatest value found so far. */
 typedef struct search {
   const crossing *part;
-  double greatest, where; /* data value; distance; -infinity if no value is shown yet */
+  double greatest, where; /* the greatest value so far, and its distance; -infinity if no value is shown
+                           * yet */
 } search;
 
 static double value_at(const crossing *part, double at) {
@@ -37,8 +38,8 @@ static bool ask(search *found, double at) {
   return true;
 }
 
-/* Searches between a shown and a hidden distance for the last shown one, as close to the border as doubles
- * can tell. */
+/* Searches between a shown and a hidden distance for the last shown distance, as close to the border as
+ * doubles can tell apart. */
 static void ask_at_end(search *found, double shown, double other) {
   for (int i = 0; i < HALVINGS; i++) {
     double middle = (shown + other) / 2;

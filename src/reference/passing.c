@@ -144,8 +144,8 @@ static kept_light kept_of_step(const reference_volume *volume, double from, doub
  * of its own. */
 typedef struct pending_layer {
   bool any;
-  double depth, rise, ramp; /* depth: the layer's depth so far. rise: the second surface's values per length.
-                             * ramp: the depth that a straight ramp would have, times rise */
+  double depth, rise, ramp; /* depth: the layer's optical depth so far. rise: the second surface's values
+                             * per length. ramp: the depth that a straight ramp would have, times `rise` */
 } pending_layer;
 
 /* The factors by which all steps between here and the point multiply the light and the light taken by the

@@ -421,8 +421,8 @@ hl_status hl_reference_render_layers(hl_context *context, const hl_scene *scene,
   status = hl_scene_draw(scene, &drawn, error);
   if (status == HL_OK) status = hl_pool_create(context, chosen.threads, &pool, error);
   if (status != HL_OK) return status;
-  hl_scene_description whole = drawn->description; /* its sky is the image itself, without lights in place of
-                                                    * suns */
+  /* the reference's sky is the image itself, without lights in place of suns */
+  hl_scene_description whole = drawn->description;
   whole.sky = scene->description.sky;
   whole.light_count = scene->description.light_count;
   reference all = {.context = context, .pool = pool, .scene = &whole, .all_shadows = shadows_wanted(layers)};

@@ -164,7 +164,7 @@ typedef struct crossing {
   bool occupied;              /* active, and the brick may be visible */
   vec3 here;                  /* index space; the current sample, where active */
   double last_at, last_value; /* for hl_reference_outside(): the last distance at which the volume was met,
-                               * and its value there; NaN if not known */
+                               * and the value there; NaN: not known */
 } crossing;
 
 /* A march along a ray: a stretch is the ray between two box faces, cut into equal steps. */
@@ -193,7 +193,8 @@ typedef struct arrival {
   double pattern[3];  /* mean colour of the light texture or emission image over the light's points; 1 without
                          either; eq. (2) */
   double shadowed[3]; /* mean of the pattern times transmittance over the light's points */
-  double outside[3];  /* the same mean at the outside of the surface in which the sample lies */
+  double outside[3];  /* the mean of the pattern times transmittance, at the outside of the surface in
+                       * which the sample lies */
   bool pattern_known, shadowed_known, outside_known;
 } arrival;
 
@@ -210,7 +211,7 @@ typedef struct reference_parts {
   double greatest; /* for a sample: the greatest weight */
   double ambient[3], emission[3], sky[3];
   double sky_reaching[3], sky_open[3]; /* for white matter: the sky's light that reaches it, and the sky's
-                                        * light without anything that hides it */
+                                        * light that would reach it if nothing hid it */
   vec3 normal;
   double depth;
   light_part *lights; /* [light_count] */
@@ -260,7 +261,8 @@ double hl_reference_next_face(const reference_volume *volume, vec3 origin, vec3 
 double hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *normal,
                              double *surface);
 /* How much matter at a point belongs to the face that light comes through last before it: 1 at the face, 0
- * two voxels behind it. to_light: a unit vector of the world. uncut: cuts do not count, only the box. */
+ * two voxels behind it. to_light: a unit vector of the world. uncut: only the box's faces count, not the
+ * cuts'. */
 double hl_reference_lit_face(const reference_volume *volume, vec3 point, vec3 to_light, bool uncut);
 
 /* The weights of the four taps around a point at t from 0 to 1 after the second, and their slopes (may be
@@ -289,7 +291,7 @@ double hl_reference_mask_factor(const reference_volume *volume, vec3 point);
 /* The slope of the mask's factor at a point of index space, per world unit; 0 where the mask leaves no
  * faces. */
 vec3 hl_reference_mask_slope(const reference_volume *volume, vec3 point);
-/* Sets the colour that the mask gives. Returns the part of this colour that matter takes, 0 to 1. */
+/* Finds the mask's colour at a point. Returns the part of this colour that matter takes, 0 to 1. */
 double hl_reference_mask_color(const reference_volume *volume, vec3 point, double color[3]);
 /* The field's gradient, in data values per world unit. */
 vec3 hl_reference_gradient(const reference_volume *volume, vec3 point);

@@ -70,7 +70,7 @@ typedef struct surface {
   double own[3]; /* the volume's own colour */
   vec3 normal;   /* unit length, outward; 0 in a medium */
   double amount; /* 0 for a medium, 1 for a surface */
-  vec3 outside;  /* world; for surfaces: the place, along the normal, where their matter begins */
+  vec3 outside;  /* world; for surfaces: the place, along the normal, where the surface's matter begins */
 } surface;
 
 /* The phase function p = (1 - g^2) / (1 + g^2 - 2 g cos)^(3/2), cos = -E.L. It is 1 in all directions for g =

@@ -62,7 +62,8 @@ hl_status hl_reference_sky_create(reference *all, int cell_count, hl_error *erro
   const hl_sky *sky = &all->scene->sky;
   if (sky->type == HL_SKY_NONE) return HL_OK;
   double least = sky->hemisphere ? 0 : -1, widest = sky->hemisphere ? HL_PI / 2 : HL_PI;
-  /* derived: the cells cover 2 pi (1 - least), and a cell with the angle a on each side covers a^2 */
+  /* derived: all cells together cover 2 pi (1 - least), and a cell with the angle a on each side covers a^2
+   */
   double angle = sqrt(2 * HL_PI * (1 - least) / cell_count);
   size_t rings = (size_t)fmax(floor(widest / angle + 0.5), 1), count = 0;
   angle = widest / (double)rings;

@@ -18,16 +18,16 @@
 typedef struct drawn_scene {
   pthread_mutex_t lock; /* held while the rest is made */
   bool made;
-  hl_scene_description description; /* the placed description, with volumes of occupancy in place of label
-                                       maps and lattices (label/mask.h) in place of masks */
+  hl_scene_description description; /* the placed description, in which volumes of occupancy replace label
+                                     * maps, and lattices (label/mask.h) replace masks */
   drawn_labels labels;              /* the volumes of occupancy and the lattices */
   scene_order order;                /* in which frames take the description's lists */
-  uint64_t *plane_marks; /* owned; [volume_count]; of the content of functions of two numbers, 0 where there
-                            is none; for keys of kept results */
+  uint64_t *plane_marks; /* owned; [volume_count]; numbers that identify the content of functions of two
+                          * numbers, 0 where there is none; they are parts of the keys of kept results */
 } drawn_scene;
 
-/* A place for what is drawn, still empty, owned by the caller (hl_drawn_scene_destroy); null if memory is
- * short. */
+/* Makes an empty drawn scene, which hl_drawn_scene_make() fills; owned by the caller
+ * (hl_drawn_scene_destroy); null if memory is short. */
 drawn_scene *hl_drawn_scene_create(hl_context *context);
 void hl_drawn_scene_destroy(hl_context *context, drawn_scene *drawn); /* null is allowed */
 

@@ -1,4 +1,4 @@
-/* scene/field_errors.c - tells how far the fields of a scene's volumes are from their sources.
+/* scene/field_errors.c - tells how much the fields of a scene's volumes differ from their files.
  *
  * In: the volumes. Out: JSON, which pictures carry and the program prints. */
 #include <math.h>

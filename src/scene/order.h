@@ -10,7 +10,8 @@
 
 #include "core/error.h"
 
-/* Each array holds the places of things in the placed description's list, in the order of frames. */
+/* The order of a scene's things. Each array holds the numbers that things have in the placed description's
+ * list, in the order of frames. */
 typedef struct scene_order {
   int *lights;  /* owned; [light_count]; the suns of the sky come last, as in the list */
   int *volumes; /* owned; [volume_count] */

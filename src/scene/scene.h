@@ -18,22 +18,25 @@ struct hl_scene {
   hl_context *context;
   atomic_int references;
   hl_scene_description description; /* its arrays and texts are owned by the scene */
-  hl_scene_description placed;      /* the same with all lights in the world, after them the suns of the sky,
-                                       whose image lacks them, and with the scene's cuts in its volumes; owns
-                                       its array of lights */
-  sky_suns suns;      /* suns of the sky; used where placed.sky.suns is set: there they are lights */
+  hl_scene_description placed;      /* the description with all lights in the world, followed by the suns
+                                     * of the sky, whose image lacks them, and with the scene's cuts in its
+                                     * volumes; owns its array of lights */
+  sky_suns suns;      /* suns of the sky; where placed.sky.suns is set, they are lights of `placed` */
   placed_cuts cut;    /* the placed description's volumes, where the scene has cuts */
   drawn_scene *drawn; /* owned; what frames draw of the scene; null until a frame asks for it */
-  char *field_errors; /* owned; of its volumes, as JSON (field_errors.c); null if none is known */
-  uint64_t sky_mark;  /* of the pixels of the sky's image; for keys of kept results */
+  char *field_errors; /* owned; JSON that says how much the volumes' fields differ from their files
+                       * (field_errors.c); null if it is known of none */
+  uint64_t sky_mark;  /* a number that identifies the pixels of the sky's image, for the keys of kept
+                       * results */
 };
 
 /* Makes what frames draw of the scene, unless it was made before (hl_drawn_scene_make()). *drawn is the
  * scene's own. */
 hl_status hl_scene_draw(const hl_scene *scene, const drawn_scene **drawn, hl_error *error);
 
-/* Writes how far the fields of the volumes are from their sources, as a JSON array with an object for each
- * volume of which it is known. *text is owned by the caller (hl_release); null if it is known of none. */
+/* Writes how much the volumes' fields differ from their files, as a JSON array with an object for each
+ * volume whose difference is known. *text is owned by the caller (hl_release); null if no difference is
+ * known. */
 hl_status hl_field_errors_write(hl_context *context, const hl_scene_description *description, char **text,
                                 hl_error *error);
 

@@ -41,8 +41,8 @@ static void end(connection_place *c) {
   shutdown(c->socket, SHUT_RDWR);
 }
 
-/* The waiting connection that shall end for another one: a stranger if there is one, and among strangers, or
- * else among all, the one that has waited for longest. */
+/* Chooses the waiting connection that ends to make room for another one: among strangers, or where there
+ * are none among all, the one that has waited for longest. */
 static connection_place *least_missed(connection_table *table) {
   connection_place *best = NULL;
   for (int n = 0; n < MOST_CONNECTIONS; n++) {
@@ -97,8 +97,8 @@ void connection_changed(void *user_data, struct MHD_Connection *connection, void
   }
   pthread_mutex_unlock(&table->lock);
   if (crowded)
-    nanosleep(&moment, NULL); /* the sleep keeps out others, because this thread lets connections
-                               * in */
+    nanosleep(&moment, NULL); /* the sleep keeps other connections out, because this thread lets
+                               * connections in */
 }
 
 /* Changes a connection's state, unless the connection is ending. */

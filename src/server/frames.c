@@ -103,7 +103,8 @@ static void release_page(server *s, server_page *page) {
   forget_renderers(page);
   base_forget(page);
   page->name[0] = '\0';
-  page->last_use = 0; /* 0, so that the next new page takes this place, and not the place of an idle page */
+  page->last_use = 0; /* set to 0, so that the next new page takes this place, and not the place of an idle
+                       * page */
   page->leaving = false;
   atomic_store(&page->newest, 0);
 }
@@ -214,15 +215,15 @@ static bool refuse_closed(server *s, long long number, server_answer *answer) {
   return opened == NULL;
 }
 
-/* Answers with the error. Status 204: nobody waits for this frame any more. */
+/* Answers with the error. Status 204 says that nobody waits for this frame any more. */
 static void fail_frame(server_answer *answer, hl_status status, const hl_error *error) {
   if (status == HL_ERROR_CANCELLED) answer->status = 204;
   else if (status == HL_ERROR_MEMORY || status == HL_ERROR_INTERNAL) refuse_line(answer, 500, error->message);
   else refuse_line(answer, 400, error->message);
 }
 
-/* The scene that is rendered while something moves; it may be the scene itself. Waits for the coarser
- * volumes, which are made faster than a frame of a large volume. */
+/* The scene that is rendered while something moves; it may be the scene itself. The function waits for the
+ * coarser volumes; making them takes less time than a frame of a large volume. */
 static hl_status make_quick(server *s, long long number, hl_scene *scene, hl_scene **quick, hl_error *error) {
   const struct timespec moment = {.tv_nsec = 2000000};
   server_opened *opened = opened_enter(s, number);
@@ -356,7 +357,8 @@ static void answer_page(server *s, server_page *page, const frame_request *reque
   current.number = request->number;
   atomic_store(&page->frame_part, 0);
   hl_status status = make_frame(s, page, request, film, answer, &error);
-  /* Try once more, with the memory that idle pages held, and the memory that this page held before. */
+  /* The frame is tried once more after the memory of idle pages, and what this page held before, was
+   * released. */
   if (status == HL_ERROR_MEMORY) {
     spare_memory(s);
     forget_renderers(page);

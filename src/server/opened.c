@@ -1,4 +1,4 @@
-/* server/opened.c - scenes that are open: the program's input, and scenes that pages have opened since.
+/* server/opened.c - scenes that are open: the program's input, and scenes that pages have opened.
  *
  * A frame's scene may name the volumes of one open scene. The scene that was used longest ago makes room for
  * another, if no request holds it. */
@@ -77,8 +77,8 @@ static void *prepare(void *user_data) {
   return NULL;
 }
 
-/* Begins to make the preview of an open scene. Where there is no thread or no memory for it, frames show the
- * volumes as they are. */
+/* Begins to make the preview of an open scene. If no thread can be started or memory is short, frames show
+ * the volumes as they are. */
 static void begin_preview(server *s, server_opened *opened) {
   pthread_t thread;
   preparation *about = malloc(sizeof *about);

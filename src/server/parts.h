@@ -49,8 +49,8 @@ extern const size_t server_asset_count;
  * prepares a volume anew when the volume changes, so each resolution has a renderer of its own. */
 typedef struct quick_renderer {
   hl_renderer *renderer;   /* owned; null: not made yet */
-  const hl_volume *volume; /* borrowed; the first volume of the scenes that it renders; only its address is
-                            * compared */
+  const hl_volume *volume; /* borrowed; the first volume of the scenes that the renderer renders; only its
+                            * address is compared */
 } quick_renderer;
 
 /* A page in a browser. Its frames are rendered one after the other. */
@@ -61,14 +61,15 @@ typedef struct server_page {
   quick_renderer quick[QUICK_RENDERERS]; /* guarded by `rendering` */
   atomic_ullong newest;                  /* the highest number of a requested frame */
   atomic_int frame_part;                 /* finished thousandths of the frame that is being rendered */
-  atomic_int film_done, film_frames;     /* frames of the film that the page renders; 0 frames: there is no
-                                          * film */
+  atomic_int film_done, film_frames;     /* numbers of frames of the film that the page renders, finished
+                                          * and in all; 0 frames in all: there is no film */
   int users;                             /* number of requests that hold the page; guarded by
                                           * server.pages_lock */
   bool leaving;                          /* the page's place becomes free when the last request ends; guarded
                                           * by server.pages_lock */
   unsigned long long last_use;           /* guarded by server.pages_lock */
-  double last_seen;                      /* time by server_seconds(); guarded by server.pages_lock */
+  double last_seen;                      /* when the page last asked for something, by server_seconds();
+                                          * guarded by server.pages_lock */
   char *base; /* owned; the text of the newest scene that came as a whole, or null; guarded by
                * server.pages_lock */
   unsigned long long base_number; /* number of the frame of `base`; guarded by server.pages_lock */
@@ -95,8 +96,8 @@ typedef struct server {
   long long next_opened;   /* guarded by pages_lock */
   atomic_bool announced;   /* options.ready has returned */
   atomic_bool visited;     /* options.visited was called */
-  atomic_bool released;    /* renderers or scenes were released since freed memory was given back to the
-                            * system */
+  atomic_bool released;    /* renderers or scenes were released after freed memory was last given back to
+                            * the system */
   atomic_int opening_part; /* finished thousandths of the volume that is being read */
   atomic_int preparing;    /* number of threads that make previews */
   pthread_mutex_t pages_lock;
@@ -114,28 +115,28 @@ typedef struct server_answer {
   unsigned char *bytes;       /* owned, hl_bytes_release(); or null */
   char *text;                 /* owned, hl_text_release(); or null */
   unsigned char *from_malloc; /* owned, free(); or null */
-  char problem[1000];         /* an error line, where there are neither bytes nor a text */
+  char problem[1000];         /* an error line, where the answer has neither bytes nor a text */
   double seconds_read, seconds_render,
       seconds_encode;  /* seconds that the steps of a frame took; all 0: the answer is no frame */
-  double seconds_once; /* the part of these seconds that the next frames will not take: for preparing a new
-                        * renderer, and for waiting for coarser volumes */
+  double seconds_once; /* the part of these seconds that the next frames will not need: the time of
+                        * preparing a new renderer, and of waiting for coarser volumes */
 } server_answer;
 
 /* The parameters of a request for a frame. */
 typedef struct frame_request {
   const char *page;
   unsigned long long number;
-  long long opened;   /* number of the open scene whose volumes the scene has */
-  const char *format; /* "jpeg", "png", "exr" or "npy"; "depth": the depth of the picture's middle instead of
-                       * a picture */
-  int quality;        /* quality of a JPEG */
-  int depth;          /* bits of a PNG's channels: 8 or 16 */
-  int metadata;       /* 1: a PNG carries its scene; 0: it does not */
+  long long opened;      /* number of the open scene whose volumes the request's scene has */
+  const char *format;    /* "jpeg", "png", "exr" or "npy"; "depth": in place of a picture, the depth at the
+                          * picture's middle */
+  int quality;           /* quality of a JPEG */
+  int depth;             /* bits of a PNG's channels: 8 or 16 */
+  int metadata;          /* 1: a PNG carries its scene; 0: it does not */
   int scale_bar, legend; /* 1: drawn over a PNG of 8 bits */
-  const char *unit;      /* of lengths, where the scene's files tell none; null: it is not known */
-  int moving; /* 1: a quick frame, of coarser volumes where the sheets are wide; 0: the scene as it is */
-  long long
-      base; /* the page's frame from whose scene the text tells the difference; 0: it is a whole scene */
+  const char *unit;      /* unit of lengths, where the scene's files tell none; null: it is not known */
+  int moving;     /* 1: a quick frame, of coarser volumes where the sheets are wide; 0: the scene as it is */
+  long long base; /* number of the page's frame from whose scene the text gives the difference; 0: the text is
+                   * a whole scene */
   const char *text; /* the scene */
   size_t length;
 } frame_request;
@@ -167,11 +168,11 @@ typedef struct server_upload {
 /* frames.c */
 bool pages_begin(server *s);
 void pages_end(server *s);
-/* Between these two calls the thread works for the client at the other end of the socket, as long as the
- * client is there. */
+/* Between work_begin() and work_end() the thread works for the client at the other end of the socket. Its
+ * work is cancelled when the client has gone. */
 void work_begin(server *s, int socket);
 void work_end(void);
-/* The thread works for an open scene, as long as the scene's page is there. */
+/* The thread works for an open scene. Its work is cancelled when the scene's page has gone. */
 void work_begin_for(server *s, const server_opened *opened);
 /* A page was closed: ends its frames, the frames of its lanes (NAME-...), and their renderers. */
 void page_is_gone(server *s, const char *name);
@@ -210,8 +211,8 @@ void answer_join(server *s, const frame_request *request, long long with, const 
 extern const char closed_line[]; /* the error line for a scene that is no longer open: status 410 */
 void refuse_line(server_answer *answer, unsigned status, const char *line);
 
-/* bases.c: see there. These functions take server.pages_lock, except base_forget(), whose caller holds the
- * lock. */
+/* The functions of bases.c. They take server.pages_lock, except base_forget(), whose caller holds the lock.
+ */
 void base_keep(server *s, server_page *page, const frame_request *request);
 void base_forget(server_page *page);
 /* The text of the whole scene (free()); null: the request is refused, with status 409 where the page has

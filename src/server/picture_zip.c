@@ -1,7 +1,7 @@
 /* server/picture_zip.c - writes a zip archive of stored pictures.
  *
- * The format is that of PKWARE, APPNOTE.TXT, 4.3: each file follows a header of its own; then come the list
- * of files, and the end of the list. Numbers are little-endian. */
+ * The format is that of PKWARE, APPNOTE.TXT, 4.3: for each file a header and then the file; after all files
+ * the list of files, and the end of the list. Numbers are little-endian. */
 #include "picture_zip.h"
 
 #include <stdlib.h>

@@ -58,7 +58,7 @@ hl_status check_overlay(const server *s, const hl_scene *scene, const frame_requ
   return status;
 }
 
-/* Writes the same bytes as `halflight render` writes for the scene. */
+/* Writes a picture with the bytes that `halflight render` writes for the scene. */
 static hl_status write_exact(const server *s, const hl_scene *scene, const hl_image *image,
                              hl_image_write_options *options, const frame_request *request,
                              server_answer *answer, hl_error *error) {

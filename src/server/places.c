@@ -25,7 +25,8 @@ void answer_slice(server *s, const slice_request *request, server_answer *answer
   opened_leave(s, opened);
 }
 
-/* Reads "1,2.5,-3" from a query. Where it is absent, the numbers stay. False: it is anything else. */
+/* Reads three numbers, as "1,2.5,-3", from a query. If the text is absent, the numbers are not changed.
+ * False: the text is anything else. */
 bool read_triple(const char *text, double numbers[3]) {
   if (text == NULL) return true;
   char copy[128];

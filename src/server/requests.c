@@ -104,7 +104,8 @@ static bool has_zero(struct MHD_Connection *connection) {
   return found;
 }
 
-/* Checks the upload of a file that was dropped: its name, and whether there is room for it. */
+/* Checks the upload of a file that was dropped on the page: the file's name, and whether there is room for
+ * the file. */
 static unsigned check_upload(const server *s, struct MHD_Connection *connection, request *r,
                              const char **line) {
   const char *name = query(connection, "name");
@@ -167,7 +168,7 @@ static void answer_problem(server_answer *answer, unsigned status, const char *l
   snprintf(answer->problem, sizeof answer->problem, "%s", line);
 }
 
-/* Takes ownership of the text. A null text stands for a lack of memory. */
+/* Answers with a JSON text, which the answer then owns. A null text stands for a lack of memory. */
 static void answer_json(server_answer *answer, char *text) {
   if (text == NULL) {
     answer_problem(answer, 500, "out of memory\n");
@@ -353,7 +354,8 @@ static int query_choice(struct MHD_Connection *connection, const char *name, con
   return -1;
 }
 
-/* False: the query describes no plane, or too large a plane. */
+/* Reads the plane that a query describes. False: the query describes no plane, or a plane that is too
+ * large. */
 static bool read_slice(struct MHD_Connection *connection, slice_request *wanted) {
   static const char *const blends[] = {"maximum", "minimum", "mean", NULL};
   static const char *const sources[] = {"voxels", "mask", NULL}, *const ways[] = {"nearest", "linear", NULL};
@@ -454,7 +456,7 @@ static void post_cancel(server *s, struct MHD_Connection *connection, const requ
   else answer_problem(answer, 400, "?page=NAME&number=N is missing\n");
 }
 
-/* A page was closed, or shows another file: ends everything that is open for it. */
+/* Ends everything that is open for a page that was closed, or that shows another file now. */
 static void post_leave(server *s, struct MHD_Connection *connection, server_answer *answer) {
   const char *page = query(connection, "page");
   long long opened = query_number(connection, "opened", 0, MOST_NUMBER, 0);
@@ -557,7 +559,7 @@ static enum MHD_Result on_request(void *user_data, struct MHD_Connection *connec
     bool taken = !r->refused && (r->uploads ? upload_add(&r->upload, upload, *upload_size)
                                             : collect(r, upload, *upload_size));
     *upload_size = 0;
-    return taken ? MHD_YES : MHD_NO; /* where the body is larger than its header announced, the connection
+    return taken ? MHD_YES : MHD_NO; /* if the body is larger than its header announced, the connection
                                       * ends */
   }
   r->path = path_after_token(url, s->token);

@@ -112,7 +112,7 @@ bool server_run(const server_options *options, char *problem, size_t problem_siz
     good = first != NULL;
     if (good) opened_leave(s, first);
     s->next_opened = (long long)time(
-        NULL); /* a page that has outlived another viewer asks for none of these files */
+        NULL); /* pages that were opened with an earlier viewer ask for none of these files */
   }
   if (!good) snprintf(problem, problem_size, "out of memory for the viewer");
   if (good) listening = listen_on(options->port, problem, problem_size);

@@ -67,10 +67,12 @@ typedef struct server_options {
  * line. */
 bool server_run(const server_options *options, char *problem, size_t problem_size);
 
-/* For the context's `progress` callback: the part of the file that this thread opens which has been read. */
+/* The function for the context's `progress` callback. fraction: how much has been read of the file that
+ * this thread opens. */
 void server_progress(double fraction);
 
-/* For the context's `cancelled` callback: whether the frame that this thread renders is no longer wanted. */
+/* The function for the context's `cancelled` callback: whether the frame that this thread renders is no
+ * longer wanted. */
 bool server_is_outdated(void);
 
 #endif

@@ -42,7 +42,7 @@ static double capsule_distance(const hl_shape *shape, axial q) {
   return length2(above(fabs(q.along) - q.half), q.away) - shape->radius;
 }
 
-/* The distance to the nearer of the flat ends and the slanted side. */
+/* The distance of a point from a cone: to the nearest of the two flat ends and the slanted side. */
 static double cone_distance(const hl_shape *shape, axial q) {
   double r1 = shape->radius, r2 = shape->end_radius;
   double end_x = q.away - fmin(q.away, q.along < 0 ? r1 : r2), end_y = fabs(q.along) - q.half;
@@ -106,7 +106,8 @@ static double bare_distance(const hl_shape_list *list, size_t index, const unsig
                                        : solid_distance(shape, p);
 }
 
-/* The nearest point of the surface: one step as long as the distance, down the distance's gradient. */
+/* The point of the surface that is nearest to a point, found by one step against the distance's gradient
+ * that is as long as the distance. */
 static vec3 foot_point(const hl_shape_list *list, size_t index, const unsigned char *live, vec3 p,
                        double distance) {
   double h = list->shapes[index].edge / 64;

@@ -6,7 +6,8 @@
 #include "shape/elementary.h"
 #include "shape/shape.h"
 
-/* L_k^alpha(x), by k L_k = (2 k - 1 + alpha - x) L_(k-1) - (k - 1 + alpha) L_(k-2). */
+/* The associated Laguerre polynomial L_k^alpha(x), by k L_k = (2 k - 1 + alpha - x) L_(k-1) - (k - 1 +
+ * alpha) L_(k-2). */
 static double laguerre(int order, int alpha, double x) {
   double before = 0, value = 1;
   for (int k = 1; k <= order; k++) {
@@ -17,7 +18,8 @@ static double laguerre(int order, int alpha, double x) {
   return value;
 }
 
-/* P_l^m(c) / s^m, by (l - m) P_l = (2 l - 1) c P_(l-1) - (l + m - 1) P_(l-2), without the sign (-1)^m. */
+/* The associated Legendre function P_l^m(c) / s^m, by (l - m) P_l = (2 l - 1) c P_(l-1) - (l + m - 1)
+ * P_(l-2), without the sign (-1)^m. */
 static double legendre_over_sine(int l, int m, double c) {
   double before = 0, value = 1;
   for (int k = 1; k <= m; k++) value *= 2 * k - 1;

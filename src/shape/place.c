@@ -15,7 +15,8 @@ void hl_shape_defaults(hl_shape *shape) {
                       .texture = {.frequency = 1, .octaves = 1, .bias = 0.5, .gain = 0.5, .amplitude = 1}};
 }
 
-/* The same as mat3_rotation(), with a sine and cosine that are the same on every machine. */
+/* The rotation of a shape's frame, as mat3_rotation() gives it, but with a sine and cosine that are the
+ * same on every machine. */
 static mat3 rotation(const hl_shape *shape) {
   vec3 a = vec3_normalise(vec3_of(shape->rotate_axis));
   double s, c;
@@ -71,8 +72,8 @@ static double solid_reach(const hl_shape *shape, vec3 u) {
   return -INFINITY;
 }
 
-/* The support function: the greatest u.x over all points x of [first, end). u: direction in the list's
- * frame. */
+/* The support function of some shapes: the greatest u.x over all points x of the shapes [first, end). u: a
+ * direction in the list's frame. */
 static double reach(const hl_shape_list *list, size_t first, size_t end, vec3 u) {
   double farthest = -INFINITY;
   for (size_t index = first; index < end; index = list->shapes[index].end) {

@@ -17,7 +17,7 @@
 #define HL_SHAPE_MARGIN 2                 /* empty voxels around the shapes on each side of the grid */
 #define HL_SHAPE_VOXELS ((size_t)1 << 30) /* most voxels of a grid */
 #define HL_SHAPE_COUNT \
-  4096 /* most shapes of a list; members of a group count once for each use of the group */
+  4096 /* greatest number of shapes of a list; members of a group count once for each use of the group */
 
 typedef enum hl_shape_type {
   HL_SHAPE_BOX = 0,
@@ -69,20 +69,21 @@ typedef struct hl_shape {
   double scale;
   double size[3];        /* box: full edges; plane: x, y and thickness */
   double from[3], to[3]; /* cylinder, capsule, cone: ends of the axis */
-  double radius;      /* of a sphere, a torus (to the tube's middle), an orbital (where it is cut), a cone (at
-                         `from`) */
-  double end_radius;  /* cone: radius at `to` */
-  double tube_radius; /* torus */
-  double rounding;    /* box, plane, cylinder: radius of the edges, inside the given size */
-  int quantum[3];     /* orbital: quantum numbers n, l, m */
+  double radius;         /* radius of a sphere, of a torus (to the tube's middle), of an orbital (where it is
+                          * cut off), or of a cone at `from` */
+  double end_radius;     /* cone: radius at `to` */
+  double tube_radius;    /* torus */
+  double rounding;       /* box, plane, cylinder: radius of the edges, inside the given size */
+  int quantum[3];        /* orbital: quantum numbers n, l, m */
   hl_hypertexture texture;
   size_t end;       /* index of the shape after this one and its members */
-  affine3 to_local; /* from the parent's frame; set, as `edge`, by hl_shapes_place() */
+  affine3 to_local; /* the map from the parent's frame to the shape's own; hl_shapes_place() sets it, and
+                     * `edge` */
   double edge;      /* length of HL_SHAPE_EDGE voxels in the shape's own frame */
 } hl_shape;
 
 typedef struct hl_shape_list {
-  hl_shape *shapes; /* [count] in reading order: each group before its members */
+  hl_shape *shapes; /* [count] in reading order: each group stands before its members */
   size_t count, capacity;
 } hl_shape_list;
 
@@ -114,7 +115,8 @@ typedef struct hl_interval {
  * of `edge` both ways. live: [count], from hl_shapes_bounds(); null: all shapes. */
 double hl_shapes_distance(const hl_shape_list *list, const unsigned char *live, vec3 p);
 
-/* Bounds of that distance within radius of p. live: set for the shapes that can affect the distance there. */
+/* Bounds of hl_shapes_distance() for all points within `radius` of p. live: set for the shapes that can
+ * affect the distance there. */
 hl_interval hl_shapes_bounds(const hl_shape_list *list, vec3 p, double radius, unsigned char *live);
 
 /* The distance from a surface after its texture has changed it, from the distance before. p: own frame. */

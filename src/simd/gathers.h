@@ -1,7 +1,7 @@
 /* simd/gathers.h - sixteen lanes of numbers from sixteen positions in a table.
  *
- * Words, floats, rows, pairs and squares of them, by as few loads as an instruction set allows; the values
- * are the same on all of them. */
+ * Words, floats, rows, pairs and squares are gathered by as few loads as an instruction set allows. The
+ * values are the same with all instruction sets. */
 #ifndef HL_SIMD_GATHERS_H
 #define HL_SIMD_GATHERS_H
 
@@ -72,7 +72,7 @@ LANES_INLINE lanes lanes_gather(const float *table, lanes_int index) {
 }
 
 #if defined(__AVX512F__)
-/* The rows [index, index + 1] of two lanes: eight floats each. */
+/* Loads the rows index and index + 1 of two lanes, eight floats for each lane. */
 LANES_INLINE __m512 two_row_pairs(const float *table, int32_t first, int32_t second) {
   __m512d low = _mm512_castpd256_pd512(_mm256_castps_pd(_mm256_loadu_ps(table + first)));
   return _mm512_castpd_ps(_mm512_insertf64x4(low, _mm256_castps_pd(_mm256_loadu_ps(table + second)), 1));
@@ -127,14 +127,15 @@ LANES_CALL void lanes_gather_quads(const float *table, lanes_int index, lanes qu
 #endif
 }
 
-/* table[4 index + c] and table[4 (index + 1) + c] as first[c] and second[c], c = 0 to columns - 1: one load a
- * lane, or two, instead of two for each column. */
+/* Gathers table[4 index + c] as first[c] and table[4 (index + 1) + c] as second[c], for c from 0 to columns
+ * - 1. It takes one or two loads for each lane, and not two for each column. */
 LANES_INLINE void gather_rows_of_four(const float *table, lanes_int index, int columns, lanes *first,
                                       lanes *second) {
 #if defined(__AVX512F__)
   lanes_offsets offsets;
   lanes_store_offsets(&offsets, index * 4);
-  __m512 of_half[2][4]; /* of four lanes in each half: the first rows' values, then the second rows' */
+  __m512 of_half[2][4]; /* of four lanes in each half: the values of the first rows, then those of the
+                         * second rows */
   for (int half = 0; half < 2; half++) {
     const int32_t *at = offsets.at + 8 * half;
     __m512 pairs[4];
@@ -179,7 +180,7 @@ LANES_INLINE __m128 two_pairs(const float *table, int32_t first, int32_t second)
 }
 #endif
 
-/* table[index] and table[index + 1]: one load for both. */
+/* Gathers table[index] and table[index + 1], by one load for both. */
 LANES_CALL void lanes_gather_pairs(const float *table, lanes_int index, lanes *first, lanes *second) {
 #if defined(__AVX512F__)
   lanes_offsets offsets;
@@ -215,7 +216,8 @@ LANES_CALL void lanes_gather_pairs(const float *table, lanes_int index, lanes *f
 #endif
 }
 
-/* table[index] and table[index + 1] of 16-bit numbers: one load of four bytes a lane. */
+/* Gathers table[index] and table[index + 1] of a table of 16-bit numbers, by one load of four bytes for
+ * each lane. */
 LANES_INLINE void lanes_gather_short_pairs(const uint16_t *table, lanes_int index, lanes_int *first,
                                            lanes_int *second) {
   lanes_int pair = lanes_gather_bytes((const unsigned char *)table, index * 2);
@@ -266,9 +268,9 @@ LANES_INLINE int squares_in_window(const uint16_t *table, size_t stride, lanes_s
 }
 #endif
 
-/* For each active lane table[stride * row + column] as square[0], the next number in the row as square[1],
- * and those of the next row as square[2] and square[3]. Columns and rows are below 65535; up to six further
- * ones may be read. */
+/* Gathers a square of numbers for each active lane: table[stride * row + column] as square[0], the next
+ * number in the row as square[1], and the two numbers below them in the next row as square[2] and
+ * square[3]. Columns and rows are below 65535; up to six further ones may be read. */
 LANES_CALL void lanes_gather_short_squares(const uint16_t *table, size_t stride, lanes_squares squares,
                                            uint32_t active, lanes_int square[4]) {
 #if defined(__AVX512BW__)

@@ -27,8 +27,9 @@ typedef int32_t lanes_int __attribute__((vector_size(64)));
 
 #define LANES_INLINE static inline __attribute__((always_inline, unused))
 
-/* For functions that are a few instructions with AVX2 and long without. Without AVX2 they are called, not
- * inlined, to keep the baseline's code small and quick to compile under sanitizers. */
+/* LANES_CALL is for functions that take a few instructions with AVX2 and many without. Without AVX2 these
+ * functions are called and not inlined, so that the baseline's code stays small and is quick to compile
+ * under sanitizers. */
 #if defined(__AVX2__)
 #define LANES_CALL LANES_INLINE
 #else
@@ -101,7 +102,8 @@ LANES_CALL lanes_int lanes_from_bits(uint32_t bits) {
   return (lanes_set_int((int32_t)bits) & one_bit) != 0;
 }
 
-/* a < b ? a : b, and a > b ? a : b: the second where either is NaN, as the instructions do. */
+/* The lesser and the greater number: a < b ? a : b, and a > b ? a : b. Where either is NaN, the result is
+ * b, as with the processor's instructions. */
 LANES_CALL lanes lanes_min(lanes a, lanes b) {
 #if defined(__AVX512F__)
   return (lanes)_mm512_min_ps((__m512)a, (__m512)b);
@@ -152,11 +154,11 @@ LANES_INLINE lanes_int lower_words(lanes_double x) {
   return __builtin_shufflevector(words, words, 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
 }
 
-/* In doubles, a product of floats is exact, a sum is not. Rounding the sum to a float is wrong only where the
- * sum lies in the middle between two floats and is not exact (among subnormal floats: where it is not exact).
- * There the sum is first rounded to odd: to the one of the two doubles around the exact sum that has an odd
- * last bit, which then rounds to the right float (Boldo and Melquiond, "Emulation of a FMA and correctly
- * rounded sums", 2008). */
+/* a b + c, rounded once, computed in doubles. In doubles a product of floats is exact, but a sum is not.
+ * Rounding the sum to a float is wrong only where the sum lies in the middle between two floats and is not
+ * exact (among subnormal floats: where it is not exact). There the sum is first rounded to odd: to the one
+ * of the two doubles around the exact sum that has an odd last bit, which then rounds to the right float
+ * (Boldo and Melquiond, "Emulation of a FMA and correctly rounded sums", 2008). */
 LANES_CALL lanes fma_in_doubles(lanes a, lanes b, lanes c) {
   lanes_double product = __builtin_convertvector(a, lanes_double) * __builtin_convertvector(b, lanes_double);
   lanes_double addend = __builtin_convertvector(c, lanes_double), sum = product + addend;
@@ -221,7 +223,8 @@ LANES_INLINE lanes lanes_clamp(lanes x, float low, float high) {
 }
 LANES_INLINE lanes lanes_abs(lanes x) { return (lanes)((lanes_int)x & lanes_set_int(0x7fffffff)); }
 
-/* Each lane is two signed numbers of 16 bits: the sum of the products of both. */
+/* Multiplies two vectors, whose lanes hold two signed numbers of 16 bits each: a lane of the result is the
+ * sum of the two products. */
 LANES_INLINE lanes_int lanes_multiply_shorts(lanes_int a, lanes_int b) {
 #if defined(__AVX512BW__)
   return (lanes_int)_mm512_madd_epi16((__m512i)a, (__m512i)b);
@@ -327,9 +330,9 @@ LANES_CALL lanes_int lanes_floor(lanes x) {
 #endif
 }
 
-/* 2^x for |x| < 126, relative error below 2e-7: x = n + f, f in [-1/2, 1/2], 2^f by the polynomial of degree
- * 5 with 2^0 = 1 whose greatest relative error there is least (derived: 9.2e-8 by Remez' exchange, 1.7e-7 in
- * floats), 2^n by the exponent bits. */
+/* 2^x for |x| < 126, with a relative error below 2e-7: x = n + f, f in [-1/2, 1/2], 2^f by the polynomial
+ * of degree 5 with 2^0 = 1 whose greatest relative error there is least (derived: 9.2e-8 by Remez'
+ * exchange, 1.7e-7 in floats), 2^n by the exponent bits. */
 LANES_CALL lanes lanes_exp2(lanes x) {
   lanes_int n = lanes_floor(x + 0.5f);
   lanes f = x - lanes_from_int(n);

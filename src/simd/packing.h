@@ -69,7 +69,7 @@ LANES_CALL lanes_packing lanes_packing_of(uint32_t bits, int at) {
   return packing;
 }
 
-/* `into` with the packed lanes replaced by the chosen lanes of x. */
+/* Returns `into`, in which the chosen lanes of x have replaced lanes from `at` on. */
 LANES_CALL lanes lanes_pack(const lanes_packing *packing, lanes into, lanes x) {
 #if defined(__AVX512F__)
   return (lanes)_mm512_mask_permutexvar_ps((__m512)into, packing->packed, packing->from, (__m512)x);

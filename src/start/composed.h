@@ -10,7 +10,8 @@ typedef struct composed_choices {
   const char *rig;  /* as the option "light-rig" */
 } composed_choices;
 
-/* Replaces the scene by the one with the choices. context: opens no file. On an error the scene stays. */
+/* Replaces the scene by the scene with the choices. context: a context that opens no file. After an error
+ * *scene is unchanged. */
 hl_status compose_choices(hl_context *context, const composed_choices *choices, hl_scene **scene,
                           hl_error *error);
 

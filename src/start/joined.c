@@ -37,7 +37,8 @@ static hl_status add_meshes(hl_context *context, const hl_scene_mesh *added, siz
   return HL_OK;
 }
 
-/* A scene for meshes without a volume: one triangle in their place, with the usual camera and light. */
+/* Makes a scene for meshes without a volume: one triangle takes their place, with the default camera and
+ * light. */
 static hl_status begin_scene(hl_context *context, hl_scene **scene, hl_error *error) {
   static const char text[] =
       "{\"halflight\": 1, \"meshes\": [{\"vertices\": [[0, 0, 0], [1, 0, 0], [0, 1, 1]], "
@@ -86,7 +87,8 @@ static hl_status join_colored(hl_context *context, const hl_scene_mesh *meshes, 
   return status;
 }
 
-/* The volumes of both, with the light and all other settings of the first. */
+/* Replaces *scene by a scene with the volumes of both scenes, and with the light and all other settings of
+ * the first. */
 static hl_status join_volumes(hl_context *context, hl_scene *base, hl_scene *added, hl_scene **scene,
                               hl_error *error) {
   const hl_scene_description *before = hl_scene_describe(base);

@@ -14,11 +14,11 @@ enum {
   MOST_DEPTH_SIDE = 64              /* pixels of a picture whose depth is asked for */
 };
 
-/* What a plane is cut out of: a volume of the scene, or the label map that masks it; null: the scene has none
- * of this number. */
+/* The volume out of which a plane is cut: a volume of the scene, or the label map that masks this volume;
+ * null: the scene has no volume of this number. */
 const hl_volume *sliced_volume(const hl_scene *scene, long long number, bool of_mask);
 
-/* The values of a plane, row after row in the machine's byte order: Each value has four bytes where floats
+/* The values of a plane, row after row in the machine's byte order. Each value has four bytes where floats
  * hold all values exactly, or where values are interpolated or means; otherwise it has eight bytes. The
  * number of bytes tells which. NaN: no voxel is there. The bytes are the caller's, from malloc. */
 hl_status slice_values(const hl_volume *volume, const hl_reslice_options *plane, unsigned char **bytes,

@@ -19,7 +19,7 @@ typedef struct sample {
   float value, gradient;
 } sample;
 
-/* The samples lie on a coarser grid, `step` voxels apart. */
+/* How a large volume is sampled: on a coarser grid, whose points are `step` voxels apart. */
 typedef struct sampling {
   const hl_volume *volume;
   const hl_volume_info *info;

@@ -42,7 +42,7 @@ int hl_edit_distance(const char *a, const char *b) {
 const char *hl_nearest_name(const char *name, const char *const *names) {
   const char *nearest = NULL;
   int length = (int)strnlen(name, HL_EDIT_LONGEST),
-      allowed = length * 2 / 5; /* a name is near enough if at most two letters of five are wrong */
+      allowed = length * 2 / 5; /* a name is near enough if at most two letters in five are wrong */
   int best = 1 + (allowed < 2 && length > 2 ? 2 : allowed);
   for (size_t n = 0; names[n] != NULL; n++) {
     int distance = hl_edit_distance(name, names[n]);

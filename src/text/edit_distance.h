@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-enum { HL_EDIT_LONGEST = 63 }; /* the longest beginning of a name that is compared, in characters */
+enum { HL_EDIT_LONGEST = 63 }; /* only the first characters of a name are compared, up to this number */
 
 /* The number of edits that turn a into b: insert, delete or replace a character, or swap two neighbours. */
 int hl_edit_distance(const char *a, const char *b);
@@ -20,7 +20,8 @@ const char *hl_nearest_name(const char *name, const char *const *names);
 const char *hl_nearest_candidate(const char *text, const char *(*candidate)(const void *data, size_t index),
                                  const void *data);
 
-/* The end of an error about an unknown name: the nearest known name as a question, or all known names. */
+/* Writes the end of an error about an unknown name: the nearest known name as a question, or all known
+ * names. */
 void hl_suggest_name(const char *name, const char *const *names, char *text, size_t size);
 
 #endif

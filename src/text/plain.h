@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* strtod(), vsnprintf() and snprintf() in the locale "C". */
+/* The functions strtod(), vsnprintf() and snprintf(), in the locale "C". */
 double hl_plain_number(const char *text, char **end);
 int hl_plain_vprint(char *text, size_t size, const char *format, va_list arguments);
 __attribute__((format(printf, 3, 4))) int hl_plain_print(char *text, size_t size, const char *format, ...);

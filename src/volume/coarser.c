@@ -10,12 +10,12 @@
 #include "volume/in_bricks.h"
 
 static const double ALIKE =
-    1.5; /* axes with steps up to this factor beyond the shortest are halved together */
+    1.5; /* axes whose steps are at most this many times as long as the shortest are halved together */
 
 enum {
   MOST_ROWS = 4,
   MOST_VALUES = 2 * MOST_ROWS
-}; /* of the volume, in a row and a voxel of the coarser one */
+}; /* numbers of voxels in a row of the volume, and for one voxel of the coarser volume */
 
 typedef struct coarsening {
   const hl_volume *volume;
@@ -55,14 +55,15 @@ static void read_row(const hl_volume *volume, size_t j, size_t k, void *stored, 
   }
 }
 
-/* The mean of finite values; NAN where there are none. */
+/* The mean of the values that are finite; NAN where none is. */
 static double mean_of(const float *values, size_t count) {
   double sum = 0;
   for (size_t n = 0; n < count; n++) sum += (double)values[n];
   return count > 0 ? sum / (double)count : (double)NAN;
 }
 
-/* The value that most of the values have, and of equally common ones the first; NAN where there are none. */
+/* The value that most of the values have, and the first of equally common values; NAN where there are none.
+ */
 static double commonest_of(const float *values, size_t count) {
   size_t best = 0, most = 0;
   for (size_t n = 0; n + most < count; n++) {
@@ -74,7 +75,7 @@ static double commonest_of(const float *values, size_t count) {
   return count > 0 ? (double)values[best] : (double)NAN;
 }
 
-/* Collects the finite values of the voxels that voxel i of the coarser row takes the place of. */
+/* Collects the finite values of the voxels that become voxel i of the coarser row. */
 static size_t collect(const coarsening *c, const float *rows, size_t row_count, size_t i,
                       float values[MOST_VALUES]) {
   const size_t width = c->volume->dimension[0], first = i * c->factor[0];
@@ -112,8 +113,8 @@ static void make_slice(void *data, size_t k, int worker) {
   for (size_t j = 0; j < c->dimension[1]; j++) make_row(c, j, k, worker);
 }
 
-/* The coarser grid: a voxel lies in the middle of the voxels whose place it takes. Where the volume ends
- * before that, the voxel lies as if all voxels were there. */
+/* Places the coarser grid: a voxel lies in the middle of the voxels that it is made of. At the volume's
+ * end, where some of these are missing, it lies as if all of them were there. */
 static void place(const coarsening *c, hl_volume_description *d) {
   static const hl_voxel_type types[] = {
       [HL_STORAGE_U8] = HL_VOXEL_U8, [HL_STORAGE_U16] = HL_VOXEL_U16, [HL_STORAGE_F32] = HL_VOXEL_F32};
@@ -134,7 +135,7 @@ static void place(const coarsening *c, hl_volume_description *d) {
   d->space = volume->space;
 }
 
-/* What surrounds the content, and what the file tells of its world, stay. */
+/* Copies to the coarser volume what surrounds the content, and what the file tells of its world. */
 static void inherit(const hl_volume *volume, hl_volume *made) {
   made->unit = volume->unit;
   made->is_anatomical = volume->is_anatomical;
@@ -143,7 +144,7 @@ static void inherit(const hl_volume *volume, hl_volume *made) {
   memcpy(made->window, volume->window, sizeof made->window);
 }
 
-/* The coarser field has no finest level (bricks/coarser.h). */
+/* Makes the coarser field by leaving out the finest level (bricks/coarser.h). */
 static hl_status coarsen_bricks(const coarsening *c, hl_pool *pool, hl_volume **coarser, hl_error *error) {
   hl_context *context = c->volume->context;
   hl_volume_description description;

@@ -27,8 +27,8 @@ typedef struct hl_color_source {
   const hl_volume_description *grid; /* the file's grid; its type is the type of a component */
   const char *path;
   size_t components;  /* 3 or 4 */
-  int component;      /* HL_COMPONENT_COLOR takes opacity from alpha, if there is one; the other choice is
-                       * HL_COMPONENT_LUMINANCE */
+  int component;      /* the component that is asked for: HL_COMPONENT_COLOR takes opacity from alpha, if
+                       * there is one; HL_COMPONENT_LUMINANCE takes it from the luminance */
   bool premultiplied; /* whether alpha is multiplied into the colours */
 } hl_color_source;
 

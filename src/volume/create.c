@@ -230,7 +230,8 @@ size_t hl_volume_row_room(const hl_volume *volume) {
   return width * (in_file ? hl_voxel_type_bytes(volume->type) + stored : stored);
 }
 
-/* The numbers of a row, from the file of numbers of a volume with pages. Null if the file cannot be read. */
+/* The file's own numbers of a row of a volume with pages; they lie in a second scratch file. Null if the
+ * file cannot be read. */
 static const void *numbers_in(const hl_volume *volume, size_t j, size_t k, unsigned char *buffer) {
   size_t width = volume->dimension[0], first = (k * volume->dimension[1] + j) * width;
   float *stored = (float *)(void *)(buffer + width * hl_voxel_type_bytes(volume->type));
@@ -444,7 +445,7 @@ double hl_volume_value_within(const hl_volume *volume, size_t i, size_t j, size_
   if (volume == NULL || is_outside(volume, i, j, k)) return NAN;
   uint64_t own;
   double number = hl_row_number(number_of(volume, i, j, k, &own), 0);
-  /* a value whose float is not finite stays transparent */
+  /* a value that no finite float can hold stays transparent */
   return isfinite((float)number) ? volume->value_scale * number + volume->value_offset : NAN;
 }
 

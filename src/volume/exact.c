@@ -218,7 +218,7 @@ bool hl_exact_read(int file, hl_voxel_type type, size_t first, size_t count, con
     ssize_t got = pread(file, (unsigned char *)numbers + done, wanted - done, (off_t)(first * bytes + done));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return false;
-    if (got == 0) break; /* the rest of the file lies behind the last noted number */
+    if (got == 0) break; /* the rest of the file lies beyond the last number that was noted */
     done += (size_t)got;
   }
   memset((unsigned char *)numbers + done, 0, wanted - done);

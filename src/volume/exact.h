@@ -22,14 +22,15 @@ typedef enum hl_exact_place {
 typedef struct hl_exact {
   hl_context *context;
   hl_voxel_type type;
-  size_t first, count; /* which voxels: the number of the first one, 0 but over ranks, and how many */
+  size_t first, count; /* the voxels whose numbers are kept: the number of the first voxel, which is 0
+                        * except over ranks, and how many there are */
   hl_exact_place place;
-  atomic_bool rounds; /* whether a noted number is rounded by its float */
-  atomic_int failure; /* the system's error number if there was no room for the numbers, else 0 */
-  _Atomic(void *)
-      numbers;     /* owned; [count], of the type; zeros at first; null until a float rounds a number */
-  atomic_int file; /* owned; a file that holds the same numbers in place of memory, with holes where nothing
-                    * was noted; -1: there is none */
+  atomic_bool rounds;      /* whether a noted number is rounded by its float */
+  atomic_int failure;      /* the system's error number if there was no room for the numbers, else 0 */
+  _Atomic(void *) numbers; /* owned; [count], of the file's type; zeros at first; null until a number comes
+                            * that a float rounds */
+  atomic_int file; /* owned; a file that holds the numbers in place of memory, with holes where nothing was
+                    * noted; -1: there is none */
 } hl_exact;
 
 void hl_exact_begin(hl_context *context, hl_voxel_type type, size_t count, hl_exact_place place,
@@ -46,8 +47,8 @@ void hl_exact_note(hl_exact *exact, bool swap, const void *source, size_t first,
 hl_status hl_exact_take(hl_exact *exact, const float *stored, void **numbers, hl_error *error);
 /* Takes out the numbers of a file. *file is owned by the caller, and -1 if floats hold all numbers. */
 hl_status hl_exact_take_file(hl_exact *exact, int *file, hl_error *error);
-/* Reads `count` numbers of a file from hl_exact_take_file(), from number `first` on. stored: the stored
- * values of these voxels. False if the file cannot be read. */
+/* Reads `count` numbers of a file that hl_exact_take_file() gave, beginning with number `first`. stored:
+ * the stored values of these voxels. False if the file cannot be read. */
 bool hl_exact_read(int file, hl_voxel_type type, size_t first, size_t count, const float *stored,
                    void *numbers);
 void hl_exact_release(hl_exact *exact);

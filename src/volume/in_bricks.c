@@ -105,7 +105,7 @@ static void points_in_box(const hl_volume *volume, int axis, int64_t range[2]) {
   range[1] = (int64_t)ceil(origin + (double)volume->dimension[axis] - 0.5);
 }
 
-/* How many of the box's points along an axis a cell of a level has. */
+/* The number of the box's points along an axis that lie in a cell of a level. */
 static int64_t share_of(const int64_t box[2], int64_t cell, int level) {
   int64_t first = cell << level, end = (cell + 1) << level;
   if (first < box[0]) first = box[0];

@@ -6,18 +6,19 @@
 #include "bricks/build.h"
 #include "volume/volume.h"
 
-/* Makes a volume of a field in bricks. Its smoothing and its interpolating kernel are the same: the field of
- * the coefficients. bricks: its arrays, blocks of hl_allocate(), are taken over, also on failure; *bricks is
- * empty afterwards. grid: the voxels that stand for the field where voxels are wanted: dimensions, axis and
- * origin (of voxel (0,0,0), which is at bricks->origin in the lattice), space. Its type must be HL_VOXEL_F32,
- * its value_scale 1 and value_offset 0; its `voxels` are not read. Every voxel's centre must lie within the
- * directory. Coefficients and constants that are not finite are places without data: empty space. subject:
- * starts the error lines. *volume is owned by the caller (release it). */
+/* Makes a volume of a field in bricks. The smoothing and the interpolating kernel are the same for such a
+ * volume: both give the field of the coefficients. bricks: its arrays, blocks of hl_allocate(), are taken
+ * over, also on failure; *bricks is empty afterwards. grid: the voxels that stand for the field where
+ * voxels are wanted: dimensions, axis and origin (of voxel (0,0,0), which is at bricks->origin in the
+ * lattice), space. Its type must be HL_VOXEL_F32, its value_scale 1 and value_offset 0; its `voxels` are
+ * not read. Every voxel's centre must lie within the directory. Coefficients and constants that are not
+ * finite are places without data: empty space. subject: starts the error lines. *volume is owned by the
+ * caller (release it). */
 hl_status hl_volume_take_bricks(hl_context *context, hl_bricks *bricks, const hl_volume_description *grid,
                                 const char *subject, hl_volume **volume, hl_error *error);
 
-/* Notes how far a new volume's field is from its source, for hl_volume_get_field_error(). kind, source:
- * static. */
+/* Notes how much a new volume's field differs from its source, for hl_volume_get_field_error(). kind,
+ * source: static. */
 void hl_volume_set_field_error(hl_volume *volume, double value, const char *kind, const char *source);
 
 /* ---- for create.c ---- */
@@ -26,9 +27,9 @@ void hl_volume_set_field_error(hl_volume *volume, double value, const char *kind
 hl_status hl_volume_check_bricks(const hl_bricks *bricks, const hl_volume_description *grid,
                                  const char *subject, hl_error *error);
 
-/* Finds the statistics of a volume's coefficients: each counts as many times as its cell has cells of level
- * 0 in the volume's box, so that all together count as many times as there are voxels. No range and no mean
- * counts those that are not finite. */
+/* Finds the statistics of a volume's coefficients: each coefficient counts once for each cell of level 0
+ * that lies in its own cell and in the volume's box. So together they count as often as there are voxels.
+ * Coefficients that are not finite do not count in range and mean. */
 hl_status hl_volume_measure_bricks(hl_volume *volume, const char *subject, hl_error *error);
 
 /* The number that stands for a voxel: where voxels stand on points of the lattice, the coefficient of level

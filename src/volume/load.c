@@ -194,8 +194,8 @@ static hl_status load_folder(const char *path, hl_load_request *request, hl_volu
   return status;
 }
 
-/* Reads a store on a server. Without the caller's wish, its level is the one that a picture of this size
- * shows. */
+/* Reads a store on a server. If the caller names no level, the level is read that a picture of the given
+ * size can show. */
 static hl_status load_from_server(const char *url, hl_load_request *request, hl_volume **volume,
                                   hl_error *error) {
   enum { PIXELS = 512 };
@@ -283,7 +283,8 @@ static hl_status check_options(const hl_volume_load_options *options, hl_error *
   return HL_OK;
 }
 
-/* Turns a volume's world into another anatomical space, and logs that: x, y or both change their signs. */
+/* Turns a volume's world into another anatomical space by changing the signs of x, y or both, and logs
+ * this. */
 static void turn_into(hl_context *context, const char *path, hl_space wanted, hl_volume *volume) {
   static const double signs[][2] = {
       [HL_SPACE_RAS] = {1, 1}, [HL_SPACE_LPS] = {-1, -1}, [HL_SPACE_LAS] = {-1, 1}};

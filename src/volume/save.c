@@ -20,7 +20,10 @@
 
 /* ZLIB_WINDOW is zlib's largest window; GZIP is added to it for gzip (zlib.h). */
 enum { OUT_BYTES = 1 << 18, ZLIB_WINDOW = 15, GZIP = 16 };
-enum { MOST_SHRUNK_LABELS = 64 }; /* the values of a box are held: two megabytes for one written voxel */
+enum {
+  MOST_SHRUNK_LABELS = 64
+}; /* for each written voxel the values of its box are kept, two megabytes
+    * at most */
 
 /* The state of writing voxels. */
 typedef struct saving {
@@ -28,15 +31,15 @@ typedef struct saving {
   const hl_volume *volume;
   const hl_writer *writer;
   size_t begin[3], end[3], shrink; /* the box in voxels; each written voxel is made of shrink^3 voxels */
-  bool labels;                     /* whether it is the commonest of these, not their mean */
-  hl_volume_description grid;      /* the grid that is written */
-  const char *unit;                /* unit of its lengths, static; null if unknown */
+  bool labels;                /* whether the written voxel is the commonest of these values, not their mean */
+  hl_volume_description grid; /* the grid that is written */
+  const char *unit;           /* unit of its lengths, static; null if unknown */
   hl_output output;
-  bool packs;       /* whether bytes are packed now */
-  double *sums;     /* owned; [grid.dimensions[0]]; sums of data values */
-  uint32_t *counts; /* owned; [grid.dimensions[0]]; number of finite voxels in each sum */
-  uint64_t *boxes;  /* owned; [grid.dimensions[0]][shrink^3]; the bits of the finite values, where labels are
-                     * shrunk, or of the file's own numbers (keeps_numbers()); else null */
+  bool packs;              /* whether bytes are packed now */
+  double *sums;            /* owned; [grid.dimensions[0]]; sums of data values */
+  uint32_t *counts;        /* owned; [grid.dimensions[0]]; number of finite voxels in each sum */
+  uint64_t *boxes;         /* owned; [grid.dimensions[0]][shrink^3]; where labels are shrunk: the bits of the
+                            * finite values, or of the file's own numbers (keeps_numbers()); else null */
   unsigned char *row;      /* owned; [grid.dimensions[0]] voxels of the written type */
   void *source_row;        /* owned; a row of the volume's stored values, for volumes with pages */
   unsigned char *packed;   /* owned; [OUT_BYTES] */
@@ -178,8 +181,8 @@ static void add_row(saving *s, size_t j, size_t k) {
     }
 }
 
-/* The value that is most often among these; of equally common ones the first. Boxes have few values: each is
- * counted where it first stands. */
+/* The commonest of some values, the first of equally common ones. Boxes have few different values, so that
+ * each is counted where it stands first. */
 static uint64_t commonest(const uint64_t *values, size_t count) {
   uint64_t best = values[0];
   size_t most = 0;
@@ -195,15 +198,15 @@ static uint64_t commonest(const uint64_t *values, size_t count) {
   return best;
 }
 
-/* Puts a label's bits where they belong: among the values, or among the numbers that are written. */
+/* Stores a label's bits among the values, or among the file's own numbers that are written. */
 static void put_label(saving *s, size_t n, uint64_t bits) {
   const size_t bytes = hl_voxel_type_bytes(s->grid.type);
   if (keeps_numbers(s)) memcpy(s->row + n * bytes, &bits, bytes);
   else memcpy(&s->sums[n], &bits, sizeof bits);
 }
 
-/* The data values of row (j, k) as written, in `sums`: of the finite voxels the mean, or of labels the
- * commonest; NAN where there are none. Labels that keep their numbers stand in `row`. */
+/* The data values of row (j, k) as written, which are stored in `sums`: the mean of the finite voxels, or
+ * the commonest label; NAN where there is none. Labels that keep their own numbers are stored in `row`. */
 static void make_row(saving *s, size_t j, size_t k) {
   const size_t count = s->grid.dimensions[0], box = s->shrink * s->shrink * s->shrink;
   memset(s->sums, 0, count * sizeof *s->sums);
@@ -215,7 +218,9 @@ static void make_row(saving *s, size_t j, size_t k) {
     if (s->counts[n] == 0) s->sums[n] = NAN;
     if (s->counts[n] == 0 && keeps_numbers(s))
       memcpy(s->row + n * sizeof(double), &s->sums[n], sizeof(double));
-    if (s->counts[n] == 0) continue; /* of the types that keep numbers, only doubles have no number */
+    if (s->counts[n] == 0)
+      continue; /* among the types that keep numbers, only doubles can stand for no
+                 * number */
     if (s->labels) put_label(s, n, commonest(s->boxes + n * box, s->counts[n]));
     else if (s->counts[n] > 1) s->sums[n] /= s->counts[n];
   }
@@ -229,11 +234,11 @@ static uint16_t half_of(double value) {
   if (isnan(value)) return 0x7e00;
   if (size >= 65520) return (uint16_t)(sign | 0x7c00);
   int exponent;
-  frexp(size, &exponent); /* size = f 2^exponent with f from 0.5 to 1; of 11 bits the last is worth
+  frexp(size, &exponent); /* size = f 2^exponent with f from 0.5 to 1; the last of the 11 bits is worth
                            * 2^(exponent - 11) */
   int last = exponent - 11 > -24 ? exponent - 11 : -24;
   double units = nearbyint(ldexp(size, -last)); /* at most 2048; below 1024 only for subnormals */
-  int biased = last + 24; /* the exponent field of numbers with 1024 units or more, less one */
+  int biased = last + 24; /* the exponent field, less one, of numbers whose fraction is 1024 units or more */
   return (uint16_t)(sign | (units < 1024 ? (unsigned)units
                                          : ((unsigned)(biased + 1) << 10) + (unsigned)(units - 1024)));
 }

@@ -59,8 +59,8 @@ static bool convolve(hl_context *context, const gaussian *kernel, const size_t d
   return true;
 }
 
-/* Data values as floats; those that are not finite become 0, and 0 in finite, the others 1. line: room
- * for a row of voxels. */
+/* Data values as floats; values that are not finite become 0. finite: 0 for these, 1 for all others. line:
+ * room for a row of voxels. */
 static void take_values(const hl_volume *volume, float *line, float *values, float *finite) {
   const size_t row = volume->dimension[0];
   for (size_t k = 0, n = 0; k < volume->dimension[2]; k++)
@@ -89,7 +89,7 @@ static void weigh(const hl_volume *volume, float *line, float *values, const flo
     }
 }
 
-/* Makes a volume of the smoothed values, with the grid of the first one and its place in the world. */
+/* Makes a volume of the smoothed values, with the grid and the place of the original volume. */
 static hl_status adopt(const hl_volume *volume, float *values, hl_volume **smoothed, hl_error *error) {
   hl_volume_description d = hl_volume_own_grid(volume);
   d.type = HL_VOXEL_F32;

@@ -312,7 +312,7 @@ typedef struct ranking {
   const hl_volume *volume;
   void *buffer;                   /* the buffer of `walk` */
   uint64_t upper[HALVES], finite; /* counts by the upper half of the key, and the sum of these counts */
-  uint64_t lower[HALVES];         /* counts by the lower half of the keys whose upper half is `opened` */
+  uint64_t lower[HALVES];         /* counts, by the lower half, of the keys whose upper half is `opened` */
   uint32_t opened;                /* HALVES if there is none yet */
 } ranking;
 
@@ -360,7 +360,8 @@ static bool open_upper(ranking *r, uint32_t upper) {
   return !w.cancelled;
 }
 
-/* The place in the counts where the rank lies; *rank becomes the rank within the place. */
+/* Finds the place in the counts at which a rank lies; *rank becomes the rank among the values of this
+ * place. */
 static uint32_t place_of(const uint64_t *counts, uint64_t *rank) {
   uint32_t place = 0;
   while (place + 1 < HALVES && *rank >= counts[place]) *rank -= counts[place++];
@@ -403,7 +404,7 @@ static bool count_digits(ranking *r, uint64_t prefix, int known) {
   return true;
 }
 
-/* Finds the file's own number that `rank` finite voxels precede, as a double. */
+/* Finds the file's own number at a rank, as a double: `rank` finite voxels precede it in ascending order. */
 static bool number_at(ranking *r, uint64_t rank, double *number) {
   uint64_t key = 0;
   for (int known = 0; known < 64; known += 16) {

@@ -44,7 +44,8 @@ typedef struct hl_channel {
   char name[HL_CHANNEL_NAME_BYTES]; /* printable; "" if absent */
   bool has_color;
   double srgb[3];
-  double window[2]; /* data values between which the channel is to be shown; equal if not told */
+  double window[2]; /* data values between which the channel is to be shown; two equal values: the file
+                     * does not say it */
 } hl_channel;
 
 /* A named label of a segmentation. */
@@ -88,13 +89,13 @@ struct hl_volume {
   affine3 index_to_world; /* voxel centres at integer indices */
   hl_voxel_type type;     /* the type in the file */
   hl_space space;
-  const char *unit;        /* unit of lengths in the world, static; null if unknown */
-  bool is_anatomical;      /* whether the space is meant, as in DICOM and NIfTI; other programs write
-                            * left-posterior-superior for any data */
-  double window[2];        /* data values between which the file asks to show greys; NAN if not told */
+  const char *unit;   /* unit of lengths in the world, static; null if unknown */
+  bool is_anatomical; /* whether the space is meant, as in DICOM and NIfTI; other programs write
+                       * left-posterior-superior for any data */
+  double window[2]; /* data values between which the file asks to show greys; NAN: the file does not say it */
   double minimum, maximum; /* data values over finite voxels */
-  uint64_t whole_range[2]; /* the same as 64-bit integers of `type`, where doubles round the file's numbers
-                            * (hl_volume_is_exact()) */
+  uint64_t whole_range[2]; /* least and greatest value as 64-bit integers of `type`, where doubles round
+                            * the file's numbers (hl_volume_is_exact()) */
   double mean;
   uint64_t nonfinite_count;
   uint64_t histogram[HL_HISTOGRAM_BINS];
@@ -111,12 +112,14 @@ struct hl_volume {
   size_t label_map_count;
   bool has_surroundings; /* whether the data value around the content is known */
   double surroundings;
-  bool is_log_density; /* whether values are logarithms of the density of particles (particles.c) */
-  double smoothing; /* voxels: the standard deviation that the voxels were smoothed by (guess/smoothing.c) */
+  bool is_log_density;          /* whether values are logarithms of the density of particles (particles.c) */
+  double smoothing;             /* standard deviation, in voxels, of the Gaussian that smoothed the voxels
+                                 * (guess/smoothing.c) */
   atomic_bool smoothing_chosen; /* hl_volume_smooth() was asked for it, or for none */
-  double surface_slope;         /* for an occupancy: the slope per voxel where the occupancy passes 1/2 */
+  double surface_slope;         /* for an occupancy: the slope, per voxel, at the place where the occupancy
+                                 * passes 1/2 */
   _Atomic(struct hl_data_analysis *)
-      analysis; /* owned block; the findings of guess/analysis.h; null if not asked yet */
+      analysis; /* owned block; the findings of guess/analysis.h; null until they are asked for */
   /* Data that other rooms keep with the volume; owned, and released with it. */
   atomic_flag shelf_lock; /* held while the shelf is accessed */
   void *shelf;
@@ -198,7 +201,8 @@ typedef enum hl_whole {
 /* The same for one voxel of any volume. */
 hl_whole hl_volume_whole(const hl_volume *volume, size_t i, size_t j, size_t k, int64_t *whole);
 
-/* The description of a volume's grid: dimensions, axes, origin and space. The rest has its defaults. */
+/* The description of a volume's grid: dimensions, axes, origin and space. Its other members have their
+ * defaults. */
 hl_volume_description hl_volume_own_grid(const hl_volume *volume);
 
 /* Makes a volume of packed voxels that are already in stored form (hl_voxels_store()), in a block of

@@ -21,8 +21,8 @@ static struct {
   hl_context *context, *sealed;           /* owned; `sealed` opens no file */
   hl_scene *scene;                        /* owned; what is open */
   hl_preview *preview;                    /* owned; null: not yet made */
-  hl_renderer *renderer, *quick, *picker; /* owned; null: not yet made; `quick` makes frames while something
-                                             moves, `picker` finds depths, in tiny pictures */
+  hl_renderer *renderer, *quick, *picker; /* owned; null: not yet made. `quick` makes frames while
+                                           * something moves; `picker` finds depths by tiny pictures */
   char *text;                             /* owned; from the page */
   unsigned char *answer;                  /* owned; from malloc */
   size_t answer_bytes;
@@ -124,7 +124,8 @@ static hl_status load_alone(const char *path, hl_scene **scene, hl_error *error)
   return status;
 }
 
-/* Loads a file, once more without what the renderers hold where memory is short. */
+/* Loads a file. If memory is short, the renderers release what they hold, and the file is loaded once more.
+ */
 static hl_status load(const char *path, hl_scene **scene, hl_error *error) {
   hl_status status = load_alone(path, scene, error);
   if (status != HL_ERROR_MEMORY) return status;
@@ -132,7 +133,7 @@ static hl_status load(const char *path, hl_scene **scene, hl_error *error) {
   return load_alone(path, scene, error);
 }
 
-/* Takes a scene in place of what is open, and answers with its start.json. */
+/* Makes a scene the open one, in place of the scene that was open, and answers with its start.json. */
 static int show(hl_scene *scene, const char *title) {
   forget_renderers();
   hl_preview_destroy(web.preview);
@@ -208,7 +209,7 @@ static hl_status encode_rgba(const hl_image *image, const hl_image_write_options
   return status;
 }
 
-/* The same bytes as `halflight render` writes of the scene. */
+/* Makes a picture's file with the bytes that `halflight render` writes for the scene. */
 static hl_status encode_file(const hl_scene *scene, const hl_image *image, const char *format,
                              hl_image_write_options *options, bool metadata, hl_error *error) {
   char *json = NULL;
@@ -263,7 +264,8 @@ int web_frame(size_t length, const char *format, int depth, int metadata, int mo
   hl_renderer **renderer = coarser ? &web.quick : &web.renderer;
   const hl_scene *rendered = coarser ? quick : scene;
   if (status == HL_OK) status = render(renderer, rendered, format, depth, metadata != 0, &error);
-  if (status == HL_ERROR_MEMORY) { /* once more, without what the renderers hold of earlier frames */
+  if (status == HL_ERROR_MEMORY) { /* once more, after the renderers have released what they hold of
+                                    * earlier frames */
     forget_renderers();
     status = render(renderer, rendered, format, depth, metadata != 0, &error);
   }
@@ -327,7 +329,8 @@ int web_depth(size_t length) {
   hl_status status = read_scene(length, &scene, &error);
   if (status != HL_OK) return answer_error(status, &error);
   status = find_depth(scene, &text, &error);
-  if (status == HL_ERROR_MEMORY) { /* once more, without what the renderers hold of earlier frames */
+  if (status == HL_ERROR_MEMORY) { /* once more, after the renderers have released what they hold of
+                                    * earlier frames */
     forget_renderers();
     status = find_depth(scene, &text, &error);
   }

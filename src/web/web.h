@@ -1,5 +1,5 @@
-/* web/web.h - the library for a page without a server: what its worker calls of the WebAssembly file
- * (page/engine.js).
+/* web/web.h - the library for a page without a server: the functions of the WebAssembly file that the
+ * page's worker calls (page/engine.js).
  *
  * One scene is open at a time. A call that can fail returns an hl_status; web_answer() is then its result, or
  * the error's line. Text and answers lie in the WebAssembly file's memory. */
@@ -9,8 +9,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* 1 if a product and a sum are rounded once, together, as pictures need. With relaxed SIMD, engines may
- * choose to round twice; then it is 0. */
+/* Whether this engine rounds a product and a sum once, together, as pictures need: 1. With relaxed SIMD,
+ * engines may choose to round twice: 0. */
 int web_fuses(void);
 
 /* Makes the context, before all other calls. mebibytes: of memory at most. */
@@ -23,12 +23,14 @@ char *web_text(size_t bytes);
  * start.json. */
 int web_open(const char *title);
 
-/* Adds the file, folder or scene at a path to the text's scene, whose volumes are of the open one, and opens
- * both in place of it. path_and_title: two texts, each with a zero at its end. Answer: start.json. */
+/* Adds the file, folder or scene at a path to the text's scene, whose volumes are those of the open scene.
+ * The result becomes the open scene. path_and_title: two texts, each with a zero at its end. Answer:
+ * start.json. */
 int web_join(size_t length, const char *path_and_title);
 
-/* Answer: the text's scene, whose volumes are of the open one, with all its defaults written out, and with a
- * look and a light rig where they are not "": two texts, each with a zero at its end. */
+/* Answer: the text's scene, whose volumes are those of the open scene, with all defaults written out.
+ * look_and_rig: the names of a look and of a light rig that are applied first, as two texts, each with a
+ * zero at its end; "" for none. */
 int web_complete(size_t length, const char *look_and_rig);
 
 /* Renders the text's scene, which names the volumes of the open one. format: "png", "npy", or "rgba", bytes
@@ -52,7 +54,8 @@ size_t web_answer_bytes(void);
 /* Bytes held for what is open. */
 double web_memory_held(void);
 
-/* What the page gives: whether the call that runs is no longer wanted, and a place for how far a file is. */
+/* Functions that the page gives: the first says whether the running call is no longer wanted, the second
+ * takes how much of a file has been read. */
 __attribute__((import_module("page"), import_name("cancelled"))) int web_cancelled(void);
 __attribute__((import_module("page"), import_name("progress"))) void web_progress(double fraction);
 

@@ -114,7 +114,8 @@ static bool is_film(const char *path) {
   return false;
 }
 
-/* "turn-frames" for "turn.mp4"; of a folder, its own name without a slash at the end. */
+/* The folder of a film's pictures: "turn-frames" for the film "turn.mp4"; for an output that is a folder,
+ * the folder's own name without a slash at the end. */
 static char *name_folder(const char *output, bool film) {
   char *folder = NULL;
   const char *dot = strrchr(output, '.');
@@ -163,14 +164,14 @@ static double frames_per_second(const animate_job *job) {
   return job->values[ANIMATE_FPS].given ? job->values[ANIMATE_FPS].number[0] : 30;
 }
 
-/* The sweep's key: from the left, by its own azimuth of 75 degrees to either side, and back, in two seconds.
- */
+/* Writes the key of a sweep: in two seconds the camera moves from the left by 75 degrees to either side of
+ * its own azimuth, and back. */
 static void write_sweep(const animate_job *job, char text[80]) {
   int half = (int)fmax(1, frames_per_second(job));
   snprintf(text, 80, "lights.0.azimuth=0:-75,%d:75,%d:-75", half, 2 * half);
 }
 
-/* What the options let move, and the texts that the film's options point to. */
+/* The numbers that the options let move, and the texts to which the film's options point. */
 typedef struct motion {
   const char *keys[MAXIMUM_REPEATS + 1];
   char sweep[80];
@@ -292,7 +293,8 @@ static int finish_series(const animate_job *job, const cli_value *values) {
   return exit_code;
 }
 
-/* Pictures of a series of files, which are then joined. A key's frames are the files' numbers. */
+/* Makes the pictures of a series of files, which are then joined to a film. A key's frames are the files'
+ * numbers. */
 static int run_series(animate_job *job) {
   cli_value *values = calloc(RENDER_OPTION_COUNT, sizeof *values);
   char *pattern = NULL;

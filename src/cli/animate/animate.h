@@ -13,14 +13,14 @@ typedef struct animate_frames {
   const char *folder;
   frames_style style;
   int digits; /* number of digits of a picture's number */
-  int done;   /* number of pictures that are there already, among those that this run renders */
+  int done;   /* number of pictures that are there already, among the pictures that this run makes */
   int rendered;
 } animate_frames;
 
 /* The path of a picture; path: [size]. */
 void animate_frame_path(const animate_frames *frames, int frame, char *path, size_t size);
 
-/* Whether the picture is there, made of the frame's own scene. */
+/* Whether a frame's picture is there and was made of the frame's own scene. */
 bool animate_frame_is_there(const animate_frames *frames, int frame);
 
 /* Renders the pictures that are missing: every `parts`-th one, beginning with number `part` (from 0). Draws

@@ -38,7 +38,7 @@ static hl_status do_frame(animate_frames *frames, hl_renderer *renderer, int fra
   char path[PATH_BYTES];
   hl_scene *scene = NULL;
   double began = clock_seconds();
-  /* The scene that a picture carries does not tell what is drawn over it. */
+  /* The scene that a picture carries does not say what is drawn over the picture. */
   if (overlay_is_any(frames->style.overlay) || !animate_frame_is_there(frames, frame)) {
     animate_frame_path(frames, frame, path, sizeof path);
     hl_status status = film_scene(frames->film, frame, &scene, error);

@@ -175,8 +175,8 @@ static bench_sample sample_of(double frame, const hl_render_statistics *statisti
   return sample;
 }
 
-/* Renders one frame of one setting; frame -1 is the warm-up. Where sub-lights are not supported, their
- * setting is left out from then on. */
+/* Renders one frame of one setting; frame -1 is a warm-up, which is not measured. Where sub-lights are not
+ * supported, their setting is left out from then on. */
 static int run_frame(bench_job *job, enum bench_setting setting, int frame) {
   bench_result *result = job->result;
   bench_run *run = &result->run[setting];
@@ -202,7 +202,8 @@ static int run_frame(bench_job *job, enum bench_setting setting, int frame) {
   return EXIT_CODE_OK;
 }
 
-/* Settings take turns within each frame: a machine that slows down then slows all settings alike. */
+/* Runs all frames. Settings take turns within each frame: a machine that slows down then slows all settings
+ * alike. */
 static int run_frames(bench_job *job) {
   for (int frame = -1; frame < job->result->frames; frame++)
     for (int setting = 0; setting < SETTING_COUNT; setting++) {

@@ -56,7 +56,7 @@ typedef struct bench_sample {
 
 typedef struct bench_run {
   bool supported;
-  bench_sample first;              /* the warm-up's first frame: includes preparing the volumes */
+  bench_sample first;              /* the first frame of the warm-up, which includes preparing the volumes */
   bench_sample *samples;           /* owned; [frames] */
   hl_render_statistics statistics; /* of the last frame */
 } bench_run;

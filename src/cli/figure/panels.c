@@ -174,7 +174,7 @@ static bool is_own_key(const char *key) {
   return false;
 }
 
-/* A length in millimetres: a number, or a text as "89mm". */
+/* Reads a length in millimetres: a number, or a text such as "89mm". */
 static bool read_length(const json_t *value, double *millimetres) {
   if (json_is_number(value)) *millimetres = json_number_value(value);
   const char *text = json_string_value(value);
@@ -203,8 +203,8 @@ static int read_corner(const page_reading *reading, figure_panel *panel, const j
   return EXIT_CODE_OK;
 }
 
-/* Joins an object's options, `above`, and the options under it, `below`, which count where the object has
- * none. Both may be null. */
+/* Joins an object's options, `above`, with the options `below`, which count where the object has none of
+ * that name. Both may be null. */
 static json_t *join(const json_t *below, const json_t *above) {
   json_t *joined = json_object();
   const char *key;

@@ -9,7 +9,7 @@ enum { FIGURE_MOST_PANELS = 64 };
 
 /* Where an inset lies in another panel. */
 typedef struct figure_inset {
-  int of;            /* number of the panel that holds the inset; -1: the panel is no inset */
+  int of;            /* the number of the panel in which this inset lies; -1: the panel is no inset */
   double part;       /* the inset's width over that panel's width */
   bool right, lower; /* the corner of that panel */
 } figure_inset;

@@ -194,8 +194,8 @@ static void print_label_maps(json_writer *json, const char *path, const hl_volum
   if (json != NULL) json_close(json);
 }
 
-/* Whether a file's only array says no more than its type and its time steps, which have lines of their own.
- */
+/* Whether a file's only array has nothing to tell but its type and its time steps, which have lines of
+ * their own. */
 static bool is_plain(const hl_volume *volume, const hl_volume_array *array) {
   hl_volume_selection s = {.struct_size = sizeof s};
   bool steps = hl_volume_get_selection(volume, &s) == HL_OK && array->components == s.times;
@@ -312,7 +312,8 @@ static void print_histogram(const hl_volume_info *info) {
   printf("  %11.5g\n", info->range[1]);
 }
 
-/* A data value: whole numbers with all their digits. end: 0, the least, or 1, the greatest. */
+/* The text of the volume's least or greatest data value; whole numbers have all their digits. end: 0: the
+ * least; 1: the greatest. */
 static const char *value_text(const hl_volume *volume, int end, double value,
                               char text[HL_NUMBER_TEXT_BYTES]) {
   bool whole = value == floor(value) && fabs(value) <= 0x1p64;

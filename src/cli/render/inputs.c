@@ -12,8 +12,8 @@
 #include "cli/input.h"
 #include "render.h"
 
-/* Errors of a bare volume's scene lose "/volumes/0/file", as INPUT is that file. An error that already begins
- * with the input's name, which may begin with a slash too, is left alone. */
+/* Errors of a bare volume's scene lose "/volumes/0/file", because INPUT is that file. An error that already
+ * begins with the input's name, which may begin with a slash too, is left alone. */
 void render_name_scene(const char *input, bool bare, hl_error *error) {
   char line[sizeof error->message];
   if (error->message[0] != '/' || strncmp(error->message, input, strlen(input)) == 0) return;

@@ -17,7 +17,7 @@ void render_part_meshes(hl_context *context, char **operands, char **meshes, cha
   meshes[count] = others[left] = NULL;
 }
 
-/* Loads the meshes; *count of them were, of which the caller releases each. */
+/* Loads the meshes; *count becomes the number of loaded meshes; the caller releases each of them. */
 static hl_status load_meshes(hl_context *context, char *const *paths, size_t first, hl_scene_mesh *added,
                              size_t *count, hl_error *error) {
   hl_status status = HL_OK;

@@ -14,7 +14,7 @@ static const double default_pixels_per_inch = 300;
 
 /* ---- reading ---- */
 
-/* "89mm", "8.9cm", "3.5in" or "252pt" in millimetres; 0: no such length. */
+/* The millimetres of a length as text, "89mm", "8.9cm", "3.5in" or "252pt"; 0: the text is no such length. */
 static double read_width(const char *text) {
   char *rest;
   double number = hl_plain_number(text, &rest);
@@ -54,7 +54,8 @@ static int read_scale_bar(const cli_value *value, cli_overlay *made) {
       value->text);
 }
 
-/* "TEXT@X,Y", fractions of the picture, or "TEXT@X,Y,Z", a point of the world. */
+/* Reads the value of --annotate: "TEXT@X,Y" with fractions of the picture, or "TEXT@X,Y,Z" with a point of
+ * the world. */
 static int read_annotation(const char *text, cli_overlay *made) {
   const char *at = strrchr(text, '@');
   hl_annotation *note = &made->notes[made->overlay.annotation_count];

@@ -28,7 +28,8 @@ typedef struct render_job {
   hl_image *image;      /* owned */
   render_layers layers; /* owned */
   cli_overlay overlay;  /* owned */
-  hl_ranks *ranks;      /* owned; of --strips-over-ranks and --volume-over-ranks; null: alone */
+  hl_ranks *ranks;      /* owned; the ranks of --strips-over-ranks and --volume-over-ranks; null: this
+                         * process is alone */
   double started;       /* seconds of clock_seconds() */
   render_result result;
 } render_job;
@@ -52,7 +53,8 @@ static bool prints_text(const cli_value *values) {
   return values[RENDER_PRINT_SCENE].given || values[RENDER_PRINT_PLAN].given;
 }
 
-/* INPUT's name with the format's extension. Where INPUT is NAME.png itself, "NAME-again.png". */
+/* The default name of the picture: INPUT's name with the format's extension; if INPUT itself is NAME.png,
+ * "NAME-again.png". */
 static char *default_output(const render_job *job) {
   const char *extension = wanted_extension(job->values);
   bool again = has_extension(job->input, ".png") && strcmp(extension, ".png") == 0;
@@ -261,8 +263,8 @@ static int job_write(render_job *job) {
   return status == HL_OK ? exit_code : host_fail(&job->host, PHASE_RUN, status, &error);
 }
 
-/* Finds out, for the report, which kind of data a bare volume was taken for, and the next best look; only if
- * its transfer function was chosen by this kind. */
+/* Finds out, for the report, which kind of data a bare volume was taken for, and the next best look; This
+ * is done only if the volume's transfer function was chosen by this kind. */
 static void find_choice(render_job *job) {
   const hl_scene_description *description = job->result.description;
   bool wanted = job->values[RENDER_JSON].given || (!job->host.quiet && isatty(STDERR_FILENO));

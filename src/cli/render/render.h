@@ -105,8 +105,8 @@ extern const cli_choice instruction_set_choices[];
 
 extern const cli_option render_options[RENDER_OPTION_COUNT];
 
-/* Whether an option is about a single picture or its file. Commands that show INPUT otherwise do not have it.
- */
+/* Whether an option is about a single picture or its file. Commands that do not make a single picture do
+ * not have such options. */
 bool render_is_of_picture(enum render_option which);
 
 /* Whether the operands or the options ask for a picture of each of several files; makes these pictures.
@@ -141,8 +141,8 @@ int render_add_meshes(cli_host *host, char *const *paths, size_t first, bool bar
 /* Whether the options say that a bare volume is a label map itself. */
 bool render_is_label_map(const cli_value *values);
 
-/* A scene of such a volume's layers, named by --label-table; of its labels those of --show show, and those of
- * --show that it lacks are passed over. */
+/* Makes the scene of a label map's layers, whose labels get their names from --label-table. The labels that
+ * --show names show; labels of --show that the map lacks are passed over. */
 hl_status render_load_label_map(cli_host *host, const cli_value *values, const char *path,
                                 const hl_volume_load_options *reading, hl_scene **scene, hl_error *error);
 
@@ -150,10 +150,12 @@ hl_status render_load_label_map(cli_host *host, const cli_value *values, const c
 int render_load_volumes(cli_host *host, const cli_value *values, char **operands, bool *bare,
                         hl_scene **scene);
 
-/* The channels that --channel names; *count: 0: all, or the option was not given. Refuses others. */
+/* Reads the channels that --channel names. *count becomes their number, or 0 for all channels and where the
+ * option was not given. Other values are refused. */
 int render_channels(const cli_value *values, int channels[HL_CHANNELS_MOST], size_t *count);
 
-/* Whether the options ask for more than one channel: "all" may be one, too. */
+/* Whether --channel may ask for more than one channel; "all" counts as several, though a file may have only
+ * one. */
 bool render_has_channels(const cli_value *values);
 
 /* The reading of volumes that the options ask for. */
@@ -204,17 +206,17 @@ int render_layers_check(const cli_value *values);
  * code. */
 int render_overlay_read(const cli_value *values, cli_overlay *overlay);
 
-/* Refuses such options if they contradict each other or the file that is written. path: the name of the file,
- * or
- * "-.png" and so on. */
+/* Refuses options that draw over pictures if they contradict each other or the format of the picture's
+ * file. path: the name of the file, or "-.png" and so on. */
 int render_overlay_check_options(const cli_value *values, const char *path);
 
 /* Sets --size to width x height, as if the user had typed it. text: the caller's room for the typed text, to
  * which the value of --size points afterwards. */
 void render_set_size(cli_value *size, double width, double height, char text[RENDER_SIZE_TEXT]);
 
-/* Sets --size to what --width and --dpi ask for, if it is not given. The picture has the shape of this scene,
- * or of a bare volume's picture (null). text: room for the text of --size, which the values borrow. */
+/* Sets --size to what --width and --dpi ask for, if it is not given. The picture has the shape of this
+ * scene's picture; null: the shape of a bare volume's picture. text: room for the text of --size, which the
+ * values borrow. */
 void render_overlay_set_size(cli_value *values, const hl_scene *scene, char text[RENDER_SIZE_TEXT]);
 
 typedef struct render_seconds {
@@ -226,7 +228,8 @@ typedef struct render_result {
   const char *input, *output;
   const char *taken_for;    /* the kind of data that the transfer function was chosen for; null: not chosen */
   const char *next_look;    /* the look that shows such data next best; null: a look was asked for */
-  const char *field_errors; /* the scene's, as JSON; null: of none of its volumes known */
+  const char *field_errors; /* JSON that says how much the fields of the scene's volumes differ from their
+                             * files; null: no difference is known */
   bool reference;
   const hl_scene_description *description;
   hl_render_statistics statistics;

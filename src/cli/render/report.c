@@ -18,8 +18,8 @@ static const char *soft_method_name(hl_soft_method method) {
   return choice->name == NULL ? "unknown" : choice->name;
 }
 
-/* The most memory that this program ever had resident. Linux tells it in /proc; elsewhere ru_maxrss (KiB)
- * does, which may include the memory of the program that started this one. */
+/* The most memory that this program ever had resident. On Linux, /proc has this number; elsewhere ru_maxrss
+ * has it (KiB), which may include the memory of the program that started this one. */
 static uint64_t peak_memory_bytes(void) {
   unsigned long long kibibytes = 0;
   FILE *status = fopen("/proc/self/status", "r");

@@ -24,7 +24,7 @@ bool render_are_scenes(char **operands) {
          has_extension(pattern, ".json");
 }
 
-/* Writes the picture's name: of -o 'folder/%s.png' with the scene's name in place of %s. */
+/* Writes the picture's name: -o 'folder/%s.png' with the scene's name in place of %s. */
 static int name_picture(const char *output, const char *scene, char path[PATH_BYTES]) {
   const char *slash = strrchr(scene, '/'), *name = slash != NULL ? slash + 1 : scene,
              *mark = strstr(output, "%s");

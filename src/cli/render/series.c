@@ -96,8 +96,8 @@ static int load_first(series_job *job, bool *bare) {
   return exit_code;
 }
 
-/* Moves to the time of a picture: the scene of a file is replaced by the scene of a film's frame, in which
- * the numbers of keys have their values at this time. */
+/* Moves to the time of a picture: *scene, the scene of a file, is replaced by the scene of a film's frame,
+ * in which the numbers of keys have their values at this time. */
 static hl_status move(const series_job *job, int number, hl_scene **scene, hl_error *error) {
   if (job->motion == NULL) return HL_OK;
   film_options options = *job->motion;
@@ -139,7 +139,7 @@ static int make_scene(series_job *job) {
 
 /* ---- pictures ---- */
 
-/* Whether the picture is there, of this scene, and not older than the file. */
+/* Whether a picture is there, was made of this scene, and is not older than the file. */
 static bool is_there(const series_job *job, int number, const hl_scene *scene, const char *path) {
   struct stat picture, file;
   if (overlay_is_any(&job->overlay)) return false; /* the scene that it carries does not tell of it */
@@ -149,8 +149,8 @@ static bool is_there(const series_job *job, int number, const hl_scene *scene, c
   return frames_have_scene(&job->host, path, scene);
 }
 
-/* Whether the picture is there. The scene's text tells, for which a volume or a mesh need not be read: the
- * first file's stands in. */
+/* Whether the picture is there. Whether it was made of the right scene is seen from the scene's text. For
+ * the text no volume or mesh need be read: the first file's takes its place. */
 static bool is_made(series_job *job, int number, const char *path) {
   hl_scene *scene = NULL;
   hl_error error = {0};

@@ -164,7 +164,7 @@ int series_load_volume(series_job *job, int number, int channel, hl_volume **vol
 
 /* ---- the scene of a file ---- */
 
-/* Makes the first file's scene of other volumes; null: of another first mesh. */
+/* Makes the first file's scene anew with other volumes; volumes: null: with another first mesh. */
 static hl_status make_scene(const series_job *job, hl_scene_volume *volumes, size_t volume_count,
                             const hl_scene_mesh *mesh, hl_scene **scene, hl_error *error) {
   hl_scene_description description = *hl_scene_describe(job->scene);
@@ -198,8 +198,8 @@ static size_t volumes_of_file(const series_job *job) {
   return count;
 }
 
-/* Volumes in place of the first file's; null: the first file's voxels. Bare label maps have their own labels.
- * The others, the label maps of --labels, stay. */
+/* Makes a scene with other volumes in place of the first file's. volumes: null: the first file's voxels
+ * stay. Bare label maps get their own labels. The label maps of --labels stay. */
 static hl_status scene_of_volumes(const series_job *job, int number, hl_volume *const *loaded,
                                   hl_scene **scene, hl_error *error) {
   const hl_scene_description *description = hl_scene_describe(job->scene);

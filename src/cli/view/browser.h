@@ -11,8 +11,8 @@ typedef struct browser_page {
   char path[PATH_MAX];
 } browser_page;
 
-/* Opens the URL in the user's browser, by way of a file that stays until browser_forget(). Where there is no
- * screen, or no browser opens, the user has the URL. */
+/* Opens the URL in the user's browser, by way of a file that stays until browser_forget(). Where there is
+ * no screen, or no browser opens, the user must open the URL. */
 void browser_open(const char *url, browser_page *page);
 /* Removes the file; harmless where there is none. */
 void browser_forget(browser_page *page);

@@ -29,7 +29,7 @@ enum { MOST_PATHS = 1024 };
 
 /* The absolute paths that a changed description borrows. */
 typedef struct path_list {
-  const char *folder; /* where relative names begin; null: in the current folder */
+  const char *folder; /* the folder from which relative names start; null: the current folder */
   char *paths[MOST_PATHS];
   size_t count;
 } path_list;

@@ -5,8 +5,8 @@
 
 #include "server/server.h"
 
-/* Gives the scene absolute paths, so that the page's scene can be rendered from any folder. folder: where its
- * names begin; null: in the current folder. */
+/* Replaces the names of files in a scene by absolute paths, so that the page's scene can be rendered from
+ * any folder. folder: the folder from which the scene's names start; null: the current folder. */
 hl_status view_name_absolutely(hl_context *context, const char *folder, hl_scene **scene, hl_error *error);
 
 /* The scene of a file: a scene, a mesh or a volume. context: a hl_context, of the scene. */

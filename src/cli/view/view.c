@@ -37,7 +37,7 @@ static const cli_option view_options[VIEW_OPTION_COUNT] = {
          .help = "print the URL, and open no browser (default: one is\nopened where there is a screen)"},
 };
 
-/* The options of `render` that say what is shown and how, but for those that the page sets by itself. */
+/* The options of `render` that say what is shown and how, without those that the page sets by itself. */
 static bool has_render_option(size_t row) {
   switch ((enum render_option)row) {
     case RENDER_SIZE:

@@ -180,7 +180,8 @@ DEVICE float extinction_towards(const volume_data *volume, const slab_sample *s,
 typedef struct light_depths {
   float enter[CHANNELS], more[CHANNELS];
 #if BOXED
-  float close[CHANNELS][NEAR_PIXELS]; /* the depths at the pixels around the sample, from the face on */
+  float close[CHANNELS][NEAR_PIXELS]; /* the optical depths at the pixels around the sample, from the face
+                                       * on */
   int face;                           /* the sample is near a face of the box */
   float beside;                       /* how much the face counts, 0 to 1 */
   float before_enter[CHANNELS], before_more[CHANNELS];

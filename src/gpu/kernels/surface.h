@@ -129,7 +129,8 @@ DEVICE float power_of_depth(float h1, float h2) {
   return left;
 }
 
-/* Finds them for a volume with several surfaces. light, outside: T and Y before the slab. */
+/* Finds the fractions k and k' (kept_light) for a volume with several surfaces. light, outside: T and Y
+ * before the slab. */
 DEVICE kept_light kept_of_several(const volume_data *volume, table_coordinate a, table_coordinate b,
                                   const way_sums *sums, float way, float depth, float even, float light,
                                   float outside) {
@@ -165,8 +166,8 @@ DEVICE float skin_of_axis(float from, float to, float low, float high, float sca
   return skin;
 }
 
-/* How much the matter on a light's ray belongs to a face of the box in a slab. in_index: of
- * the sheet before the slab; the next one's follows. */
+/* How much the matter on a light's ray belongs to a face of the box in a slab. in_index: the rays in index
+ * space at the sheet before the slab; the rays at the next sheet follow. */
 DEVICE float skin_of_faces(GLOBAL const plan_volume *volume, GLOBAL const plan_rays *in_index,
                            int perspective, float u, float v) {
   const vector from = position_on(in_index, perspective, u, v),

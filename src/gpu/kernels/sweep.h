@@ -28,11 +28,12 @@ DEVICE sheet_way no_sheets(void) {
 
 /* Finds the densities of a pixel on a sheet and on the sheet before, where they are needed. The sheet's own
  * density is needed where the cell may show something, and both are needed where one of the two shows
- * something. Where one member of a pack needs its density, all members of the pack find theirs. At the call,
- * `after` of *way belongs to the sheet before. starts: nothing is known of the sheet before, and only this
- * sheet's density is wanted. rays: the rays at the sheet. speed: voxels that the ray advances from sheet to
- * sheet, along the axis where it is fastest. Returns the number of sheets to the next one at which the ray
- * may meet anything. Two passes go through one piece of code, which computes the sums. */
+ * something. Where one member of a pack needs its density, all members of the pack find theirs. At the
+ * call, the member `after` of *way belongs to the sheet before. starts: nothing is known of the sheet
+ * before, and only this sheet's density is wanted. rays: the rays at the sheet. speed: voxels that the ray
+ * advances from sheet to sheet, along the axis where it is fastest. Returns the number of sheets to the
+ * next one at which the ray may meet anything. Two passes go through one piece of code, which computes the
+ * sums. */
 DEVICE int fill_way(const volume_data *volume, GLOBAL const plan_rays *rays, int perspective, float u,
                     float v, float speed, int starts, sheet_way *way) {
   GLOBAL const plan_volume *plan = volume->plan;
@@ -105,9 +106,9 @@ typedef struct sweep_data {
   GLOBAL const int *shown_from; /* [tiles][16] */
   GLOBAL unsigned *counts;      /* [256]: number of samples composited, tile t counts at t % 256; and [runs]:
                                  * lengths of the lists */
-  /* Every other run has its own copy of this array and the next two; [slabs of a run][256 tiles][4]; for a
-   * pixel's slab: the densities on its two sheets; later the light that it sends to the eye, and its opacity,
-   * -1 where nothing is seen. */
+  /* Even and odd runs have a copy each of this array and of the next two. [slabs of a run][256 tiles][4];
+   * for a pixel's slab: the densities on its two sheets; later the light that it sends to the eye, and its
+   * opacity, -1 where nothing is seen. */
   GLOBAL float *slots;
   GLOBAL unsigned *list;  /* [slabs of a run * 256 tiles]; the slots in use */
   GLOBAL unsigned *masks; /* [256 tiles]; bit k: the pixel has a slot for the run's k-th slab */

@@ -5,7 +5,8 @@
 #include "json/color_space.h"
 #include "json/parts.h"
 
-/* Most points of a foreign function, whose pieces must stay below HL_LIMIT_POINTS. */
+/* The greatest number of points of a foreign function. The pieces that are made of them must stay below
+ * HL_LIMIT_POINTS. */
 enum { HL_FOREIGN_NODES = 2048 };
 
 /* A point: an opacity or an sRGB colour at a value. Midpoint and sharpness shape the segment to the next

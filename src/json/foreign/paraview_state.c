@@ -10,9 +10,8 @@
  * writes colour maps with the same names.
  *
  * ParaView's boxes are Gaussians that are cut off at their sides (vtkPVTransferFunction2DBox): where the
- * Gaussian has the value g, opacity is alpha g. Halflight's weights are of extinction, which is
- * -log(1 - alpha g) = sum over k of (alpha g)^k / k: one box per term, as g^k is a Gaussian, too
- * (derived). */
+ * Gaussian has the value g, opacity is alpha g. Halflight's weights multiply extinction, which is -log(1 -
+ * alpha g) = sum over k of (alpha g)^k / k: one box per term, as g^k is a Gaussian, too (derived). */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -38,7 +37,7 @@ typedef struct shown_volume {
   bool by_gradient;   /* the function's second number is the gradient's length */
   bool other_opacity; /* opacity depends on another array */
   double unit;
-  char colors[ID_BYTES], opacities[ID_BYTES]; /* ids of the lookup table and of the function of opacity */
+  char colors[ID_BYTES], opacities[ID_BYTES]; /* ids of the lookup table and of the opacity function */
 } shown_volume;
 
 /* The content of a state that is read. */
@@ -46,11 +45,11 @@ typedef struct state {
   double boxes[MOST_BOXES * BOX_NUMBERS], range[4];
   size_t box_numbers, range_numbers;
   size_t functions;       /* number of functions of two numbers with boxes */
-  size_t planes, volumes; /* number of representations that show a volume by a function of two numbers, and by
-                           * a function of one */
+  size_t planes, volumes; /* numbers of representations that show a volume: by a function of two numbers,
+                           * and by a function of one number */
   shown_volume shown;     /* the last representation that shows a volume */
-  json_t *kept;           /* owned; by id, the lookup tables and functions of opacity, as arrays of numbers by
-                           * property */
+  json_t *kept;           /* owned; the lookup tables and opacity functions by their ids, each as arrays of
+                           * numbers by property */
 } state;
 
 /* The content of the proxy that the current tags are in. */

@@ -5,8 +5,9 @@
 
 #include "json/parts.h"
 
-/* Reads an object with "volumeProperties". volume: the volume that the function is for; of several
- * components' functions, the functions of its component are read. Null if the volume is not known. */
+/* Reads an object with "volumeProperties". volume: the volume that the function is for; where there are
+ * functions for several components, those of the volume's component are read. Null if the volume is not
+ * known. */
 hl_status hl_json_read_slicer(hl_json_reader *reader, const json_t *root, const hl_volume *volume,
                               hl_transfer_function *function);
 

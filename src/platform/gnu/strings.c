@@ -20,10 +20,11 @@ static size_t digits_at(const char *text) {
   return count;
 }
 
-/* Numbers within names are compared as numbers; those that begin with zeros as fractions, before the others:
- * 000, 00, 01, 010, 09, 0, 1, 9, 10. */
+/* Numbers within names are compared as numbers; numbers that begin with zeros count as fractions, and come
+ * before the others: 000, 00, 01, 010, 09, 0, 1, 9, 10. */
 int strverscmp(const char *a, const char *b) {
-  size_t same = 0, begin = 0; /* the first character that differs; where the number that it is in begins */
+  size_t same = 0, begin = 0; /* the place of the first character that differs; the place where the number
+                               * begins in which it lies */
   bool zeros = true;          /* of the number up to there there are zeros alone */
   for (; a[same] == b[same]; same++) {
     if (a[same] == '\0') return 0;
@@ -36,7 +37,7 @@ int strverscmp(const char *a, const char *b) {
     if (of_a != of_b) return of_a < of_b ? -1 : 1; /* the longer number is greater */
   } else if (zeros && begin < same && (digit_a || digit_b)) {
     if (digit_a != digit_b)
-      return digit_a ? -1 : 1; /* behind the same zeros, a digit comes before all others */
+      return digit_a ? -1 : 1; /* after the same zeros, a digit comes before all other characters */
   }
   return (unsigned char)a[same] - (unsigned char)b[same];
 }

@@ -13,7 +13,7 @@
 
 /* ---- functions of the system's mathematics that clang calls in place of sin() with cos(), and of pow() ----
  *
- * With the bits of the functions that are written in the sources. */
+ * They give the bits of sin(), cos() and pow(), which the sources call. */
 
 typedef struct sine_and_cosine {
   double sine, cosine;
@@ -30,7 +30,7 @@ sine_and_cosine hl_sincos(double x) {
 }
 
 double hl_exp10(double x) {
-  volatile double ten = 10; /* pow() of the number itself would be a call of this function */
+  volatile double ten = 10; /* volatile: pow() of a constant ten would become a call of this function */
   return pow(ten, x);
 }
 

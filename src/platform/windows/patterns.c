@@ -8,7 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Moves past "[...]"; *fits: whether the character is one of it. Returns null if nothing closes it. */
+/* Moves past "[...]"; *fits: whether the set has the character. Returns null if nothing closes it. */
 static const char *match_set(const char *set, char c, bool *fits) {
   bool other = set[1] == '!' || set[1] == '^', in = false;
   const char *at = set + 1 + other;
@@ -55,7 +55,8 @@ static int add(glob_t *found, const char *path) {
  * current one; it has `length` characters, and is changed. */
 static int find(char *path, size_t length, const char *pattern, glob_t *found);
 
-/* Goes on with a name in the folder `path`. rest: the pattern behind it, from its '/' on; "" at its end. */
+/* Continues a search at a name that was found in the folder `path`. rest: the rest of the pattern, from the
+ * next '/' on; "" at the pattern's end. */
 static int go_on(char *path, size_t length, const char *name, const char *rest, glob_t *found) {
   int written = snprintf(path + length, PATH_MAX - length, "%s%s", name, rest[0] != '\0' ? "/" : "");
   if (written < 0 || (size_t)written >= PATH_MAX - length || access(path, F_OK) != 0) return 0;

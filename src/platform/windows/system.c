@@ -65,13 +65,14 @@ ssize_t getrandom(void *bytes, size_t count, unsigned flags) {
 
 /* ---- the environment ---- */
 
-/* The values that were asked for, in UTF-8: the C library has them in the system's code page. */
+/* A value of an environment variable that was asked for, in UTF-8. Values are kept because the C library
+ * has them only in the system's code page. */
 typedef struct kept_value {
   struct kept_value *next;
   char text[];
 } kept_value;
 
-/* Keeps a value, which may be there already. Without memory: null. */
+/* Keeps a value, unless it is kept already. Returns null if memory is short. */
 static char *keep(const wchar_t *wide) {
   static kept_value *first;
   static SRWLOCK lock = SRWLOCK_INIT;

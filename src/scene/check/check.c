@@ -35,7 +35,8 @@ static hl_status check_camera(const hl_camera *camera, hl_error *error) {
 
 /* ---- checks of several parts together: distances beside voxels, brightness ---- */
 
-/* Derived: a light that falls with the square of the distance has intensity / d^2 at d. */
+/* Checks that lights are not too bright beside voxels. Derived: a light whose brightness falls with the
+ * square of the distance has the brightness intensity / d^2 at the distance d. */
 static hl_status check_brightness(const hl_checker *check, const hl_light *light,
                                   const hl_frame_space *space) {
   double brightness = fmax(fmax(light->color[0], light->color[1]), light->color[2]) * light->intensity;

@@ -13,19 +13,23 @@
 #define HL_LIMIT_TEXTURE_SIDE   32768 /* pixels of a light's texture */
 #define HL_LIMIT_TEXTURE_PIXELS (1 << 26)
 #define HL_LIMIT_POINTS         65536 /* number of points of one transfer function */
-#define HL_LIMIT_SHAPES         256   /* boxes, or polygons, of a transfer function of two numbers */
-#define HL_LIMIT_PLANE_SIDE     4096  /* pixels of its image */
-#define HL_LIMIT_LENGTH         1e15  /* any coordinate or length: squares and cubes stay finite */
+/* Greatest number of boxes, or of polygons, of a transfer function of two numbers. */
+#define HL_LIMIT_SHAPES     256
+#define HL_LIMIT_PLANE_SIDE 4096 /* pixels of its image */
+#define HL_LIMIT_LENGTH     1e15 /* greatest coordinate or length; squares and cubes of it stay finite */
 /* Distance of a volume from the origin: a camera that frames it stands within HL_LIMIT_LENGTH. */
 #define HL_LIMIT_CORNER 1e14
-/* Large, for light that falls off with the square of distances in nanometres. */
+/* The greatest intensity. It is large because light may fall off with the square of distances in
+ * nanometres. */
 #define HL_LIMIT_INTENSITY 1e35
-/* Brightness of a light, a voxel's edge away; sums and products still fit floats. */
+/* The greatest brightness of a light at the distance of a voxel's edge; sums and products of it still fit
+ * floats. */
 #define HL_LIMIT_BRIGHTNESS    1e20
 #define HL_LIMIT_REACH         1e12 /* distances and lengths, in smallest voxel edges */
 #define HL_LIMIT_TEXTURE_VALUE 1e6
-#define HL_LIMIT_RADIANCE      1e6  /* radiance of a sky's colours, and their factor */
-#define HL_LIMIT_VOXEL_VALUE   1e36 /* differences and sums of such values still fit floats */
+#define HL_LIMIT_RADIANCE      1e6 /* radiance of a sky's colours, and their factor */
+/* Greatest value of a voxel; differences and sums of such values still fit floats. */
+#define HL_LIMIT_VOXEL_VALUE   1e36
 #define HL_LIMIT_LIGHT_SAMPLES 64
 #define HL_LIMIT_THREADS       1024
 #define HL_LIMIT_SLABS_AT_ONCE 64

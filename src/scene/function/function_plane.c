@@ -46,8 +46,8 @@ static double weight_along(const hl_function_box *box, int axis, double from, do
   return edge > 0 ? fmin(fmin(from - low, high - from) / edge, 1) : 1;
 }
 
-/* Of a point in the triangle of the apex and two vertices, the apex's barycentric coordinate falls linearly
- * from 1 at the apex to 0 on the border; negative: the point is outside. */
+/* The weight of a point in the triangle of the apex and two vertices: the apex's barycentric coordinate,
+ * which falls linearly from 1 at the apex to 0 on the border. Negative: the point is outside. */
 static double weight_in_triangle(const double apex[2], const double a[2], const double b[2],
                                  const double at[2]) {
   double ax = a[0] - apex[0], ay = a[1] - apex[1], bx = b[0] - apex[0], by = b[1] - apex[1];

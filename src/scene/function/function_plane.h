@@ -11,7 +11,7 @@ static inline bool hl_has_plane(const hl_transfer_function *function) {
   return function->plane.second != HL_SECOND_NONE;
 }
 
-/* What the second number is multiplied by before the function takes it. */
+/* The factor by which the second number is multiplied before the function uses it. */
 static inline double hl_plane_second_scale(const hl_function_plane *plane) {
   return plane->second_scale == 0 ? 1 : plane->second_scale;
 }
@@ -33,7 +33,7 @@ typedef struct plane_sum {
   double color[3];   /* linear RGB, times extinction */
 } plane_sum;
 
-/* The function's mean over a part of the plane; at a point where low and high are the same. */
+/* The function's mean over a part of the plane; where low and high are the same, its value at a point. */
 plane_sum hl_plane_mean(const hl_transfer_function *function, const plane_box *part);
 
 /* Replaces the function's opacity and colour by the outline of the plane over the values between low and

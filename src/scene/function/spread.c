@@ -11,8 +11,9 @@
 #include "core/memory.h"
 #include "scene/function/transfer_function.h"
 
-/* A piece of t = 1/PIECES with d = ln(high / low) / PIECES strays from the logarithm by at most d^2 / 8, of
- * ln(high / low): over six decades by 4e-4 of the range. Derived: the chord's distance from a logarithm. */
+/* The number of pieces into which the range is divided. A straight piece differs from the logarithm by at
+ * most d^2 / 8 of ln(high / low), where d = ln(high / low) / PIECES (derived: a chord's distance from a
+ * logarithm). Over six decades this is 4e-4 of the range. */
 enum { PIECES = 64 };
 
 hl_status hl_transfer_function_visible_range(const hl_volume *volume, const hl_transfer_function *function,
@@ -52,14 +53,15 @@ static void add_row(rows *r, const double *a, const double *b, double f, double 
   for (size_t n = 1; n < r->width; n++) row[n] = f <= 0 ? a[n] : f >= 1 ? b[n] : a[n] + f * (b[n] - a[n]);
 }
 
-/* The place of a row in the old range; next to a multiple of 1/PIECES it is the multiple, so that no piece is
- * empty but for rounding. */
+/* The place of a row in the old range, from 0 to 1. A place very near to a multiple of 1/PIECES becomes
+ * this multiple, so that rounding makes no tiny pieces. */
 static double place_of(const double *row, const double old[2]) {
   double t = (row[0] - old[0]) / (old[1] - old[0]), whole = round(t * PIECES);
   return fabs(t * PIECES - whole) < 1e-9 ? whole / PIECES : t;
 }
 
-/* Appends the line from row a to the next one, its end left out, where t is from 0 to 1. */
+/* Appends the points of the line from row a to the next row, without the line's end, as far as t lies from
+ * 0 to 1. */
 static void add_line(rows *r, size_t a, const double old[2]) {
   const double *row = r->from + a * r->width, *next = row + r->width;
   double start = place_of(row, old), end = place_of(next, old);

@@ -1,8 +1,7 @@
 /* scene/function/transfer_function.c - evaluates a transfer function at a value and over a range of values.
  *
- * Piecewise linear in data values, constant beyond the end points. Two points at one value make a step,
- * which is continuous from above: at the value itself the second point holds.
- */
+ * The function is piecewise linear in data values, and constant beyond the end points. Two points at one
+ * value make a step, which is continuous from above: at the value itself the second point holds. */
 #include "scene/function/transfer_function.h"
 #include <math.h>
 #include <string.h>
@@ -76,9 +75,9 @@ int hl_transfer_function_visible(const hl_transfer_function *function, double lo
   return 0;
 }
 
-/* The set of transparent values is made of intervals whose ends are points of the function, the end itself
- * left out where a step rises there. So the points, the values just below them, the range's ends and the
- * target are the candidates. */
+/* Transparent values form intervals whose ends are points of the function; where a step rises at an end,
+ * the end itself does not belong to the interval. So the points, the values just below them, the range's
+ * ends and the target are the candidates. */
 bool hl_transfer_function_transparent(const hl_transfer_function *function, double low, double high,
                                       double target, double *nearest) {
   double candidates[3] = {target, low, high}, best = INFINITY;

@@ -9,9 +9,11 @@
 #include "image/colormaps.h"
 #include "image/srgb.h"
 
-/* opacity (per unit_distance) and linear colour of a data value: piecewise linear, ends held. */
+/* The opacity (per unit_distance) or the linear colour of a data value. They are piecewise linear between
+ * points, and constant beyond the ends. */
 double hl_transfer_function_opacity(const hl_transfer_function *function, double value);
-/* What gradient opacity multiplies extinction by, for a gradient's length; 1 without gradient opacity. */
+/* The factor by which gradient opacity multiplies extinction, for a gradient's length; 1 without gradient
+ * opacity. */
 double hl_transfer_function_gradient_opacity(const hl_transfer_function *function, double gradient);
 void hl_transfer_function_color(const hl_transfer_function *function, double value, double color[3]);
 

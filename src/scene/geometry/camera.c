@@ -7,10 +7,12 @@
 #include "core/door.h"
 #include "volume/volume.h"
 
-#define STEEP       89.5 /* degrees: steeper views lie too near the view's up for a camera's up */
-#define LEVEL       1e-6 /* sine of an angle: a horizon is level if it leans by no more */
-#define ANGLE_STEPS 1e9  /* steps of a degree that angles found from a camera's rounded coordinates get */
-#define OBLIQUE     0.9  /* cosine: an axis that is closer than this to up cannot be the front */
+/* Degrees; views steeper than this lie too near the view's up direction to give the camera its up. */
+#define STEEP 89.5
+#define LEVEL 1e-6 /* sine of an angle: a horizon is level if it leans by no more */
+/* Angles that are found from a camera's rounded coordinates are rounded to this many steps of a degree. */
+#define ANGLE_STEPS 1e9
+#define OBLIQUE     0.9 /* a cosine: an axis that is closer than this to up cannot be the front */
 
 bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forward) {
   vec3 sight = vec3_subtract(vec3_of(camera->target), vec3_of(camera->position));

@@ -31,8 +31,8 @@ hl_status hl_cut_shapes(hl_context *context, const hl_scene_volume *volume, cut_
  * cut_count], which the volume then borrows. */
 void hl_add_scene_cuts(const hl_scene_description *scene, hl_scene_volume *volume, hl_cut *cuts);
 
-/* The volumes of a scene that has cuts of its own, with these beside each volume's; all null where it has
- * none. */
+/* Copies of a scene's volumes that have the scene's own cuts beside each volume's cuts; all null where the
+ * scene has no cuts. */
 typedef struct placed_cuts {
   hl_scene_volume *volumes; /* owned; the arrays in them belong to the scene */
   hl_cut *cuts;             /* owned; of all volumes */
@@ -56,7 +56,7 @@ bool hl_cuts_leave(const cut_shape *cuts, size_t count, vec3 point);
 /* Whether a box along the axes of the shapes' space is surely cut away: some cut removes all of it. */
 bool hl_cuts_remove_box(const cut_shape *cuts, size_t count, const double low[3], const double high[3]);
 
-/* Whether it is surely left: no cut removes any of it. */
+/* Whether a box along the axes of the shapes' space is surely left: no cut removes any of it. */
 bool hl_cuts_leave_box(const cut_shape *cuts, size_t count, const double low[3], const double high[3]);
 
 #endif

@@ -25,7 +25,7 @@ affine3 hl_scene_mesh_to_world(const hl_scene_mesh *mesh) {
   return (affine3){turn, vec3_of(mesh->translate)};
 }
 
-/* The world of the volume's file -> the scene's world. */
+/* The map from the world of the volume's file to the scene's world. */
 static affine3 world_of_file(const hl_scene_volume *volume) {
   mat3 turn = rotation(volume->rotate_axis, volume->rotate_angle_deg);
   const double x = hl_scene_volume_scale(volume, 0), y = hl_scene_volume_scale(volume, 1),
@@ -240,8 +240,8 @@ hl_status hl_lights_place(hl_context *context, const hl_scene_description *from,
   }
   for (int i = 0; i < suns->count; i++)
     *(hl_light *)&to->lights[to->light_count++] = hl_sun_light(&from->sky, &suns->suns[i]);
-  to->sky.suns = suns->count > 0; /* the part of a sky that is kept depends on whether its image lacks the
-                                   * suns */
+  to->sky.suns = suns->count > 0; /* the sky changes where it has suns, because the image that is left
+                                   * lacks them */
   if (suns->count > 0) to->sky.pixels = suns->rest;
   return HL_OK;
 }

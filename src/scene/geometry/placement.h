@@ -20,11 +20,12 @@ affine3 hl_scene_mask_index_to_world(const hl_scene_volume *volume);
 /* A mesh's own space -> world: scale, rotate, translate. */
 affine3 hl_scene_mesh_to_world(const hl_scene_mesh *mesh);
 
-/* The box that the volume fills in its own index space: voxel cells from -0.5 to n-0.5, cut by clip
- * (clip is a box in the file's own world; where the grid is oblique to it, its bounds in index space). */
+/* The box that the volume fills in its own index space: from -0.5 to n - 0.5 along each axis, cut down to
+ * the clip box. The clip box lies in the file's own world; where the grid is oblique to it, its bounds in
+ * index space count. */
 void hl_scene_volume_box(const hl_scene_volume *volume, double low[3], double high[3]);
 
-/* The smallest edge of a voxel. Without a volume: the longest side of the meshes' box in 200 parts. */
+/* The smallest edge of a voxel. Without a volume it is a 200th of the longest side of the meshes' box. */
 double hl_scene_smallest_edge(const hl_scene_description *scene);
 
 /* Frame space, in which a scene is rendered: p -> (p - centre) / unit. centre is the middle of the boxes of
@@ -41,7 +42,7 @@ typedef struct hl_frame_space {
 /* The description has at least one volume or mesh. */
 hl_frame_space hl_scene_frame_space(const hl_scene_description *scene);
 
-/* The empty value, of the volume's surroundings and of voxels that are not finite: the most frequent
+/* The empty value, which the volume's surroundings and voxels that are not finite have: the most frequent
  * transparent value; if no value is transparent, a value below the volume's range, which is then treated as
  * transparent. */
 double hl_scene_volume_empty_value(const hl_scene_volume *volume);

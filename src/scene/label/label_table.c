@@ -244,8 +244,9 @@ void hl_label_list_release(hl_context *context, hl_label_list *list) {
   *list = (hl_label_list){0};
 }
 
-/* The golden ratio's fraction, times 2^64. By it successive hues are as far from all earlier ones as can be.
- * The product with a label, modulo 2^64, is the fraction of the turn, exact for numbers of any size. */
+/* The fractional part of the golden ratio, times 2^64. Hues that follow each other at this distance lie as
+ * far as possible from all earlier ones. The product with a label, modulo 2^64, is the fraction of the
+ * turn, exact for numbers of any size. */
 static const uint64_t GOLDEN = 0x9e3779b97f4a7c15u;
 
 void hl_label_distinct_color(int64_t value, double linear[3]) {

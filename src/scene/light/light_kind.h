@@ -21,27 +21,27 @@ struct light_kind {
   bool cone;          /* the light shines only within a cone around `direction` */
   bool outline;       /* `vertices` say its shape and its place */
   bool parallelogram; /* the unit square lies along edge1 and edge2 */
-  double deviations;  /* the light's extent in standard deviations of its points */
+  double deviations;  /* the factor from the standard deviation of the light's points to the light's extent */
 
   /* ---- checks; settings are in their ranges already ---- */
   hl_status (*check)(const hl_checker *check,
                      const hl_light *light); /* null: nothing more is to be checked */
-  /* Whether floats hold its places beside the scene's voxels. */
+  /* Checks that floats hold the light's places and lengths beside the scene's voxels. */
   hl_status (*check_reach)(const hl_checker *check, const hl_light *light, const hl_frame_space *space);
 
   /* ---- its shape ---- */
   /* Makes the shape of the settings. `kind` and `image_up` are set by hl_light_shape(). */
   light_shape (*shape)(const hl_light *light);
-  /* The mean of x x' over all its points, x being their offsets: a rect has (e1 e1' + e2 e2') / 12, a disk
-   * r^2/4 (1 - n n'). Spheres, and the directions of parallel light, count as the disk perpendicular to
-   * `facing`. */
+  /* The mean of x x' over all points of the light, where x is a point's offset: a rect has (e1 e1' + e2
+   * e2') / 12, a disk r^2/4 (1 - n n'). Spheres, and the directions of parallel light, count as the disk
+   * perpendicular to `facing`. */
   mat3 (*spread)(const light_shape *shape, vec3 facing);
   /* The offset of the point for (a, b) of the unit square: equal areas to equal areas. */
   vec3 (*point)(const light_shape *shape, vec3 facing, double a, double b);
   /* The plane of the image on its surface. */
   emission_plane (*plane)(const light_shape *shape, vec3 facing);
   /* How long the two sides of the unit square look along a unit vector, in units of length; infinite: not
-   * known. Null where the light is parallel. */
+   * known. The function is null for types that are parallel. */
   void (*apparent_lengths)(const light_shape *shape, vec3 along, double length[2]);
 };
 
@@ -56,7 +56,8 @@ light_shape hl_light_shape(const hl_light *light);
 hl_status hl_check_round_reach(const hl_checker *check, const hl_light *light, const hl_frame_space *space);
 light_shape hl_round_shape(const hl_light *light);
 void hl_apparent_diameter(const light_shape *shape, vec3 along, double length[2]);
-/* The points of a disk of this radius that faces along a unit vector: of a sphere whoever looks at it. */
+/* The spread and the points of a disk of the shape's radius that faces along a unit vector. A sphere counts
+ * as the disk that faces the viewer. */
 mat3 hl_round_spread(const light_shape *shape, vec3 facing);
 vec3 hl_round_point(const light_shape *shape, vec3 facing, double a, double b);
 emission_plane hl_round_plane(const light_shape *shape, vec3 facing);

@@ -1,7 +1,6 @@
-/* scene/light/light_kinds.h - the registry of types of light: the enumerator, the name that scene files use,
- * and the settings that lights of the type have beside those of all lights. The file of a type "rect" is
- * light/rect.c, its table hl_light_kind_rect (light_kind.h). The build reads the names here.
- */
+/* scene/light/light_kinds.h - the list of the types of light: the enumerator, the name that scene files
+ * use, and the settings that lights of the type have beside those of all lights. The file of a type "rect"
+ * is light/rect.c, its table hl_light_kind_rect (light_kind.h). The build reads the names here. */
 #ifndef HL_SCENE_LIGHT_LIGHT_KINDS_H
 #define HL_SCENE_LIGHT_LIGHT_KINDS_H
 

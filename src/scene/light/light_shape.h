@@ -13,17 +13,17 @@ typedef struct light_kind light_kind; /* light_kind.h */
 typedef struct light_shape {
   const light_kind *kind;
   vec3 centre;       /* not of parallel lights */
-  vec3 direction;    /* of parallel lights and of lights with a cone: the way that the light travels, of any
+  vec3 direction;    /* for parallel lights and lights with a cone: the way that the light travels, of any
                       * length */
   vec3 normal;       /* of a disk; unit */
   vec3 edge1, edge2; /* of a parallelogram: full edges */
-  double radius;     /* of a sphere or a disk; of parallel light: the radius of the disk of its
+  double radius;     /* for a sphere or a disk its radius; for parallel light the radius of the disk of its
                       * directions, at distance 1 */
-  double cone_half_angle, cone_edge; /* of a cone, radians: beyond its half angle it is dark; the smooth edge
-                                      * within has the width cone_edge */
-  const double (*vertices)[3];       /* borrowed from the settings; [vertex_count]; of a polygon */
+  double cone_half_angle, cone_edge; /* for a cone, radians: there is no light beyond its half angle; the
+                                      * smooth edge within has the width cone_edge */
+  const double (*vertices)[3];       /* for a polygon: [vertex_count]; borrowed from the settings */
   size_t vertex_count;
-  vec3 image_up;    /* where the top of an image on the light's surface points */
+  vec3 image_up;    /* the direction in which the top of an image on the light's surface lies */
   bool is_wide;     /* the light is more than a point, or than one direction */
   bool has_surface; /* an image can be on it */
 } light_shape;

@@ -16,7 +16,8 @@
 #include "core/memory.h"
 #include "scene/light/sky.h"
 
-/* A sun's half angle is at most so wide; light farther from its middle is no part of it. */
+/* WIDEST: the greatest half angle of a sun. FARTHEST: the greatest angle from a sun's middle at which light
+ * may still belong to the sun. */
 static const double WIDEST = 12 * HL_PI / 180, FARTHEST = 20 * HL_PI / 180;
 /* Radii fall by this factor, from the farthest to less than a pixel. */
 static const double LADDER = 0.70710678118654752;
@@ -33,8 +34,8 @@ enum { TRIES = 64 /* spots that are looked at */, STEPS = 16 /* steps towards th
 
 /* ---- integrals over a pixel's tent ---- */
 
-/* Over its row's angle to up, a, of the tent times sin a, sin^2 a and sin a cos a: the parts of the solid
- * angle and of the directions across and along up. */
+/* Integrals of a pixel's tent over the angle a between its row and up: of the tent times sin a, times sin^2
+ * a and times sin a cos a. They give the solid angle, and the directions across and along up. */
 typedef struct row_integrals {
   double area, across, along;
 } row_integrals;
@@ -46,8 +47,8 @@ static const double NODES[5] = {-0.906179845938664, -0.538469310105683, 0, 0.538
                     WEIGHTS[5] = {0.236926885056189, 0.478628670499366, 0.568888888888889, 0.478628670499366,
                                   0.236926885056189};
 
-/* Adds the piece from `from` to `to`, cut off at `last`. The tent is 0 at `foot` and 1 at `top`; where these
- * are the same it is 1 throughout. */
+/* Adds to the integrals the piece from `from` to `to`, cut off at `last`. The tent is 0 at `foot` and 1 at
+ * `top`; where these are the same it is 1 throughout. */
 static void add_piece(double from, double to, double last, double foot, double top, row_integrals *sum) {
   to = fmin(to, last);
   for (int i = 0; i < 5 && to > from; i++) {
@@ -258,10 +259,11 @@ static spot spot_of_radius(const search *all, int row, int column, double radius
   return measure_spot(all, find_middle(all, row, column, radius), radius);
 }
 
-/* The spot around a pixel whose radius holds the most light for its power of 3/4: of an even disk the least
- * that holds all of it, of a Gaussian spot one with nine tenths; a small sun counts more than a glow around
- * it that sends as much, and two suns side by side are two. The next wider one is taken where it holds more:
- * what pixels at the rim have of a disk. */
+/* The spot around a pixel whose radius holds the most light for its power of 3/4: For an even disk this is
+ * the least radius that holds all of it, for a Gaussian spot a radius with nine tenths of it. With this
+ * power, a small sun counts more than a glow around it that sends as much light, and two suns side by side
+ * stay two. The next wider radius is taken where it holds more light, because pixels at the rim hold a part
+ * of a disk. */
 static spot find_spot(const search *all, int row, int column) {
   spot best = {.cap = {direction_of(all, row, column), FARTHEST}}, wider = best;
   double score = 0, least = 0.5 * HL_PI / all->sky->height;
@@ -388,10 +390,10 @@ void hl_suns_release(hl_context *context, sky_suns *found) {
 
 /* ---- lights ---- */
 
-/* Derived: a sky of irradiance E from about one direction gives a surface E / pi times the cosine to the mean
- * of its directions, and a medium E / (4 pi) times its phase function (halflight/scene.h); a light of colour
- * I gives I times the cosine to its middle, and I times the phase function. So I is E / pi times the length
- * of that mean, of which a medium takes a quarter over this length (hl_sun_part_of_media). */
+/* Derived: a sky of irradiance E from about one direction gives a surface E / pi times the cosine to the
+ * mean of its directions, and a medium E / (4 pi) times its phase function (halflight/scene.h); a light of
+ * colour I gives I times the cosine to its middle, and I times the phase function. So I is E / pi times the
+ * length of that mean. A medium takes 1 / 4 divided by this length of it (hl_sun_part_of_media). */
 hl_light hl_sun_light(const hl_sky *sky, const sky_sun *sun) {
   const sky_axes axes = hl_sky_axes(sky);
   hl_light light;

@@ -13,11 +13,12 @@
 
 enum { HL_MOST_SUNS = 4 };
 
-/* An even disk as bright as the spot, with the same first and second moments of direction. */
+/* A sun: an even disk that sends as much light as the spot, with the same first and second moments of
+ * direction. */
 typedef struct sky_sun {
   vec3 towards;         /* unit; x right, y middle, z up: the sky's own axes (scene/light/sky.h) */
   double half_angle;    /* radians, from the middle to the rim */
-  double straight;      /* the length of the mean of unit vectors to it, below 1 */
+  double straight;      /* the length of the mean of the unit vectors to the sun, below 1 */
   double irradiance[3]; /* integral of the radiance, without the sky's strength */
 } sky_sun;
 

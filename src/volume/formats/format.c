@@ -202,7 +202,7 @@ static hl_status check_steps(const hl_load_request *request, const char *path, h
                          : status;
 }
 
-/* Chooses the default component, and writes a warning that names it. Colours need no warning. */
+/* Chooses the default component, and warns by a line that names it. Colours need no warning. */
 static int default_component(hl_load_request *request, const char *path, bool is_series,
                              const hl_payload *payload) {
   size_t components = payload->components;

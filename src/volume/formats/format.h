@@ -24,11 +24,12 @@ typedef struct hl_load_request {
                              * not told */
   hl_channel *channels;     /* owned; [selection.channels]; set by readers, where the file describes
                              * channels */
-  const char *unit;         /* set by readers: the unit of lengths, static; null if not told */
-  bool is_anatomical;       /* set by readers of formats that hold bodies: the volume's anatomical space is
-                             * meant */
-  const char *series;       /* DICOM: number, UID or description; null if the reader may choose */
-  hl_array_entry *arrays;   /* owned; [array_count]; in the file's order */
+  const char *unit;       /* set by readers: the unit of lengths, static; null if the file does not tell it */
+  bool is_anatomical;     /* set by readers of formats that hold bodies: the anatomical space that the
+                           * file states is meant */
+  const char *series;     /* DICOM: the number, UID or description of the wanted series; null if the
+                           * reader may choose */
+  hl_array_entry *arrays; /* owned; [array_count]; in the file's order */
   size_t array_count;
   size_t chosen; /* index of the array that is read */
   int chosen_component;
@@ -96,10 +97,10 @@ typedef struct hl_format {
   const char *endings[HL_FORMAT_ENDINGS]; /* extensions of file names that promise `beginning`; null after the
                                            * last */
   const char *title;                      /* the name in lists of formats; null: `name` */
-  const char *more_endings;               /* further extensions, for lists of formats, between blanks */
-  const char *(*missing)(void);           /* returns the library that the format needs and this build lacks;
-                                           * null if there is none */
-  const char *beginning;                  /* the beginning that such files must have, for error lines */
+  const char *more_endings;     /* further endings of names, for lists of formats, separated by blanks */
+  const char *(*missing)(void); /* returns the library that the format needs and this build lacks;
+                                 * null if there is none */
+  const char *beginning;        /* the beginning that a file of this format must have, for error lines */
 
   /* Whether a file that starts with these bytes has the format. length: HL_FORMAT_SNIFFED_BYTES, or less if
    * the file is shorter. */

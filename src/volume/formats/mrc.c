@@ -140,8 +140,8 @@ static hl_status read_stack(const mrc_header *header, const char *path, hl_paylo
   size_t rows;
   if (!hl_multiply(payload->grid.dimensions[0], payload->grid.dimensions[1], &rows) ||
       !hl_multiply(rows, (size_t)each, &payload->block))
-    payload->block = SIZE_MAX; /* the size is too large on purpose, so that the check of the grid refuses the
-                                * file */
+    payload->block = SIZE_MAX; /* the size is impossible on purpose, so that the check of the grid refuses
+                                * the file */
   return HL_OK;
 }
 
@@ -179,8 +179,8 @@ static void read_axes(const mrc_header *header, int axes[3]) {
   for (int n = 0; n < 3; n++) {
     int64_t axis = load_integer(header, AT_AXES + 4 * n);
     if (axis >= 1 && axis <= 3) seen |= 1 << axis;
-    axes[n] = (int)(axis - 1); /* the subtraction is also correct for the least int, below which there is
-                                * none */
+    axes[n] = (int)(axis - 1); /* the subtraction is correct also for the least int, since no smaller
+                                * number occurs */
   }
   if (seen == (1 << 1 | 1 << 2 | 1 << 3)) return;
   for (int n = 0; n < 3; n++) axes[n] = n;

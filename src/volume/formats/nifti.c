@@ -123,7 +123,7 @@ static hl_status read_dimensions(const nifti_header *header, size_t dimensions[3
                           (long long)count);
   for (int n = 1; n <= count; n++) {
     int64_t size = load_dimension(header, n);
-    if (size < 1 && n > 1) { /* such a size is repaired as in the format's reference implementation */
+    if (size < 1 && n > 1) { /* the format's reference implementation repairs such a size in the same way */
       hl_log(header->context, HL_LOG_WARNING, "%s: dim[%d] is %lld: 1 is taken", header->path, n,
              (long long)size);
       size = 1;

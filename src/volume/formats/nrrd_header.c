@@ -99,7 +99,8 @@ static hl_status read_endian(nrrd_header *header, const char *value, hl_error *e
                                                               : refuse(header, "endian", value, error);
 }
 
-/* Reads one number for each axis; NaN is allowed. place: the offset of the number in nrrd_axis. */
+/* Reads a field that has one number for each axis; NaN is allowed. place: the offset of the number in
+ * nrrd_axis. */
 static hl_status read_per_axis(nrrd_header *header, const char *field, const char *value, size_t place,
                                hl_error *error) {
   double numbers[NRRD_MOST_AXES];
@@ -142,8 +143,8 @@ static hl_status read_kinds(nrrd_header *header, const char *value, hl_error *er
   return status;
 }
 
-/* Reads "(x, y, z)": the first three numbers; missing ones become 0. *beyond: whether any further number (of
- * time, say) is not 0. */
+/* Reads the first three numbers of a vector "(x, y, z)"; missing numbers become 0. *beyond: whether any
+ * further number (of time, say) is not 0. */
 static bool scan_vector(const char **cursor, double vector[3], bool *beyond) {
   const char *text = *cursor;
   while (hl_is_space(*text)) text++;

@@ -16,7 +16,7 @@ typedef struct hl_bundle_entry {
 
 typedef struct hl_bundle hl_bundle;
 
-/* The files of a store that were brought from a server (bundle_server.c). */
+/* The files of a store that were fetched from a server so far (bundle_server.c). */
 typedef struct hl_brought hl_brought;
 
 struct hl_bundle {
@@ -63,23 +63,24 @@ hl_status hl_bundle_open_server(hl_context *context, const char *url, hl_bundle 
 static inline bool hl_bundle_is_on_server(const hl_bundle *bundle) { return bundle->brought != NULL; }
 /* Whether hl_bundle_find() knows this file of a server, or its absence, without asking the server. */
 bool hl_bundle_has_brought(const hl_bundle *bundle, const char *name);
-/* Brings files of a server that are not brought yet, of `most` bytes each at most, all at once. Only the
- * caller's thread may call it. */
+/* Fetches all those of the given files of a server that were not fetched before, in one request. Each has
+ * at most `most` bytes. Only the caller's thread may call it. */
 hl_status hl_bundle_bring(const hl_bundle *bundle, const char *const *names, size_t count, uint64_t most,
                           hl_error *error);
-/* The number of files that were brought so far; forgets those that were brought after the first `count`, of
- * which no source may be open. */
+/* The first function gives the number of files that were fetched so far. The second forgets the files that
+ * were fetched after the first `count`; no source of these may be open. */
 size_t hl_bundle_brought_count(const hl_bundle *bundle);
 void hl_bundle_forget(const hl_bundle *bundle, size_t count);
-/* hl_bundle_find() and hl_bundle_close() of a store on a server. */
+/* The forms of hl_bundle_find() and hl_bundle_close() for a store on a server. */
 hl_status hl_brought_find(const hl_bundle *bundle, const char *name, hl_source **source, hl_error *error);
 void hl_brought_release(hl_bundle *bundle);
 
 /* Prepares hl_bundle_find(), which may then be called from several threads. */
 hl_status hl_bundle_find_ready(hl_bundle *bundle, hl_error *error);
 
-/* Opens the file of a name (relative, with '/'), which need not be listed; of a store on a server, one that
- * was brought. *source is null if there is no such file, or if a link leads out of the folder. */
+/* Opens the file of a name (relative, with '/'), which need not be listed; in a store on a server, it must
+ * have been fetched before. *source is null if there is no such file, or if a link leads out of the folder.
+ */
 hl_status hl_bundle_find(const hl_bundle *bundle, const char *name, bool quiet, hl_source **source,
                          hl_error *error);
 

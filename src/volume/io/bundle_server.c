@@ -52,7 +52,8 @@ void hl_bundle_forget(const hl_bundle *bundle, size_t count) {
   }
 }
 
-/* The latest files are at the end, and are asked for most. */
+/* Finds a file that was fetched. The search begins at the end, because the latest files are wanted most
+ * often. */
 static const brought_file *find(const hl_brought *brought, const char *name) {
   for (size_t n = brought->count; n > 0; n--)
     if (strcmp(brought->files[n - 1].name, name) == 0) return &brought->files[n - 1];
@@ -74,7 +75,7 @@ static hl_status make_room(const hl_bundle *bundle, size_t count, hl_error *erro
   return HL_OK;
 }
 
-/* Takes over the files that were brought; closes those for which there is no memory. */
+/* Takes over files that were fetched. Files for which there is no memory are closed. */
 static hl_status take(const hl_bundle *bundle, const char *const *names, size_t count,
                       const hl_fetched_file *files, hl_error *error) {
   hl_brought *brought = bundle->brought;

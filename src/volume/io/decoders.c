@@ -16,7 +16,7 @@
 enum {
   DEFLATE_GREATEST_RATIO = 1032, /* RFC 1951: 258 bytes from two bits, one for the length and one for the
                                   * distance */
-  PENDING_BYTES = 65536,         /* more bytes than zlib can hold back in its window and bit buffer */
+  PENDING_BYTES = 65536,         /* more bytes than zlib can keep in its window and bit buffer */
   /* zlib.h: the largest window; gzip and zlib are told apart by their first bytes. */
   AUTOMATIC_WINDOW = 15 + 32
 };
@@ -131,7 +131,7 @@ hl_status hl_stream_push_inflate(hl_stream **stream, hl_error *error) {
   made->base.pull = inflate_pull;
   made->base.at_most = inflate_at_most;
   made->base.close = inflate_close;
-  *stream = &made->base; /* from here on the caller closes the stream, also on failure */
+  *stream = &made->base; /* from here on the caller closes the stream, also after a failure */
   return start_zlib(&made->zlib, &made->base, &made->started, error);
 }
 

@@ -197,8 +197,8 @@ hl_status hl_stream_unpack(hl_stream **stream, hl_error *error) {
   hl_status status = hl_stream_peek(*stream, 10, &bytes, &length, error);
   if (status != HL_OK) return status;
   if (length >= 3 && memcmp(bytes, "\x1f\x8b\x08", 3) == 0) return hl_stream_push_inflate(stream, error);
-  /* the mark is "BZh", a digit, and the digits of pi, or of the root of pi where nothing follows; a cut file
-   * has a part of them */
+  /* the mark is "BZh", a digit, and the digits of pi, or of the square root of pi where nothing follows; a
+   * file that was cut has only some of these digits */
   size_t marked = length < 10 ? (length > 4 ? length - 4 : 0) : 6;
   if (length >= 4 && memcmp(bytes, "BZh", 3) == 0 && bytes[3] >= '1' && bytes[3] <= '9' &&
       (memcmp(bytes + 4, "\x31\x41\x59\x26\x53\x59", marked) == 0 ||

@@ -22,9 +22,10 @@ typedef enum hl_payload_colors {
 typedef struct hl_payload {
   hl_volume_description grid; /* only dimensions, type, origin, axis, value_scale and value_offset are set */
   size_t components;          /* number of values of each voxel */
-  size_t block;  /* with several components: number of consecutive values of one component in the file;
+  size_t block;  /* with several components: number of consecutive values of one component in the file; it
                   * divides the number of voxels */
-  int component; /* with several components: the index of the component to read, or an HL_COMPONENT_ value */
+  int component; /* with several components: the index of the component that is read, or an HL_COMPONENT_
+                  * value */
   hl_payload_colors colors;
   bool big_endian;
   bool text;             /* whether the voxels are decimal numbers separated by white space or commas, not

@@ -28,7 +28,8 @@ hl_status hl_unpack_bzip2(const char *path, const unsigned char *packed, size_t 
 hl_status hl_unpack_xz(const char *path, const unsigned char *packed, size_t length, void *bytes,
                        size_t count, bool *sound, hl_error *error);
 
-/* Whether `length` bytes of a codec with this greatest ratio can hold `count` bytes. */
+/* Whether `length` packed bytes can hold `count` bytes. ratio: the greatest number of bytes to which the
+ * codec can unpack one byte. */
 static inline bool hl_packed_can_hold(size_t length, size_t count, size_t ratio) {
   return count / ratio <= length;
 }

@@ -16,7 +16,7 @@ typedef struct gathering {
   bool exact;           /* whether ranks send the file's own numbers in place of stored values */
   size_t sent_bytes;    /* bytes of a number that ranks send */
   unsigned char *slice; /* owned; a slice of a block, as ranks send it */
-  unsigned char *sent;  /* owned; [k][j][i]; what was sent: the copy's stored values or its numbers */
+  unsigned char *sent; /* owned; [k][j][i]; what ranks have sent: stored values of the copy, or its numbers */
 } gathering;
 
 /* Whether the block in this rank's memory has numbers that its stored values round. */
@@ -36,7 +36,7 @@ static void pack_numbers(const gathering *g, const hl_box *slice, unsigned char 
 }
 
 /* Packs a slice of this rank's block for the other ranks. In an exact gathering, ranks send the file's own
- * numbers. A rank whose floats are these numbers, unrounded, makes them of its floats. */
+ * numbers. A rank whose floats were not rounded computes the numbers from its floats. */
 static void pack(const gathering *g, const hl_box *slice) {
   const size_t count = slice->count[0] * slice->count[1];
   if (g->exact && has_numbers(g->own)) {

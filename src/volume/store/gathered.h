@@ -9,10 +9,10 @@
 #include "core/error.h"
 #include "volume/volume.h"
 
-/* Gets the volume whose voxels lie in memory: the map itself, or of a map over ranks its copy, which the map
- * keeps and owns. The first call for a map over ranks is collective, and its copy is what the later ones get.
- * HL_ERROR_UNSUPPORTED for a map in a scratch file or in bricks; HL_ERROR_MEMORY, on all ranks, where the
- * memory of one has no room. */
+/* Gets a volume whose voxels lie in memory: the map itself, or for a map over ranks a copy, which the map
+ * keeps and owns. The first call for a map over ranks is collective and makes the copy; later calls get the
+ * same copy. HL_ERROR_UNSUPPORTED for a map in a scratch file or in bricks; HL_ERROR_MEMORY, on all ranks,
+ * where one rank has no room for the copy. */
 hl_status hl_volume_in_memory(const hl_volume *map, hl_volume **whole, hl_error *error);
 
 #endif

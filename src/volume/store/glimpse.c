@@ -120,7 +120,7 @@ void hl_glimpse_release(hl_glimpse *glimpse) {
   if (glimpse != NULL) hl_release(glimpse->context, glimpse); /* the glimpse's arrays lie in the same block */
 }
 
-/* The place where a lattice keeps the row (j, k); null if it does not keep the row. */
+/* The memory in which a lattice keeps the row (j, k); null if it does not keep the row. */
 static unsigned char *row_of(const hl_glimpse *g, const lattice *l, size_t j, size_t k) {
   uint32_t y = l->place[1][j], z = l->place[2][k];
   return y == NOT_KEPT || z == NOT_KEPT ? NULL : l->voxels + (z * l->count[1] + y) * l->count[0] * g->bytes;

@@ -33,8 +33,8 @@ bool hl_glimpse_create(hl_context *context, const size_t dimension[3], hl_storag
                        hl_glimpse **glimpse);
 void hl_glimpse_release(hl_glimpse *glimpse); /* null is allowed */
 
-/* Keeps the needed ones of `count` stored values from number `first` on ([k][j][i]). Several threads may
- * store different voxels at once. */
+/* Keeps those values that a glimpse needs, among `count` stored values from number `first` on ([k][j][i]).
+ * Several threads may store different voxels at once. */
 void hl_glimpse_store(hl_glimpse *glimpse, size_t first, size_t count, const void *values);
 
 /* The stored value of a voxel; null if it is not kept. */

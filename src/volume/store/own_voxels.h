@@ -43,7 +43,7 @@ void hl_own_voxels_release(hl_own_voxels *own); /* null is allowed */
 /* The hl_block_copier of an hl_own_voxels. */
 void hl_own_voxels_copy(const void *own, const hl_box *box, unsigned char *to);
 
-/* Copies `count` voxels from number `first` on, in the block's own order. */
+/* Copies `count` voxels of a block, from voxel number `first` on, in the block's own order. */
 void hl_own_voxels_run(const hl_own_voxels *own, size_t first, size_t count, unsigned char *to);
 
 static inline size_t hl_own_voxels_count(const hl_own_voxels *own) {

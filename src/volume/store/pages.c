@@ -107,15 +107,15 @@ hl_status hl_pages_create(hl_context *context, const char *folder, const hl_volu
   return status;
 }
 
-/* Reserves addresses only; memory is taken page by page. */
+/* Reserves addresses for pages over ranks; memory is taken later, page by page. */
 static hl_status map_nothing(hl_pages *pages, hl_error *error) {
   void *mapping = mmap(NULL, pages->mapping_bytes, PROT_READ | PROT_WRITE,
                        MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (mapping == MAP_FAILED)
     return hl_fail(error, HL_ERROR_MEMORY, "out of memory: no addresses for %.1f MiB of voxels: %s",
                    (double)pages->mapping_bytes / (1 << 20), strerror(errno));
-  madvise(mapping, pages->mapping_bytes, MADV_NOHUGEPAGE); /* several pages would share a large page of the
-                                                            * system */
+  /* otherwise several pages would share one large page of the system */
+  madvise(mapping, pages->mapping_bytes, MADV_NOHUGEPAGE);
   pages->mapping = mapping;
   pages->first = pages->mapping + round_up(SLICES_AROUND * pages->slice_bytes, UNIT);
   return HL_OK;
@@ -203,7 +203,7 @@ bool hl_pages_wanted(const hl_context *context, const hl_volume_description *gri
 
 /* ---- memory ---- */
 
-/* A fault may map neighbouring units, too, up to the borders of a window of this many bytes (Linux,
+/* A page fault may map neighbouring units, too, up to the borders of a window of this many bytes (Linux,
  * fault_around_bytes). */
 enum { FAULT_WINDOW = 1 << 16 };
 

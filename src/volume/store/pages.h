@@ -51,7 +51,7 @@ typedef struct hl_pages {
   hl_blocks *blocks;    /* owned; null for a scratch file */
   hl_own_voxels *own;   /* owned; the voxels behind `blocks` */
   uint32_t *version;    /* owned; over ranks [pages], else null; rises when a page is forgotten; atomic */
-  pthread_cond_t came;  /* over ranks: signalled when a page that was coming is there */
+  pthread_cond_t came;  /* over ranks: signalled when a page that a thread was fetching has arrived */
   pthread_mutex_t lock; /* held while values are counted; over ranks, also while pages come and go */
   uint64_t *counts; /* owned; [hl_values_of(storage)]; counts of the stored values; null if they were taken,
                      * or for floats */

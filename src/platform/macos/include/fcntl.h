@@ -11,7 +11,8 @@
 #endif
 #define O_PATH 0 /* a descriptor for a name alone is one for reading */
 
-/* Makes a file at least that long, on its disk. Returns an error number or 0. */
+/* Makes a file at least offset + bytes long, and reserves the space on its disk. Returns an error number or
+ * 0. */
 int posix_fallocate(int descriptor, off_t offset, off_t bytes);
 
 #endif

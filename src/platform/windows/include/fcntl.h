@@ -20,7 +20,7 @@
 int hl_posix_open(const char *path, int flags, ...);
 /* path: relative, with '/'. Names with a colon or a backslash do not exist. Links fail as for O_NOFOLLOW. */
 int hl_posix_openat(int folder, const char *path, int flags, ...);
-/* Makes a file at least that long. Returns an error number or 0. */
+/* Makes a file at least offset + bytes long. Returns an error number or 0. */
 int posix_fallocate(int descriptor, off_t offset, off_t bytes);
 int hl_posix_fcntl(int descriptor, int command);
 #define open   hl_posix_open

@@ -21,7 +21,7 @@ struct sigaction {
 };
 int sigfillset(sigset_t *signals);
 int sigemptyset(sigset_t *signals);
-/* Fails for signals that the C library does not have. */
+/* Sets what a signal does. Fails for signals that the C library does not have. */
 int sigaction(int number, const struct sigaction *action, struct sigaction *before);
 
 #undef pthread_sigmask

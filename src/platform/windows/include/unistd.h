@@ -6,7 +6,7 @@
 
 #include <stddef.h>
 
-/* As POSIX has them. A read or a write takes at most 1 GiB at once. */
+/* The functions read() and write() as POSIX has them. A call moves at most 1 GiB. */
 ssize_t hl_posix_read(int descriptor, void *bytes, size_t count);
 ssize_t hl_posix_write(int descriptor, const void *bytes, size_t count);
 ssize_t pread(int descriptor, void *bytes, size_t count, off_t offset);
@@ -19,7 +19,7 @@ int hl_posix_chdir(const char *path);
 char *hl_posix_getcwd(char *path, size_t size);
 int hl_posix_isatty(int descriptor);
 unsigned geteuid(void); /* 0: a process has no user's number */
-/* Links are not read, so that "/proc/self/exe" leads nowhere: fails. */
+/* Always fails: links are not read, so that "/proc/self/exe" leads nowhere. */
 ssize_t readlink(const char *path, char *text, size_t size);
 int symlink(const char *path, const char *name); /* fails */
 

@@ -13,8 +13,8 @@ enum { HL_AMR_LEVELS_MOST = BRICK_LEVELS_LIMIT };
 /* The shape of an adaptive grid. */
 typedef struct hl_amr_shape {
   int levels;                    /* 1 .. HL_AMR_LEVELS_MOST */
-  int ratio[HL_AMR_LEVELS_MOST]; /* cells of the next finer level along a cell's edge; [levels - 1] are used;
-                                  * each a power of two */
+  int ratio[HL_AMR_LEVELS_MOST]; /* [levels - 1] are used; the number of cells of the next finer level
+                                  * along a cell's edge; each a power of two */
   ptrdiff_t first[3];            /* index of the first cell of level 0 in the domain */
   size_t count[3];               /* cells of level 0 in the domain */
   double origin[3];              /* world: the corner of the domain with the least coordinates */

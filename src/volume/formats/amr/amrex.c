@@ -205,7 +205,8 @@ static bool read_fab_line(const char *line, size_t length, fab_layout *layout, p
   return take_box(&text, first, count) && take_integer(&text, components);
 }
 
-/* Reads one component of a patch to floats, owned by the caller. place: of the first byte in the file. */
+/* Reads one component of a patch to floats, owned by the caller. place: the position of the component's
+ * first byte in the file. */
 static hl_status read_values(const plotfile *file, hl_source *source, uint64_t place,
                              const fab_layout *layout, size_t cells, float **values, hl_error *error) {
   enum { STAGE = 4096 };

@@ -47,7 +47,7 @@ static bool is_wanted_sequence(uint32_t tag) {
       0x00209111, 0x00189114, 0x00189117,
       0x00189118, /* frame content, MR echo, MR diffusion, cardiac */
       0x00289132, 0x00540022, 0x00041220,
-      0x0062000a, /* frame VOI LUT, detectors, DICOMDIR, segment of a frame */
+      0x0062000a, /* VOI LUT of a frame, detectors, entries of a DICOMDIR, segment of a frame */
       0x0020930e, 0x0020930f, 0x00209310,
       0x00620002,                        /* plane position and orientation in an ultrasound volume,
                                             temporal position, segments */

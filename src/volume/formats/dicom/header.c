@@ -340,8 +340,8 @@ static hl_status finish_pixels(const hl_source *source, hl_dicom_header *header,
   p->high = (int)high;
   p->is_signed = header->representation == 1;
   p->planar = header->planar == 1;
-  /* CT and PET store measured values, which are never inverted. In other pictures MONOCHROME1 means that the
-   * least value is white */
+  /* CT and PET store measured values, which are never inverted. In other pictures MONOCHROME1 means that
+   * the least value is shown white */
   bool measured = hl_text_equal(header->modality, "CT") || hl_text_equal(header->modality, "PT");
   p->inverted = hl_text_equal(header->photometric, "MONOCHROME1") && !measured;
   p->is_ybr = hl_text_starts(header->photometric, "YBR_FULL");

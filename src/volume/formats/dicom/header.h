@@ -23,7 +23,7 @@ typedef enum hl_dicom_codec {
 
 /* Attributes that may differ between the frames of a file. */
 typedef struct hl_dicom_frame {
-  double position[3];    /* the centre of the first voxel, in the patient: LPS, millimetres */
+  double position[3];    /* the centre of the first voxel, in the patient's space: LPS, millimetres */
   double orientation[6]; /* unit steps along a row, then along a column */
   double spacing[2];     /* between rows, then between columns */
   double slope, intercept;

@@ -21,10 +21,10 @@ enum { LAYERS_MOST = 64 };
 typedef struct segment_reading {
   const hl_dicom_set *set;
   const hl_dicom_stack *stack;
-  int *layers;             /* owned; [segments]; the component that each segment belongs to */
+  int *layers;             /* owned; [segments]; the component to which each segment belongs */
   unsigned char *overlaps; /* owned; [segments][segments]: 1 where two segments share a voxel */
   size_t layer_count;
-  size_t chosen; /* for fractions: the segment; for masks: the component */
+  size_t chosen; /* for fractions: the segment that is read; for masks: the component that is read */
   bool fractions;
   hl_voxel_type type;
   size_t slice_voxels;

@@ -13,7 +13,7 @@ enum { HL_DICOM_SEGMENTS = 0x00620002 /* the sequence whose items are segments *
 typedef enum hl_dicom_segment_kind {
   HL_DICOM_NO_SEGMENTS = 0,
   HL_DICOM_BINARY,     /* each frame is a mask of one segment */
-  HL_DICOM_FRACTIONAL, /* each frame has a fraction of one segment at each pixel */
+  HL_DICOM_FRACTIONAL, /* each frame has, for one segment, a fraction at each pixel */
   HL_DICOM_LABEL_MAP   /* pixels are numbers of segments */
 } hl_dicom_segment_kind;
 

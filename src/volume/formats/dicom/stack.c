@@ -106,8 +106,8 @@ static int compare(double a, double b) {
   return a < b ? -1 : a > b;
 }
 
-/* Compares frames at the same position, which belong to different volumes, by the attributes in which such
- * volumes differ; the most reliable attribute comes first. */
+/* Compares frames at the same position, which belong to different volumes. They are compared by the
+ * attributes in which such volumes differ, the most reliable attribute first. */
 static int by_volume(const hl_dicom_frame *a, const hl_dicom_frame *b) {
   const double of_a[] = {a->temporal,     a->echo,         a->b_value,   a->diffusion[0],
                          a->diffusion[1], a->diffusion[2], a->inversion, a->flip,
@@ -173,9 +173,9 @@ static int widest_axis(const sorting *s) {
   return widest;
 }
 
-/* Chooses an orientation for slices that tell none: they stand across the axis along which they lie, as
- * slices usually do. Sagittal slices have rows from front to back, coronal ones from right to left, and both
- * have columns from head to feet. */
+/* Chooses an orientation for slices that tell none: they are taken to be perpendicular to the axis along
+ * which they follow each other, as slices usually are. Sagittal slices have rows from front to back,
+ * coronal ones from right to left, and both have columns from head to feet. */
 static void assume_axes(sorting *s) {
   static const vec3 rows[3] = {{0, 1, 0}, {1, 0, 0}, {1, 0, 0}},
                     columns[3] = {{0, 0, -1}, {0, 0, -1}, {0, 1, 0}};
@@ -381,7 +381,7 @@ static double median_step(const sorting *s) {
   return median;
 }
 
-/* Whether all positions are whole multiples of one step away from the first. The step is close to `step`.
+/* Whether all positions are whole multiples of one step away from the first. step: the step, approximately.
  * *slices: the number of steps plus one. */
 static bool is_even(const sorting *s, double step, size_t *slices) {
   const double TOLERANCE = 0.05; /* in parts of a step */
@@ -465,7 +465,7 @@ static hl_status space_evenly(sorting *s, hl_dicom_stack *stack, hl_error *error
 
 static void put(vec3 v, double to[3]) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
 
-/* The frame whose position is the position of a place: the first frame there. */
+/* The frame that gives a place its position: the first frame at the place. */
 static const hl_dicom_frame *frame_of_place(const hl_dicom_stack *stack, size_t place) {
   const hl_dicom_frame **frames = stack->frames + place * stack->times;
   size_t n = 0;

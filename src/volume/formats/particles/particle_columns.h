@@ -45,13 +45,13 @@ int hl_particle_words(char *line, char *words[HL_PARTICLE_COLUMNS_MOST]);
 /* What a column of this name is. */
 hl_particle_role hl_particle_role_of(const char *name);
 
-/* Adds a column by its name. More than HL_PARTICLE_COLUMNS_MOST are left out. */
+/* Adds a column by its name. Columns beyond HL_PARTICLE_COLUMNS_MOST are left out. */
 void hl_particle_columns_add(hl_particle_columns *columns, const char *name);
 
 /* Whether there are x, y and z. */
 bool hl_particle_columns_are_places(const hl_particle_columns *columns);
 
-/* Adds a particle. line: is changed. number: of the line, for errors. */
+/* Adds a particle. line: the text, which is changed. number: the line's number, for errors. */
 hl_status hl_particle_columns_row(hl_particle_columns *columns, char *line, const hl_stream *stream,
                                   int number, hl_error *error);
 

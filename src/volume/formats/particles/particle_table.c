@@ -7,7 +7,7 @@
 #include "volume/formats/particles/particle_columns.h"
 #include "volume/io/text.h"
 
-/* Adds the columns that a line names. line: is changed. */
+/* Adds the columns that a line names. line: the text, which is changed. */
 static void name_columns(char *line, hl_particle_columns *columns) {
   char *words[HL_PARTICLE_COLUMNS_MOST];
   int count = hl_particle_words(line + strspn(line, "# \t"), words);

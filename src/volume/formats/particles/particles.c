@@ -1,5 +1,5 @@
-/* volume/formats/particles/particles.c - volumes of particles: the caller's arrays, checked, and what becomes
- * of their density.
+/* volume/formats/particles/particles.c - volumes of particles: the check of the caller's arrays, and the
+ * volume of their density.
  *
  * In: a description of particles, from a caller or from the reader of a file. Out: a volume of its density,
  * the logarithm of it, or the mean of a value. particles/particles.h spreads them. */
@@ -15,7 +15,8 @@
 
 enum {
   SIDE = 512,            /* voxels along an axis at most, by default */
-  POINTS_A_PARTICLE = 64 /* kernels of 48 neighbours with h = 2 voxels cover 6 voxels each; clusters more */
+  POINTS_A_PARTICLE = 64 /* kernels of 48 neighbours with h = 2 voxels cover 6 voxels for each particle,
+                          * and more where particles cluster */
 };
 #define LEAST_POINTS ((size_t)1 << 21)
 #define MOST_POINTS  ((size_t)1 << 31)
@@ -83,7 +84,8 @@ static hl_particle_input input_of(const hl_particles_description *d) {
   return input;
 }
 
-/* Half of the memory limit is for the voxels of the volume and of what is made beside it. */
+/* The greatest number of voxels of the volume. Half of the memory limit is for these voxels, and for what
+ * is made beside them. */
 static size_t most_points(const hl_context *context, const hl_particles_description *d, size_t count) {
   size_t fields = d->quantity == HL_PARTICLES_MEAN ? 3 : 2, most = MOST_POINTS;
   if (d->spacing == 0) {
@@ -124,8 +126,8 @@ static size_t point_count(const hl_particle_lattice *lattice) {
   return count;
 }
 
-/* The density below which a voxel counts as empty: a tenth of the least that a particle has at its own place,
- * m W(0) = m / (pi h^3). */
+/* The density below which a voxel counts as empty: a tenth of the least density that any particle alone has
+ * at its own place, m W(0) = m / (pi h^3). */
 static float empty_density(const hl_particles_description *d, const hl_particle_set *set) {
   double least = INFINITY;
   for (size_t n = 0; n < set->count; n++) {
@@ -143,7 +145,8 @@ typedef struct logarithms {
 
 enum { LOGARITHMS_AT_ONCE = 1 << 16 };
 
-/* The logarithm of doubles, rounded to floats, is nearly everywhere the same on all machines. */
+/* Turns densities into logarithms. The logarithm of a double, rounded to a float, is nearly everywhere the
+ * same on all machines. */
 static void take_logarithms(void *data, size_t index, int worker) {
   const logarithms *l = data;
   (void)worker;
@@ -155,7 +158,7 @@ static void divide(float *field, const float *by, size_t count) {
   for (size_t n = 0; n < count; n++) field[n] = by[n] > 0 ? field[n] / by[n] : NAN;
 }
 
-/* Appends the points at the ends of the periods. *field is replaced. */
+/* Appends to the field the points at the ends of periodic axes. *field is replaced. */
 static hl_status close_periods(hl_context *context, const hl_particle_lattice *lattice, const char *subject,
                                float **field, hl_error *error) {
   size_t from[3], to[3];

@@ -7,7 +7,8 @@
 #include "core/error.h"
 #include "volume/volume.h"
 
-/* hl_volume_from_particles() for a file; subject starts the error lines. */
+/* Does the work of hl_volume_from_particles() for the particles of a file. subject: starts the error lines.
+ */
 hl_status hl_particles_to_volume(hl_context *context, const hl_particles_description *description,
                                  const char *subject, hl_volume **volume, hl_error *error);
 

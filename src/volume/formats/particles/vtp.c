@@ -1,8 +1,8 @@
 /* volume/formats/particles/vtp.c - the points of VTK's XML PolyData (.vtp) as particles.
  *
  * PolyData are particles if they have neither lines nor surfaces, and an array of masses or of smoothing
- * lengths at their points. All others are meshes (mesh/vtp.c). The other arrays at the points are quantities;
- * of vectors the length is one. */
+ * lengths at their points. All other PolyData are meshes (mesh/vtp.c). The other arrays at the points are
+ * quantities; an array of vectors gives their lengths. */
 #include <halflight/particles.h>
 #include <math.h>
 #include <string.h>
@@ -64,7 +64,7 @@ static void name_columns(const hl_vtk_pieces *pieces, hl_particle_columns *colum
   }
 }
 
-/* Appends tuples to a column: each as its number or, of several components, as their length. */
+/* Appends tuples to a column: a tuple of one component as its number, a tuple of several as its length. */
 static hl_status append(const hl_particle_columns *columns, hl_particle_column *column, const double *numbers,
                         size_t tuples, size_t components, hl_error *error) {
   float *values = hl_reallocate(columns->context, column->values, columns->count + tuples, sizeof *values);

@@ -18,7 +18,8 @@ static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) 
   return HL_OK;
 }
 
-/* What follows "key=" in a comment, up to a space, or between quotes; "" if the key is not there. */
+/* Copies the value of a key in a comment: the text after "key=" up to a space, or between quotes; "" if the
+ * key is not there. */
 static void value_of(const char *comment, const char *key, char *value, size_t capacity) {
   size_t length = strlen(key);
   value[0] = 0;

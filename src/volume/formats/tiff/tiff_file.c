@@ -288,7 +288,7 @@ uint64_t tiff_file_plain(tiff_file *file, const tiff_shape *shape, uint64_t *byt
 bool tiff_file_can_hold(tiff_file *file, const tiff_shape *shape) {
   uint16_t compression = COMPRESSION_NONE;
   TIFFGetFieldDefaulted(file->tiff, TIFFTAG_COMPRESSION, &compression);
-  /* the greatest number of bytes that one compressed byte can become: 1032 for deflate (zlib's
+  /* the greatest number of bytes to which one compressed byte can unpack: 1032 for deflate (zlib's
    * documentation), 4096 for LZW with codes of 12 bits */
   double most = compression == COMPRESSION_NONE                                                  ? 1
                 : compression == COMPRESSION_PACKBITS                                            ? 64

@@ -18,7 +18,7 @@
 #include "volume/io/parallel.h"
 
 enum {
-  PARALLEL_BYTES = 1 << 20, /* smaller volumes are read before other threads would have started */
+  PARALLEL_BYTES = 1 << 20, /* smaller volumes are read before further threads would have started */
 };
 
 /* A file, and the offsets of its directories. */
@@ -39,8 +39,9 @@ typedef struct stack_reading {
   tiff_plan plan;
   stack_file *files; /* owned; [plan.file_count] */
   int level;
-  uint64_t plain, plain_bytes; /* position of the first slice's pixels, which all others follow, and bytes of
-                                * a slice; 0 if each slice is a page that libtiff decodes */
+  uint64_t plain, plain_bytes; /* position of the first slice's pixels, if all slices follow each other
+                                * there uncompressed, and bytes of a slice; 0 if libtiff decodes each slice
+                                * from a page */
   tiff_shape shape;            /* shape of each slice, at the level */
   uint32_t width, height;      /* size at level 0 */
   int component;
@@ -339,7 +340,7 @@ static void describe(const stack_reading *r, hl_payload *payload) {
   for (int axis = 0; axis < 3; axis++) {
     double step = (r->plan.spacing[axis] > 0 ? r->plan.spacing[axis] : known) * coarser[axis];
     grid->axis[axis][axis] = step;
-    /* voxels of reduced levels are larger, and share the corner of the grid */
+    /* voxels of reduced levels are larger; their grid begins at the same corner as the full one */
     grid->origin[axis] = (step - step / coarser[axis]) / 2;
   }
   payload->components = r->shape.components;

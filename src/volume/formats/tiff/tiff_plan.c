@@ -233,7 +233,7 @@ static hl_status read_tag(ome_reader *ome, const hl_xml_tag *tag, hl_error *erro
   return HL_OK;
 }
 
-/* Ends the plan. If TiffData is absent or incomplete, planes are the pages in order. */
+/* Ends the plan. If TiffData is absent or incomplete, the planes are taken to be the pages in their order. */
 static hl_status finish_ome(ome_reader *ome, hl_error *error) {
   if (!ome->in_pixels) return fail_ome(ome, "has no Pixels: is it a companion of another file?", error);
   hl_status status = begin_slices(ome, error);
@@ -337,7 +337,8 @@ static void take_imagej_lengths(hl_load_request *request, const char *descriptio
 
 /* ---- tifffile's series: a JSON object with the array's shape, and perhaps the letters of its axes ---- */
 
-/* Times, channels and slices: how many there are, and how many pages lie from one to the next. */
+/* An axis of a series (times, channels or slices): its size, and the number of pages from one index to the
+ * next. */
 typedef struct series_axis {
   size_t count, step;
 } series_axis;
@@ -347,8 +348,8 @@ typedef struct series_sizes {
 
 enum { SHAPE_MOST = 12 };
 
-/* Names axes that have no letters. The last axis before y and x is z, the one before it the time, and one
- * more the channel. */
+/* Names axes that have no letters. The last axis before y and x is z, the axis before z is the time, and
+ * the axis before that the channel. */
 static void name_axes(size_t count, char letters[SHAPE_MOST]) {
   static const char usual[] = "CTZ";
   for (size_t n = 0; n < count; n++) letters[n] = count - n <= 3 ? usual[3 - (count - n)] : 'Q';
@@ -375,8 +376,8 @@ static bool sort_axes(const size_t *shape, const char *letters, size_t count, se
   return true;
 }
 
-/* Reads the description. False if it is no series, or one that is not read. samples: number of samples of a
- * pixel. */
+/* Reads the description. False if it describes no series, or a series that cannot be read. samples: number
+ * of samples of a pixel. */
 static bool read_series(const char *description, size_t samples, series_sizes *sizes) {
   size_t shape[SHAPE_MOST], count = 0;
   char letters[SHAPE_MOST];

@@ -15,9 +15,10 @@
 
 enum { SHIFT = 5, SIDE = 1 << SHIFT, WIDTH = SIDE + BRICK_MARGIN, COEFFICIENTS = WIDTH * WIDTH * WIDTH };
 
-/* The most bricks in the box of active voxels. A damaged or hostile file may tell of any box. */
+/* The most bricks in the box of active voxels. A damaged or hostile file may state a box of any size. */
 enum { MOST_BRICKS = 1 << 22 };
-/* Fewer bytes than this part of the dense volume's. Bricks are sampled more slowly. */
+/* Bricks are made only if they take fewer bytes than this fraction of the dense volume's bytes, because
+ * bricks are sampled more slowly. */
 static const double WORTH_WHILE = 0.6;
 
 typedef struct brick_reader {
@@ -76,7 +77,7 @@ static hl_status keep_brick(void *data, size_t number, int worker, hl_error *err
   return slot < 0 ? HL_OK : read_brick(r, number, box, r->bricks->pool + (size_t)slot * COEFFICIENTS, error);
 }
 
-/* Gives the bricks that are no constants their slots; false if the dense box is better. */
+/* Numbers the bricks that are not constant; false if the dense box takes less memory. */
 static bool number_slots(hl_bricks *bricks, const size_t size[3], size_t entries) {
   for (size_t n = 0; n < entries; n++)
     if (bricks->directory[n].slot >= 0) bricks->directory[n].slot = (int32_t)bricks->slots++;
@@ -92,8 +93,8 @@ hl_status nanovdb_bricks_read(const nanovdb_grid *grid, const hl_volume_descript
   size_t entries = 1;
   *bricks = (hl_bricks){.shift = SHIFT, .levels = 1};
   for (int a = 0; a < 3; a++) {
-    /* the grid's coordinates are then the voxels' (grid/grid.h), so that pictures are those of a dense volume
-     */
+    /* the coordinates of the grid are then those of the voxels (grid/grid.h), so that pictures have the
+     * bytes of a dense volume */
     bricks->origin[a] = 1;
     bricks->dimension[a] = description->dimensions[a] + 2;
     bricks->directory_size[a] = (bricks->dimension[a] + SIDE - 1) / SIDE;

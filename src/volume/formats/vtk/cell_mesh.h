@@ -13,10 +13,12 @@ typedef struct hl_cell_mesh {
   double *points;      /* owned; [point_count][3] */
   float *values;       /* owned; [point_count]; NaN until they are set */
   hl_cell *cells;      /* owned; [cell_count]; those with a volume */
-  size_t *sources;     /* owned; [cell_count]; the number of the piece's cell from which each comes */
+  size_t *sources;     /* owned; [cell_count]; for each cell, the number of the piece's cell from which it
+                        * was made */
   size_t point_count, cell_count, cell_room;
   size_t first_point, first_cell;    /* where the piece that was begun last begins */
-  size_t left_out, flat, simplified; /* cells of unknown kinds, without a volume, and with curved edges */
+  size_t left_out, flat, simplified; /* numbers of cells that were left out because of their kind, cells
+                                      * that enclose no volume, and cells whose edges were curved */
 } hl_cell_mesh;
 
 /* Chooses the array and the component of a grid of cells, whose arrays are listed. active: the array that the
@@ -44,7 +46,7 @@ hl_status hl_cell_mesh_set_values(hl_cell_mesh *mesh, const double *values, size
 hl_status hl_cell_mesh_finish(hl_cell_mesh *mesh, hl_volume **volume, hl_error *error);
 void hl_cell_mesh_release(hl_cell_mesh *mesh);
 
-/* Whether VTK's number is a kind of cell with a volume that is read. */
+/* Whether a number of VTK's stands for a kind of cell that encloses a volume and can be read. */
 bool hl_cell_kind_is_read(double type);
 
 #endif

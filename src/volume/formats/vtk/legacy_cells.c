@@ -27,9 +27,10 @@ typedef struct cells_file {
   bool is_curvilinear;
   size_t size[3]; /* points of a curvilinear grid along i, j, k */
   number_list points, types;
-  number_list list;             /* of a file before version 5.1: count, points, count, points, ... */
+  number_list list;             /* in a file before version 5.1: count, points, count, points, ... */
   number_list offsets, corners; /* of a newer file; the first offset is 0 */
-  size_t offset_count, room;    /* the numbers of offsets and corners that CELLS tells of a newer file */
+  size_t offset_count, room;    /* the numbers of offsets and of corners that the line CELLS states in a
+                                 * newer file */
   bool lists;                   /* in the first pass: arrays are listed */
   size_t arrays;                /* number of arrays so far that can hold the volume */
   hl_legacy_array chosen;       /* in the second pass; its texts are not kept */
@@ -41,7 +42,7 @@ bool hl_legacy_is_of_cells(const char *kind) {
 
 /* ---- geometry ---- */
 
-/* Reads numbers in place of those of an earlier pass. */
+/* Reads a list of numbers, which replaces the list of an earlier pass. */
 static hl_status read_list(cells_file *cells, const char *type_name, size_t count, number_list *list,
                            hl_error *error) {
   hl_number_code code = {.text = cells->file.text, .big_endian = true};
@@ -114,7 +115,8 @@ static hl_status read_keyword(hl_legacy_vtk *file, const char *keyword, const ch
 
 /* ---- arrays ---- */
 
-/* Called when the values of an array come next. Arrays of the file itself, and colours, are no values. */
+/* Called when the values of an array come next. Arrays of the file itself, and colours, do not count as
+ * values. */
 static hl_status meet_array(hl_legacy_vtk *file, const hl_legacy_array *array, hl_error *error) {
   cells_file *cells = (cells_file *)file;
   const bool usable = !array->of_neither && !array->is_fraction;
@@ -134,7 +136,7 @@ static hl_status meet_array(hl_legacy_vtk *file, const hl_legacy_array *array, h
 
 /* ---- the mesh ---- */
 
-/* Makes ends and corners of a list of counts and points. */
+/* Splits a list of counts and points into the cells' ends and corners. */
 static hl_status split_list(cells_file *cells, hl_error *error) {
   const number_list *list = &cells->list;
   hl_context *context = cells->request->context;

@@ -181,8 +181,8 @@ static hl_status find_volume(hl_stream **stream, hl_load_request *request, vtk_h
   return hl_legacy_vtk_read(&header->file, error);
 }
 
-/* Moves the grid to the cells, which lie between the points: there is one fewer along each axis that has
- * several points, and the first lies half a step further. */
+/* Moves the grid to the cells, which lie between the points: along each axis with several points there is
+ * one cell fewer than points, and the first cell lies half a step further. */
 static void move_to_cells(hl_volume_description *grid) {
   for (int axis = 0; axis < 3; axis++) {
     if (grid->dimensions[axis] < 2) continue;

@@ -17,7 +17,7 @@ typedef struct axis_map {
   size_t count;       /* number of voxels of the new grid */
   double first, step; /* in the world */
   bool even;
-  size_t *below;  /* owned; [count]; the old voxel at or before each new one */
+  size_t *below;  /* owned; [count]; for each new voxel, the old voxel at its place or before it */
   double *weight; /* owned; [count]; the weight of the old voxel after it */
 } axis_map;
 
@@ -35,8 +35,8 @@ static bool is_even(const double *c, size_t count) {
   return true;
 }
 
-/* Finds the old voxels around each new one. edges: whether c has the edges of the old cells, [voxels + 1], or
- * else their points, [voxels]. */
+/* Finds the old voxels around each new one. edges: c holds the edges of the old cells, [voxels + 1];
+ * otherwise it holds the old points, [voxels]. */
 static void fill_map(const double *c, size_t voxels, bool of_cells, axis_map *map) {
   double way = map->step > 0 ? 1 : -1;
   for (size_t n = 0, at = 0; n < map->count; n++) {

@@ -373,7 +373,8 @@ static hl_status read_part(const vti_header *header, size_t index, hl_load_reque
   return status;
 }
 
-/* The grid of the whole volume, with the first part's type and placing of values. */
+/* The grid of the whole volume, with the type of the first part, which also tells whether values belong to
+ * points or cells. */
 static hl_volume_description grid_of_parts(const vti_header *header, const hl_volume *part, bool of_cells) {
   hl_volume_description grid;
   hl_volume_description_defaults(&grid);
@@ -433,8 +434,8 @@ static hl_status read_parts(const vti_header *header, hl_volume **volume, hl_err
 
 /* ---- the whole ---- */
 
-/* Completes the pieces. The extent of a single piece is its own. A file without a Piece has one, the
- * whole. */
+/* Completes the pieces. The extent of a single piece is its own. A file without a Piece has a single piece,
+ * the whole extent. */
 static hl_status finish_pieces(vti_header *header, hl_error *error) {
   if (header->piece_count == 0 && header->has_extent) {
     hl_status status = grow(header, (void **)&header->pieces, 0, &header->piece_room, sizeof *header->pieces,

@@ -52,7 +52,8 @@ static hl_status read_counts(const hl_vtk_pieces *file, const hl_xml_tag *tag, h
   return status;
 }
 
-/* Pieces without points are ignored: programs that write in parallel leave them. */
+/* Reads the tag of a piece. Pieces without points are ignored: programs that write in parallel leave such
+ * pieces. */
 static hl_status read_piece_tag(hl_vtk_pieces *file, const hl_xml_tag *tag, hl_error *error) {
   hl_vtk_piece piece = {.first_array = file->array_count};
   hl_status status = strcmp(file->types[file->type], "StructuredGrid") == 0

@@ -40,7 +40,7 @@ bool hl_vtk_xml_is_of(const unsigned char *bytes, size_t length, const char *con
 typedef hl_status hl_vtk_xml_tag_fn(void *data, const hl_xml_tag *tag, hl_error *error);
 hl_status hl_vtk_xml_read_tags(hl_vtk_xml *xml, hl_vtk_xml_tag_fn *read_tag, void *data, hl_error *error);
 
-/* Reads an attribute that is a number of things; without the attribute *count stays. */
+/* Reads an attribute that is a count. If the attribute is absent, *count is not changed. */
 hl_status hl_vtk_xml_count(const hl_vtk_xml *xml, const hl_xml_tag *tag, const char *name, size_t *count,
                            hl_error *error);
 
@@ -51,7 +51,7 @@ void hl_vtk_xml_copy_name(char to[HL_VTK_NAME_BYTES], const char *name);
 hl_status hl_vtk_xml_grow(hl_context *context, const hl_vtk_xml *xml, void **list, size_t count, size_t *room,
                           size_t size, hl_error *error);
 
-/* Fails for a value that is impossible or, with HL_ERROR_UNSUPPORTED, not read. */
+/* Fails because of a value that is impossible, or that cannot be read (HL_ERROR_UNSUPPORTED). */
 hl_status hl_vtk_xml_refuse(const hl_vtk_xml *xml, hl_status code, const char *what, const char *value,
                             hl_error *error);
 

@@ -22,7 +22,8 @@ enum { TYPES = sizeof types / sizeof *types };
 typedef struct grid_file {
   hl_load_request *request;
   hl_vtk_pieces pieces;
-  int chosen_active; /* index of the active scalars among the request's arrays; -1 if none */
+  int chosen_active; /* index of the active scalars among the arrays listed in the request; -1 if there are
+                      * none */
 } grid_file;
 
 /* Lists the arrays of values of the first piece in the request. */

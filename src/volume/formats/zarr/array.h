@@ -20,11 +20,12 @@ typedef enum hl_zarr_compressor {
   HL_ZARR_XZ
 } hl_zarr_compressor;
 
-/* The changes of a chunk's bytes before they were packed. */
+/* The kinds of filters, which changed a chunk's bytes before the bytes were packed. */
 typedef enum hl_zarr_filter_kind {
-  HL_ZARR_SHUFFLE, /* the bytes of all elements are reordered, first bytes first */
+  HL_ZARR_SHUFFLE, /* the bytes of all elements were reordered: first the first bytes of all elements, then
+                    * the second bytes, and so on */
   HL_ZARR_DELTA,   /* differences of neighbours are stored */
-  HL_ZARR_OFFSET   /* (value - offset) * scale is stored, rounded: FixedScaleOffset */
+  HL_ZARR_OFFSET   /* FixedScaleOffset: (value - offset) * scale was stored, rounded */
 } hl_zarr_filter_kind;
 
 typedef struct hl_zarr_filter {
@@ -38,7 +39,8 @@ enum { HL_ZARR_FILTERS_MOST = 4 };
 
 /* The coding of a chunk's voxels as bytes. */
 typedef struct hl_zarr_codecs {
-  int order[HL_ZARR_AXES_MOST]; /* the array's axes in their order in a chunk, the slowest first */
+  int order[HL_ZARR_AXES_MOST]; /* the array's axes in the order in which they lie in a chunk, the slowest
+                                 * first */
   bool big_endian;
   hl_zarr_compressor compressor;
   hl_zarr_filter filters[HL_ZARR_FILTERS_MOST]; /* the filters in the order in which they were applied */

@@ -178,7 +178,7 @@ hl_status hl_zarr_filters_2(const hl_zarr_reading *r, const json_t *list) {
     hl_voxel_type own = r->array->type;
     if (name != NULL && hl_text_is_one_of(name, "quantize|bitround")) {
       if (!filter_type(entry, "astype", own, &filter.to) || filter.to != own) return fail_filter(r, name);
-      continue; /* values were rounded before, so that nothing is to be undone */
+      continue; /* such a filter rounded values before they were stored, so that nothing can be undone */
     }
     if (name == NULL || codecs->filter_count == HL_ZARR_FILTERS_MOST || codecs->big_endian)
       return fail_filter(r, name);

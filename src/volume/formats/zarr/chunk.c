@@ -163,7 +163,7 @@ static void put_number(hl_voxel_type type, double value, unsigned char *bytes) {
   }
 }
 
-/* The whole number that bytes of the type stand for, with its sign extended. */
+/* The whole number that bytes of a type stand for, with its sign extended. */
 static int64_t whole_of(hl_voxel_type type, const unsigned char *bytes) {
   uint64_t bits = 0;
   size_t count = hl_voxel_type_bytes(type);

@@ -18,7 +18,7 @@ typedef struct hl_zarr_unpacker {
   void *zstd;              /* owned; zstd's own memory */
 } hl_zarr_unpacker;
 
-/* The most bytes that an array's chunk has in a file; longer ones are refused. */
+/* The greatest number of bytes that a chunk of an array may have in a file; longer chunks are refused. */
 uint64_t hl_zarr_chunk_most(const hl_zarr_array *array);
 
 void hl_zarr_unpacker_release(hl_zarr_unpacker *unpacker);

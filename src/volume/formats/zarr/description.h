@@ -4,8 +4,8 @@
 
 #include "volume/formats/zarr/metadata.h"
 
-/* Reads names, colours and windows of channels, as a viewer is to show them ("omero"). The request's
- * selection must be made. */
+/* Reads names, colours and windows of channels, from the attribute "omero", which says how a viewer should
+ * show them. The request's selection must be made. */
 hl_status hl_zarr_describe_channels(const json_t *ome, hl_load_request *request, hl_error *error);
 
 /* Reads the labels of an image of labels: their colours, and their names from the property "class", "name" or

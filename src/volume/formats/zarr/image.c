@@ -33,8 +33,8 @@ static hl_zarr_axis axis_of_name(const char *name) {
   return HL_ZARR_OTHER;
 }
 
-/* Names axes that have no names. The last three are z, y and x; before them come the channel and, before
- * that, the time. */
+/* Names axes that have no names. The last three are z, y and x; the axis before them is the channel, and
+ * the axis before that the time. */
 static void take_places(int rank, hl_zarr_axis *axis) {
   static const hl_zarr_axis from_end[] = {HL_ZARR_X, HL_ZARR_Y, HL_ZARR_Z, HL_ZARR_CHANNEL, HL_ZARR_TIME};
   for (int n = 0; n < rank; n++) axis[rank - 1 - n] = n < HL_ZARR_OTHER ? from_end[n] : HL_ZARR_OTHER;

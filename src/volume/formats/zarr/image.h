@@ -22,7 +22,7 @@ typedef enum hl_zarr_axis {
 
 typedef struct hl_zarr_level {
   hl_zarr_array array;
-  /* Along the array's axes; micrometres where units are told. */
+  /* scale and translation along the array's axes; in micrometres where the file states units */
   double scale[HL_ZARR_AXES_MOST], translation[HL_ZARR_AXES_MOST];
 } hl_zarr_level;
 

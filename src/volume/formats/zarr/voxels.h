@@ -7,8 +7,8 @@
 
 /* The array's axes that are the volume's axes, and the index along all others. */
 typedef struct hl_zarr_choice {
-  int axis[3];                       /* the axis for each of i, j, k; -1 for no axis, where the volume has a
-                                      * single voxel */
+  int axis[3];                       /* the array's axis for each of i, j, k; -1: there is none, and the
+                                      * volume has a single voxel along it */
   uint64_t index[HL_ZARR_AXES_MOST]; /* index along the axes that are not in `axis` */
 } hl_zarr_choice;
 

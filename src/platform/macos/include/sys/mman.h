@@ -1,4 +1,5 @@
-/* platform/macos/include/sys/mman.h - <sys/mman.h> with Linux's advice, which is not heard. */
+/* platform/macos/include/sys/mman.h - <sys/mman.h> with Linux's kinds of advice, which have no effect here.
+ */
 #ifndef HL_PLATFORM_MACOS_SYS_MMAN_H
 #define HL_PLATFORM_MACOS_SYS_MMAN_H
 

@@ -1,4 +1,4 @@
-/* platform/macos/include/sys/prctl.h - Linux's <sys/prctl.h>: a wish that is not heard. */
+/* platform/macos/include/sys/prctl.h - Linux's <sys/prctl.h>: calls have no effect here. */
 #ifndef HL_PLATFORM_MACOS_SYS_PRCTL_H
 #define HL_PLATFORM_MACOS_SYS_PRCTL_H
 
