@@ -162,7 +162,8 @@ HL_API HL_WARN_UNUSED hl_status hl_context_limit_memory(hl_context *context, uin
 HL_API HL_WARN_UNUSED hl_status hl_context_confine(hl_context *context, const char *folder,
                                                    hl_context **confined, hl_error *error);
 
-/* Null is allowed. Everything made with the context must be released before, unless it is confined. */
+/* Destroys a context. Null is allowed. Everything made with the context must be released before, unless it
+ * is confined. */
 HL_API void hl_context_destroy(hl_context *context);
 
 /* Bytes now held through the context, and the most it ever held. */

@@ -52,9 +52,9 @@ HL_API HL_WARN_UNUSED hl_status hl_renderer_create(hl_context *context, hl_rende
                                                    hl_error *error);
 HL_API void hl_renderer_destroy(hl_renderer *renderer); /* null is allowed */
 
-/* pixels: the caller's buffer, [height][row_stride] floats, width x 4 of them used in each row: linear
- * premultiplied RGBA of the volumes alone (no background), top row first. row_stride in floats, at
- * least 4 x width. statistics may be null. On an error the buffer's content is undefined. Less memory is
+/* Renders a scene. pixels: the caller's buffer, [height][row_stride] floats, width x 4 of them used in each
+ * row: linear premultiplied RGBA of the volumes alone (no background), top row first. row_stride in floats,
+ * at least 4 x width. statistics may be null. On an error the buffer's content is undefined. Less memory is
  * needed where the buffer is aligned to 64 bytes, its rows follow each other without gaps and width and
  * height are multiples of 16. */
 HL_API HL_WARN_UNUSED hl_status hl_renderer_render(hl_renderer *renderer, const hl_scene *scene,

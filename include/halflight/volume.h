@@ -279,8 +279,9 @@ typedef struct hl_volume_channel {
   int chosen;       /* the volume was read from this channel */
 } hl_volume_channel;
 
-/* index: below the number of channels (hl_volume_get_selection()). Where the file tells nothing of its
- * channels, they have neither names nor colours nor windows. */
+/* Describes a channel of the volume's file. index: below the number of channels
+ * (hl_volume_get_selection()). Where the file tells nothing of its channels, they have neither names nor
+ * colours nor windows. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_channel(const hl_volume *volume, size_t index,
                                                       hl_volume_channel *channel);
 

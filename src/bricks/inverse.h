@@ -25,7 +25,8 @@ typedef struct hl_cell_affine {
   double middle[3];   /* the mean of the corners */
   double value;       /* the function's, at `middle` */
   double slope[3];    /* the function's, along x, y, z */
-  double place[3][3]; /* slopes of the three places within the unit cell; for a hexahedron near its middle */
+  double place[3][3]; /* slopes of the cell's three unit coordinates in space; for a hexahedron near its
+                       * middle */
 } hl_cell_affine;
 
 /* Finds the affine functions of a shape that hl_cell_shape_ready() has completed. values: the values at the

@@ -54,7 +54,7 @@ enum { MAXIMUM_REPEATS = 32 };
 
 typedef struct cli_value {
   bool given;
-  const char *text;                   /* the value as typed; for a repeatable option the last one */
+  const char *text;                   /* the value as it was typed; for a repeatable option the last value */
   const char *texts[MAXIMUM_REPEATS]; /* the values as typed; [count] */
   int count;
   bool chosen; /* one of the choices was given; `choice` is its value */

@@ -129,7 +129,7 @@ static void list_names(const hl_scene_description *description, char *names, siz
   }
 }
 
-/* many: the option may be given several times for one volume. */
+/* Refuses a NAME= that no volume has. many: the option may be given several times for one volume. */
 static hl_status check_names(const hl_composer *composer, hl_ask option, bool many,
                              const hl_scene_description *description) {
   char names[600];
@@ -247,7 +247,7 @@ static hl_status find_range(const hl_composer *composer, const hl_volume *volume
   return HL_OK;
 }
 
-/* Moves the points so that the values that had opacity become the values of the range. */
+/* Moves a function's points so that the range of values with opacity becomes the range that "range" gives. */
 static hl_status spread(const hl_composer *composer, const hl_volume *volume, const value_range *range,
                         hl_transfer_function *function) {
   hl_transfer_function moved = {0};

@@ -21,8 +21,8 @@ typedef struct hl_pool hl_pool;
 hl_status hl_pool_create(hl_context *context, int threads, hl_pool **pool, hl_error *error);
 void hl_pool_destroy(hl_pool *pool); /* null is allowed */
 
-/* False in a child process made by fork(), which has no threads of the pool: there the pool can only be
- * destroyed. */
+/* Whether the pool belongs to this process. A child process made by fork() has no threads of the pool:
+ * there the result is false, and the pool can only be destroyed. */
 bool hl_pool_is_own(const hl_pool *pool);
 int hl_pool_threads(const hl_pool *pool);
 /* How often, since the pool was made, a run ended with a wait for other threads. */

@@ -137,7 +137,8 @@ LANES_INLINE int cells_visible_in_bricks(const grid *grid, size_t first_brick, c
   return !_mm_testz_si128(word, _mm_shuffle_epi8(bit_of, bit));
 }
 
-/* False where some cell lies outside the 2x2x2 bricks that begin at the cell `first`. */
+/* Whether all cells of a block lie in 2x2x2 bricks: false where some cell lies outside the 2x2x2 bricks
+ * that begin at the cell `first`. */
 LANES_INLINE int cells_in_bricks(const lanes_int cell[3], const int32_t first[3], __m128i within[3]) {
   for (int axis = 0; axis < 3; axis++) within[axis] = narrow_bytes(cell[axis] - first[axis]);
   __m128i all = _mm_or_si128(_mm_or_si128(within[0], within[1]), within[2]);

@@ -52,7 +52,7 @@ LANES_INLINE lanes skin_of_cut(const run_cut *cut, lanes3 from, lanes3 to, float
   return cut->shape->keep_inside ? skin_of_depth(-before, -depth) : skin_of_depth(before, depth);
 }
 
-/* The skin in slab `slab` of a run, for the rays of a block. */
+/* How much matter on the rays of a block belongs to a face (its skin), in slab number `slab` of a run. */
 LANES_INLINE lanes skin_of_faces(const slab_run *run, int slab, lanes u, lanes v) {
   const grid *grid = run->grid;
   lanes3 from = rays_positions(&run->rays[slab], u, v), to = rays_positions(&run->rays[slab + 1], u, v);

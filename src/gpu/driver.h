@@ -66,7 +66,8 @@ struct gpu_driver {
   /* library: borrowed while the device is open. */
   bool (*open)(void *library, int index, gpu_device *device);
   void (*close)(gpu_device *device);
-  /* defines: [define_count], each "NAME=VALUE". names: [kernel_count], the names of kernels. */
+  /* Compiles the kernels. defines: [define_count], each "NAME=VALUE". names: [kernel_count], the names of
+   * kernels. */
   bool (*compile)(gpu_device *device, const char *text, const char *const *defines, int define_count,
                   gpu_binary *binary);
   bool (*load_program)(gpu_device *device, const gpu_binary *binary, const char *const *names,

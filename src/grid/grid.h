@@ -99,7 +99,8 @@ typedef struct grid {
   bool cut_casts_shadow; /* whether the matter that cuts remove still casts shadows */
   float *finite_voxels;  /* a copy of the voxels with non-finite ones replaced by the empty value; for an
                           * interpolating kernel its coefficients (prefilter.h). May be null */
-  uint64_t kept_voxels;  /* 64 for each relevant brick, fewer for bricks at the borders */
+  uint64_t kept_voxels;  /* number of the relevant bricks' voxels: 64 for each brick, fewer for bricks at
+                          * the borders */
 } grid;
 
 /* ---- the functions of this room that are compiled for each instruction set ---- */

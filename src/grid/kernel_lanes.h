@@ -28,7 +28,8 @@ LANES_INLINE lanes kernel_at(const kernel *kernel, int degree, lanes distance) {
   return lanes_keep(a < kernel->support, lanes_select(a < 1.0f, inner, outer));
 }
 
-/* Weights of the four taps at floor-1 .. floor+2 for a point with the fraction t. Their sum is 1. */
+/* Finds the kernel's weights for the four voxels floor-1 .. floor+2 around a point, where t is the fraction
+ * of the point's coordinate. Their sum is 1. */
 LANES_INLINE void tap_weights(const kernel *kernel, int degree, lanes t, lanes weight[4]) {
   lanes s = 1.0f - t;
   int bspline = degree == HL_BSPLINE_DEGREE;

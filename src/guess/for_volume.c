@@ -186,7 +186,8 @@ static hl_status find_labels(hl_context *context, hl_scene_volume *volume, hl_la
   return status;
 }
 
-/* style: null: the look that suits the volume alone. For a label map this look is its labels. */
+/* Makes a scene of a volume in one look. style: null: the look that suits the volume. For a label map this
+ * look is its labels. */
 static hl_status make_scene_of(hl_context *context, hl_volume *volume, const char *file, const hl_look *style,
                                hl_scene **scene, hl_error *error) {
   hl_data_analysis analysis;

@@ -89,8 +89,9 @@ void hl_write_field(hl_function_writer *w) {
   const double shell = a->faint + 0.35 * ramp, core = a->solid + 0.35 * way,
                half = fmin(fmin(0.03 * top, 0.25 * ramp), 0.15 * way);
   const double thin = 0.3; /* optical depth across the object of matter beside the shell */
-  /* Derived: where a field falls from its top to nothing within half an object, the values of the shell,
-   * which are 2 half apart, take half / top of the object. The mean of a tent is half its peak. */
+  /* The greatest opacity of the shell. Derived: where a field falls from its top to nothing within half an
+   * object, the values of the shell, which are 2 half apart, take half / top of the object. The mean of a
+   * tent is half its peak. */
   const double peak = SHELL * 2 * top / half;
   hl_add_opacity(w, a->faint, 0);
   hl_add_opacity(w, shell - half, hl_opacity_for(a, thin));

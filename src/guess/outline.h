@@ -20,8 +20,8 @@ typedef struct hl_outline {
 hl_status hl_outline_find(const hl_scene_description *description, hl_outline *outline, hl_error *error);
 void hl_outline_release(hl_outline *outline);
 
-/* *thinned: the points that reach farthest in 400 directions. In any other direction they reach as far as all
- * points do, or less far by at most half a per cent of the extent. */
+/* *Thins an outline: keeps the points that reach farthest in 400 directions. In any other direction the
+ * thinned outline reaches less far than the whole one by at most half a per cent of the extent. */
 hl_status hl_outline_thin(const hl_outline *outline, hl_outline *thinned, hl_error *error);
 
 /* The greatest of p . along - tangent p . forward over all points of all balls; along is perpendicular to

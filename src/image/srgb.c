@@ -21,8 +21,9 @@ static double fifth_root(double value, double guess) {
   return r;
 }
 
-/* Derived: with the fraction's binary digits b1 b2 ..., 2^0.b1b2... is the product of 2^(1/2) if b1 is 1,
- * 2^(1/4) if b2 is 1, and so on. Square roots are correctly rounded on every machine, powers are not. */
+/* Finds 2^stops by square roots. Derived: with the fraction's binary digits b1 b2 ..., 2^0.b1b2... is the
+ * product of 2^(1/2) if b1 is 1, 2^(1/4) if b2 is 1, and so on. Square roots are correctly rounded on every
+ * machine, powers are not. */
 double hl_exposure_factor(double stops) {
   double whole = floor(stops), fraction = stops - whole, root = 2, factor = 1;
   for (int digit = 0; digit < 53 && fraction > 0; digit++) {

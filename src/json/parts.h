@@ -12,7 +12,7 @@ typedef struct hl_json_image {
   const char **file;
   const float **pixels; /* [height][width][channels] */
   int *width, *height;
-  int channels; /* 3 for colours over black, 4 for premultiplied colours and alpha */
+  int channels; /* number of channels: 3 for colours over black, 4 for premultiplied colours and alpha */
 } hl_json_image;
 
 /* Loads the image that an object's "file" names, or takes it from the reader's `like`. The image's file name

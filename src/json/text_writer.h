@@ -25,7 +25,8 @@ void hl_json_put_text(hl_json_writer *w, const char *text);
 /* Writes a comma if needed, a new line, the indentation, and the key if there is one. */
 void hl_json_begin_item(hl_json_writer *w, const char *key);
 
-/* bracket: "{" or "[", and "}" or "]". key: null in a list. */
+/* hl_json_open() begins an object or a list, and hl_json_close() ends it. bracket: "{" or "[" to begin, "}"
+ * or "]" to end. key: null in a list. */
 void hl_json_open(hl_json_writer *w, const char *key, const char *bracket);
 void hl_json_close(hl_json_writer *w, const char *bracket);
 

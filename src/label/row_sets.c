@@ -25,10 +25,10 @@ static void weigh(const float *taps, int reach, const float *const rows[HL_FILTE
   else add_rows(taps, HL_FILTER_REACH, rows, count, out);
 }
 
-/* Derived: a voxel's corner lies 0.87 voxels from its middle. Where |over| is more than the length of the
- * gradient g times this distance, the surface does not cross the voxel. Where a field turns round, the
- * gradient in the middle tells little; its length therefore counts as at least a fifth. `squares` are squares
- * of 2 g. */
+/* Finds which voxels of a row the surface may cross. Derived: a voxel's corner lies 0.87 voxels from its
+ * middle. Where |over| is more than the length of the gradient g times this distance, the surface does not
+ * cross the voxel. Where a field turns round, the gradient in the middle tells little; its length therefore
+ * counts as at least a fifth. `squares` are squares of 2 g. */
 static int32_t find_crossed(const row_neighbours *rows, size_t count, float level, float *restrict crossed) {
   const float least = 4 * 0.2f * 0.2f, reach = 0.25f;
   int32_t whole = 0;

@@ -99,9 +99,9 @@ void hl_sheet_light_position(const sheet_light *seen, const light_source *source
   position[2] = source->parallel ? 0 : vec3_dot(from_middle, normal);
 }
 
-/* Derived: seen from a receiver at slope s, a point of the light at x + z h lies at x - s z on the plane
- * through the light's centre. A box of width w has the variance w^2 / 12, so w^2 is 12 times the mean square
- * of x - s z. */
+/* Finds a light's squared width for receivers at a slope. Derived: seen from a receiver at slope s, a point
+ * of the light at x + z h lies at x - s z on the plane through the light's centre. A box of width w has the
+ * variance w^2 / 12, so w^2 is 12 times the mean square of x - s z. */
 double hl_sheet_light_squared_width(const sheet_light *light, int axis, double slope) {
   double width = axis == 0 ? light->width_u : light->width_v;
   if (light->parallel) return width * width;

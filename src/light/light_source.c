@@ -113,10 +113,11 @@ static bool bound_screen(const view *view, const light_source *source, double lo
   return true;
 }
 
-/* Derived: planes through the light that contain the view's other axis touch the cone of half angle a where
- * their angle phi from the view's normal n obeys r sin(psi - phi) = +- sin a. Here r and psi are the length
- * and angle of the cone's axis in the plane of n and this axis. corner, du and dv of the view are n and its
- * axes, unit and perpendicular. */
+/* Bounds the part of a view's picture that a light's cone lights, along both of the view's axes. Derived:
+ * planes through the light that contain the view's other axis touch the cone of half angle a where their
+ * angle phi from the view's normal n obeys r sin(psi - phi) = +- sin a. Here r and psi are the length and
+ * angle of the cone's axis in the plane of n and this axis. corner, du and dv of the view are n and its axes,
+ * unit and perpendicular. */
 static bool bound_cone(const view *view, const light_source *source, double low[2], double high[2]) {
   const vec3 axes[2] = {view->du, view->dv};
   vec3 cone = vec3_normalise(source->shape.direction);

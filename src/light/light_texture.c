@@ -201,7 +201,8 @@ static level_plan plan_level(const light_texture *texture, const double deviatio
   return plan;
 }
 
-/* averaged: number of floats of the averaged image, with which the texture's memory begins. */
+/* Makes the blurred levels of a texture. averaged: number of floats of the averaged image, with which the
+ * texture's memory begins. */
 static hl_status make_levels(hl_context *context, const light_source *source, const view *view,
                              const texture_use *use, light_texture *texture, size_t averaged,
                              hl_error *error) {

@@ -80,8 +80,9 @@ static void add_end(tube *tube, vec3 centre, const piece *piece, double radius, 
 
 static vec3 point_of(const float point[4]) { return (vec3){point[0], point[1], point[2]}; }
 
-/* The piece in a direction that follows the piece `before`, null if there is none. Derived: the mirror image
- * in the plane between both pieces turns the first piece's directions into the second one's. */
+/* Makes the piece of a tube that follows the piece `before` (null: there is none) in a given direction.
+ * Derived: the mirror image in the plane where both pieces meet turns the first piece's directions across
+ * into those of the second piece. */
 static piece follow(const piece *before, vec3 along, vec3 middle) {
   piece made = {.along = along};
   if (before != NULL) made.u = vec3_subtract(before->u, vec3_scale(middle, 2 * vec3_dot(before->u, middle)));

@@ -4,7 +4,8 @@
 
 #include <stddef.h>
 
-/* bytes: a multiple of the alignment, which is a power of two. Returns null without memory. */
+/* Allocates memory whose address is a multiple of the alignment. bytes: a multiple of the alignment, which
+ * is a power of two. Returns null if memory is short. */
 void *hl_aligned_allocate(size_t bytes, size_t alignment);
 void hl_aligned_release(void *memory);
 

@@ -13,7 +13,8 @@ typedef struct brick_place {
   double weight[3][4], slope[3][4];
 } brick_place;
 
-/* point: index space of the voxels that stand for the field. */
+/* Finds the brick at a point, and the weights there. point: in the index space of the voxels that stand for
+ * the field. */
 static void find_place(const reference_volume *volume, vec3 point, brick_place *found) {
   const hl_bricks *bricks = volume->grid->bricks;
   const size_t side = (size_t)1 << bricks->shift;

@@ -121,7 +121,8 @@ static double way_to_removed(const reference_volume *volume, vec3 point, vec3 di
 typedef struct left_face {
   vec3 outward;  /* world; a unit vector */
   vec3 crossing; /* index space */
-  double skin;   /* 1 for points up to a voxel behind the face, 0 for points two voxels behind it */
+  double skin;   /* how much a point belongs to the face: 1 up to a voxel behind the face, 0 from two
+                  * voxels behind it on */
 } left_face;
 
 static left_face find_left_face(const reference_volume *volume, vec3 point, vec3 direction, bool uncut) {

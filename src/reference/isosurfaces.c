@@ -79,8 +79,8 @@ static vec3 normal_of_box(const reference_volume *volume, vec3 point) {
   return normal;
 }
 
-/* Notes a hit of a face, if the ray crosses there from matter that is left to matter that is removed, within
- * a surface's inside. */
+/* Notes a hit where a ray crosses a face of the box or of a cut, if the face closes an isosurface: on one
+ * side matter within the surface is left, on the other it is removed. */
 static void meet_face(const reference *all, const crossing *part, double at, vec3 normal,
                       reference_hit *hit) {
   const hl_scene_volume *described = part->volume->described;

@@ -15,7 +15,7 @@ enum { PIXEL_SAMPLES = 3, MOST_SAMPLES = 256 };
 typedef struct sky_ring {
   double low, high; /* heights of its borders */
   size_t cells;
-  double turn; /* angle of its first cell, as a fraction of the full circle */
+  double turn; /* angle of the ring's first cell, as a fraction of the full circle */
 } sky_ring;
 
 static vec3 direction_of(const sky_axes *axes, double height, double turn) {

@@ -35,9 +35,9 @@ LANES_INLINE lanes3 cross3(lanes3 a, lanes3 b) {
   return (lanes3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/* Derived: u = (row 1 . x) / (row 0 . x) has the gradient (row 1 - u row 0) / (row 0 . x), v likewise; The
- * step on the sheet that raises u by one and leaves v is (grad v x h) / (grad u . (grad v x h)). The other
- * step is the same with u and v exchanged. */
+/* Finds the steps of one pixel along u and v on a sheet. Derived: u = (row 1 . x) / (row 0 . x) has the
+ * gradient (row 1 - u row 0) / (row 0 . x), and v likewise. The step on the sheet that raises u by one and
+ * leaves v is (grad v x h) / (grad u . (grad v x h)). The other step is the same with u and v exchanged. */
 LANES_INLINE void find_steps(const shadow_map *map, int parallel, lanes3 normal, lanes3 position,
                              near_pixels *near) {
   lanes3 gradient_u = set3(map->rows[1]), gradient_v = set3(map->rows[2]);

@@ -23,8 +23,9 @@ typedef struct planned_sweep {
   plan_rays *rays; /* owned */
 } planned_sweep;
 
-/* shown_from: the first visible slabs, as in a sweep's target; borrowed. planned: release it after a
- * failure, too; its address must not change, because its members point to each other. */
+/* Brings a sweep of a plan to the numbers that a device reads. shown_from: the first visible slabs, as in a
+ * sweep's target; borrowed. planned: release it after a failure, too; its address must not change, because
+ * its members point to each other. */
 hl_status hl_plan_sweep(hl_context *context, const frame_plan *frame_plan, const sweep_plan *plan,
                         const int32_t *shown_from, planned_sweep *planned, hl_error *error);
 void hl_plan_release(hl_context *context, planned_sweep *planned);

@@ -131,7 +131,8 @@ static hl_status render(hl_renderer *owner, bool on_device, const hl_scene *scen
   return status;
 }
 
-/* faster: the trial asks, too, whether the device's second frame takes less time. */
+/* Renders the trial's picture on the device and on the processors, and compares the bytes. faster: the
+ * trial asks, too, whether the device's second frame takes less time. */
 static bool try_picture(hl_renderer *renderer, hl_volume *volume, bool surface, bool faster, float *pixels,
                         char *problem) {
   enum { FLOATS = PICTURE * PICTURE * 4 };

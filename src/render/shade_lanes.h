@@ -203,8 +203,9 @@ LANES_INLINE void add_even(const arriving_light *light, int receives_shadow, lan
   }
 }
 
-/* Step 15: eqs. (3) and (4) with the light's centre; a medium scatters by the mean of its phase function over
- * the light. Emission is added; a volume shaded flat has emission only. */
+/* Finds the light that a volume's matter sends to the eye (step 15): eqs. (3) and (4) with the light's
+ * centre; a medium scatters by the mean of its phase function over the light. Emission is added; a volume
+ * shaded flat has emission only. */
 LANES_INLINE color_lanes illuminate(const shade_job *job, const block_density *d, const block_geometry *g,
                                     const arriving_light *lights, color_lanes color) {
   const shade_volume *volume = d->patch->volume;
@@ -242,7 +243,8 @@ LANES_INLINE color_lanes illuminate(const shade_job *job, const block_density *d
   return lit;
 }
 
-/* Step 16. Front to back: C += (1-A) a c; back to front: C = a c + (1-a) C. */
+/* Composites a colour into a pixel (step 16). Front to back: C += (1-A) a c; back to front: C = a c + (1-a)
+ * C. */
 LANES_INLINE lanes composite(int back_to_front, lanes opacity, color_lanes lit, float *pixels) {
   lanes alpha = lanes_load(pixels + 3 * BLOCK_PIXELS);
   lanes weight = back_to_front ? opacity : opacity * (1.0f - alpha);

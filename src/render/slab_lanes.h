@@ -19,8 +19,8 @@ typedef struct block_geometry {
   lanes path;         /* length of the eye's ray through the slab; 0 behind the eye */
 } block_geometry;
 
-/* Derived: on the ray E + s W, where s = step / H and H = h.W, moving by one sheet moves the point by W ds /
- * H. */
+/* Finds the rays of a block's pixels through a slab. Derived: on the ray E + s W, where s = step / H and H
+ * = h.W, moving by one sheet moves the point by W ds / H. */
 LANES_INLINE block_geometry geometry_of_block(const shade_job *job, lanes u, lanes v) {
   const sheet_rays *rays = &job->rays;
   block_geometry g;
@@ -40,7 +40,8 @@ LANES_INLINE block_geometry geometry_of_block(const shade_job *job, lanes u, lan
   return g;
 }
 
-/* Step 12 at a point of frame space: the gradient in stored units per frame unit. */
+/* Finds the gradient of a volume's density at a point of frame space, in stored units per frame unit (step
+ * 12). */
 LANES_INLINE lanes3 gradient(const shade_volume *volume, lanes3 point, uint32_t active, uint32_t starts) {
   return gradient_in_frame(volume->grid, volume->kernel, volume->to_index, point, active, starts);
 }
@@ -69,8 +70,10 @@ typedef struct block_density {
   lanes_int sloped; /* lanes in which the gradient is known */
   lanes3 slope;     /* the gradient where the matter is seen; elsewhere 0 */
   lanes3 normal;    /* unit, away from the matter */
-  lanes surface;    /* 1 for a surface, falling to 0 for a medium, which has no normal */
-  lanes skin;       /* 1 at a cut's face that is shaded, 0 two voxels behind it */
+  lanes surface;    /* how much matter is a surface: 1 for a surface, falling to 0 for a medium, which has
+                     * no normal */
+  lanes skin;       /* how much matter belongs to the face of a cut that is shaded: 1 at the face, 0 two
+                     * voxels behind it */
   lanes3 outside;   /* where the sky's light is looked up; set with a sky that volumes hide from each other */
   lanes light_first, light_last; /* the light's way within the volume's box to where the slab's covered part
                                   * starts and ends */
@@ -96,8 +99,8 @@ LANES_INLINE block_way way_of_block(const shade_job *job, const shade_patch *pat
   return way;
 }
 
-/* Step 13 for one volume: finds the sums over a part of the volume's way through the slab. It ignores the
- * volume's box. */
+/* Finds, for one volume, the sums of extinction (step 13) over a part of the volume's way through the slab.
+ * It ignores the volume's box. */
 LANES_INLINE void classify_way(block_density *d, covered_span part) {
   const classifier *classifier = d->patch->volume->classifier;
   table_coordinate a = coordinate_of_density(classifier, d->way.first),
@@ -202,8 +205,8 @@ LANES_INLINE lanes3 seen_position(const block_slab *slab, const block_density *d
   return add_scaled3(g->start, g->step_sheet, lanes_fma(slab->part.length, d->seen, slab->part.begin));
 }
 
-/* Step 12 where the gradient is needed: for surfaces, and in dense slabs, in which the light's optical depth
- * differs from the eye's optical depth. */
+/* Finds gradients (step 12) where they are needed: for surfaces, and in dense slabs, in which the light's
+ * optical depth differs from the eye's optical depth. */
 LANES_INLINE void find_slopes(const shade_job *job, const block_slab *slab, block_density *densities,
                               int count) {
   const block_geometry *g = &slab->geometry;
@@ -444,7 +447,7 @@ LANES_INLINE void total_slab(const block_density *densities, int count, block_sl
   slab->opacity = lanes_set(0);
 }
 
-/* Step 13: the slab's extinction and the pixels in which it is visible. */
+/* Finds a slab's extinction, and the pixels in which the slab is visible (step 13). */
 LANES_INLINE void classify_slab(block_density *densities, int count, block_slab *slab) {
   if (count == 1) {
     slab->part = densities->way.part;

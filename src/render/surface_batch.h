@@ -15,7 +15,8 @@ typedef struct surface_batch {
 /* Finds the samples of the batch's fragments, in a tile. */
 void hl_surface_batch_place(const sweep *sweep, const tile_slab *slab, surface_batch *batch);
 
-/* Step 16 for the batch's lit samples. pixels: the tile's, [16 blocks][R G B A][16]. */
+/* Composites the batch's lit samples into the picture (step 16). pixels: the tile's pixels, [16 blocks][R G
+ * B A][16]. */
 void hl_surface_batch_composite(const surface_batch *batch, int back_to_front, float *pixels);
 
 #endif

@@ -83,7 +83,7 @@ LANES_INLINE lanes contact_of(const shade_job *job, const shade_light *light, co
   return lanes_load(samples->contact[light->number * job->channels + channel]);
 }
 
-/* Eqs. (3) and (4) for a surface: what one light adds. */
+/* Adds the light that a surface sends to the eye from one light, eqs. (3) and (4). */
 LANES_INLINE void add_light(const shade_job *job, const shade_light *light, const surface_samples *samples,
                             color_lanes *lit) {
   lanes3 position = load3(samples->position), normal = load3(samples->normal);

@@ -17,7 +17,7 @@ typedef struct frame_target {
   maximum_values maximum; /* with null values: matter is lit */
 } frame_target;
 
-/* target: must be zeros; must be released after an error, too. */
+/* Makes a frame's target. target: must be zeros before, and must be released after an error, too. */
 hl_status hl_frame_target_create(hl_renderer *renderer, const frame_request *request, const frame_plan *plan,
                                  frame_target *target, hl_error *error);
 void hl_frame_target_release(hl_renderer *renderer, frame_target *target);

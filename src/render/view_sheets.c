@@ -355,8 +355,9 @@ static uint32_t visible_on(const patch_bundle *b, int i) {
   return i < 0 || i > b->slabs ? 0 : patch_on_sheet(b->sheets, b->patch, b->first + i)->blocks;
 }
 
-/* relevant_in_slab: the relevant blocks of a slab. relevant_beside: the relevant blocks of the two slabs
- * beside a sheet. beside_visible: of these, the blocks in which the slab's other sheet shows something. */
+/* Finds relevant blocks of a bundle's slabs. relevant_in_slab: the relevant blocks of a slab.
+ * relevant_beside: the relevant blocks of the two slabs beside a sheet. beside_visible: of these, the
+ * blocks in which the slab's other sheet shows something. */
 static uint32_t relevant_in_slab(const patch_bundle *b, int slab) {
   return slab < 0 || slab >= b->slabs ? 0 : b->relevant[slab];
 }

@@ -336,8 +336,8 @@ void hl_scatter_solve(hl_pool *pool, const scatter_nodes *nodes, const float *ex
   lines_job job = {.nodes = nodes, .extinction = extinction, .work = work};
   for (size_t n = 0; n < count; n++) root[n] = sqrtf(scattering[n]), sent[n] = scattering[n] * direct[n];
   job.inflow = inflow;
-  spread(pool, &job, sent,
-         rest); /* rest = G D b + E: the light u that is not scattered further, plus the light that enters */
+  spread(pool, &job, sent, rest); /* after this, rest = G D b + E, which is the light u that is not scattered
+                                   * further, plus the light that enters */
   job.inflow = NULL;
   for (size_t n = 0; n < count; n++) right[n] = root[n] * rest[n];
   solve_symmetric(pool, &job, root, right, light);

@@ -18,9 +18,10 @@ typedef struct scene_order {
   int *meshes;  /* owned; [mesh_count] */
 } scene_order;
 
-/* given: the description as it was given. Its lights may be placed in the camera's axes, so their order does
- * not depend on the camera. placed: the description that is rendered; its first lights are the lights of
- * `given`. Things that look alike in a picture may have any order. Release the order after an error, too. */
+/* Finds the order of a scene's things. given: the description as it was given. Its lights may be placed in
+ * the camera's axes, so their order does not depend on the camera. placed: the description that is
+ * rendered; its first lights are the lights of `given`. Things that look alike in a picture may have any
+ * order. Release the order after an error, too. */
 hl_status hl_scene_order_find(hl_context *context, const hl_scene_description *given,
                               const hl_scene_description *placed, scene_order *order, hl_error *error);
 void hl_scene_order_release(hl_context *context, scene_order *order);

@@ -38,8 +38,8 @@ double server_seconds(void);
 bool connections_begin(connection_table *table);
 void connections_end(connection_table *table);
 
-/* user_data: the table. libmicrohttpd calls this when a connection begins, and before it closes its socket.
- */
+/* Adds a connection to the table, or removes it. user_data: the table. libmicrohttpd calls the function
+ * when a connection begins, and before it closes its socket. */
 void connection_changed(void *user_data, struct MHD_Connection *connection, void **place,
                         enum MHD_ConnectionNotificationCode code);
 

@@ -30,7 +30,8 @@ LANES_INLINE shadow_taps taps_at_position(const shadow_map *map, int nearest, la
   return taps;
 }
 
-/* Interpolates between the pixels a b and, in the next row, c d; lanes outside the buffer get `beyond`. */
+/* Interpolates bilinearly between four pixels: a and b in one row, c and d below them in the next row;
+ * lanes outside the buffer get `beyond`. */
 LANES_INLINE lanes between_taps(const shadow_taps *taps, lanes a, lanes b, lanes c, lanes d, float beyond) {
   lanes top = lanes_fma(b - a, taps->fx, a), bottom = lanes_fma(d - c, taps->fx, c);
   return lanes_select(taps->inside, lanes_fma(bottom - top, taps->fy, top), lanes_set(beyond));

@@ -122,7 +122,8 @@ hl_interval hl_shapes_bounds(const hl_shape_list *list, vec3 p, double radius, u
 /* The distance from a surface after its texture has changed it, from the distance before. p: own frame. */
 double hl_hypertexture_distance(const hl_shape *shape, double distance, vec3 p, vec3 foot);
 hl_interval hl_hypertexture_bounds(const hl_shape *shape, hl_interval distance);
-/* False where the distance is too large or too small for the texture to change the density. */
+/* Whether a texture matters at a distance from its surface: false where the distance is too large or too
+ * small for the texture to change the density. */
 bool hl_hypertexture_matters(const hl_shape *shape, double distance);
 
 /* The real hydrogen-like wave function, not normalised. p: own frame. */

@@ -74,7 +74,8 @@ LANES_INLINE void lanes_store_block(float *p, size_t stride, lanes v) {
   memcpy(p + 3 * stride, (char *)&v + 48, 16);
 }
 
-/* mask: all bits set or clear in each lane, as comparisons give. */
+/* Chooses a or b in each lane. mask: in each lane all bits are set (a) or all are clear (b), as comparisons
+ * give them. */
 LANES_INLINE lanes lanes_select(lanes_int mask, lanes a, lanes b) {
   return (lanes)(((lanes_int)a & mask) | ((lanes_int)b & ~mask));
 }

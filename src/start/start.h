@@ -9,8 +9,9 @@
 
 #include <halflight/halflight.h>
 
-/* number: the number by which the page names the open scene. folder: whether the page may list and open
- * other files. The text is the caller's, from malloc; null: out of memory. */
+/* Writes start.json of an open scene. number: the number by which the page names the open scene. folder:
+ * whether the page may list and open other files. The text is the caller's, from malloc; null: out of
+ * memory. */
 char *describe_start(hl_context *context, const hl_scene *scene, const char *title, long long number,
                      bool folder);
 

@@ -242,9 +242,10 @@ void hl_clusters_release(hl_context *context, surfaces *all) {
  * away. */
 static const double AWAY = 0.02;
 
-/* Derived: a normal m within the angle a of the axis n, and a way v from the eye to the middle of the box,
- * with the angle t between v and n, have m.v >= |v| cos(t + a); to another point of the box, less than r
- * away, m.(v + w) >= |v| cos(t + a) - r. */
+/* Whether all triangles of a cluster surely turn their backs to a view. Derived: a normal m within the
+ * angle a of the axis n, and a way v from the eye to the middle of the box, with the angle t between v and
+ * n, have m.v >= |v| cos(t + a); to another point of the box, less than r away, m.(v + w) >= |v| cos(t + a)
+ * - r. */
 bool hl_cluster_faces_away(const surface_cluster *cluster, const view *view) {
   vec3 low = hl_surface_vector(cluster->low), high = hl_surface_vector(cluster->high), way = view->direction;
   double reach = 0, a = cluster->cosine;

@@ -40,7 +40,8 @@ static void cover_pixel(fragment_worker *worker, const fragment *f, double heigh
   covered->samples |= f->samples;
 }
 
-/* Derived: n slabs that take 1 - (1 - a)^(1/n) each take a together. */
+/* Divides a fragment's opacity among slabs. Derived: n slabs that take 1 - (1 - a)^(1/n) each take a
+ * together. */
 void hl_add_to_slabs(const fragment_work *work, fragment_worker *worker, fragment f, double start,
                      int32_t first, int32_t last) {
   if (work->least[f.mesh] < 1)

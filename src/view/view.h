@@ -97,8 +97,8 @@ typedef struct sheet_rays {
   float step; /* z - h.E */
 } sheet_rays;
 
-/* normal: unit normal of the sheets; height: the sheet's h.X; from_frame: frame space to the space of the
- * result. */
+/* Finds the rays of a view at a sheet. normal: unit normal of the sheets; height: the sheet's h.X;
+ * from_frame: frame space to the space of the result. */
 void hl_view_sheet_rays(const view *view, vec3 normal, double height, affine3 from_frame, sheet_rays *rays);
 
 /* The sheets of a sweep: sheet k lies at height first + k * spacing along the unit normal. */

@@ -52,8 +52,8 @@ static hl_space space_of(const hl_scene *scene) {
   return known ? info.space : HL_SPACE_UNKNOWN;
 }
 
-/* The pixels along the picture's longer side, times the zoom: a volume on the command line fills the picture.
- */
+/* The number of pixels that a volume on the command line fills, for the choice of a resolution: the
+ * picture's longer side times the zoom. */
 static int pixels_of(const cli_value *values) {
   hl_scene_description description;
   hl_scene_description_defaults(&description);

@@ -19,8 +19,8 @@
 #define APART       restrict
 #define DEVICE      static
 #define DEVICE_CALL static
-/* groups: least number of groups that an NVIDIA multiprocessor shall hold at once, which limits the registers
- * of each member. */
+/* Marks a function as a kernel. groups: the least number of groups that an NVIDIA multiprocessor shall hold
+ * at once, which limits the registers of each member. */
 #define KERNEL(groups) __kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void
 typedef uchar byte;
 typedef ushort word16;

@@ -31,7 +31,7 @@ typedef struct slab_sample {
   int sloped;
   vector slope, normal;
   float surface;
-  float skin; /* 1 at a face that cuts matter, 0 two voxels behind it */
+  float skin; /* how much the matter belongs to a face that cuts it: 1 at the face, 0 two voxels behind it */
 } slab_sample;
 
 /* ---- the buffer's pixels around a sample ---- */

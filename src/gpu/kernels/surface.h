@@ -178,8 +178,9 @@ DEVICE float skin_of_faces(GLOBAL const plan_volume *volume, GLOBAL const plan_r
   return greater(greater(x, y), z);
 }
 
-/* sums: from a to b. path: length of the light's ray through the slab. extinction: the slab's extinction.
- * skin: how much visible matter belongs to a face. */
+/* Finds how much of the light that a surface has taken still counts after a slab (k and k'). sums:
+ * integrals from a to b. path: length of the light's ray through the slab. extinction: the slab's
+ * extinction. skin: how much visible matter belongs to a face. */
 DEVICE kept_light kept_in_slab(const volume_data *volume, table_coordinate a, table_coordinate b,
                                const way_sums *sums, covered_span span, float path, float extinction,
                                float skin, float light, float outside) {

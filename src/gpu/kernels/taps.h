@@ -30,7 +30,8 @@ DEVICE float bspline_inner(float distance) {
 }
 DEVICE float bspline_outer(float rest) { return rest * rest * (rest * (1.0f / 6)); }
 
-/* Weights of the four taps at floor-1 .. floor+2, for a point with the fraction t. */
+/* Finds the kernel's weights for four taps of voxels, at floor-1 .. floor+2, for a point with the fraction
+ * t. */
 DEVICE void tap_weights(GLOBAL const plan_volume *volume, float t, float weight[4]) {
   float s = 1.0f - t;
 #if BSPLINE

@@ -163,8 +163,8 @@ static hl_status read_presets(hl_json_reader *reader, hl_stream *stream, const c
 
 /* ---- .vp ---- */
 
-/* Reads the lines of a text: interpolation, shade, diffuse, ambient, specular, its power, opacity, gradient
- * opacity, colour. text: ends with 0; its line ends become 0. */
+/* Reads the lines of a property, which hold in this order: interpolation, shade, diffuse, ambient,
+ * specular, specular power, opacity, gradient opacity, colour. text: ends with 0; its line ends become 0. */
 static hl_status read_lines(hl_json_reader *reader, char *text, hl_transfer_function *function) {
   enum { LINES = 9 };
   const char *lines[LINES] = {NULL};

@@ -18,7 +18,8 @@ bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forwa
 /* The picture's axes; unit. */
 void hl_view_axes(const hl_view *view, vec3 *right, vec3 *up, vec3 *forward);
 
-/* False where up and front are not unit vectors at a right angle, or an angle is not finite. */
+/* Whether a view is possible: false where up and front are not unit vectors at a right angle, or an angle
+ * is not finite. */
 bool hl_view_is_possible(const hl_view *view);
 
 /* Places the camera at this distance from the target, in the view's direction. */

@@ -34,7 +34,7 @@ hl_status hl_labels_function(hl_context *context, const hl_scene_volume *volume,
  * hl_drawn_labels_release(). */
 hl_status hl_labels_draw(hl_context *context, hl_scene_description *placed, drawn_labels *drawn,
                          hl_error *error);
-/* placed: the description that hl_labels_draw() changed. */
+/* Releases what hl_labels_draw() made. placed: the description that hl_labels_draw() changed. */
 void hl_drawn_labels_release(hl_context *context, const hl_scene_description *placed, drawn_labels *drawn);
 
 #endif

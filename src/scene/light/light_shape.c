@@ -102,7 +102,7 @@ vec3 hl_disk_point(vec3 normal, double radius, double a, double b) {
   return vec3_add(vec3_scale(u, radius * x), vec3_scale(v, radius * y));
 }
 
-/* Derived: the mean of x^2 over a disk of radius r is r^2/4. */
+/* The mean of x x' over a disk. Derived: the mean of x^2 over a disk of radius r is r^2/4. */
 mat3 hl_disk_spread(vec3 normal, double radius) {
   mat3 spread = {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}}, unit = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   return hl_add_scaled(spread, hl_add_scaled(unit, hl_outer(normal, normal), -1), radius * radius / 4);

@@ -36,7 +36,8 @@ typedef struct polygon_shape {
   mat3 spread;     /* mean of (x - centre)(x - centre)' over the area */
 } polygon_shape;
 
-/* vertices: in order around the polygon, of either sense; [count][3]. */
+/* Finds the centre, area, normal and spread of a polygon. vertices: in order around the polygon, of either
+ * sense; [count][3]. */
 polygon_shape hl_polygon_shape(const double (*vertices)[3], size_t count);
 
 /* Greatest distance of a vertex from the plane through the centre. */

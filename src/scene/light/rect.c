@@ -22,7 +22,7 @@ static light_shape shape_of(const hl_light *light) {
                        .has_surface = vec3_length(vec3_cross(edge1, edge2)) > THIN * length1 * length2};
 }
 
-/* Derived: the mean of t^2 over t in [-1/2, 1/2] is 1/12. */
+/* The mean of x x' over a parallelogram. Derived: the mean of t^2 over t in [-1/2, 1/2] is 1/12. */
 static mat3 spread(const light_shape *shape, vec3 facing) {
   (void)facing;
   mat3 none = {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}};

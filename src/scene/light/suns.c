@@ -278,7 +278,8 @@ static spot find_spot(const search *all, int row, int column) {
   return best;
 }
 
-/* Derived: the mean of the unit vectors of a cap of half angle a is (1 + cos a) / 2 long. */
+/* Makes a sun of a spot. Derived: the mean of the unit vectors of a cap of half angle a is (1 + cos a) / 2
+ * long. */
 static sky_sun sun_of_spot(const spot *of) {
   sky_sun sun = {.towards = vec3_normalise(of->moment), .straight = vec3_length(of->moment) / of->brightness};
   memcpy(sun.irradiance, of->irradiance, sizeof sun.irradiance);
@@ -390,10 +391,11 @@ void hl_suns_release(hl_context *context, sky_suns *found) {
 
 /* ---- lights ---- */
 
-/* Derived: a sky of irradiance E from about one direction gives a surface E / pi times the cosine to the
- * mean of its directions, and a medium E / (4 pi) times its phase function (halflight/scene.h); a light of
- * colour I gives I times the cosine to its middle, and I times the phase function. So I is E / pi times the
- * length of that mean. A medium takes 1 / 4 divided by this length of it (hl_sun_part_of_media). */
+/* Makes the parallel light that shines as a sun does. Derived: a sky of irradiance E from about one
+ * direction gives a surface E / pi times the cosine to the mean of its directions, and a medium E / (4 pi)
+ * times its phase function (halflight/scene.h); a light of colour I gives I times the cosine to its middle,
+ * and I times the phase function. So I is E / pi times the length of that mean. A medium takes 1 / 4
+ * divided by this length of it (hl_sun_part_of_media). */
 hl_light hl_sun_light(const hl_sky *sky, const sky_sun *sun) {
   const sky_axes axes = hl_sky_axes(sky);
   hl_light light;

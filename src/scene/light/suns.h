@@ -19,7 +19,7 @@ typedef struct sky_sun {
   vec3 towards;         /* unit; x right, y middle, z up: the sky's own axes (scene/light/sky.h) */
   double half_angle;    /* radians, from the middle to the rim */
   double straight;      /* the length of the mean of the unit vectors to the sun, below 1 */
-  double irradiance[3]; /* integral of the radiance, without the sky's strength */
+  double irradiance[3]; /* integral of the sun's radiance over its directions, without the sky's strength */
 } sky_sun;
 
 typedef struct sky_suns {

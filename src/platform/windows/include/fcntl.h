@@ -18,7 +18,8 @@
 #define F_GETFD             1
 
 int hl_posix_open(const char *path, int flags, ...);
-/* path: relative, with '/'. Names with a colon or a backslash do not exist. Links fail as for O_NOFOLLOW. */
+/* Opens a file below a folder. path: relative, with '/'. Names with a colon or a backslash do not exist.
+ * Links fail as for O_NOFOLLOW. */
 int hl_posix_openat(int folder, const char *path, int flags, ...);
 /* Makes a file at least offset + bytes long. Returns an error number or 0. */
 int posix_fallocate(int descriptor, off_t offset, off_t bytes);

@@ -11,8 +11,8 @@ typedef struct {
 
 enum { GLOB_NOSPACE = 1, GLOB_ABORTED, GLOB_NOMATCH };
 
-/* pattern: '*', '?' and '[...]' stand for characters of one name, in folders' names too. The files are not
- * sorted. flags: 0; on_error: null. */
+/* Finds the files whose names fit a pattern. pattern: '*', '?' and '[...]' stand for characters of one
+ * name, in folders' names too. The files are not sorted. flags: 0; on_error: null. */
 int glob(const char *pattern, int flags, int (*on_error)(const char *, int), glob_t *found);
 void globfree(glob_t *found);
 

@@ -304,7 +304,7 @@ static hl_status read_boxes(const plotfile *file, text_cursor *text, patch_box *
                    "%s/%s: version %td of the list of patches is not read: write the plotfile with "
                    "vismf.headerversion=1",
                    file->bundle->path, text->name, version);
-  /* the number of ghost cells is one number, or three in brackets; then "(patches 0" */
+  /* skips the number of ghost cells, which is one number or three in brackets, up to "(patches 0" */
   while (text->at < text->end && hl_is_space(*text->at)) text->line += *text->at++ == '\n';
   int ghosts = text->at < text->end && *text->at == '(' ? 3 : 1;
   for (int n = 0; n < ghosts; n++)

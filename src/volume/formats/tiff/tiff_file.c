@@ -112,8 +112,8 @@ hl_status tiff_file_open(hl_context *context, const char *path, const void *byte
       options, limit > 0 && limit < LARGEST_ALLOCATION ? (tmsize_t)limit : LARGEST_ALLOCATION);
   TIFFOpenOptionsSetErrorHandlerExtR(options, on_error, file);
   TIFFOpenOptionsSetWarningHandlerExtR(options, on_warning, file);
-  /* m: the file is not mapped into memory; c: strips stay as they are; O: the positions of strips are read
-   * when they are needed */
+  /* flags of libtiff: m: the file is not mapped into memory; c: strips stay as they are; O: the positions
+   * of strips are read when they are needed */
   file->tiff = TIFFClientOpenExt(path, "rmcO", file, read_bytes, write_nothing, seek, close_nothing, size_of,
                                  NULL, NULL, options);
   TIFFOpenOptionsFree(options);

@@ -65,7 +65,7 @@ bool tiff_file_can_hold(tiff_file *file, const tiff_shape *shape);
 
 /* The destination of a page's voxels. */
 typedef struct tiff_target {
-  void *voxels;    /* width x height stored voxels, or colours (colors.h) */
+  void *voxels;    /* the caller's; room for width x height stored voxels, or colours (colors.h) */
   hl_exact *exact; /* notes the page's numbers; may be null */
   size_t first;    /* the number of the page's first voxel in the volume */
   uint32_t slice;  /* for a page of several slices: the number of the slice */

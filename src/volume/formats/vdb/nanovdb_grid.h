@@ -27,12 +27,13 @@ void nanovdb_kind(uint32_t kind, hl_voxel_type *type, size_t *components);
 hl_status nanovdb_grid_describe(const nanovdb_grid *grid, hl_volume_description *description,
                                 hl_error *error);
 
-/* Fills voxels [k][j][i] of that box in stored form, and notes their numbers. type: the volume's type. */
+/* Fills the voxels [k][j][i] of the box of a grid's active voxels in stored form, and notes their numbers.
+ * type: the volume's type. */
 hl_status nanovdb_grid_read(const nanovdb_grid *grid, const hl_volume_description *description, void *voxels,
                             hl_exact *exact, hl_error *error);
 
-/* Reads voxels [k][j][i] of a part of that box as 32-bit floats, which the grid's values must be. first,
- * size: of the part, in the box's own indices. */
+/* Reads the voxels [k][j][i] of a part of the box of active voxels as 32-bit floats; the grid's values must
+ * have this type. first, size: the part's place and size in the indices of the box. */
 hl_status nanovdb_grid_read_box(const nanovdb_grid *grid, const size_t first[3], const size_t size[3],
                                 float *voxels, hl_error *error);
 

@@ -27,7 +27,7 @@ enum {
   AT_NAME_BYTES = 136,
   AT_CODEC = 168,
   NAME_BYTES_MOST = 4096,
-  CHUNK_BYTES = 1 << 30, /* unpacked bytes of each piece of a grid that Blosc has packed */
+  CHUNK_BYTES = 1 << 30, /* a grid that Blosc has packed consists of pieces of this many unpacked bytes */
 };
 
 typedef enum nanovdb_codec { CODEC_NONE = 0, CODEC_ZIP = 1, CODEC_BLOSC = 2 } nanovdb_codec;
