@@ -12,7 +12,6 @@ frame_volume hl_frame_volume(const framed_scene *framed, size_t index) {
   frame_volume volume = {.name = scene->name,
                          .volume = scene->volume,
                          .tints = scene->mask.volume,
-                         .function = &scene->transfer_function,
                          .object = framed->order->volumes[index] + 1,
                          .visible = scene->visible,
                          .casts_shadow = scene->casts_shadow,

@@ -22,15 +22,14 @@ typedef struct volume_look {
 
 /* A volume of the frame. Its grid is the plan's grid of the same index. */
 typedef struct frame_volume {
-  const char *name;                     /* borrowed; null: none */
-  const hl_volume *volume;              /* borrowed; for its colours and the range of its values */
-  const hl_volume *tints;               /* borrowed; the colours of its mask; null: none */
-  const hl_transfer_function *function; /* borrowed; lengths are frame space's */
-  const classifier *classifier;         /* borrowed; the transfer function's tables */
-  double empty;                         /* data value beyond the volume */
-  uint64_t version, tables_version;     /* versions of the grid's voxels, and of all tables that follow from
-                                         * the transfer function; a version rises with each change */
-  int object;                           /* the volume's number in the layer of objects */
+  const char *name;                 /* borrowed; null: none */
+  const hl_volume *volume;          /* borrowed; for its colours and the range of its values */
+  const hl_volume *tints;           /* borrowed; the colours of its mask; null: none */
+  const classifier *classifier;     /* borrowed; the transfer function's tables */
+  double empty;                     /* data value beyond the volume */
+  uint64_t version, tables_version; /* versions of the grid's voxels, and of all tables that follow from
+                                     * the transfer function; a version rises with each change */
+  int object;                       /* the volume's number in the layer of objects */
   bool visible, casts_shadow, receives_shadow, is_cut;
   volume_look look;
 } frame_volume;
@@ -59,8 +58,8 @@ typedef struct frame_mesh {
   surface_look look;
 } frame_mesh;
 
-/* framed: must live until the frame ends. The caller sets the volume's classifier, value beyond and
- * versions. */
+/* Describe a volume, a light and a mesh of the scene for the frame. framed: must live until the frame ends.
+ * The caller sets the volume's classifier, value beyond and versions. */
 frame_volume hl_frame_volume(const framed_scene *framed, size_t index);
 frame_light hl_frame_light(const framed_scene *framed, size_t index);
 frame_mesh hl_frame_mesh(const framed_scene *framed, size_t index);

@@ -43,6 +43,7 @@ void hl_frame_plan_release(hl_context *context, frame_plan *plan) {
   hl_release(context, plan->sweeps.list);
   hl_release(context, plan->sweeps.sheets);
   hl_release(context, plan->seen);
+  hl_release(context, plan->volumes.shown);
   hl_release(context, plan->volumes.list);
   hl_release(context, plan->volumes.grids);
   hl_release(context, plan->meshes);

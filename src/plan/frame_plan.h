@@ -14,6 +14,7 @@
 #include "light/phase_table.h"
 #include "plan/frame_objects.h"
 #include "plan/share.h"
+#include "plan/shown_values.h"
 #include "plan/slicing.h"
 #include "scatter/scatter.h"
 #include "shadow/shadow_method.h"
@@ -31,6 +32,8 @@ typedef struct plan_picture {
 typedef struct plan_volumes {
   frame_volume *list; /* owned; [count] */
   grid *grids;        /* owned; [count] */
+  /* owned; [count]; in a maximum projection, the values that each visible volume shows; else null */
+  float (*shown)[SHOWN_ENTRIES][4];
   int count;
   const kernel *kernel;
   bool splat; /* densities are splatted; else they are gathered */
@@ -95,7 +98,8 @@ void hl_frame_plan_release(hl_context *context, frame_plan *plan);
  * set up. */
 hl_status hl_plan_sweeps(hl_context *context, frame_plan *plan, hl_error *error);
 
-/* True where depth, normals or objects are wanted: some sweep must then go front to back. */
+/* Whether a frame's layers need measuring: true where depth, normals or objects are wanted: some sweep must
+ * then go front to back. */
 bool hl_layers_measure(const hl_layers *wanted);
 
 /* The last step, after the share: plans the shadows of all lights. */

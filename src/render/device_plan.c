@@ -228,11 +228,12 @@ static void plan_content(const view *view, const sweep_task *task, plan_box *box
   memcpy(box, &rays, sizeof *box);
 }
 
-/* Derived: on the sheet, one pixel of a parallel light's buffer along u is (grad v x h) / (grad u . (grad v
- * x h)), where h is the sheets' normal; the step along v has the same form. The pixels around a sample are
- * at most one such step away. A face counts where it is up to twice as far away. The light's way through
- * the slab is as long as its path. The margin is a little larger because of rounding. The pixels of a near
- * light grow with distance; for such a light all samples count as near a face. */
+/* Finds the margin beside the box's faces within which samples count as near a face. Derived: on the sheet,
+ * one pixel of a parallel light's buffer along u is (grad v x h) / (grad u . (grad v x h)), where h is the
+ * sheets' normal; the step along v has the same form. The pixels around a sample are at most one such step
+ * away. A face counts where it is up to twice as far away. The light's way through the slab is as long as
+ * its path. The margin is a little larger because of rounding. The pixels of a near light grow with
+ * distance; for such a light all samples count as near a face. */
 static void plan_margin(const sweep_task *task, int index, plan_light *light) {
   const sheet_stack *sheets = &task->plan->geometry->sheets;
   const light_source *source = task->plan->lights[index].source;
@@ -320,7 +321,8 @@ static void plan_rays_of(const view *view, const sheet_stack *sheets, double hei
   rays->height = (float)(sheet * sheets->spacing);
 }
 
-/* middle: rays end in the middle of the slab before each sheet, else on the sheet. */
+/* Describes a view's rays for the device. middle: rays end in the middle of the slab before each sheet,
+ * else on the sheet. */
 static void plan_view(const view *view, const sheet_stack *sheets, affine3 from_frame, bool middle,
                       plan_rays *rays) {
   for (int sheet = 0; sheet < sheets->count; sheet++)
@@ -379,7 +381,7 @@ static hl_status find_constants(hl_context *context, const frame_plan *frame_pla
     hl_sweep_constants_lay_out(frame_plan, &planned->constants, &layout);
   planned->memory = layout.base;
   if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the device's sweep");
-  hl_sweep_constants_find(frame_plan, plan, NULL, &planned->constants);
+  hl_sweep_constants_find(frame_plan, plan, &planned->constants);
   return HL_OK;
 }
 

@@ -3,6 +3,7 @@
 #ifndef HL_RENDER_MAXIMUM_LANES_H
 #define HL_RENDER_MAXIMUM_LANES_H
 
+#include "plan/shown_values.h"
 #include "render/slab_lanes.h"
 #include "simd/gathers.h"
 

@@ -176,6 +176,21 @@ static void place_volumes(const hl_renderer *renderer, const framed_scene *frame
   frame->content.voxel = hl_scene_smallest_edge(scene);
 }
 
+/* Finds the values that volumes show, which a maximum projection needs. */
+static hl_status find_shown_values(hl_context *context, const framed_scene *framed, plan_volumes *volumes,
+                                   hl_error *error) {
+  const hl_scene_description *scene = &framed->scene;
+  if (!hl_is_maximum(&scene->render)) return HL_OK;
+  volumes->shown = hl_allocate(context, scene->volume_count, sizeof *volumes->shown);
+  if (volumes->shown == NULL)
+    return hl_fail_memory(error, scene->volume_count * sizeof *volumes->shown, "a maximum projection");
+  for (size_t i = 0; i < scene->volume_count; i++)
+    if (scene->volumes[i].visible)
+      hl_shown_values_fill(&scene->volumes[i].transfer_function, &volumes->list[i], &volumes->grids[i],
+                           volumes->shown[i]);
+  return HL_OK;
+}
+
 /* Places the eye and the lights in frame space. */
 static hl_status place_eye_and_lights(const framed_scene *framed, frame_plan *plan, hl_error *error) {
   const hl_scene_description *scene = &framed->scene;
@@ -229,7 +244,8 @@ hl_status hl_plan_frame(hl_renderer *renderer, const framed_scene *framed, const
   hl_status status = hl_frame_plan_create(context, framed, plan, error);
   if (status != HL_OK) return status;
   place_volumes(renderer, framed, plan);
-  status = add_surfaces(renderer, framed, &plan->frame, error);
+  status = find_shown_values(context, framed, &plan->volumes, error);
+  if (status == HL_OK) status = add_surfaces(renderer, framed, &plan->frame, error);
   if (status == HL_OK) status = place_eye_and_lights(framed, plan, error);
   if (status == HL_OK) status = update_contact(renderer, &plan->frame, error);
   if (status == HL_OK) status = hl_plan_sweeps(context, plan, error);

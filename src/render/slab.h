@@ -53,12 +53,13 @@ typedef struct shade_volume {
   int absorbs;                                 /* some channel of the albedo is not 1 */
   int multiple;                                /* light scattered more than once lights the volume */
   const shade_cut *cuts;                       /* [cut_count] */
-  int cut_count, light_cut_count;              /* The number of cuts that count for the eye, and the number
-                                                * for lights: the same number, or 0. */
+  int cut_count, light_cut_count;              /* number of cuts that count for the eye, and number of cuts
+                                                * that count for lights: the same number, or 0 where the
+                                                * removed matter still casts shadows */
   int cut_shading;                             /* hl_cut_shading */
   int mask_faces;                              /* normals turn to the faces that the mask leaves */
-  voxel_colors tints;                          /* colours of the mask: the matter's colours move towards them
-                                                * by their weights */
+  voxel_colors tints;                          /* the mask's colours; the matter's colours are mixed with
+                                                * them, by the weights of the mask's voxels */
   int object;                                  /* its number in the layer of objects */
 } shade_volume;
 
@@ -170,15 +171,8 @@ enum {
  * [volumes][MAXIMUM_ROWS][16 blocks][16]. */
 enum { MAXIMUM_GREATEST, MAXIMUM_BEFORE, MAXIMUM_SHEET, MAXIMUM_ROWS };
 
-/* Which values a transfer function shows. Each entry of its table has a row of four numbers. Between an entry
- * and the next the function shows values above SHOWN_FROM up to SHOWN_TO; SHOWN_BELOW is the greatest value
- * below the entry that it shows, -1 if there is none. */
-enum { SHOWN_FROM, SHOWN_TO, SHOWN_BELOW };
-
 typedef struct maximum_values {
-  float *values;       /* [tiles][volumes][MAXIMUM_ROWS][256]; owned, with `shown` in the same block; null: no
-                          maximum       projection */
-  float (*shown)[4];   /* [volumes][CLASSIFIER_ENTRIES + 2] */
+  float *values; /* owned; [tiles][volumes][MAXIMUM_ROWS][256]; null: the frame is no maximum projection */
   size_t volume_count; /* number of visible volumes */
   size_t tiles;
 } maximum_values;

@@ -233,7 +233,7 @@ hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, shadow_memory *me
   if (status == HL_OK) status = allocate(sweep, error);
   if (status != HL_OK) return status;
   hl_sweep_open(sweep);
-  hl_sweep_constants_find(sweep->frame_plan, sweep->plan, sweep->target.maximum, &sweep->constants);
+  hl_sweep_constants_find(sweep->frame_plan, sweep->plan, &sweep->constants);
   for (int i = 0; i < sweep->geometry->light_count; i++) connect_light(sweep, i);
   sweep->image.beside = longest_way(sweep);
   for (int i = 0; i < sweep->geometry->light_count; i++) {

@@ -110,8 +110,7 @@ static void place_volume(const grid *grid, shade_volume *shade) {
   }
 }
 
-static void set_up_volumes(const frame_plan *plan, const maximum_values *maximum,
-                           sweep_constants *constants) {
+static void set_up_volumes(const frame_plan *plan, sweep_constants *constants) {
   const plan_volumes *volumes = &plan->volumes;
   int rank = 0;
   set_up_colors(volumes, constants);
@@ -126,9 +125,9 @@ static void set_up_volumes(const frame_plan *plan, const maximum_values *maximum
     shade->object = of->object;
     shade->colors = colors_of(of->volume, constants->srgb_decode);
     shade->tints = colors_of(of->tints, constants->tint_decode);
-    if (maximum != NULL && maximum->values != NULL && shade->visible) {
+    if (volumes->shown != NULL && shade->visible) {
       shade->rank = rank++;
-      shade->shown = (const float(*)[4])(maximum->shown + (size_t)shade->rank * (CLASSIFIER_ENTRIES + 2));
+      shade->shown = (const float(*)[4])volumes->shown[g];
     }
     place_volume(grid, shade);
     if (of->look.cut_shading != HL_CUT_SHADING_GRADIENT) find_box_faces(grid, shade);
@@ -192,10 +191,9 @@ static void set_up_picture(const frame_plan *plan, const sweep_plan *sweep, swee
   for (int c = 0; c < 3 && first; c++) shade->ambient[c] = (float)plan->ambient[c];
 }
 
-void hl_sweep_constants_find(const frame_plan *plan, const sweep_plan *sweep, const maximum_values *maximum,
-                             sweep_constants *constants) {
+void hl_sweep_constants_find(const frame_plan *plan, const sweep_plan *sweep, sweep_constants *constants) {
   const sheet_stack *sheets = &sweep->geometry->sheets;
-  set_up_volumes(plan, maximum, constants);
+  set_up_volumes(plan, constants);
   set_up_picture(plan, sweep, constants);
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     set_up_light(plan, sweep, i, &constants->lights[i]);

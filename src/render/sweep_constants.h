@@ -21,8 +21,7 @@ typedef struct sweep_constants {
 void hl_sweep_constants_lay_out(const frame_plan *plan, sweep_constants *constants, hl_layout *layout);
 
 /* Fills the arrays, which must be allocated, and all members except those for a light's shadow buffer and
- * texture, which a back end sets. constants must not move afterwards. maximum: null: matter is lit. */
-void hl_sweep_constants_find(const frame_plan *plan, const sweep_plan *sweep, const maximum_values *maximum,
-                             sweep_constants *constants);
+ * texture, which a back end sets. constants must not move afterwards. */
+void hl_sweep_constants_find(const frame_plan *plan, const sweep_plan *sweep, sweep_constants *constants);
 
 #endif

@@ -58,7 +58,7 @@ def check_plan():
     for header in PLAN_HEADERS:
         text = (root / "src" / header).read_text()
         for struct, body in re.findall(r"^typedef struct (\w+) \{\n(.*?)^\}", text, re.M | re.S):
-            for kind in re.findall(r"^  (?:const )?(hl_light|hl_scene_\w+) \*", body, re.M):
+            for kind in re.findall(r"^  (?:const )?(hl_light|hl_transfer_function|hl_scene_\w+) \*", body, re.M):
                 problems.append(f"src/{header}: {struct} points to the description {kind}: copy what back ends need of it")
 
 

@@ -18,6 +18,7 @@
 
 #include "core/context.h"
 #include "label/row_functions.h"
+#include "plan/shown_values.h"
 #include "render/surface_samples.h"
 #include "shadow_cascade/cascade_field.h"
 #include "shadow_sublights/sublight_field.h"

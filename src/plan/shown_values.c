@@ -1,0 +1,84 @@
+/* plan/shown_values.c - see shown_values.h: searches the ends of the ranges by bisection. */
+#include "plan/shown_values.h"
+
+#include <float.h>
+#include <math.h>
+
+#include "scene/scene.h"
+
+/* Table coordinates of values come from rounded sums of floats. So the ends of the shown ranges are moved
+ * by ROUNDINGS roundings of the greatest voxel, and at least by LEAST_END entries. A value at an end is
+ * then shown exactly where the transfer function shows it. */
+static const double LEAST_END = 1e-3, ROUNDINGS = 8;
+
+enum { BISECTIONS = 30 };
+
+/* A volume's transfer function, as a function of the coordinates of the classifier's table. */
+typedef struct shown_values {
+  const hl_transfer_function *function; /* borrowed */
+  double low, step; /* data values: the value of coordinate 0, and the step from one coordinate to the next */
+  double nothing;   /* data value below which there is no matter */
+  double end;       /* number of entries by which ends are moved */
+} shown_values;
+
+static bool shows(const shown_values *values, double from, double to) {
+  double low = fmax(values->low + from * values->step, values->nothing),
+         high = values->low + to * values->step;
+  return low <= high && hl_transfer_function_visible(values->function, low, high);
+}
+
+/* The greatest, or the least, value that is shown between entry and entry + 1. */
+static double end_of_step(const shown_values *values, int entry, bool greatest) {
+  double inside = entry, outside = entry + 1;
+  /* In the search for the greatest value, something is always shown between `inside` and the step's end. */
+  for (int i = 0; i < BISECTIONS; i++) {
+    double middle = (inside + outside) / 2;
+    bool some = greatest ? shows(values, middle, entry + 1) : shows(values, entry, middle);
+    if (some == greatest) inside = middle;
+    else outside = middle;
+  }
+  return (inside + outside) / 2;
+}
+
+/* True where opacity rises from 0 without a jump, so that the end itself is not shown. False where opacity
+ * jumps. */
+static bool rises_from(const shown_values *values, double from) {
+  double near = values->low + (from + values->end) * values->step,
+         far = values->low + (from + 2 * values->end) * values->step;
+  return hl_transfer_function_opacity(values->function, near) <
+         0.75 * hl_transfer_function_opacity(values->function, far);
+}
+
+static void fill_step(const shown_values *values, int entry, double below, float row[4]) {
+  bool any = shows(values, entry, entry + 1);
+  double from = 2 * CLASSIFIER_ENTRIES, to = below;
+  if (any) {
+    from = shows(values, entry, entry) ? entry : end_of_step(values, entry, false);
+    to = shows(values, entry + 1, entry + 1) ? entry + 1 : end_of_step(values, entry, true);
+    from += rises_from(values, from) ? values->end : -values->end;
+  }
+  row[SHOWN_FROM] = (float)from;
+  row[SHOWN_TO] = (float)to;
+  row[SHOWN_BELOW] = (float)below;
+  row[3] = 0;
+}
+
+static double end_of(const frame_volume *of, double step) {
+  const hl_volume *volume = of->volume;
+  double greatest = fmax(fmax(fabs(volume->minimum), fabs(volume->maximum)), fabs(of->empty));
+  return fmax(LEAST_END, ROUNDINGS * FLT_EPSILON * greatest / step);
+}
+
+void hl_shown_values_fill(const hl_transfer_function *function, const frame_volume *volume, const grid *grid,
+                          float (*rows)[4]) {
+  const classifier *classifier = volume->classifier;
+  double empty = volume->empty, step = grid->value_scale / (double)classifier->scale;
+  const shown_values values = {function, empty - (double)classifier->offset * step, step,
+                               hl_transparent_below(volume->volume, function, empty),
+                               end_of(volume, fabs(step))};
+  double below = -1;
+  for (int entry = 0; entry < SHOWN_ENTRIES; entry++) {
+    fill_step(&values, entry < CLASSIFIER_ENTRIES ? entry : CLASSIFIER_ENTRIES, below, rows[entry]);
+    if (rows[entry][SHOWN_FROM] <= entry + 1) below = (double)rows[entry][SHOWN_TO];
+  }
+}
