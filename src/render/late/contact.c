@@ -4,9 +4,9 @@
 
 #include "light/light_extent.h"
 #include "mesh/mesh.h"
-#include "render/late/hollow.h"
 #include "render/surface_point.h"
 #include "surface/late/lateness.h"
+#include "surface/primitive.h"
 #include "surface/triangle.h"
 
 /* The buffer is late by at most CLOSE times the sum of its pixel and the distance of sheets; its pixel is at
@@ -149,12 +149,37 @@ static bool look(const sweep *sweep, const contact_light *light, contact_ray *ra
   return any;
 }
 
+/* ---- points of hollow surfaces that light almost grazes ---- */
+
+/* The more light grazes a surface, the later a shadow buffer takes the surface into account
+ * (surface_plane.h: the slope of the surface's heights grows without end). A ray that grazes a hollow
+ * surface meets the surface again close by, where the buffer does not hold it yet. Without this correction,
+ * the inner wall of a cut ball would get a streak of light where the wall turns away from the light.
+ *
+ * Derived: where the normal turns towards the light by k per length along the light's way (k = 1 / radius
+ * within a ball), the surface is a circle of radius 1 / k in the plane of its normal and the light. A ray
+ * that leaves it at an angle whose sine is s meets the circle again after a chord of 2 s / k, if cuts leave
+ * the surface there. */
+
+/* How far the normal of a batch's sample turns towards the light, per length along the way to the light. It
+ * is above 0 where the surface is hollow. It is 0 on flat and on rough surfaces, and on spheres that light
+ * passes. towards_light: of any length. */
+static double hollow_bend(const surfaces *all, const surface_batch *batch, int sample, vec3 towards_light) {
+  const uint32_t primitive = batch->fragments[sample]->primitive;
+  const surface_samples *samples = &batch->samples;
+  vec3 point = {samples->position[0][sample], samples->position[1][sample], samples->position[2][sample]},
+       normal = {samples->normal[0][sample], samples->normal[1][sample], samples->normal[2][sample]};
+  vec3 above = vec3_scale(normal, vec3_dot(towards_light, normal)),
+       along = vec3_normalise(vec3_subtract(towards_light, above));
+  return hl_primitive_kind(all, primitive)->bend(all, batch->mesh, primitive, point, normal, along);
+}
+
 /* ---- all lights of a batch ---- */
 
 /* A point of a hollow surface. */
 typedef struct hollow {
   vec3 point, normal;
-  double bend; /* hollow.h */
+  double bend; /* hollow_bend() */
   double late; /* the length by which a buffer takes surfaces into account late; frame units */
 } hollow;
 
@@ -323,7 +348,7 @@ static void shade_hollows(contact_search *search, int l, const contact_light *li
     double facing = vec3_dot(way, at.normal);
     if (facing <= 0 || facing > GRAZING * vec3_length(way)) continue;
     at.late = pixel_at(light, at.point) + search->sweep->geometry->sheets.spacing;
-    at.bend = hl_hollow_bend(search->sweep->frame->surfaces, batch, i, way);
+    at.bend = hollow_bend(search->sweep->frame->surfaces, batch, i, way);
     if (at.bend <= 0 || at.bend * at.late > SHARPEST_BEND) continue;
     double passing = 0, parts[HL_CHANNELS];
     for (int k = 0; k < points->count; k++) {

@@ -8,7 +8,7 @@
  *
  * For points of surfaces, short rays towards the light find the surfaces that are close (contact.c). Points
  * within a closed part of a mesh get no light from outside, and need no rays. For points of hollow surfaces
- * that light grazes, the bend of the surface tells whether it shades itself (hollow.h). For samples of
+ * that light grazes, the bend of the surface tells whether it shades itself (contact.c). For samples of
  * volumes, the fragments of the eye's view in the same slab and in the few slabs before it are looked at
  * (near_surfaces.c).
  *

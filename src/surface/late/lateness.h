@@ -101,7 +101,7 @@ static const double RAY_START = 0.0005;
  * at the content; where the eye grazes a surface it could lie anywhere. */
 static const double MOST_PIXELS_ASIDE = 8;
 
-/* ---- hollow surfaces (render/late/hollow.h) ---- */
+/* ---- hollow surfaces (render/late/contact.c) ---- */
 
 /* The sine of the angle between a light's ray and a hollow surface up to which it is tested whether the
  * surface shades itself. At greater angles the buffer is hardly late. */

@@ -1,7 +1,7 @@
 /* surface/late/triangle_bend.c - see triangle.h: how the interpolated normal turns within a triangle.
  *
  * In: a triangle of a smooth mesh, and a way along it. Out: whether it is part of a hollow surface, which may
- * shade itself (render/late/hollow.h). */
+ * shade itself (render/late/contact.c). */
 #include "surface/late/lateness.h"
 #include "surface/triangle.h"
 
