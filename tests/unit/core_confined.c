@@ -4,17 +4,11 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 #include <halflight/image.h>
 #include <halflight/scene.h>
@@ -22,6 +16,7 @@
 
 #include "core/beneath.h"
 #include "core/file.h"
+#include "small_volume.h"
 
 static const char header[] = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n";
 
@@ -114,12 +109,6 @@ static void test_beneath(void **state) {
 static void test_by_components(void **state) {
   (void)state;
   check_opener(hl_beneath_open_by_components, false);
-}
-
-static hl_context *make_context(void) {
-  hl_context *context = NULL;
-  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
-  return context;
 }
 
 static hl_context *confine(hl_context *context, const char *folder) {

@@ -81,14 +81,10 @@ static void boxes_are_laid_over_the_volume(void **state) {
   hl_context *context = make_context();
   float voxels[8] = {0, 40};
   const double edges[3] = {1, 2, 6};
-  hl_volume_description d;
-  hl_volume_description_defaults(&d);
-  for (int a = 0; a < 3; a++) d.dimensions[a] = 2, d.axis[a][a] = edges[a];
-  d.type = HL_VOXEL_F32;
-  d.voxels = voxels;
-  hl_volume *volume = NULL;
+  hl_volume_description d = describe_voxels(2, 2, 2, HL_VOXEL_F32, voxels);
+  for (int a = 0; a < 3; a++) d.axis[a][a] = edges[a];
+  hl_volume *volume = create_volume(context, &d);
   hl_transfer_function f = {0};
-  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
   assert_int_equal(load(context, STATE(FUNCTION(BOX(0.6) RANGE) VOLUME(1, 1)), volume, &f, NULL), HL_OK);
   plane_box bounds;
   assert_true(hl_plane_bounds(&f.plane, &bounds));

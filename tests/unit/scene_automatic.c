@@ -26,16 +26,10 @@ static void make_ball(float *values, double noisy) {
 }
 
 static hl_volume *scaled_volume(hl_context *context, const float *values, double scale, double offset) {
-  hl_volume_description d;
-  hl_volume_description_defaults(&d);
-  for (int a = 0; a < 3; a++) d.dimensions[a] = N;
-  d.type = HL_VOXEL_F32;
-  d.voxels = values;
+  hl_volume_description d = describe_voxels(N, N, N, HL_VOXEL_F32, values);
   d.value_scale = scale;
   d.value_offset = offset;
-  hl_volume *volume = NULL;
-  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
-  return volume;
+  return create_volume(context, &d);
 }
 
 static void assert_ascending(const hl_transfer_function *f) {
@@ -171,15 +165,10 @@ static void odd_volumes_get_a_scene(void **state) {
   } odd[] = {
       {&constant, {1, 1, 1}}, {two, {2, 1, 1}}, {two, {1, 1, 2}}, {holes, {2, 2, 2}}, {nothing, {1, 1, 1}}};
   for (size_t o = 0; o < sizeof odd / sizeof *odd; o++) {
-    hl_volume_description d;
-    hl_volume_description_defaults(&d);
-    memcpy(d.dimensions, odd[o].n, sizeof d.dimensions);
-    d.type = HL_VOXEL_F32;
-    d.voxels = odd[o].values;
-    hl_volume *volume = NULL;
+    const size_t *size = odd[o].n;
+    hl_volume *volume = volume_of_voxels(context, size[0], size[1], size[2], HL_VOXEL_F32, odd[o].values);
     hl_scene *scene = NULL;
     hl_error error = {0};
-    assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
     if (hl_scene_for_volume(context, volume, NULL, &scene, &error) != HL_OK)
       fail_msg("%zu: %s", o, error.message);
     for (size_t p = 0; hl_preset_name(p) != NULL; p++) {
@@ -211,16 +200,11 @@ static void nan_may_be_the_air(void **state) {
   hl_transfer_function_release(context, &f);
   hl_volume_release(volume);
   static float lonely[N * N * N * 27]; /* one finite voxel in a grid that is sampled with gaps */
-  hl_volume_description d;
-  hl_volume_description_defaults(&d);
   for (int v = 0; v < N * N * N * 27; v++) lonely[v] = NAN;
-  for (int a = 0; a < 3; a++) d.dimensions[a] = 3 * N;
   lonely[3 * N * (3 * N * 3 + 3) + 3] = 1;
   lonely[3 * N * (3 * N * 3 + 3) + 4] = 2;
-  d.type = HL_VOXEL_F32;
-  d.voxels = lonely;
   hl_scene *scene = NULL;
-  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
+  volume = volume_of_voxels(context, 3 * N, 3 * N, 3 * N, HL_VOXEL_F32, lonely);
   assert_int_equal(hl_scene_for_volume(context, volume, NULL, &scene, NULL), HL_OK);
   assert_true(hl_transfer_function_opacity(&hl_scene_describe(scene)->volumes[0].transfer_function, 2) > 0);
   hl_scene_release(scene);
@@ -228,7 +212,7 @@ static void nan_may_be_the_air(void **state) {
   /* A hundred voxels of a million, above or below the rest. */
   for (int below = 0; below < 2; below++) {
     for (int v = 0; v < N * N * N * 27; v++) lonely[v] = v % 17389 == 0 ? (below ? -3.0f : 3.0f) : 0.0f;
-    assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
+    volume = volume_of_voxels(context, 3 * N, 3 * N, 3 * N, HL_VOXEL_F32, lonely);
     assert_int_equal(hl_transfer_function_automatic(context, volume, &f, NULL), HL_OK);
     assert_ascending(&f);
     assert_true(hl_transfer_function_opacity(&f, 0) == 0 &&
@@ -359,13 +343,9 @@ static void things_stand_upright(void **state) {
   hl_scene_release(scene);
   /* A NIfTI file knows: z up, y to the front. */
   hl_volume_release(volume);
-  hl_volume_description d;
-  hl_volume_description_defaults(&d);
-  for (int a = 0; a < 3; a++) d.dimensions[a] = N;
-  d.type = HL_VOXEL_F32;
-  d.voxels = values;
+  hl_volume_description d = describe_voxels(N, N, N, HL_VOXEL_F32, values);
   d.space = HL_SPACE_RAS;
-  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
+  volume = create_volume(context, &d);
   assert_int_equal(hl_scene_for_volume(context, volume, NULL, &scene, NULL), HL_OK);
   camera = &hl_scene_describe(scene)->camera;
   hl_camera_basis(camera, &right, &up, &forward);
@@ -445,13 +425,7 @@ static void ids_of_any_size_are_labels(void **state) {
     voxels[at] = !inside ? 0 : i < 10 ? 614454278 : i < 15 ? 614454277 : 12;
   }
   hl_context *context = make_context();
-  hl_volume_description d;
-  hl_volume_description_defaults(&d);
-  d.dimensions[0] = d.dimensions[1] = d.dimensions[2] = N;
-  d.type = HL_VOXEL_U32;
-  d.voxels = voxels;
-  hl_volume *map = NULL;
-  assert_int_equal(hl_volume_create(context, &d, &map, NULL), HL_OK);
+  hl_volume *map = volume_of_voxels(context, N, N, N, HL_VOXEL_U32, voxels);
   assert_int_equal(hl_data_analyse(map, &analysis, NULL), HL_OK);
   assert_int_equal(hl_data_find_labels(map, &analysis, NULL), HL_OK);
   assert_int_equal(analysis.kind, HL_DATA_LABELS);
@@ -475,14 +449,8 @@ static void repeated_voxels_are_no_labels(void **state) {
       voxels[at] = (uint8_t)(!inside ? 0 : labels ? 1 + i / 5 : 100 + (int)(noise % 60));
     }
     hl_context *context = make_context();
-    hl_volume_description d;
-    hl_volume_description_defaults(&d);
-    d.dimensions[0] = d.dimensions[1] = d.dimensions[2] = SIDE;
-    d.type = HL_VOXEL_U8;
-    d.voxels = voxels;
-    hl_volume *volume = NULL;
+    hl_volume *volume = volume_of_voxels(context, SIDE, SIDE, SIDE, HL_VOXEL_U8, voxels);
     int is_map = -1;
-    assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
     assert_int_equal(hl_volume_is_label_map(context, volume, &is_map, NULL), HL_OK);
     assert_int_equal(is_map, labels);
     hl_volume_release(volume);

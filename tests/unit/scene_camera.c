@@ -104,15 +104,12 @@ static hl_volume *scattered(hl_context *context, hl_voxel_type type, unsigned se
     words[v] = (uint16_t)(256 * bytes[v]);
     floats[v] = bytes[v] == 77 ? NAN : (float)bytes[v];
   }
-  hl_volume_description d;
-  hl_volume_description_defaults(&d);
-  d.dimensions[0] = LONG, d.dimensions[1] = WIDE, d.dimensions[2] = HIGH;
-  d.type = type;
-  d.voxels = type == HL_VOXEL_U8 ? (const void *)bytes : type == HL_VOXEL_U16 ? (const void *)words : floats;
+  const void *voxels = type == HL_VOXEL_U8    ? (const void *)bytes
+                       : type == HL_VOXEL_U16 ? (const void *)words
+                                              : floats;
+  hl_volume_description d = describe_voxels(LONG, WIDE, HIGH, type, voxels);
   if (type == HL_VOXEL_U16) d.value_scale = -1.0 / 256, d.value_offset = 300;
-  hl_volume *volume = NULL;
-  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
-  return volume;
+  return create_volume(context, &d);
 }
 
 /* How far to one side visible voxels reach, of all of them: along a direction, or (perspective) as an angle
@@ -456,15 +453,10 @@ static void sides_are_the_bodys_own(void **state) {
                {HL_SPACE_LPS, HL_SIDE_LEFT, {1, 0, 0}},       {HL_SPACE_LPS, HL_SIDE_BOTTOM, {0, 0, -1}},
                {HL_SPACE_LAS, HL_SIDE_FRONT, {0, 1, 0}},      {HL_SPACE_LAS, HL_SIDE_RIGHT, {-1, 0, 0}}};
   for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
-    hl_volume_description d;
-    hl_volume_description_defaults(&d);
-    d.dimensions[0] = d.dimensions[1] = d.dimensions[2] = 2;
-    d.type = HL_VOXEL_F32;
-    d.voxels = values;
+    hl_volume_description d = describe_voxels(2, 2, 2, HL_VOXEL_F32, values);
     d.space = cases[n].space;
     hl_volume_release(p.volume);
-    assert_int_equal(hl_volume_create(p.context, &d, &p.volume, NULL), HL_OK);
-    p.scene_volume.volume = p.volume;
+    p.scene_volume.volume = p.volume = create_volume(p.context, &d);
     hl_view view;
     hl_camera camera = {.position = {0, -9, 0}, .up = {0, 0, 1}, .fovy_deg = 30};
     assert_int_equal(hl_view_choose(&p.description, cases[n].side, (double[3]){0, 0, 1}, &view, NULL), HL_OK);

@@ -55,16 +55,12 @@ static double with_piece(int i, int j, int k) {
 /* axes: hl_volume_description's. */
 static hl_scene *make_scene(hl_context *context, double (*each)(int i, int j, int k),
                             const double axes[3][3]) {
-  hl_volume_description d;
-  hl_volume_description_defaults(&d);
+  hl_volume_description d = describe_voxels(N, N, N, HL_VOXEL_F32, values);
   for (int v = 0; v < COUNT; v++) values[v] = (float)each(v % N, v / N % N, v / N / N);
-  for (int a = 0; a < 3; a++) d.dimensions[a] = N, d.origin[a] = 10 * a - 7;
+  for (int a = 0; a < 3; a++) d.origin[a] = 10 * a - 7;
   memcpy(d.axis, axes, sizeof d.axis);
-  d.type = HL_VOXEL_F32;
-  d.voxels = values;
-  hl_volume *volume = NULL;
+  hl_volume *volume = create_volume(context, &d);
   hl_scene *scene = NULL;
-  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
   assert_int_equal(hl_scene_for_volume(context, volume, NULL, &scene, NULL), HL_OK);
   hl_volume_release(volume);
   return scene;

@@ -5,26 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../asserts.h"
 #include "guess/for_volume.h"
 #include "scene/scene.h"
-
-static inline hl_context *make_context(void) {
-  hl_context *context = NULL;
-  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
-  return context;
-}
+#include "small_volume.h"
 
 /* A float volume of n^3 voxels of unit size with its first voxel at 0: values are copied. */
 static inline hl_volume *make_volume(hl_context *context, size_t n, const float *values) {
-  hl_volume_description d;
-  hl_volume_description_defaults(&d);
-  for (int a = 0; a < 3; a++) d.dimensions[a] = n;
-  d.type = HL_VOXEL_F32;
-  d.voxels = values;
-  hl_volume *volume = NULL;
-  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
-  return volume;
+  return volume_of_voxels(context, n, n, n, HL_VOXEL_F32, values);
 }
 
 /* A scene with one light, which projects an image, and one volume, in storage that the tests may change. */

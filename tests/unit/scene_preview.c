@@ -9,20 +9,15 @@ static hl_context *context;
 
 /* A volume of floats whose voxel (i, j, k) is i + 10 j + 100 k, of voxels `thick` long along k. */
 static hl_volume *make(const size_t size[3], double thick) {
-  hl_volume_description d;
-  hl_volume_description_defaults(&d);
   size_t count = size[0] * size[1] * size[2];
   float *values = malloc(count * sizeof *values);
   for (size_t n = 0; n < count; n++)
     values[n] = (float)(n % size[0]) + 10 * (float)(n / size[0] % size[1]) +
                 100 * (float)(n / size[0] / size[1]);
-  memcpy(d.dimensions, size, sizeof d.dimensions);
+  hl_volume_description d = describe_voxels(size[0], size[1], size[2], HL_VOXEL_F32, values);
   d.axis[2][2] = thick;
   d.origin[0] = 5;
-  d.type = HL_VOXEL_F32;
-  d.voxels = values;
-  hl_volume *volume = NULL;
-  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
+  hl_volume *volume = create_volume(context, &d);
   free(values);
   return volume;
 }
@@ -61,15 +56,9 @@ static void long_axes_stay(void **state) {
 
 static void numbers_that_are_none_are_left_out(void **state) {
   (void)state;
-  hl_volume_description d;
-  hl_volume_description_defaults(&d);
   float values[16] = {1, NAN, NAN, NAN};
   for (int n = 4; n < 16; n++) values[n] = n < 8 ? NAN : 3; /* along i: 1 and nothing in the first pair */
-  for (int a = 0; a < 3; a++) d.dimensions[a] = a == 0 ? 4 : 2;
-  d.type = HL_VOXEL_F32;
-  d.voxels = values;
-  hl_volume *fine = NULL, *coarse = NULL;
-  assert_int_equal(hl_volume_create(context, &d, &fine, NULL), HL_OK);
+  hl_volume *fine = volume_of_voxels(context, 4, 2, 2, HL_VOXEL_F32, values), *coarse = NULL;
   assert_int_equal(hl_volume_make_coarser(fine, HL_COARSER_MEANS, &coarse, NULL), HL_OK);
   assert_float_equal(hl_volume_value(coarse, 0, 0, 0), (1 + 4 * 3) / 5.0, 1e-6);
   assert_float_equal(hl_volume_value(coarse, 1, 0, 0), 3, 0);
@@ -139,14 +128,8 @@ static void labels_stay(void **state) {
  * would be another label. */
 static void labels_are_the_commonest(void **state) {
   (void)state;
-  hl_volume_description d;
-  hl_volume_description_defaults(&d);
   const uint8_t values[16] = {0, 9, 9, 9, 9, 0, 2, 2, 9, 2, 2, 9, 7, 7, 2, 2};
-  for (int a = 0; a < 3; a++) d.dimensions[a] = a == 0 ? 4 : 2;
-  d.type = HL_VOXEL_U8;
-  d.voxels = values;
-  hl_volume *fine = NULL, *coarse = NULL;
-  assert_int_equal(hl_volume_create(context, &d, &fine, NULL), HL_OK);
+  hl_volume *fine = volume_of_voxels(context, 4, 2, 2, HL_VOXEL_U8, values), *coarse = NULL;
   assert_int_equal(hl_volume_make_coarser(fine, HL_COARSER_LABELS, &coarse, NULL), HL_OK);
   assert_float_equal(hl_volume_value(coarse, 0, 0, 0), 9, 0); /* 0 9 9 0 9 2 7 7 */
   assert_float_equal(hl_volume_value(coarse, 1, 0, 0), 2, 0); /* 9 9 2 2 2 9 2 2 */
@@ -156,18 +139,12 @@ static void labels_are_the_commonest(void **state) {
 
 /* A box of label 1 beside a box of label 5. */
 static hl_volume *two_boxes(void) {
-  hl_volume_description d;
-  hl_volume_description_defaults(&d);
   uint8_t *values = calloc(1, 64 * 64 * 64);
   for (int n = 0; n < 64 * 64 * 64; n++) {
     const int x = n % 64, y = n / 64 % 64, z = n / 64 / 64;
     if (x >= 8 && x < 56 && y >= 8 && y < 56 && z >= 8 && z < 56) values[n] = x < 32 ? 1 : 5;
   }
-  for (int a = 0; a < 3; a++) d.dimensions[a] = 64;
-  d.type = HL_VOXEL_U8;
-  d.voxels = values;
-  hl_volume *map = NULL;
-  assert_int_equal(hl_volume_create(context, &d, &map, NULL), HL_OK);
+  hl_volume *map = volume_of_voxels(context, 64, 64, 64, HL_VOXEL_U8, values);
   free(values);
   return map;
 }

@@ -6,16 +6,10 @@
 enum { N = 20, COUNT = N * N * N };
 
 static hl_volume *volume_of(hl_context *context, hl_voxel_type type, const void *voxels, double scale) {
-  hl_volume_description d;
-  hl_volume_description_defaults(&d);
-  for (int a = 0; a < 3; a++) d.dimensions[a] = N;
-  d.type = type;
-  d.voxels = voxels;
+  hl_volume_description d = describe_voxels(N, N, N, type, voxels);
   d.value_scale = scale;
   d.value_offset = 7;
-  hl_volume *volume = NULL;
-  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
-  return volume;
+  return create_volume(context, &d);
 }
 
 static double percentile_of(const hl_volume *volume, double percent) {

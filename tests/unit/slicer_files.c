@@ -91,14 +91,10 @@ static void gradients_are_fitted_to_the_volume(void **state) {
   (void)state;
   hl_context *context = make_context();
   float voxels[8] = {0, 40};
-  hl_volume_description d;
-  hl_volume_description_defaults(&d);
+  hl_volume_description d = describe_voxels(2, 2, 2, HL_VOXEL_F32, voxels);
   const double edges[3] = {1, 2, 6};
-  for (int a = 0; a < 3; a++) d.dimensions[a] = 2, d.axis[a][a] = edges[a];
-  d.type = HL_VOXEL_F32;
-  d.voxels = voxels;
-  hl_volume *volume = NULL;
-  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
+  for (int a = 0; a < 3; a++) d.axis[a][a] = edges[a];
+  hl_volume *volume = create_volume(context, &d);
   hl_transfer_function f = {0};
   write_text(xml, "<MRML>" PROPERTY("alone", "6 0 0 20 1 30 0.25") "</MRML>");
   assert_int_equal(hl_transfer_function_load_for(context, xml, volume, &f, NULL), HL_OK);

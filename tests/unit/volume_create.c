@@ -2,27 +2,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../asserts.h"
+#include "small_volume.h"
 #include "volume/convert.h"
-#include "volume/volume.h"
-
-static hl_context *make_context(void) {
-  hl_context *context = NULL;
-  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
-  return context;
-}
-
-static hl_volume_description describe(size_t ni, size_t nj, size_t nk, hl_voxel_type type,
-                                      const void *voxels) {
-  hl_volume_description description;
-  hl_volume_description_defaults(&description);
-  description.dimensions[0] = ni;
-  description.dimensions[1] = nj;
-  description.dimensions[2] = nk;
-  description.type = type;
-  description.voxels = voxels;
-  return description;
-}
 
 static hl_volume_info info_of(const hl_volume *volume) {
   hl_volume_info info = {.struct_size = sizeof info};
@@ -107,7 +88,7 @@ static void check_type(hl_voxel_type type, const ptrdiff_t stride_voxels[3], siz
   size_t bytes = hl_voxel_type_bytes(type);
   unsigned char *block = calloc(8 * COUNT, bytes);
   double expected[COUNT], sum = 0, low = INFINITY, high = -INFINITY;
-  hl_volume_description description = describe(NI, NJ, NK, type, block + first * bytes);
+  hl_volume_description description = describe_voxels(NI, NJ, NK, type, block + first * bytes);
   for (int axis = 0; axis < 3; axis++)
     description.stride_bytes[axis] = stride_voxels[axis] * (ptrdiff_t)bytes;
   for (size_t n = 0; n < COUNT; n++) {
@@ -173,7 +154,7 @@ static void test_extremes_of_each_type(void **state) {
                {HL_VOXEL_I32, i32, INT32_MIN, INT32_MAX},
                {HL_VOXEL_U32, u32, 0, UINT32_MAX}};
   for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
-    hl_volume_description description = describe(2, 1, 1, cases[n].type, cases[n].voxels);
+    hl_volume_description description = describe_voxels(2, 1, 1, cases[n].type, cases[n].voxels);
     hl_volume *volume = NULL;
     assert_int_equal(hl_volume_create(context, &description, &volume, NULL), HL_OK);
     assert_true(hl_volume_value(volume, 0, 0, 0) == cases[n].low);
@@ -187,7 +168,7 @@ static void test_borrowed_voxels_are_not_copied(void **state) {
   (void)state;
   hl_context *context = make_context();
   _Alignas(8) static const uint16_t voxels[8] = {1, 2, 3, 4, 5, 6, 7, 8};
-  hl_volume_description description = describe(2, 2, 2, HL_VOXEL_U16, voxels);
+  hl_volume_description description = describe_voxels(2, 2, 2, HL_VOXEL_U16, voxels);
   description.borrow = 1;
   hl_volume *volume = NULL;
   assert_int_equal(hl_volume_create(context, &description, &volume, NULL), HL_OK);
@@ -213,8 +194,8 @@ static void test_borrowed_voxels_are_not_copied(void **state) {
  */
 static void check_cut_box(hl_context *context, hl_voxel_type type, const void *whole, size_t bytes) {
   enum { X = 7, Y = 5, Z = 6 };
-  hl_volume_description description = describe(4, 3, 2, type,
-                                               (const char *)whole + bytes * ((2 * Y + 1) * X + 2));
+  hl_volume_description description = describe_voxels(4, 3, 2, type,
+                                                      (const char *)whole + bytes * ((2 * Y + 1) * X + 2));
   description.borrow = 1;
   const ptrdiff_t stride[3] = {(ptrdiff_t)bytes, (ptrdiff_t)bytes * X, (ptrdiff_t)bytes * X * Y * 2};
   memcpy(description.stride_bytes, stride, sizeof stride);
@@ -247,7 +228,7 @@ static void test_rows_that_lie_apart_are_borrowed(void **state) {
   /* Steps along a row, slices that overlap, and slices in falling order are copied. */
   const ptrdiff_t others[][3] = {{2, 14, 70}, {1, 7, 7}, {1, 7, 0}, {1, 35, 7}, {1, 7, -35}};
   for (size_t n = 0; n < sizeof others / sizeof *others; n++) {
-    hl_volume_description description = describe(3, 2, 2, HL_VOXEL_U8, bytes + 100);
+    hl_volume_description description = describe_voxels(3, 2, 2, HL_VOXEL_U8, bytes + 100);
     description.borrow = 1;
     memcpy(description.stride_bytes, others[n], sizeof others[n]);
     hl_volume *volume = NULL;
@@ -273,7 +254,7 @@ static void test_borrowed_voxels_are_given_back(void **state) {
   hl_context *context = make_context();
   _Alignas(8) static const uint16_t voxels[8] = {1, 2, 3, 4, 5, 6, 7, 8};
   int released = 0;
-  hl_volume_description description = describe(2, 2, 2, HL_VOXEL_U16, voxels);
+  hl_volume_description description = describe_voxels(2, 2, 2, HL_VOXEL_U16, voxels);
   description.borrow = 1;
   description.release = count_release;
   description.release_data = &released;
@@ -304,7 +285,7 @@ static void test_nonfinite_voxels(void **state) {
   voxels[0] = NAN;
   voxels[9] = INFINITY;
   voxels[18] = -INFINITY;
-  hl_volume_description description = describe(19, 1, 1, HL_VOXEL_F32, voxels);
+  hl_volume_description description = describe_voxels(19, 1, 1, HL_VOXEL_F32, voxels);
   hl_volume *volume = NULL;
   assert_int_equal(hl_volume_create(context, &description, &volume, NULL), HL_OK);
   hl_volume_info info = info_of(volume);
@@ -317,7 +298,7 @@ static void test_nonfinite_voxels(void **state) {
   assert_true(isnan(hl_volume_value(volume, 19, 0, 0)) && isnan(hl_volume_value(volume, 0, 1, 0)));
   hl_volume_release(volume);
   const double all[3] = {NAN, 1e300, -INFINITY}; /* 1e300 is beyond f32 */
-  description = describe(3, 1, 1, HL_VOXEL_F64, all);
+  description = describe_voxels(3, 1, 1, HL_VOXEL_F64, all);
   assert_int_equal(hl_volume_create(context, &description, &volume, NULL), HL_OK);
   info = info_of(volume);
   assert_int_equal(info.nonfinite_count, 3);
@@ -334,7 +315,7 @@ static void test_constant_volume(void **state) {
     size_t bytes = hl_voxel_type_bytes((hl_voxel_type)type);
     double value = 0;
     for (size_t n = 0; n < 27; n++) value = write_value((hl_voxel_type)type, 7, voxels + n * bytes);
-    hl_volume_description description = describe(3, 3, 3, (hl_voxel_type)type, voxels);
+    hl_volume_description description = describe_voxels(3, 3, 3, (hl_voxel_type)type, voxels);
     hl_volume *volume = NULL;
     assert_int_equal(hl_volume_create(context, &description, &volume, NULL), HL_OK);
     hl_volume_info info = info_of(volume);
@@ -353,7 +334,7 @@ static void test_histogram_bins(void **state) {
   size_t used = 0;
   for (int value = 0; value < 256; value++)
     for (int n = 0; n <= value; n++) voxels[used++] = (uint8_t)value;
-  hl_volume_description description = describe(used, 1, 1, HL_VOXEL_U8, voxels);
+  hl_volume_description description = describe_voxels(used, 1, 1, HL_VOXEL_U8, voxels);
   for (int sign = 1; sign >= -1; sign -= 2) {
     description.value_scale = sign * 3;
     hl_volume *volume = NULL;
@@ -369,7 +350,7 @@ static void test_place_in_the_world(void **state) {
   (void)state;
   hl_context *context = make_context();
   const uint8_t voxels[8] = {0};
-  hl_volume_description description = describe(2, 2, 2, HL_VOXEL_U8, voxels);
+  hl_volume_description description = describe_voxels(2, 2, 2, HL_VOXEL_U8, voxels);
   const double axes[3][3] = {{0, 3, 4}, {-2, 0, 0}, {0, 0, 7}}; /* oblique and right-handed */
   memcpy(description.axis, axes, sizeof axes);
   description.origin[1] = -5;
@@ -394,7 +375,7 @@ static void test_impossible_descriptions(void **state) {
   const uint8_t voxels[8] = {0};
   hl_volume *volume = NULL;
   for (int fault = 0; fault < 14; fault++) {
-    hl_volume_description description = describe(2, 2, 2, HL_VOXEL_U8, voxels);
+    hl_volume_description description = describe_voxels(2, 2, 2, HL_VOXEL_U8, voxels);
     switch (fault) {
       case 0: description.dimensions[1] = 0; break;
       case 1: description.dimensions[2] = SIZE_MAX; break;
@@ -435,7 +416,7 @@ static void test_memory_limit_and_counting(void **state) {
   hl_context *context = NULL;
   assert_int_equal(hl_context_create(&options, &context, NULL), HL_OK);
   unsigned char *voxels = calloc(200000, 1);
-  hl_volume_description description = describe(100, 100, 20, HL_VOXEL_I8, voxels);
+  hl_volume_description description = describe_voxels(100, 100, 20, HL_VOXEL_I8, voxels);
   hl_volume *volume = NULL;
   assert_int_equal(hl_volume_create(context, &description, &volume, NULL), HL_ERROR_MEMORY);
   assert_null(volume);

@@ -1,16 +1,14 @@
 /* tests/unit/volume_exact.c - whole numbers above 2^24 keep their value: in memory, in files and as labels.
  */
 #define _GNU_SOURCE
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <halflight/scene.h>
 
+#include "small_volume.h"
 #include "volume/convert.h"
 #include "volume/exact.h"
 #include "volume/store/pages.h"
@@ -28,21 +26,8 @@ static int remove_folder(void **state) {
   return rmdir(folder);
 }
 
-static hl_context *make_context(void) {
-  hl_context *context = NULL;
-  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
-  return context;
-}
-
 static hl_volume *make_volume(hl_context *context, hl_voxel_type type, const void *voxels) {
-  hl_volume_description d;
-  hl_volume_description_defaults(&d);
-  for (int axis = 0; axis < 3; axis++) d.dimensions[axis] = SIDE;
-  d.type = type;
-  d.voxels = voxels;
-  hl_volume *volume = NULL;
-  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
-  return volume;
+  return volume_of_voxels(context, SIDE, SIDE, SIDE, type, voxels);
 }
 
 /* Neighbouring whole numbers that one float stands for, of each type. */
@@ -271,13 +256,8 @@ static void ids_above_doubles_stay_apart(void **state) {
     int64_t voxels[EDGE * EDGE * EDGE], least = sign * ids[sign > 0 ? 0 : 1];
     for (int n = 0; n < EDGE * EDGE * EDGE; n++)
       voxels[n] = n < EDGE * EDGE * 2 ? 0 : sign * ids[n >= EDGE * EDGE * 4];
-    hl_volume_description description;
-    hl_volume_description_defaults(&description);
-    for (int a = 0; a < 3; a++) description.dimensions[a] = EDGE;
-    description.type = sign > 0 ? HL_VOXEL_U64 : HL_VOXEL_I64;
-    description.voxels = voxels;
-    hl_volume *map = NULL, *small = NULL;
-    assert_int_equal(hl_volume_create(context, &description, &map, NULL), HL_OK);
+    const hl_voxel_type type = sign > 0 ? HL_VOXEL_U64 : HL_VOXEL_I64;
+    hl_volume *map = volume_of_voxels(context, EDGE, EDGE, EDGE, type, voxels), *small = NULL;
     hl_label *labels = NULL;
     size_t count = 0;
     assert_int_equal(hl_labels_of_volume(context, map, NULL, &labels, &count, NULL), HL_OK);

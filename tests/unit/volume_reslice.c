@@ -1,15 +1,13 @@
 /* tests/unit/volume_reslice.c - planes of voxels: exact at the voxels' centres, linear between them, thick,
  * at any angle, and refused where their numbers are impossible. */
 #define _GNU_SOURCE
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
 #include <halflight/halflight.h>
+
+#include "small_volume.h"
 
 enum { WIDE = 7, TALL = 5, DEEP = 3, COUNT = WIDE * TALL * DEEP, BIG = 128 };
 
@@ -19,14 +17,7 @@ typedef struct bench {
 } bench;
 
 static hl_volume *make_volume(hl_context *context, hl_voxel_type type, const void *voxels) {
-  hl_volume_description d;
-  hl_volume_description_defaults(&d);
-  d.dimensions[0] = WIDE, d.dimensions[1] = TALL, d.dimensions[2] = DEEP;
-  d.type = type;
-  d.voxels = voxels;
-  hl_volume *volume = NULL;
-  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
-  return volume;
+  return volume_of_voxels(context, WIDE, TALL, DEEP, type, voxels);
 }
 
 /* A volume whose value is 100 k + 10 j + i, so that linear interpolation is exact everywhere. */
@@ -35,7 +26,7 @@ static bench begin(void) {
   float voxels[COUNT];
   for (int n = 0; n < COUNT; n++)
     voxels[n] = (float)(100 * (n / (WIDE * TALL)) + 10 * (n / WIDE % TALL) + n % WIDE);
-  assert_int_equal(hl_context_create(NULL, &b.context, NULL), HL_OK);
+  b.context = make_context();
   b.volume = make_volume(b.context, HL_VOXEL_F32, voxels);
   return b;
 }
@@ -194,13 +185,7 @@ static void large_planes_can_be_cancelled(void **state) {
   double *values = malloc(BIG * BIG * sizeof *values);
   assert_true(voxels != NULL && values != NULL);
   for (size_t n = 0; n < BIG * BIG; n++) voxels[n * BIG + n % BIG] = (unsigned char)(n % 251);
-  hl_volume_description d;
-  hl_volume_description_defaults(&d);
-  for (int axis = 0; axis < 3; axis++) d.dimensions[axis] = BIG;
-  d.type = HL_VOXEL_U8;
-  d.voxels = voxels;
-  hl_volume *volume = NULL;
-  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
+  hl_volume *volume = volume_of_voxels(context, BIG, BIG, BIG, HL_VOXEL_U8, voxels);
   hl_reslice_options options = plane(BIG, BIG);
   options.depth = BIG;
   set(options.across, 0, 1, 0);

@@ -1,16 +1,11 @@
 /* tests/unit/volume_save.c - what is saved is what is loaded: values, type and place. */
 #define _GNU_SOURCE
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
-#include "volume/volume.h"
+#include "small_volume.h"
 
 static char folder[] = "/tmp/halflight-save-XXXXXX";
 
@@ -29,12 +24,6 @@ static const char *place(const char *name) {
   return path;
 }
 
-static hl_context *make_context(void) {
-  hl_context *context = NULL;
-  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
-  return context;
-}
-
 /* 5 x 4 x 3 voxels of a type, on a grid that is oblique and left-handed. */
 static hl_volume *make_volume(hl_context *context, hl_voxel_type type, double scale) {
   unsigned char bytes[60 * 8];
@@ -44,20 +33,14 @@ static hl_volume *make_volume(hl_context *context, hl_voxel_type type, double sc
       float value = n == 7 ? NAN : (float)(n - 30) / 7;
       memcpy(bytes + 4 * n, &value, 4);
     }
-  hl_volume_description d;
-  hl_volume_description_defaults(&d);
-  d.dimensions[0] = 5, d.dimensions[1] = 4, d.dimensions[2] = 3;
-  d.type = type;
+  hl_volume_description d = describe_voxels(5, 4, 3, type, bytes);
   d.value_scale = scale;
   d.value_offset = scale - 1;
-  d.voxels = bytes;
   const double axes[3][3] = {{0.3, 0.1, 0}, {0, 1 / 3.0, 0.25}, {0.1, 0, -2}},
                origin[3] = {-1e-3, 7, 1 / 7.0};
   memcpy(d.axis, axes, sizeof axes);
   memcpy(d.origin, origin, sizeof origin);
-  hl_volume *volume = NULL;
-  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
-  return volume;
+  return create_volume(context, &d);
 }
 
 static void assert_same(const hl_volume *a, const hl_volume *b, bool with_place) {
@@ -122,13 +105,7 @@ static void labels_keep_their_numbers(void **state) {
   (void)state;
   hl_context *context = make_context();
   static const int16_t voxels[2][2][4] = {{{1, 5, 7, 3}, {5, 9, 3, 7}}, {{1, 5, 7, 3}, {9, 0, 3, 7}}};
-  hl_volume_description d;
-  hl_volume_description_defaults(&d);
-  d.dimensions[0] = 4, d.dimensions[1] = d.dimensions[2] = 2;
-  d.type = HL_VOXEL_I16;
-  d.voxels = voxels;
-  hl_volume *volume = NULL, *again = NULL;
-  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
+  hl_volume *volume = volume_of_voxels(context, 4, 2, 2, HL_VOXEL_I16, voxels), *again = NULL;
   hl_volume_save_options options;
   hl_volume_save_options_defaults(&options);
   options.shrink = 2;

@@ -16,16 +16,10 @@ static size_t at(int i, int j, int k) { return (size_t)((k * N + j) * N + i); }
 
 /* A volume of values[], of voxels `thick` long along k. */
 static hl_volume *make(double thick) {
-  hl_volume_description d;
-  hl_volume_description_defaults(&d);
-  for (int a = 0; a < 3; a++) d.dimensions[a] = N;
+  hl_volume_description d = describe_voxels(N, N, N, HL_VOXEL_F32, values);
   d.axis[2][2] = thick;
   d.origin[0] = 5;
-  d.type = HL_VOXEL_F32;
-  d.voxels = values;
-  hl_volume *volume = NULL;
-  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
-  return volume;
+  return create_volume(context, &d);
 }
 
 /* The weight of a Gaussian at distance d, of those at whole distances that smooth.c takes. */

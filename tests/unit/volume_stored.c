@@ -7,21 +7,15 @@
 #include <string.h>
 #include <sys/mman.h>
 
-#include "../asserts.h"
 #include "core/context.h"
 #include "guess/analysis.h"
 #include "guess/sample.h"
 #include "scene/scene.h"
+#include "small_volume.h"
 #include "volume/brick_bounds.h"
 #include "volume/io/destination.h"
 #include "volume/store/glimpse.h"
 #include "volume/store/pages.h"
-
-static hl_context *make_context(void) {
-  hl_context *context = NULL;
-  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
-  return context;
-}
 
 static void put(hl_storage storage, void *voxels, size_t n, unsigned value) {
   if (storage == HL_STORAGE_U8) ((uint8_t *)voxels)[n] = (uint8_t)value;
