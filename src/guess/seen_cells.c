@@ -45,22 +45,22 @@ static hl_status make_table(hl_seen *seen, hl_error *error) {
   const bool whole = volume->storage != HL_STORAGE_F32;
   size_t count = volume->storage == HL_STORAGE_U8 ? 256 : whole ? 65536 : BINS + 1;
   seen->depth = hl_allocate(volume->context, count, sizeof *seen->depth);
-  seen->bends = hl_allocate_zeroed(volume->context, BINS, 1);
-  if (seen->depth == NULL || seen->bends == NULL)
+  seen->bins.bends = hl_allocate_zeroed(volume->context, BINS, 1);
+  if (seen->depth == NULL || seen->bins.bends == NULL)
     return hl_fail_memory(error, count * sizeof *seen->depth, "a table of opacities");
   double range = volume->maximum - volume->minimum;
-  seen->low = volume->minimum;
-  seen->scale = range > 0 ? BINS / range : 0;
+  seen->bins.low = volume->minimum;
+  seen->bins.scale = range > 0 ? BINS / range : 0;
   for (size_t n = 0; n < count; n++) {
     double value = whole ? volume->value_scale * (double)n + volume->value_offset
                          : volume->minimum + range * (double)n / BINS;
-    seen->depth[n] = (float)depth_of(seen->function, value);
+    seen->depth[n] = (float)depth_of(seen->bins.function, value);
   }
-  for (size_t p = 0; p < seen->function->opacity_count; p++) {
-    double bin = (seen->function->opacity[p].value - seen->low) * seen->scale;
+  for (size_t p = 0; p < seen->bins.function->opacity_count; p++) {
+    double bin = (seen->bins.function->opacity[p].value - seen->bins.low) * seen->bins.scale;
     /* a point on the border between two bins bends the function in both */
     for (int side = -1; side <= 1; side++)
-      if (bin + side * 1e-6 >= 0 && bin + side * 1e-6 < BINS) seen->bends[(int)(bin + side * 1e-6)] = 1;
+      if (bin + side * 1e-6 >= 0 && bin + side * 1e-6 < BINS) seen->bins.bends[(int)(bin + side * 1e-6)] = 1;
   }
   return HL_OK;
 }
@@ -68,9 +68,9 @@ static hl_status make_table(hl_seen *seen, hl_error *error) {
 static float depth_of_float(const hl_seen *seen, float stored) {
   if (!isfinite(stored)) return 0;
   double value = seen->volume->value_scale * (double)stored + seen->volume->value_offset,
-         at = (value - seen->low) * seen->scale;
+         at = (value - seen->bins.low) * seen->bins.scale;
   int bin = at < 0 ? 0 : at >= BINS ? BINS - 1 : (int)at;
-  if (seen->bends[bin]) return (float)depth_of(seen->function, value);
+  if (seen->bins.bends[bin]) return (float)depth_of(seen->bins.function, value);
   return seen->depth[bin] + (float)(at - bin) * (seen->depth[bin + 1] - seen->depth[bin]);
 }
 
@@ -250,7 +250,7 @@ static bool has_holder(const hl_bodies *bodies) {
 static hl_status forget_holders(hl_seen *seen, hl_error *error) {
   hl_context *context = seen->volume->context;
   size_t cells = (size_t)seen->size[0] * (size_t)seen->size[1] * (size_t)seen->size[2];
-  float least = (float)depth_of(seen->function, TISSUE);
+  float least = (float)depth_of(seen->bins.function, TISSUE);
   if (!hl_is_hounsfield(seen->volume) || !(least > 0)) return HL_OK;
   unsigned char *dense = hl_allocate(context, cells, 1);
   if (dense == NULL) return hl_fail_memory(error, cells, "a volume's dense cells");
@@ -322,7 +322,7 @@ static hl_status make_cells(hl_seen *seen, hl_error *error) {
 hl_status hl_seen_find(const hl_scene_volume *volume, hl_seen *seen, bool *any, hl_error *error) {
   const hl_transfer_function *function = &volume->transfer_function;
   double greatest = greatest_opacity(function, volume->volume->minimum, volume->volume->maximum);
-  *seen = (hl_seen){.volume = volume->volume, .cut_count = volume->cut_count, .function = function};
+  *seen = (hl_seen){.volume = volume->volume, .cut_count = volume->cut_count, .bins.function = function};
   *any = volume->visible && greatest > 0 && find_range(volume, seen);
   if (!*any) return HL_OK;
   seen->faint = (float)(-log1p(-FAINT * fmin(greatest, OPAQUE)) / function->unit_distance * (1 - 1e-6));
@@ -343,7 +343,7 @@ void hl_seen_release(hl_seen *seen) {
   hl_context *context = seen->volume->context;
   if (seen->volume->pages != NULL) hl_pages_forget(seen->volume->pages);
   hl_release(context, seen->depth);
-  hl_release(context, seen->bends);
+  hl_release(context, seen->bins.bends);
   hl_release(context, seen->kind);
   hl_release(context, seen->mean);
   hl_release(context, seen->row);

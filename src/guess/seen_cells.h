@@ -25,13 +25,14 @@ typedef struct hl_seen {
   int size[3];                /* number of cells */
   float *depth; /* owned; optical depth per world length: for each stored whole number, or, for floats, for
                  * the low end of each bin */
-  const hl_transfer_function *function; /* for floats: the function, which is evaluated in bins where it
-                                         * bends */
-  double low, scale;                    /* for floats: bin = (value - low) * scale */
-  unsigned char *bends;                 /* owned; [bins]; for floats: whether the function bends in the bin */
-  unsigned char *kind;                  /* owned; [size[2]][size[1]][size[0]]; HL_SEEN_... */
-  float *mean;                          /* owned; [size[2]][size[1]][size[0]]; mean depth per length of a
-                                         * cell's voxels */
+  struct {
+    const hl_transfer_function *function; /* evaluated in bins where it bends */
+    double low, scale;                    /* bin = (value - low) * scale */
+    unsigned char *bends;                 /* owned; [bins]; whether the function bends in the bin */
+  } bins;                                 /* for floats */
+  unsigned char *kind;                    /* owned; [size[2]][size[1]][size[0]]; HL_SEEN_... */
+  float *mean;                            /* owned; [size[2]][size[1]][size[0]]; mean depth per length of a
+                                           * cell's voxels */
   void *row;   /* owned; memory for a row of the volume's stored values; null: the volume is in memory */
   float faint; /* depth per length from which voxels beside seen cells count */
 } hl_seen;

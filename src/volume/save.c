@@ -35,14 +35,16 @@ typedef struct saving {
   hl_volume_description grid; /* the grid that is written */
   const char *unit;           /* unit of its lengths, static; null if unknown */
   hl_output output;
-  bool packs;              /* whether bytes are packed now */
-  double *sums;            /* owned; [grid.dimensions[0]]; sums of data values */
-  uint32_t *counts;        /* owned; [grid.dimensions[0]]; number of finite voxels in each sum */
-  uint64_t *boxes;         /* owned; [grid.dimensions[0]][shrink^3]; where labels are shrunk: the bits of the
-                            * finite values, or of the file's own numbers (keeps_numbers()); else null */
-  unsigned char *row;      /* owned; [grid.dimensions[0]] voxels of the written type */
-  void *source_row;        /* owned; a row of the volume's stored values, for volumes with pages */
-  unsigned char *packed;   /* owned; [OUT_BYTES] */
+  bool packs; /* whether bytes are packed now */
+  struct {
+    double *sums;          /* [grid.dimensions[0]]; sums of data values */
+    uint32_t *counts;      /* [grid.dimensions[0]]; number of finite voxels in each sum */
+    uint64_t *boxes;       /* [grid.dimensions[0]][shrink^3]; where labels are shrunk: the bits of the finite
+                            * values, or of the file's own numbers (keeps_numbers()); else null */
+    unsigned char *row;    /* [grid.dimensions[0]] voxels of the written type */
+    void *source_row;      /* a row of the volume's stored values, for volumes with pages */
+    unsigned char *packed; /* [OUT_BYTES] */
+  } memory;                /* all of it is owned */
   uint64_t clamped, holes; /* number of voxels beyond the type's range; number of voxels that are not finite,
                             * if the type has no such numbers */
   z_stream stream;
@@ -169,15 +171,16 @@ static uint64_t bits_of(const saving *s, hl_number_row row, size_t i, double val
 /* Adds the row (j, k) of the volume to the sums. The first row begins the sums. */
 static void add_row(saving *s, size_t j, size_t k) {
   const hl_volume *volume = s->volume;
-  const hl_number_row row = hl_volume_numbers(volume, j, k, s->source_row);
+  const hl_number_row row = hl_volume_numbers(volume, j, k, s->memory.source_row);
   for (size_t i = s->begin[0], n = 0; i < s->end[0]; n++)
     for (size_t last = i + s->shrink; i < last && i < s->end[0]; i++) {
       double value = volume->value_scale * hl_row_number(row, i) + volume->value_offset;
       if (s->shrink > 1 && !isfinite(value)) continue;
       if (s->labels)
-        s->boxes[n * s->shrink * s->shrink * s->shrink + s->counts[n]] = bits_of(s, row, i, value);
-      s->sums[n] += value;
-      s->counts[n]++;
+        s->memory.boxes[n * s->shrink * s->shrink * s->shrink + s->memory.counts[n]] = bits_of(s, row, i,
+                                                                                               value);
+      s->memory.sums[n] += value;
+      s->memory.counts[n]++;
     }
 }
 
@@ -201,28 +204,28 @@ static uint64_t commonest(const uint64_t *values, size_t count) {
 /* Stores a label's bits among the values, or among the file's own numbers that are written. */
 static void put_label(saving *s, size_t n, uint64_t bits) {
   const size_t bytes = hl_voxel_type_bytes(s->grid.type);
-  if (keeps_numbers(s)) memcpy(s->row + n * bytes, &bits, bytes);
-  else memcpy(&s->sums[n], &bits, sizeof bits);
+  if (keeps_numbers(s)) memcpy(s->memory.row + n * bytes, &bits, bytes);
+  else memcpy(&s->memory.sums[n], &bits, sizeof bits);
 }
 
 /* The data values of row (j, k) as written, which are stored in `sums`: the mean of the finite voxels, or
  * the commonest label; NAN where there is none. Labels that keep their own numbers are stored in `row`. */
 static void make_row(saving *s, size_t j, size_t k) {
   const size_t count = s->grid.dimensions[0], box = s->shrink * s->shrink * s->shrink;
-  memset(s->sums, 0, count * sizeof *s->sums);
-  memset(s->counts, 0, count * sizeof *s->counts);
+  memset(s->memory.sums, 0, count * sizeof *s->memory.sums);
+  memset(s->memory.counts, 0, count * sizeof *s->memory.counts);
   size_t j0 = s->begin[1] + j * s->shrink, k0 = s->begin[2] + k * s->shrink;
   for (size_t z = k0; z < k0 + s->shrink && z < s->end[2]; z++)
     for (size_t y = j0; y < j0 + s->shrink && y < s->end[1]; y++) add_row(s, y, z);
   for (size_t n = 0; n < count; n++) {
-    if (s->counts[n] == 0) s->sums[n] = NAN;
-    if (s->counts[n] == 0 && keeps_numbers(s))
-      memcpy(s->row + n * sizeof(double), &s->sums[n], sizeof(double));
-    if (s->counts[n] == 0)
+    if (s->memory.counts[n] == 0) s->memory.sums[n] = NAN;
+    if (s->memory.counts[n] == 0 && keeps_numbers(s))
+      memcpy(s->memory.row + n * sizeof(double), &s->memory.sums[n], sizeof(double));
+    if (s->memory.counts[n] == 0)
       continue; /* among the types that keep numbers, only doubles can stand for no
                  * number */
-    if (s->labels) put_label(s, n, commonest(s->boxes + n * box, s->counts[n]));
-    else if (s->counts[n] > 1) s->sums[n] /= s->counts[n];
+    if (s->labels) put_label(s, n, commonest(s->memory.boxes + n * box, s->memory.counts[n]));
+    else if (s->memory.counts[n] > 1) s->memory.sums[n] /= s->memory.counts[n];
   }
 }
 
@@ -263,16 +266,16 @@ static double whole_value(saving *s, double value, double low, double high) {
 static void copy_row(saving *s, size_t j, size_t k) {
   size_t bytes = hl_voxel_type_bytes(s->grid.type);
   const unsigned char *row =
-      hl_volume_numbers(s->volume, s->begin[1] + j, s->begin[2] + k, s->source_row).numbers;
-  memcpy(s->row, row + s->begin[0] * bytes, s->grid.dimensions[0] * bytes);
+      hl_volume_numbers(s->volume, s->begin[1] + j, s->begin[2] + k, s->memory.source_row).numbers;
+  memcpy(s->memory.row, row + s->begin[0] * bytes, s->grid.dimensions[0] * bytes);
 }
 
 static void convert_row(saving *s) {
-  unsigned char *to = s->row;
+  unsigned char *to = s->memory.row;
   double low = 0, high = 0;
   bool whole = whole_range(s->grid.type, &low, &high);
   for (size_t n = 0; n < s->grid.dimensions[0]; n++) {
-    double value = whole ? whole_value(s, s->sums[n], low, high) : s->sums[n];
+    double value = whole ? whole_value(s, s->memory.sums[n], low, high) : s->memory.sums[n];
     switch (s->grid.type) {
       case HL_VOXEL_U8: STORE(uint8_t); break;
       case HL_VOXEL_I8: STORE(int8_t); break;
@@ -304,10 +307,10 @@ static void put(saving *s, const void *bytes, size_t count, bool last) {
   s->stream.next_in = (unsigned char *)bytes;
   s->stream.avail_in = (uInt)count;
   do {
-    s->stream.next_out = s->packed;
+    s->stream.next_out = s->memory.packed;
     s->stream.avail_out = OUT_BYTES;
     deflate(&s->stream, last ? Z_FINISH : Z_NO_FLUSH);
-    fwrite(s->packed, 1, OUT_BYTES - s->stream.avail_out, s->output.file);
+    fwrite(s->memory.packed, 1, OUT_BYTES - s->stream.avail_out, s->output.file);
   } while (s->stream.avail_out == 0);
 }
 
@@ -319,7 +322,7 @@ static hl_status write_rows(saving *s, hl_error *error) {
       if (keeps_numbers(s) && s->shrink == 1) copy_row(s, j, k);
       else make_row(s, j, k);
       if (!keeps_numbers(s)) convert_row(s);
-      put(s, s->row, bytes, k + 1 == n[2] && j + 1 == n[1]);
+      put(s, s->memory.row, bytes, k + 1 == n[2] && j + 1 == n[1]);
     }
     hl_progress(s->context, "write", (double)(k + 1) / (double)n[2]);
     if (hl_cancelled(s->context)) return hl_fail(error, HL_ERROR_CANCELLED, "%s: stopped", s->output.path);
@@ -360,17 +363,17 @@ static hl_status begin_packing(saving *s, hl_error *error) {
 
 static hl_status save(saving *s, const char *path, hl_error *error) {
   hl_context *context = s->context;
-  size_t count = s->grid.dimensions[0], bytes = sizeof *s->sums + sizeof *s->counts + 8;
-  s->sums = hl_allocate(context, count, sizeof *s->sums);
-  s->counts = hl_allocate(context, count, sizeof *s->counts);
-  size_t box_bytes = s->labels ? s->shrink * s->shrink * s->shrink * sizeof *s->boxes : 0;
-  if (s->labels) s->boxes = hl_allocate(context, count, box_bytes);
-  s->row = hl_allocate(context, count, hl_voxel_type_bytes(s->grid.type));
-  s->packed = hl_allocate(context, OUT_BYTES, 1);
+  size_t count = s->grid.dimensions[0], bytes = sizeof *s->memory.sums + sizeof *s->memory.counts + 8;
+  s->memory.sums = hl_allocate(context, count, sizeof *s->memory.sums);
+  s->memory.counts = hl_allocate(context, count, sizeof *s->memory.counts);
+  size_t box_bytes = s->labels ? s->shrink * s->shrink * s->shrink * sizeof *s->memory.boxes : 0;
+  if (s->labels) s->memory.boxes = hl_allocate(context, count, box_bytes);
+  s->memory.row = hl_allocate(context, count, hl_voxel_type_bytes(s->grid.type));
+  s->memory.packed = hl_allocate(context, OUT_BYTES, 1);
   size_t source_bytes = hl_volume_row_room(s->volume);
-  s->source_row = hl_allocate(context, source_bytes, 1);
-  if (s->sums == NULL || s->counts == NULL || (s->labels && s->boxes == NULL) || s->row == NULL ||
-      s->packed == NULL || s->source_row == NULL)
+  s->memory.source_row = hl_allocate(context, source_bytes, 1);
+  if (s->memory.sums == NULL || s->memory.counts == NULL || (s->labels && s->memory.boxes == NULL) ||
+      s->memory.row == NULL || s->memory.packed == NULL || s->memory.source_row == NULL)
     return hl_fail_memory(error, count * (bytes + box_bytes) + OUT_BYTES + source_bytes, path);
   hl_status status = begin_packing(s, error);
   if (status != HL_OK) return status;
@@ -470,12 +473,12 @@ hl_status hl_volume_save_with(hl_context *context, const hl_volume *volume, cons
   if (status == HL_OK) tell_evaluation(&s, path);
   if (status == HL_OK) status = save(&s, path, error);
   if (status == HL_OK) tell_losses(&s, path);
-  hl_release(context, s.sums);
-  hl_release(context, s.counts);
-  hl_release(context, s.boxes);
-  hl_release(context, s.row);
-  hl_release(context, s.packed);
-  hl_release(context, s.source_row);
+  hl_release(context, s.memory.sums);
+  hl_release(context, s.memory.counts);
+  hl_release(context, s.memory.boxes);
+  hl_release(context, s.memory.row);
+  hl_release(context, s.memory.packed);
+  hl_release(context, s.memory.source_row);
   return status;
 }
 

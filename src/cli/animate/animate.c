@@ -279,17 +279,18 @@ static int finish_series(const animate_job *job, const cli_value *values) {
     else if (!quiet) warn("ffmpeg is not installed: the pictures stay in %s", job->folder);
     return EXIT_CODE_OK;
   }
-  series_job *files = calloc(1, sizeof *files);
-  if (files == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
-  memcpy(files->values, values, sizeof files->values);
-  files->pattern = values[RENDER_OUTPUT].text;
-  int exit_code = series_find_files(files, job->inputs);
+  series_job *series = calloc(1, sizeof *series);
+  if (series == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
+  memcpy(series->values, values, sizeof series->values);
+  series->pattern = values[RENDER_OUTPUT].text;
+  int exit_code = series_find_files(series, job->inputs);
   if (exit_code == EXIT_CODE_OK)
-    exit_code = animate_join_series(job->folder, files->count, job->output, frames_per_second(job), quiet);
+    exit_code = animate_join_series(job->folder, series->files.count, job->output, frames_per_second(job),
+                                    quiet);
   if (exit_code == EXIT_CODE_OK && !job->values[ANIMATE_KEEP_FRAMES].given)
-    animate_remove_series(job->folder, files->count);
-  series_release_files(files);
-  free(files);
+    animate_remove_series(job->folder, series->files.count);
+  series_release_files(series);
+  free(series);
   return exit_code;
 }
 

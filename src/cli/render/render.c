@@ -18,12 +18,14 @@ typedef struct render_job {
   cli_host host;
   cli_value values[RENDER_OPTION_COUNT]; /* --size is set by --width */
   char size_text[RENDER_SIZE_TEXT];      /* text for the option --size */
-  char **inputs;                         /* [input_count], null after the last */
-  int input_count;
-  char *input;          /* the first */
+  struct {
+    char **all; /* [count], null after the last */
+    int count;
+    char *first;
+    bool bare; /* it is a volume file */
+  } input;
   char *output;         /* owned */
   bool to_stdout;       /* OUT is "-" */
-  bool bare;            /* INPUT is a volume file */
   hl_scene *scene;      /* owned */
   hl_image *image;      /* owned */
   render_layers layers; /* owned */
@@ -57,8 +59,8 @@ static bool prints_text(const cli_value *values) {
  * "NAME-again.png". */
 static char *default_output(const render_job *job) {
   const char *extension = wanted_extension(job->values);
-  bool again = has_extension(job->input, ".png") && strcmp(extension, ".png") == 0;
-  return output_default_name(nameable(job->input), again ? "-again.png" : extension);
+  bool again = has_extension(job->input.first, ".png") && strcmp(extension, ".png") == 0;
+  return output_default_name(nameable(job->input.first), again ? "-again.png" : extension);
 }
 
 /* Decides where the picture goes: --output, or a name made from INPUT's. */
@@ -78,7 +80,7 @@ static int choose_output(render_job *job) {
   if (values[RENDER_FORMAT].given && !has_extension(job->output, wanted_extension(values)))
     return fail(EXIT_CODE_USAGE, "--format %s: '%s' does not end in %s: rename OUT, or leave --format out",
                 values[RENDER_FORMAT].text, job->output, wanted_extension(values));
-  return output_check(job->output, figure_extensions, job->inputs, job->input_count);
+  return output_check(job->output, figure_extensions, job->input.all, job->input.count);
 }
 
 static int job_open(render_job *job) {
@@ -89,13 +91,13 @@ static int job_open(render_job *job) {
   if (exit_code != EXIT_CODE_OK) return exit_code;
   cli_host_options options = {.quiet = values[RENDER_QUIET].given,
                               .progress = true,
-                              .subject = base_name(job->input),
+                              .subject = base_name(job->input.first),
                               .memory_limit = values[RENDER_MAX_MEMORY].bytes,
                               .data_folder = values[RENDER_DATA].text,
                               .device = values[RENDER_DEVICE].text,
                               .instruction_set = (hl_instruction_set)values[RENDER_INSTRUCTION_SET].choice,
                               .mpi = launcher_mpi(),
-                              .operands = job->inputs};
+                              .operands = job->input.all};
   exit_code = host_open(&options, &job->host);
   int over_ranks = values[RENDER_VOLUME].given ? RENDER_VOLUME : RENDER_STRIPS;
   if (exit_code == EXIT_CODE_OK && values[over_ranks].given)
@@ -107,18 +109,18 @@ static int job_open(render_job *job) {
 /* Refuses to write over a file that the scene needs. */
 static int protect_what_was_read(const render_job *job) {
   if (job->to_stdout || prints_text(job->values)) return EXIT_CODE_OK;
-  int exit_code = read_files_protect(&job->host.read, job->output, job->input);
+  int exit_code = read_files_protect(&job->host.read, job->output, job->input.first);
   if (exit_code != EXIT_CODE_OK || !job->values[RENDER_LAYERS].given) return exit_code;
   return render_layers_protect(&job->host, job->output, hl_scene_describe(job->scene)->light_count,
-                               job->input);
+                               job->input.first);
 }
 
 static int job_load(render_job *job) {
   render_overlay_set_size(job->values, NULL, job->size_text);
-  int exit_code = render_load_inputs(&job->host, job->values, job->inputs, &job->bare, &job->scene);
+  int exit_code = render_load_inputs(&job->host, job->values, job->input.all, &job->input.bare, &job->scene);
   if (exit_code == EXIT_CODE_OK) render_overlay_set_size(job->values, job->scene, job->size_text);
   if (exit_code == EXIT_CODE_OK)
-    exit_code = render_change_scene(&job->host, job->values, job->bare, &job->scene);
+    exit_code = render_change_scene(&job->host, job->values, job->input.bare, &job->scene);
   if (exit_code == EXIT_CODE_OK) exit_code = protect_what_was_read(job);
   hl_error error = {0};
   hl_status status = exit_code == EXIT_CODE_OK && !prints_text(job->values)
@@ -193,7 +195,7 @@ static int job_render(render_job *job) {
   job->result.ranks = job->ranks;
   job->result.seconds.prepare = job->result.statistics.seconds_prepare;
   job->result.seconds.render = job->result.statistics.seconds_render;
-  render_name_scene(job->input, job->bare, &error);
+  render_name_scene(job->input.first, job->input.bare, &error);
   if (status != HL_OK) return host_fail(&job->host, PHASE_RUN, status, &error);
   hl_ranks_sum(job->ranks, hl_image_pixels(job->image),
                4 * (size_t)description->width * (size_t)description->height);
@@ -268,14 +270,14 @@ static int job_write(render_job *job) {
 static void find_choice(render_job *job) {
   const hl_scene_description *description = job->result.description;
   bool wanted = job->values[RENDER_JSON].given || (!job->host.quiet && isatty(STDERR_FILENO));
-  if (!job->bare || description->volume_count == 0 || job->values[RENDER_TF].given ||
+  if (!job->input.bare || description->volume_count == 0 || job->values[RENDER_TF].given ||
       render_is_label_map(job->values) ||
       (job->values[RENDER_LOOK].given && render_look_name(job->values) == NULL) || !wanted)
     return;
   const hl_volume *volume = description->volumes[0].volume;
-  if (hl_volume_guess(volume, job->input, &job->result.taken_for, NULL) != HL_OK)
+  if (hl_volume_guess(volume, job->input.first, &job->result.taken_for, NULL) != HL_OK)
     job->result.taken_for = NULL;
-  if (hl_volume_next_look(volume, job->input, &job->result.next_look, NULL) != HL_OK ||
+  if (hl_volume_next_look(volume, job->input.first, &job->result.next_look, NULL) != HL_OK ||
       job->values[RENDER_LOOK].given)
     job->result.next_look = NULL;
 }
@@ -311,10 +313,10 @@ static int render_one(const cli_value *values, char **operands) {
                 "--%s makes one picture: of several share the pictures by --frames-over-ranks",
                 render_options[values[RENDER_STRIPS].given ? RENDER_STRIPS : RENDER_VOLUME].name);
   }
-  render_job job = {.inputs = operands, .input = operands[0], .started = clock_seconds()};
+  render_job job = {.input = {.all = operands, .first = operands[0]}, .started = clock_seconds()};
   memcpy(job.values, values, sizeof job.values);
-  while (operands[job.input_count] != NULL) job.input_count++;
-  job.result.input = job.input;
+  while (operands[job.input.count] != NULL) job.input.count++;
+  job.result.input = job.input.first;
   job.result.reference = values[RENDER_REFERENCE].given;
   int exit_code = job_open(&job);
   if (exit_code == EXIT_CODE_OK) exit_code = job_load(&job);

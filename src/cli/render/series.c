@@ -59,11 +59,11 @@ static int make_folder(const series_job *job) {
 /* --range-of-all: sets --range to the range of all files that can be read. */
 static int find_range(series_job *job) {
   cli_value *range = &job->values[RENDER_RANGE];
-  if (!job->values[RENDER_RANGE_OF_ALL].given || range->given || job->of_meshes) return EXIT_CODE_OK;
-  for (int n = 0; n < job->count; n++) {
+  if (!job->values[RENDER_RANGE_OF_ALL].given || range->given || job->files.of_meshes) return EXIT_CODE_OK;
+  for (int n = 0; n < job->files.count; n++) {
     hl_volume *volume = NULL;
     hl_volume_info info = {.struct_size = sizeof info};
-    host_draw_bar(&job->host, (double)n / job->count, "ranges of all files");
+    host_draw_bar(&job->host, (double)n / job->files.count, "ranges of all files");
     int exit_code = series_load_volume(job, n, HL_INDEX_DEFAULT, &volume);
     if (exit_code == EXIT_CODE_INTERRUPTED) return exit_code;
     if (volume != NULL && hl_volume_get_info(volume, &info) == HL_OK && info.range[0] < info.range[1]) {
@@ -80,18 +80,19 @@ static int find_range(series_job *job) {
 static int load_first(series_job *job, bool *bare) {
   int exit_code = EXIT_CODE_INPUT;
   *bare = true;
-  for (int n = 0; n < job->count && job->scene == NULL; n++) {
-    char *operands[] = {job->files[n], NULL};
-    if (job->bad[n]) continue;
-    exit_code = job->of_meshes ? render_add_meshes(&job->host, operands, 0, true, &job->scene)
-                               : render_load_volumes(&job->host, job->values, operands, bare, &job->scene);
+  for (int n = 0; n < job->files.count && job->scene == NULL; n++) {
+    char *operands[] = {job->files.names[n], NULL};
+    if (job->files.bad[n]) continue;
+    exit_code = job->files.of_meshes
+                    ? render_add_meshes(&job->host, operands, 0, true, &job->scene)
+                    : render_load_volumes(&job->host, job->values, operands, bare, &job->scene);
     if (exit_code == EXIT_CODE_OK && !*bare)
       return fail(EXIT_CODE_USAGE, "'%s' is no file of a volume or a mesh, which a series is of",
-                  job->files[n]);
+                  job->files.names[n]);
     if (exit_code != EXIT_CODE_OK && exit_code != EXIT_CODE_INPUT && exit_code != EXIT_CODE_UNSUPPORTED)
       return exit_code;
-    job->bad[n] = exit_code != EXIT_CODE_OK;
-    job->first = n;
+    job->files.bad[n] = exit_code != EXIT_CODE_OK;
+    job->files.first = n;
   }
   return exit_code;
 }
@@ -105,7 +106,7 @@ static hl_status move(const series_job *job, int number, hl_scene **scene, hl_er
   hl_scene *moved = NULL;
   options.context = job->host.context;
   options.scene = *scene;
-  options.frames = job->count;
+  options.frames = job->files.count;
   hl_status status = film_create(&options, &moving, error);
   if (status == HL_OK) status = film_scene(moving, number, &moved, error);
   film_destroy(moving);
@@ -130,7 +131,7 @@ static int make_scene(series_job *job) {
   bool bare;
   render_overlay_set_size(job->values, NULL, job->size_text);
   int exit_code = load_first(job, &bare);
-  size_t first = job->of_meshes ? 1 : 0;
+  size_t first = job->files.of_meshes ? 1 : 0;
   if (exit_code == EXIT_CODE_OK)
     exit_code = render_add_meshes(&job->host, job->meshes, first, bare, &job->scene);
   if (exit_code == EXIT_CODE_OK) exit_code = render_change_scene(&job->host, job->values, bare, &job->scene);
@@ -143,7 +144,7 @@ static int make_scene(series_job *job) {
 static bool is_there(const series_job *job, int number, const hl_scene *scene, const char *path) {
   struct stat picture, file;
   if (overlay_is_any(&job->overlay)) return false; /* the scene that it carries does not tell of it */
-  if (stat(path, &picture) != 0 || stat(job->files[number], &file) != 0 ||
+  if (stat(path, &picture) != 0 || stat(job->files.names[number], &file) != 0 ||
       picture.st_mtim.tv_sec < file.st_mtim.tv_sec)
     return false;
   return frames_have_scene(&job->host, path, scene);
@@ -170,10 +171,10 @@ static int make_picture(series_job *job, hl_renderer *renderer, int number) {
     job->progress.done++;
     return EXIT_CODE_OK;
   }
-  int exit_code = read_files_protect(&job->host.read, path, job->files[number]);
+  int exit_code = read_files_protect(&job->host.read, path, job->files.names[number]);
   if (exit_code == EXIT_CODE_OK) exit_code = series_scene(job, number, &scene);
   if (exit_code != EXIT_CODE_OK) {
-    bool bad = job->bad[number];
+    bool bad = job->files.bad[number];
     job->progress.failed += bad;
     return bad ? EXIT_CODE_OK : exit_code;
   }
@@ -196,10 +197,10 @@ static int make_pictures(series_job *job) {
   bool quiet = job->host.quiet;
   if (hl_renderer_create(job->host.context, &renderer, &error) != HL_OK)
     return host_fail(&job->host, PHASE_SETUP, HL_ERROR_MEMORY, &error);
-  job->progress.wanted = (job->count - job->part + job->parts - 1) / job->parts;
+  job->progress.wanted = (job->files.count - job->part + job->parts - 1) / job->parts;
   job->host.quiet = true; /* warnings were told with the first file */
   int exit_code = EXIT_CODE_OK;
-  for (int n = job->part; n < job->count && exit_code == EXIT_CODE_OK; n += job->parts) {
+  for (int n = job->part; n < job->files.count && exit_code == EXIT_CODE_OK; n += job->parts) {
     frames_draw_bar(&job->host, job->progress.done + job->progress.failed, job->progress.wanted,
                     job->progress.rendered, job->progress.seconds);
     exit_code = host_interrupted() ? EXIT_CODE_INTERRUPTED : make_picture(job, renderer, n);

@@ -18,13 +18,16 @@ typedef struct series_job {
   cli_host host;
   cli_value values[RENDER_OPTION_COUNT]; /* --range is set by --range-of-all */
   const char *pattern;                   /* pattern of OUT, with one %d */
-  char **files;                          /* owned; [count]: volumes, or meshes where there is no volume */
-  bool of_meshes;                        /* the files are meshes */
-  char *meshes[MAXIMUM_OPERANDS + 1];    /* borrowed; meshes that are in every picture; null after the last */
+  struct {
+    char **names; /* owned; [count]: volumes, or meshes where there is no volume */
+    int count;
+    bool of_meshes; /* the files are meshes */
+    bool *bad;      /* owned; [count]: cannot be read, and was told */
+    int first;      /* the number of the file that the scene is of */
+  } files;
+  char *meshes[MAXIMUM_OPERANDS + 1]; /* borrowed; meshes that are in every picture; null after the last */
   int mesh_count;
-  bool *bad; /* owned; [count]: cannot be read, and was told */
-  int count, part, parts;
-  int first; /* the number of the file that the scene is of */
+  int part, parts;
   series_progress progress;
   hl_scene *scene;                  /* owned; of the first file that can be read */
   char size_text[RENDER_SIZE_TEXT]; /* text of --size, where --width sets it */
@@ -46,7 +49,7 @@ void series_release_files(series_job *job);
 int series_load_volume(series_job *job, int number, int channel, hl_volume **volume);
 
 /* The scene of a file: the scene of the first file, with the content of this file. Where the exit code is not
- * 0, job->bad[number] says whether the file is to blame. */
+ * 0, job->files.bad[number] says whether the file is to blame. */
 int series_scene(series_job *job, int number, hl_scene **scene);
 
 /* Makes the scene of a file with the voxels or triangles of the first file. Only its text is used, to find

@@ -55,10 +55,11 @@ static int fail_names(int count) {
 }
 
 static int add_file(series_job *job, const char *path) {
-  char **larger = realloc(job->files, ((size_t)job->count + 1) * sizeof *larger);
-  if (larger != NULL) job->files = larger;
-  if (larger == NULL || (larger[job->count] = strdup(path)) == NULL) return fail_names(job->count);
-  job->count++;
+  char **larger = realloc(job->files.names, ((size_t)job->files.count + 1) * sizeof *larger);
+  if (larger != NULL) job->files.names = larger;
+  if (larger == NULL || (larger[job->files.count] = strdup(path)) == NULL)
+    return fail_names(job->files.count);
+  job->files.count++;
   return EXIT_CODE_OK;
 }
 
@@ -79,9 +80,9 @@ static int add_pattern(series_job *job, const char *pattern) {
  * to which volume. */
 static int part_meshes(series_job *job) {
   int meshes = 0;
-  for (int n = 0; n < job->count; n++) meshes += is_mesh_file(job->host.context, job->files[n]);
-  job->of_meshes = meshes > 0;
-  if (meshes == 0 || meshes == job->count) return EXIT_CODE_OK;
+  for (int n = 0; n < job->files.count; n++) meshes += is_mesh_file(job->host.context, job->files.names[n]);
+  job->files.of_meshes = meshes > 0;
+  if (meshes == 0 || meshes == job->files.count) return EXIT_CODE_OK;
   return fail(EXIT_CODE_USAGE,
               "a pattern that finds meshes beside volumes: name each mesh that shall be in all pictures");
 }
@@ -103,15 +104,15 @@ int series_find_files(series_job *job, char **operands) {
   job->meshes[job->mesh_count] = NULL;
   if (exit_code == EXIT_CODE_OK) exit_code = part_meshes(job);
   if (exit_code != EXIT_CODE_OK) return exit_code;
-  qsort(job->files, (size_t)job->count, sizeof *job->files, compare_by_number);
-  job->bad = calloc((size_t)job->count, sizeof *job->bad);
-  return job->bad != NULL ? EXIT_CODE_OK : fail(EXIT_CODE_FAILURE, "out of memory");
+  qsort(job->files.names, (size_t)job->files.count, sizeof *job->files.names, compare_by_number);
+  job->files.bad = calloc((size_t)job->files.count, sizeof *job->files.bad);
+  return job->files.bad != NULL ? EXIT_CODE_OK : fail(EXIT_CODE_FAILURE, "out of memory");
 }
 
 void series_release_files(series_job *job) {
-  for (int n = 0; n < job->count; n++) free(job->files[n]);
-  free(job->files);
-  free(job->bad);
+  for (int n = 0; n < job->files.count; n++) free(job->files.names[n]);
+  free(job->files.names);
+  free(job->files.bad);
 }
 
 /* ---- what a file holds ---- */
@@ -134,12 +135,12 @@ static int check_space(const series_job *job, int number, const hl_volume *volum
   return fail(EXIT_CODE_INPUT,
               "%s: its axes point elsewhere (RAS or LPS) than those of '%s', the first file: "
               "'halflight convert' both to one format",
-              job->files[number], job->files[job->first]);
+              job->files.names[number], job->files.names[job->files.first]);
 }
 
 /* Marks the file as bad by the exit code of its reading. */
 static int note(series_job *job, int number, int exit_code) {
-  job->bad[number] = exit_code == EXIT_CODE_INPUT || exit_code == EXIT_CODE_UNSUPPORTED;
+  job->files.bad[number] = exit_code == EXIT_CODE_INPUT || exit_code == EXIT_CODE_UNSUPPORTED;
   return exit_code;
 }
 
@@ -147,10 +148,10 @@ int series_load_volume(series_job *job, int number, int channel, hl_volume **vol
   cli_input input = {0};
   hl_volume_load_options options;
   hl_error error = {0};
-  if (job->bad[number]) return EXIT_CODE_INPUT;
+  if (job->files.bad[number]) return EXIT_CODE_INPUT;
   reading_of(job, &options);
   if (channel >= 0) options.channel = channel;
-  int exit_code = input_open(job->files[number], job->values[RENDER_MAX_MEMORY].bytes, &input);
+  int exit_code = input_open(job->files.names[number], job->values[RENDER_MAX_MEMORY].bytes, &input);
   if (exit_code == EXIT_CODE_OK) {
     hl_status status = input_load_volume(job->host.context, &input, &options, volume, &error);
     double smooth = job->scene != NULL ? hl_volume_smoothing(hl_scene_describe(job->scene)->volumes[0].volume)
@@ -208,7 +209,7 @@ static hl_status scene_of_volumes(const series_job *job, int number, hl_volume *
   hl_label *labels[HL_CHANNELS_MOST] = {NULL};
   hl_status status = HL_OK;
   for (size_t n = 0; n < volumes_of_file(job) && status == HL_OK; n++) {
-    volumes[n].file = job->files[number];
+    volumes[n].file = job->files.names[number];
     if (loaded != NULL) volumes[n].volume = loaded[n];
     if (loaded == NULL || volumes[n].label_count == 0) continue;
     status = hl_labels_of_volume(job->host.context, loaded[n], NULL, &labels[n], &volumes[n].label_count,
@@ -257,7 +258,7 @@ static int label_scene(series_job *job, int number, hl_scene **scene) {
   hl_error error = {0};
   hl_volume_load_options options;
   reading_of(job, &options);
-  hl_status status = render_load_label_map(&job->host, job->values, job->files[number], &options, &map,
+  hl_status status = render_load_label_map(&job->host, job->values, job->files.names[number], &options, &map,
                                            &error);
   if (status != HL_OK) return note(job, number, host_fail(&job->host, PHASE_READ, status, &error));
   const hl_scene_description *layers = hl_scene_describe(map);
@@ -280,7 +281,7 @@ static int label_scene(series_job *job, int number, hl_scene **scene) {
 static int mesh_scene(series_job *job, int number, hl_scene **scene) {
   hl_scene_mesh mesh = hl_scene_describe(job->scene)->meshes[0], own;
   hl_error error = {0};
-  hl_status status = load_mesh(job->host.context, job->files[number], 0, &own, &error);
+  hl_status status = load_mesh(job->host.context, job->files.names[number], 0, &own, &error);
   mesh.mesh = own.mesh;
   mesh.file = own.file;
   memcpy(mesh.color, own.color, sizeof mesh.color);
@@ -291,8 +292,8 @@ static int mesh_scene(series_job *job, int number, hl_scene **scene) {
 }
 
 int series_scene(series_job *job, int number, hl_scene **scene) {
-  if (job->bad[number]) return EXIT_CODE_INPUT;
-  if (job->of_meshes) return mesh_scene(job, number, scene);
+  if (job->files.bad[number]) return EXIT_CODE_INPUT;
+  if (job->files.of_meshes) return mesh_scene(job, number, scene);
   return render_is_label_map(job->values) ? label_scene(job, number, scene)
                                           : volume_scene(job, number, scene);
 }
@@ -300,11 +301,11 @@ int series_scene(series_job *job, int number, hl_scene **scene) {
 hl_status series_scene_unread(const series_job *job, int number, hl_scene **scene) {
   hl_scene_mesh mesh;
   hl_error error = {0};
-  if (!job->of_meshes &&
+  if (!job->files.of_meshes &&
       (render_is_label_map(job->values) || hl_scene_describe(job->scene)->volumes[0].label_count > 0))
     return HL_ERROR_UNSUPPORTED;
-  if (!job->of_meshes) return scene_of_volumes(job, number, NULL, scene, &error);
+  if (!job->files.of_meshes) return scene_of_volumes(job, number, NULL, scene, &error);
   mesh = hl_scene_describe(job->scene)->meshes[0];
-  mesh.file = job->files[number];
+  mesh.file = job->files.names[number];
   return make_scene(job, NULL, 0, &mesh, scene, &error);
 }

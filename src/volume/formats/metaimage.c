@@ -17,15 +17,17 @@ enum { MOST_AXES = 10, NAME_BYTES = 1024 };
 typedef struct meta_header {
   const hl_stream *stream;
   int line;
-  int dimension; /* 0 if not yet stated */
-  size_t size[MOST_AXES];
-  double spacing[MOST_AXES], element_size[MOST_AXES], offset[MOST_AXES];
-  double matrix[MOST_AXES * MOST_AXES]; /* row a is the direction of index axis a */
-  bool has_sizes, has_spacing, has_element_size, has_offset, has_matrix;
+  struct {
+    int dimension; /* 0 if not yet stated */
+    size_t size[MOST_AXES];
+    double spacing[MOST_AXES], element_size[MOST_AXES], offset[MOST_AXES];
+    double matrix[MOST_AXES * MOST_AXES]; /* row a is the direction of index axis a */
+    bool has_sizes, has_spacing, has_element_size, has_offset, has_matrix, is_anatomical;
+  } grid;
   hl_voxel_type type; /* 0 if not yet stated */
   size_t channels, header_bytes;
   bool header_is_rest; /* HeaderSize is -1: the voxels are the last bytes of the file */
-  bool big_endian, compressed, text, is_anatomical;
+  bool big_endian, compressed, text;
   double slope, intercept;
   char data_file[NAME_BYTES];
   hl_file_list files; /* owned; the list of several data files */
@@ -73,7 +75,7 @@ static hl_status read_type(meta_header *header, const char *value, hl_error *err
 
 static hl_status read_numbers(meta_header *header, const char *key, const char *value, double *numbers,
                               int count, bool *present, hl_error *error) {
-  if (header->dimension == 0)
+  if (header->grid.dimension == 0)
     return HL_FAIL_LINE(error, HL_ERROR_INPUT, header->stream, header->line, "NDims must come before %s",
                         key);
   if (hl_text_numbers(value, numbers, count) != count) return refuse(header, key, value, error);
@@ -85,7 +87,7 @@ static hl_status read_dimension(meta_header *header, const char *key, const char
   size_t dimension;
   if (hl_text_sizes(value, &dimension, 1) != 1 || dimension < 1 || dimension > MOST_AXES)
     return refuse(header, key, value, error);
-  header->dimension = (int)dimension;
+  header->grid.dimension = (int)dimension;
   return HL_OK;
 }
 
@@ -103,25 +105,26 @@ static hl_status read_data_file(meta_header *header, const char *key, const char
 }
 
 static hl_status read_key(meta_header *header, const char *key, const char *value, hl_error *error) {
-  int n = header->dimension;
+  int n = header->grid.dimension;
   bool sound = true, flag, unused;
   if (hl_text_equal(key, "NDims")) return read_dimension(header, key, value, error);
   if (hl_text_equal(key, "ElementType")) return read_type(header, value, error);
   if (hl_text_equal(key, "ElementDataFile")) return read_data_file(header, key, value, error);
   if (hl_text_equal(key, "ElementSpacing"))
-    return read_numbers(header, key, value, header->spacing, n, &header->has_spacing, error);
+    return read_numbers(header, key, value, header->grid.spacing, n, &header->grid.has_spacing, error);
   if (hl_text_equal(key, "ElementSize"))
-    return read_numbers(header, key, value, header->element_size, n, &header->has_element_size, error);
+    return read_numbers(header, key, value, header->grid.element_size, n, &header->grid.has_element_size,
+                        error);
   if (hl_text_is_one_of(key, "Offset|Position|Origin"))
-    return read_numbers(header, key, value, header->offset, n, &header->has_offset, error);
+    return read_numbers(header, key, value, header->grid.offset, n, &header->grid.has_offset, error);
   if (hl_text_is_one_of(key, "TransformMatrix|Rotation|Orientation"))
-    return read_numbers(header, key, value, header->matrix, n * n, &header->has_matrix, error);
+    return read_numbers(header, key, value, header->grid.matrix, n * n, &header->grid.has_matrix, error);
   if (hl_text_equal(key, "ElementToIntensityFunctionSlope"))
     return read_numbers(header, key, value, &header->slope, 1, &unused, error);
   if (hl_text_equal(key, "ElementToIntensityFunctionOffset"))
     return read_numbers(header, key, value, &header->intercept, 1, &unused, error);
   if (hl_text_equal(key, "DimSize")) {
-    sound = header->has_sizes = n > 0 && hl_text_sizes(value, header->size, MOST_AXES) == n;
+    sound = header->grid.has_sizes = n > 0 && hl_text_sizes(value, header->grid.size, MOST_AXES) == n;
   } else if (hl_text_equal(key, "ElementNumberOfChannels")) {
     sound = hl_text_sizes(value, &header->channels, 1) == 1;
   } else if (hl_text_is_one_of(key, "ElementByteOrderMSB|BinaryDataByteOrderMSB")) {
@@ -135,7 +138,7 @@ static hl_status read_key(meta_header *header, const char *key, const char *valu
     header->header_is_rest = hl_text_equal(value, "-1");
     sound = header->header_is_rest || hl_text_sizes(value, &header->header_bytes, 1) == 1;
   } else if (hl_text_equal(key, "AnatomicalOrientation")) {
-    header->is_anatomical = value[0] != 0 && strchr(value, '?') == NULL;
+    header->grid.is_anatomical = value[0] != 0 && strchr(value, '?') == NULL;
   } else if (hl_text_equal(key, "ObjectType")) {
     sound = hl_text_equal(value, "Image");
   }
@@ -169,28 +172,29 @@ static hl_status read_header(hl_stream *stream, meta_header *header, hl_error *e
     if (status == HL_OK && *name != 0) status = hl_file_list_add(&header->files, name, error);
     if (status != HL_OK) return status;
   }
-  if (header->type != 0 && header->has_sizes) return HL_OK;
+  if (header->type != 0 && header->grid.has_sizes) return HL_OK;
   return hl_fail(error, HL_ERROR_INPUT, "%s: the header has no %s, which MetaImage needs", stream->path,
-                 header->has_sizes ? "ElementType" : "DimSize");
+                 header->grid.has_sizes ? "ElementType" : "DimSize");
 }
 
 static void make_grid(const meta_header *header, hl_volume_description *grid) {
-  const double *spacing = header->has_spacing        ? header->spacing
-                          : header->has_element_size ? header->element_size
-                                                     : NULL;
-  for (int axis = 0; axis < 3 && axis < header->dimension; axis++) {
-    grid->dimensions[axis] = header->size[axis];
-    grid->origin[axis] = header->has_offset ? header->offset[axis] : 0;
+  const double *spacing = header->grid.has_spacing        ? header->grid.spacing
+                          : header->grid.has_element_size ? header->grid.element_size
+                                                          : NULL;
+  for (int axis = 0; axis < 3 && axis < header->grid.dimension; axis++) {
+    grid->dimensions[axis] = header->grid.size[axis];
+    grid->origin[axis] = header->grid.has_offset ? header->grid.offset[axis] : 0;
     for (int row = 0; row < 3; row++) {
       double direction = row == axis;
-      if (header->has_matrix)
-        direction = row < header->dimension ? header->matrix[axis * header->dimension + row] : 0;
+      if (header->grid.has_matrix)
+        direction = row < header->grid.dimension ? header->grid.matrix[axis * header->grid.dimension + row]
+                                                 : 0;
       grid->axis[axis][row] = direction * (spacing != NULL ? spacing[axis] : 1);
     }
   }
   grid->type = header->type;
   /* the world is ITK's, whatever the directions of the axes are */
-  grid->space = header->is_anatomical ? HL_SPACE_LPS : HL_SPACE_UNKNOWN;
+  grid->space = header->grid.is_anatomical ? HL_SPACE_LPS : HL_SPACE_UNKNOWN;
   grid->value_scale = header->slope;
   grid->value_offset = header->intercept;
 }
@@ -200,8 +204,8 @@ static void make_grid(const meta_header *header, hl_volume_description *grid) {
 static hl_status find_components(const meta_header *header, bool *is_series, hl_payload *payload,
                                  hl_error *error) {
   size_t series = 1;
-  for (int axis = 3; axis < header->dimension; axis++)
-    if (!hl_multiply(series, header->size[axis], &series)) series = SIZE_MAX;
+  for (int axis = 3; axis < header->grid.dimension; axis++)
+    if (!hl_multiply(series, header->grid.size[axis], &series)) series = SIZE_MAX;
   *is_series = series != 1;
   if (series == 0 || header->channels == 0)
     return hl_fail(error, HL_ERROR_INPUT, "%s: the header states %s: each must be at least 1",
@@ -245,7 +249,7 @@ static hl_status go_to_voxels(hl_stream **stream, meta_header *header, const hl_
 }
 
 static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
-  meta_header header = {.dimension = 0, .files.context = request->context};
+  meta_header header = {.grid.dimension = 0, .files.context = request->context};
   hl_payload payload;
   hl_payload_defaults(&payload);
   hl_status status = read_header(*stream, &header, error);

@@ -16,7 +16,7 @@
 
 /* Whether the samples along an axis are several values of one voxel. */
 static bool is_component_axis(const nrrd_header *header, const nrrd_axis *axis) {
-  if (header->has_directions) return !axis->has_direction;
+  if (header->space.has_directions) return !axis->has_direction;
   int space = 0;
   for (int n = 0; n < header->dimension; n++)
     space += hl_text_is_one_of(header->axis[n].kind, "domain|space");
@@ -27,7 +27,7 @@ static bool is_component_axis(const nrrd_header *header, const nrrd_axis *axis) 
 /* Whether a first axis of at most four samples holds components: true where the file states no kinds of axes
  * and has four axes or more. */
 static bool is_first_of_components(const nrrd_header *header) {
-  bool unsaid = header->axis[0].size <= 4 && !header->has_directions;
+  bool unsaid = header->axis[0].size <= 4 && !header->space.has_directions;
   int thick = 0;
   for (int n = 0; n < header->dimension; n++) {
     unsaid = unsaid && header->axis[n].kind[0] == 0;
@@ -117,13 +117,13 @@ static void make_grid(const nrrd_header *header, const int chosen[NRRD_MOST_AXES
   for (int n = 0; n < count; n++) {
     const nrrd_axis *axis = &header->axis[chosen[n]];
     grid->dimensions[n] = axis->size;
-    if (header->has_directions) memcpy(grid->axis[n], axis->direction, sizeof grid->axis[n]);
+    if (header->space.has_directions) memcpy(grid->axis[n], axis->direction, sizeof grid->axis[n]);
     else place_axis(axis, &grid->axis[n][n], &grid->origin[n]);
   }
-  if (header->has_directions) complete_axes(grid, count);
-  if (header->has_space_origin) memcpy(grid->origin, header->space_origin, sizeof grid->origin);
+  if (header->space.has_directions) complete_axes(grid, count);
+  if (header->space.has_origin) memcpy(grid->origin, header->space.origin, sizeof grid->origin);
   grid->type = header->type;
-  grid->space = header->space;
+  grid->space = header->space.kind;
 }
 
 /* Fills the payload's grid, components and block. *is_series: whether components are volumes of a series. */
@@ -168,15 +168,16 @@ static hl_status skip_to_voxels(hl_stream **stream, const nrrd_header *header, c
   char line[HL_LINE_BYTES];
   hl_status status = HL_OK;
   bool ended = false;
-  for (size_t n = 0; status == HL_OK && n < header->line_skip && !ended; n++)
+  for (size_t n = 0; status == HL_OK && n < header->data.line_skip && !ended; n++)
     status = hl_stream_line(*stream, line, &ended, error);
   if (status != HL_OK) return status;
   if (header->encoding == NRRD_GZIP) status = hl_stream_push_inflate(stream, error);
   if (header->encoding == NRRD_HEX) status = hl_stream_push_hex(stream, error);
   if (header->encoding == NRRD_BZIP2) status = hl_stream_push_bzip2(stream, error);
-  uint64_t skip = header->byte_skip, most = hl_stream_at_most(*stream), bytes = hl_payload_bytes(payload);
+  uint64_t skip = header->data.byte_skip, most = hl_stream_at_most(*stream),
+           bytes = hl_payload_bytes(payload);
   if (status != HL_OK) return status;
-  if (header->skip_to_last) {
+  if (header->data.skip_to_last) {
     bool packed = header->encoding == NRRD_GZIP || header->encoding == NRRD_BZIP2;
     if (!packed && (header->encoding != NRRD_RAW || most == UINT64_MAX))
       return hl_fail(error, HL_ERROR_INPUT, "%s: byte skip -1 needs binary voxels in an ordinary file",
@@ -190,13 +191,13 @@ static hl_status skip_to_voxels(hl_stream **stream, const nrrd_header *header, c
 /* Opens several data files, which follow each other. */
 static hl_status open_files(hl_stream **stream, nrrd_header *header, const hl_payload *payload,
                             hl_error *error) {
-  hl_file_list *files = &header->files;
+  hl_file_list *files = &header->data.files;
   if (header->encoding == NRRD_TEXT || header->encoding == NRRD_HEX)
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: text in several data files: join them with unu join",
                    (*stream)->path);
-  files->line_skip = header->line_skip;
-  files->byte_skip = header->byte_skip;
-  files->skip_to_last = header->skip_to_last;
+  files->line_skip = header->data.line_skip;
+  files->byte_skip = header->data.byte_skip;
+  files->skip_to_last = header->data.skip_to_last;
   files->packing = header->encoding == NRRD_GZIP    ? HL_FILE_ZLIB
                    : header->encoding == NRRD_BZIP2 ? HL_FILE_BZIP2
                                                     : HL_FILE_RAW;
@@ -223,24 +224,24 @@ static hl_status load_with(nrrd_header *read, hl_stream **stream, hl_load_reques
   }
   if (status == HL_OK) status = hl_component_only(request, (*stream)->path, is_series, &payload, error);
   if (status != HL_OK) return status;
-  request->unit = header.unit;
+  request->unit = header.space.unit;
   payload.big_endian = header.big_endian;
   payload.text = header.encoding == NRRD_TEXT;
   if (!header.has_endian && !payload.text && hl_voxel_type_bytes(header.type) > 1)
     hl_log((*stream)->context, HL_LOG_WARNING, "%s: no field \"endian\": little-endian is assumed",
            (*stream)->path);
-  if (read->files.count > 0) {
+  if (read->data.files.count > 0) {
     status = open_files(stream, read, &payload, error);
     return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
   }
-  if (header.data_file[0] != 0) status = hl_stream_switch(stream, header.data_file, error);
+  if (header.data.file[0] != 0) status = hl_stream_switch(stream, header.data.file, error);
   if (status == HL_OK) status = skip_to_voxels(stream, &header, &payload, error);
   return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
 }
 
 static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   hl_context *context = (*stream)->context;
-  nrrd_header header = {.dimension = 0, .files.context = context};
+  nrrd_header header = {.dimension = 0, .data.files.context = context};
   hl_status status = load_with(&header, stream, request, volume, error);
   if (status == HL_OK) {
     (*volume)->segments = header.segments;
@@ -248,7 +249,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   } else {
     hl_release(context, header.segments);
   }
-  hl_file_list_release(&header.files);
+  hl_file_list_release(&header.data.files);
   return status;
 }
 

@@ -185,7 +185,7 @@ static hl_status read_directions(nrrd_header *header, const char *value, hl_erro
         return refuse(header, "space directions", value, error);
       if (is_no_direction(place->direction, beyond)) place->has_direction = false;
     }
-    header->has_directions = header->has_directions || place->has_direction;
+    header->space.has_directions = header->space.has_directions || place->has_direction;
   }
   return HL_OK;
 }
@@ -193,9 +193,9 @@ static hl_status read_directions(nrrd_header *header, const char *value, hl_erro
 static hl_status read_origin(nrrd_header *header, const char *value, hl_error *error) {
   const char *cursor = value;
   bool beyond;
-  if (!scan_vector(&cursor, header->space_origin, &beyond))
+  if (!scan_vector(&cursor, header->space.origin, &beyond))
     return refuse(header, "space origin", value, error);
-  header->has_space_origin = true;
+  header->space.has_origin = true;
   return HL_OK;
 }
 
@@ -209,7 +209,7 @@ static hl_status read_space(nrrd_header *header, const char *value, hl_error *er
                 {"left-posterior-superior|LPS|left-posterior-superior-time|LPST", HL_SPACE_LPS},
                 {"left-anterior-superior|LAS|left-anterior-superior-time|LAST", HL_SPACE_LAS}};
   for (size_t n = 0; n < sizeof spaces / sizeof *spaces; n++)
-    if (hl_text_is_one_of(value, spaces[n].names)) header->space = spaces[n].space;
+    if (hl_text_is_one_of(value, spaces[n].names)) header->space.kind = spaces[n].space;
   return HL_OK;
 }
 
@@ -232,31 +232,32 @@ static hl_status read_space_units(nrrd_header *header, const char *value, hl_err
     if (unit == NULL || (told != NULL && unit != told)) return HL_OK;
     told = unit;
   }
-  header->unit = told;
+  header->space.unit = told;
   return HL_OK;
 }
 
 static hl_status read_data_file(nrrd_header *header, const char *value, hl_error *error) {
-  header->is_list = strncmp(value, "LIST", 4) == 0 && (value[4] == 0 || hl_is_space(value[4]));
-  if (header->is_list) return HL_OK;
+  header->data.is_list = strncmp(value, "LIST", 4) == 0 && (value[4] == 0 || hl_is_space(value[4]));
+  if (header->data.is_list) return HL_OK;
   if (strchr(value, '%') != NULL) {
     bool sound;
-    hl_status status = hl_file_list_pattern(&header->files, value, &sound, error);
+    hl_status status = hl_file_list_pattern(&header->data.files, value, &sound, error);
     if (status != HL_OK || sound) return status;
   }
-  if (*value == 0 || strlen(value) >= sizeof header->data_file)
+  if (*value == 0 || strlen(value) >= sizeof header->data.file)
     return refuse(header, "data file", value, error);
-  strcpy(header->data_file, value);
+  strcpy(header->data.file, value);
   return HL_OK;
 }
 
 static hl_status read_line_skip(nrrd_header *header, const char *value, hl_error *error) {
-  return hl_text_sizes(value, &header->line_skip, 1) == 1 ? HL_OK : refuse(header, "line skip", value, error);
+  return hl_text_sizes(value, &header->data.line_skip, 1) == 1 ? HL_OK
+                                                               : refuse(header, "line skip", value, error);
 }
 
 static hl_status read_byte_skip(nrrd_header *header, const char *value, hl_error *error) {
-  header->skip_to_last = hl_text_equal(value, "-1");
-  if (header->skip_to_last || hl_text_sizes(value, &header->byte_skip, 1) == 1) return HL_OK;
+  header->data.skip_to_last = hl_text_equal(value, "-1");
+  if (header->data.skip_to_last || hl_text_sizes(value, &header->data.byte_skip, 1) == 1) return HL_OK;
   return refuse(header, "byte skip", value, error);
 }
 
@@ -371,8 +372,8 @@ hl_status hl_nrrd_read_header(hl_stream *stream, nrrd_header *header, hl_error *
     hl_status status = hl_stream_line(stream, line, &ended, error);
     if (status != HL_OK) return status;
     if (ended || (line[0] == 0 && header->line > 1)) break;
-    if (header->is_list) { /* the rest of the header is the names of files */
-      status = hl_file_list_add(&header->files, hl_text_trim(line), error);
+    if (header->data.is_list) { /* the rest of the header is the names of files */
+      status = hl_file_list_add(&header->data.files, hl_text_trim(line), error);
       if (status != HL_OK) return status;
       continue;
     }
@@ -392,7 +393,7 @@ hl_status hl_nrrd_read_header(hl_stream *stream, nrrd_header *header, hl_error *
                         header->type == 0    ? "type"
                         : !header->has_sizes ? "sizes"
                                              : "encoding");
-  if (ended && header->data_file[0] == 0 && header->files.count == 0)
+  if (ended && header->data.file[0] == 0 && header->data.files.count == 0)
     return HL_FAIL_LINE(
         error, HL_ERROR_INPUT, stream, header->line, "%s",
         "the file ends with its header: neither an empty line and voxels, nor a \"data file\"");

@@ -27,15 +27,21 @@ typedef struct nrrd_header {
   nrrd_axis axis[NRRD_MOST_AXES];
   hl_voxel_type type; /* 0 if not yet stated */
   nrrd_encoding encoding;
-  bool has_encoding, has_endian, big_endian, has_sizes, has_directions, has_space_origin;
-  double space_origin[3];
-  const char *unit; /* unit of the space's axes, static; null if there is none, an unknown one, or several */
-  hl_space space;
-  char data_file[NRRD_NAME_BYTES]; /* "" if the voxels are attached, or in several files */
-  hl_file_list files;              /* owned; the list of several data files */
-  bool is_list;                    /* whether the rest of the header is the names of files */
-  size_t line_skip, byte_skip;
-  bool skip_to_last;    /* byte skip is -1: the voxels are the last bytes of the file */
+  bool has_encoding, has_endian, big_endian, has_sizes;
+  struct {
+    hl_space kind;
+    double origin[3];
+    bool has_origin, has_directions;
+    const char *unit; /* unit of the axes, static; null if there is none, an unknown one, or several */
+  } space;
+  /* Where the voxels are. */
+  struct {
+    char file[NRRD_NAME_BYTES]; /* "" if the voxels are attached, or in several files */
+    hl_file_list files;         /* owned; the list of several data files */
+    bool is_list;               /* whether the rest of the header is the names of files */
+    size_t line_skip, byte_skip;
+    bool skip_to_last; /* byte skip is -1: the voxels are the last bytes of the file */
+  } data;
   hl_segment *segments; /* owned; [segment_count]; segments of a segmentation by Slicer */
   size_t segment_count;
 } nrrd_header;

@@ -24,13 +24,15 @@ struct hl_source {
   unsigned char *window; /* owned; for files: the bytes [window_begin, + window_length) */
   uint64_t window_begin;
   size_t window_length, window_most; /* window_most: number of bytes of the last look */
-  /* Deflated data. */
-  hl_source *below;        /* owned; may be null */
-  uint64_t below_at;       /* the next byte that is taken from `below` */
-  unsigned char *inflated; /* owned; [capacity]; the first `length` bytes are known */
-  size_t length, capacity;
-  bool ended;
-  z_stream zlib;
+  /* Data that lie in another source, perhaps deflated. */
+  hl_source *below;  /* owned; may be null */
+  uint64_t below_at; /* the next byte that is taken from `below` */
+  struct {
+    unsigned char *bytes; /* owned; [capacity]; the first `length` bytes are known */
+    size_t length, capacity;
+    bool ended;
+    z_stream zlib;
+  } inflated; /* what deflated data gave so far */
 };
 
 static voidpf zlib_allocate(voidpf context, uInt count, uInt size) {
@@ -53,9 +55,9 @@ static hl_status make(hl_context *context, const char *path, hl_source **source,
 void hl_source_close(hl_source *source) {
   if (source == NULL) return;
   hl_source_close(source->below);
-  if (source->zlib.state != NULL) inflateEnd(&source->zlib);
+  if (source->inflated.zlib.state != NULL) inflateEnd(&source->inflated.zlib);
   if (source->descriptor >= 0 && !source->is_borrowed) close(source->descriptor);
-  hl_release(source->context, source->inflated);
+  hl_release(source->context, source->inflated.bytes);
   hl_release(source->context, source->window);
   hl_release(source->context, source->path);
   hl_release(source->context, source);
@@ -128,11 +130,11 @@ hl_status hl_source_inflate(hl_source **source, uint64_t begin, uint64_t limit, 
   hl_source *below = *source, *made;
   hl_status status = make(below->context, below->path, &made, error);
   if (status != HL_OK) return status;
-  made->zlib.zalloc = zlib_allocate;
-  made->zlib.zfree = zlib_release;
-  made->zlib.opaque = below->context;
+  made->inflated.zlib.zalloc = zlib_allocate;
+  made->inflated.zlib.zfree = zlib_release;
+  made->inflated.zlib.opaque = below->context;
   /* zlib.h: a negative number means raw deflate; 15 is the largest window. */
-  if (inflateInit2(&made->zlib, -15) != Z_OK) {
+  if (inflateInit2(&made->inflated.zlib, -15) != Z_OK) {
     hl_source_close(made);
     return hl_fail_memory(error, 50000, "decompression");
   }
@@ -165,15 +167,15 @@ static hl_status read_file(hl_source *source, uint64_t offset, void *bytes, size
 
 static hl_status grow(hl_source *source, uint64_t needed, hl_error *error) {
   enum { LEAST = 1 << 17 };
-  if (needed <= source->capacity) return HL_OK;
-  uint64_t capacity = source->capacity > 0 ? source->capacity : LEAST;
+  if (needed <= source->inflated.capacity) return HL_OK;
+  uint64_t capacity = source->inflated.capacity > 0 ? source->inflated.capacity : LEAST;
   while (capacity < needed) capacity *= 2;
   if (capacity > source->size) capacity = source->size;
   if (capacity > SIZE_MAX) return hl_fail_memory(error, SIZE_MAX, source->path);
-  unsigned char *larger = hl_reallocate(source->context, source->inflated, (size_t)capacity, 1);
+  unsigned char *larger = hl_reallocate(source->context, source->inflated.bytes, (size_t)capacity, 1);
   if (larger == NULL) return hl_fail_memory(error, (size_t)capacity, source->path);
-  source->inflated = larger;
-  source->capacity = (size_t)capacity;
+  source->inflated.bytes = larger;
+  source->inflated.capacity = (size_t)capacity;
   return HL_OK;
 }
 
@@ -184,16 +186,17 @@ static hl_status inflate_more(hl_source *source, hl_error *error) {
   hl_status status = hl_source_peek(source->below, source->below_at, HL_SOURCE_WINDOW_BYTES, &bytes,
                                     &available, error);
   if (status != HL_OK) return status;
-  size_t room = source->capacity - source->length;
-  source->zlib.next_in = (Bytef *)bytes;
-  source->zlib.avail_in = (uInt)available;
-  source->zlib.next_out = source->inflated + source->length;
-  source->zlib.avail_out = room > (1u << 30) ? 1u << 30 : (uInt)room;
-  uInt offered = source->zlib.avail_out;
-  int answer = inflate(&source->zlib, Z_NO_FLUSH);
-  source->below_at += available - source->zlib.avail_in;
-  source->length += offered - source->zlib.avail_out;
-  if (answer == Z_STREAM_END || (available == 0 && offered == source->zlib.avail_out)) source->ended = true;
+  size_t room = source->inflated.capacity - source->inflated.length;
+  source->inflated.zlib.next_in = (Bytef *)bytes;
+  source->inflated.zlib.avail_in = (uInt)available;
+  source->inflated.zlib.next_out = source->inflated.bytes + source->inflated.length;
+  source->inflated.zlib.avail_out = room > (1u << 30) ? 1u << 30 : (uInt)room;
+  uInt offered = source->inflated.zlib.avail_out;
+  int answer = inflate(&source->inflated.zlib, Z_NO_FLUSH);
+  source->below_at += available - source->inflated.zlib.avail_in;
+  source->inflated.length += offered - source->inflated.zlib.avail_out;
+  if (answer == Z_STREAM_END || (available == 0 && offered == source->inflated.zlib.avail_out))
+    source->inflated.ended = true;
   else if (answer == Z_MEM_ERROR) return hl_fail_memory(error, 50000, "decompression");
   else if (answer != Z_OK && answer != Z_BUF_ERROR)
     return hl_fail(error, HL_ERROR_INPUT, "%s: the compressed data are damaged", source->path);
@@ -204,12 +207,12 @@ static hl_status inflate_more(hl_source *source, hl_error *error) {
 static hl_status inflate_up_to(hl_source *source, uint64_t needed, hl_error *error) {
   if (needed > source->size) needed = source->size;
   hl_status status = HL_OK;
-  while (status == HL_OK && source->length < needed && !source->ended) {
-    uint64_t next = source->length + (uint64_t)HL_SOURCE_WINDOW_BYTES;
+  while (status == HL_OK && source->inflated.length < needed && !source->inflated.ended) {
+    uint64_t next = source->inflated.length + (uint64_t)HL_SOURCE_WINDOW_BYTES;
     status = grow(source, next < source->size ? next : source->size, error);
     if (status == HL_OK) status = inflate_more(source, error);
   }
-  if (status == HL_OK && source->ended) source->size = source->length;
+  if (status == HL_OK && source->inflated.ended) source->size = source->inflated.length;
   return status;
 }
 
@@ -223,11 +226,12 @@ static hl_status peek_inflated(hl_source *source, uint64_t offset, size_t wanted
   hl_status status = inflate_up_to(source, offset > UINT64_MAX - wanted ? UINT64_MAX : offset + wanted,
                                    error);
   *available = clip(source, offset, wanted);
-  if (offset >= source->length) *available = 0;
-  else if (source->length - offset < *available) *available = (size_t)(source->length - offset);
+  if (offset >= source->inflated.length) *available = 0;
+  else if (source->inflated.length - offset < *available)
+    *available = (size_t)(source->inflated.length - offset);
   if (*available > 0)
-    *bytes = source->inflated + offset; /* otherwise *bytes stays at the caller's empty
-                                         * block */
+    *bytes = source->inflated.bytes + offset; /* otherwise *bytes stays at the caller's empty
+                                               * block */
   return status;
 }
 
@@ -236,12 +240,13 @@ hl_status hl_source_peek(hl_source *source, uint64_t offset, size_t wanted, cons
   static const unsigned char none[1];
   *bytes = none;
   *available = clip(source, offset, wanted);
-  if (*available == 0 && source->zlib.state == NULL) return HL_OK;
+  if (*available == 0 && source->inflated.zlib.state == NULL) return HL_OK;
   if (source->memory != NULL) {
     *bytes = source->memory + offset;
     return HL_OK;
   }
-  if (source->zlib.state != NULL) return peek_inflated(source, offset, wanted, bytes, available, error);
+  if (source->inflated.zlib.state != NULL)
+    return peek_inflated(source, offset, wanted, bytes, available, error);
   if (source->below != NULL)
     return hl_source_peek(source->below, source->below_at + offset, *available, bytes, available, error);
   if (offset < source->window_begin || offset + *available > source->window_begin + source->window_length) {
@@ -268,7 +273,7 @@ hl_status hl_source_read(hl_source *source, uint64_t offset, void *bytes, size_t
   *count = 0;
   if (source->descriptor >= 0)
     return read_file(source, offset, bytes, clip(source, offset, wanted), count, error);
-  if (source->below != NULL && source->zlib.state == NULL)
+  if (source->below != NULL && source->inflated.zlib.state == NULL)
     return hl_source_read(source->below, source->below_at + offset, bytes, clip(source, offset, wanted),
                           count, error);
   const unsigned char *known;

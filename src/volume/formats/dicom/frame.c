@@ -99,22 +99,22 @@ static hl_status place_frames(hl_source *source, hl_dicom_file *file, uint64_t b
   size_t found = 0;
   uint64_t at = begin, length = 0;
   for (size_t n = 0; n < fragments; n++, at += FRAGMENT_HEADER + length) {
-    bool begins = fragments == file->frame_count;
+    bool begins = fragments == file->frames.count;
     hl_status status = peek_fragment(source, &file->pixels, at, &length, error);
     if (status == HL_OK && !begins) status = begins_picture(source, &file->pixels, at, &begins, error);
     if (status != HL_OK) return status;
-    if (begins && found < file->frame_count) file->frame_begins[found++] = at;
+    if (begins && found < file->frames.count) file->frames.begins[found++] = at;
   }
-  if (found < file->frame_count)
+  if (found < file->frames.count)
     return hl_fail(error, HL_ERROR_INPUT,
                    "%s: %zu frames are promised, but only %zu begin in its %zu fragments",
-                   hl_source_path(source), file->frame_count, found, fragments);
-  file->frame_begins[found] = end;
+                   hl_source_path(source), file->frames.count, found, fragments);
+  file->frames.begins[found] = end;
   return HL_OK;
 }
 
 hl_status hl_dicom_find_frames(const hl_dicom_set *set, hl_dicom_file *file, hl_error *error) {
-  if (!file->pixels.encapsulated || file->frame_count == 1 || file->frame_begins != NULL) return HL_OK;
+  if (!file->pixels.encapsulated || file->frames.count == 1 || file->frames.begins != NULL) return HL_OK;
   hl_source *source;
   hl_status status = hl_dicom_file_open(set, file, &source, error);
   if (status != HL_OK) return status;
@@ -123,9 +123,9 @@ hl_status hl_dicom_find_frames(const hl_dicom_set *set, hl_dicom_file *file, hl_
   status = first_fragment(source, &file->pixels, &begin, error);
   if (status == HL_OK) status = count_fragments(source, &file->pixels, begin, &fragments, &end, error);
   if (status == HL_OK) {
-    file->frame_begins = hl_allocate(set->context, file->frame_count + 1, sizeof *file->frame_begins);
-    status = file->frame_begins == NULL
-                 ? hl_fail_memory(error, file->frame_count * sizeof *file->frame_begins, "a list of frames")
+    file->frames.begins = hl_allocate(set->context, file->frames.count + 1, sizeof *file->frames.begins);
+    status = file->frames.begins == NULL
+                 ? hl_fail_memory(error, file->frames.count * sizeof *file->frames.begins, "a list of frames")
                  : place_frames(source, file, begin, fragments, end, error);
   }
   hl_source_close(source);
@@ -138,8 +138,8 @@ static hl_status read_fragments(hl_source *source, const hl_dicom_file *file, ui
   const hl_dicom_pixels *p = &file->pixels;
   uint64_t begin = 0, end = UINT64_MAX, length = 0, bytes = 0;
   hl_status status = HL_OK;
-  if (file->frame_begins == NULL) status = first_fragment(source, p, &begin, error);
-  else begin = file->frame_begins[index], end = file->frame_begins[index + 1];
+  if (file->frames.begins == NULL) status = first_fragment(source, p, &begin, error);
+  else begin = file->frames.begins[index], end = file->frames.begins[index + 1];
   for (uint64_t at = begin; status == HL_OK && at < end; at += FRAGMENT_HEADER + length) {
     status = peek_fragment(source, p, at, &length, error);
     if (status != HL_OK || length == UINT64_MAX) break;

@@ -244,18 +244,18 @@ static hl_status add_file(hl_dicom_set *set, hl_dicom_header *header, size_t ent
                           .window = {header->window[0], header->window[1]},
                           .is_localizer = strstr(header->image_type, "LOCALIZER") != NULL,
                           .is_deflated = header->deflated,
-                          .is_backwards = header->frames_told == 0 && header->frame_count > 1 &&
-                                          header->slice_spacing < 0 && header->offset_count == 0,
+                          .frames.is_backwards = header->frames_told == 0 && header->frame_count > 1 &&
+                                                 header->slice_spacing < 0 && header->offset_count == 0,
                           .is_volume_space = header->is_volume_space,
-                          .are_times = header->vectors.are_times,
-                          .frame_count = (size_t)header->frame_count};
+                          .frames.are_times = header->vectors.are_times,
+                          .frames.count = (size_t)header->frame_count};
   /* Padding tells where a picture shows nothing. In segmentations, 0 does. */
   if (header->segments.kind == HL_DICOM_NO_SEGMENTS) take_padding(header, file->padding);
   else file->padding[0] = file->padding[1] = NAN;
   status = find_series(set, header, &file->series, error);
   if (status == HL_OK) status = add_frames(set, header, set->file_count, error);
   if (status != HL_OK) return status;
-  set->series[file->series].frames += file->frame_count * slices_of_frame(header);
+  set->series[file->series].frames += file->frames.count * slices_of_frame(header);
   file->segments = header->segments;
   file->palette = header->palette;
   header->segments = (hl_dicom_segments){HL_DICOM_NO_SEGMENTS, NAN, NULL, 0, 0};
@@ -300,7 +300,7 @@ hl_status hl_dicom_set_read(hl_context *context, const hl_bundle *bundle, bool s
 
 void hl_dicom_set_release(hl_dicom_set *set) {
   for (size_t n = 0; n < set->file_count; n++) {
-    hl_release(set->context, set->files[n].frame_begins);
+    hl_release(set->context, set->files[n].frames.begins);
     hl_dicom_segments_release(set->context, &set->files[n].segments);
     hl_dicom_palette_release(set->context, &set->files[n].palette);
   }

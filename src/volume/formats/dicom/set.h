@@ -11,16 +11,18 @@ typedef struct hl_dicom_file {
   hl_dicom_pixels pixels;
   double padding[2]; /* the range of values that stand for nothing; NAN if there is none */
   double slice_spacing, thickness, window[2];
-  bool is_backwards;    /* whether its frames, which have no places of their own, follow each other against
-                         * the normal */
   bool is_volume_space; /* whether positions are in the space of an ultrasound volume, not of the patient */
-  bool are_times;       /* whether its frames follow each other in time */
   hl_dicom_segments segments; /* owned */
   hl_dicom_palette palette;   /* owned */
   bool is_localizer, is_deflated;
-  size_t frame_count;
-  uint64_t *frame_begins; /* owned; [frame_count + 1]; positions of the frames' first fragments; null until
-                           * they are found, and in files of one frame or without fragments */
+  struct {
+    size_t count;
+    bool is_backwards; /* whether frames that have no places of their own follow each other against the
+                        * normal */
+    bool are_times;    /* whether they follow each other in time */
+    uint64_t *begins;  /* owned; [count + 1]; positions of the frames' first fragments; null until they are
+                        * found, and in files of one frame or without fragments */
+  } frames;
 } hl_dicom_file;
 
 typedef struct hl_dicom_series {

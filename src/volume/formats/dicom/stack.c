@@ -201,7 +201,7 @@ static void find_axes(sorting *s) {
     assume_axes(s);
   }
   s->normal = vec3_normalise(vec3_cross(s->row, s->column));
-  if (file_of(s, frame)->is_backwards) s->normal = vec3_scale(s->normal, -1);
+  if (file_of(s, frame)->frames.is_backwards) s->normal = vec3_scale(s->normal, -1);
 }
 
 /* Whether the frames tell their places along the normal, and these places differ. */
@@ -248,7 +248,7 @@ static void sort(sorting *s) {
   size_t place = 0;
   for (size_t n = 0; n < s->count; n++) {
     const hl_dicom_frame *frame = s->frames[n].frame;
-    bool same = n > 0 && file_of(s, frame)->are_times && frame->file == s->frames[n - 1].frame->file;
+    bool same = n > 0 && file_of(s, frame)->frames.are_times && frame->file == s->frames[n - 1].frame->file;
     if (n > 0 && !same) place++;
     s->frames[n].distance = (double)place * step;
   }

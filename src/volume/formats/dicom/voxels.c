@@ -28,14 +28,18 @@ typedef struct reading {
   bool as_floats; /* whether values are computed as floats; otherwise stored values are kept */
   bool as_colors; /* whether values are colours (colors.h) */
   bool is_plain;  /* whether the values of all slices are the files' numbers, of `type` */
-  double slope, intercept, padding[2]; /* padding values are the same for all slices; slope and intercept are
-                                        * set only where as_floats is false */
+  /* Padding values are the same for all slices. Slope and intercept are set only where as_floats is false. */
+  struct {
+    double slope, intercept, padding[2];
+  } scale;
   size_t slice_voxels, voxel_bytes;
   hl_destination to; /* [slices][slice_voxels], each of voxel_bytes */
-  hl_pool *pool;
-  hl_dicom_workspace *spaces; /* owned; one workspace for each worker */
-  unsigned char **others;     /* owned; one slice for each worker, for filling gaps; made when needed */
-  atomic_bool padded;         /* whether a slice has voxels of the padding value */
+  struct {
+    hl_pool *pool;
+    hl_dicom_workspace *spaces; /* owned; one workspace for each worker */
+    unsigned char **others;     /* owned; one slice for each worker, for filling gaps; made when needed */
+  } workers;
+  atomic_bool padded; /* whether a slice has voxels of the padding value */
 } reading;
 
 /* ---- which type ---- */
@@ -58,16 +62,17 @@ static void choose_type(reading *r) {
   const hl_dicom_frame *first = frame_at(r, 0);
   const hl_dicom_file *file = &r->set->files[first->file];
   r->type = type_of(&file->pixels);
-  r->slope = first->slope;
-  r->intercept = first->intercept;
-  memcpy(r->padding, file->padding, sizeof r->padding);
+  r->scale.slope = first->slope;
+  r->scale.intercept = first->intercept;
+  memcpy(r->scale.padding, file->padding, sizeof r->scale.padding);
   r->as_floats = hl_voxel_type_storage(r->type) == HL_STORAGE_F32;
   for (size_t n = 1; n < r->stack->place_count && !r->as_floats; n++) {
     const hl_dicom_frame *frame = frame_at(r, n);
     const hl_dicom_file *other = &r->set->files[frame->file];
-    r->as_floats = frame->slope != r->slope || frame->intercept != r->intercept ||
-                   type_of(&other->pixels) != r->type || !same_number(other->padding[0], r->padding[0]) ||
-                   !same_number(other->padding[1], r->padding[1]);
+    r->as_floats = frame->slope != r->scale.slope || frame->intercept != r->scale.intercept ||
+                   type_of(&other->pixels) != r->type ||
+                   !same_number(other->padding[0], r->scale.padding[0]) ||
+                   !same_number(other->padding[1], r->scale.padding[1]);
   }
   r->is_plain = r->component != HL_COMPONENT_MAGNITUDE;
   for (size_t n = 0; n < r->stack->place_count; n++) {
@@ -131,10 +136,10 @@ static void store_integers(reading *r, hl_dicom_workspace *space, size_t samples
   if (samples > 1)
     for (size_t n = 0; n < r->slice_voxels; n++)
       memmove(space->values + n * bytes, space->values + (n * samples + (size_t)r->component) * bytes, bytes);
-  if (!isnan(r->padding[0]) && !r->padded)
+  if (!isnan(r->scale.padding[0]) && !r->padded)
     for (size_t n = 0; n < r->slice_voxels; n++) {
       double value = value_at(space, r->type, n);
-      if (value < r->padding[0] || value > r->padding[1]) continue;
+      if (value < r->scale.padding[0] || value > r->scale.padding[1]) continue;
       r->padded = true;
       break;
     }
@@ -144,7 +149,7 @@ static void store_integers(reading *r, hl_dicom_workspace *space, size_t samples
 /* Reads a slice. first: the number of the slice's first voxel in the volume. */
 static hl_status read_slice(reading *r, size_t place, int worker, size_t first, unsigned char *slice,
                             hl_error *error) {
-  hl_dicom_workspace *space = &r->spaces[worker];
+  hl_dicom_workspace *space = &r->workers.spaces[worker];
   const hl_dicom_frame *frame = frame_at(r, place);
   space->context = r->set->context;
   hl_status status = hl_dicom_read_frame(r->set, frame, space, error);
@@ -178,10 +183,10 @@ static void blend(const reading *r, double weight, unsigned char *slice, const u
 static hl_status fill_gap(reading *r, const hl_dicom_slice *slice, int worker, size_t first,
                           unsigned char *voxels, hl_error *error) {
   size_t bytes = r->slice_voxels * r->voxel_bytes;
-  if (r->others[worker] == NULL) r->others[worker] = hl_allocate(r->set->context, bytes, 1);
-  if (r->others[worker] == NULL) return hl_fail_memory(error, bytes, "a slice");
-  hl_status status = read_slice(r, slice->place + 1, worker, first, r->others[worker], error);
-  if (status == HL_OK) blend(r, slice->weight, voxels, r->others[worker]);
+  if (r->workers.others[worker] == NULL) r->workers.others[worker] = hl_allocate(r->set->context, bytes, 1);
+  if (r->workers.others[worker] == NULL) return hl_fail_memory(error, bytes, "a slice");
+  hl_status status = read_slice(r, slice->place + 1, worker, first, r->workers.others[worker], error);
+  if (status == HL_OK) blend(r, slice->weight, voxels, r->workers.others[worker]);
   return status;
 }
 
@@ -216,8 +221,8 @@ static void widen(const reading *r, size_t count, void *voxels) {
     double stored = r->voxel_bytes == 1 ? ((const uint8_t *)voxels)[n - 1]
                                         : ((const uint16_t *)voxels)[n - 1];
     double value = stored - bias;
-    bool padded = value >= r->padding[0] && value <= r->padding[1];
-    float wide = padded ? NAN : (float)(r->slope * value + r->intercept);
+    bool padded = value >= r->scale.padding[0] && value <= r->scale.padding[1];
+    float wide = padded ? NAN : (float)(r->scale.slope * value + r->scale.intercept);
     memcpy(floats + n - 1, &wide, sizeof wide);
   }
 }
@@ -234,18 +239,19 @@ static hl_status widen_padded(reading *r, size_t count, hl_error *error) {
 
 static hl_status make_threads(reading *r, size_t voxels, hl_error *error) {
   enum { WORTH_THREADS = 1 << 20 }; /* voxels */
-  hl_status status = hl_pool_create(r->set->context, voxels < WORTH_THREADS ? 1 : 0, &r->pool, error);
+  hl_status status = hl_pool_create(r->set->context, voxels < WORTH_THREADS ? 1 : 0, &r->workers.pool, error);
   if (status != HL_OK) return status;
-  size_t threads = (size_t)hl_pool_threads(r->pool);
-  r->spaces = hl_allocate_zeroed(r->set->context, threads, sizeof *r->spaces);
-  r->others = hl_allocate_zeroed(r->set->context, threads, sizeof *r->others);
-  return r->spaces != NULL && r->others != NULL ? HL_OK : hl_fail_memory(error, 1000, "threads");
+  size_t threads = (size_t)hl_pool_threads(r->workers.pool);
+  r->workers.spaces = hl_allocate_zeroed(r->set->context, threads, sizeof *r->workers.spaces);
+  r->workers.others = hl_allocate_zeroed(r->set->context, threads, sizeof *r->workers.others);
+  return r->workers.spaces != NULL && r->workers.others != NULL ? HL_OK
+                                                                : hl_fail_memory(error, 1000, "threads");
 }
 
 /* Looks for padding in the middle slice. A volume with padding is read as floats from the start: turning all
  * its integers into floats afterwards would need memory for both at once. */
 static hl_status find_padding(reading *r, hl_error *error) {
-  if (r->as_floats || r->as_colors || isnan(r->padding[0])) return HL_OK;
+  if (r->as_floats || r->as_colors || isnan(r->scale.padding[0])) return HL_OK;
   size_t middle = r->stack->place_count / 2, bytes = r->slice_voxels * r->voxel_bytes;
   unsigned char *slice = hl_allocate(r->set->context, bytes, 1);
   hl_status status = slice == NULL ? hl_fail_memory(error, bytes, "a slice")
@@ -270,8 +276,8 @@ static hl_status read_slices(reading *r, hl_error *error) {
                                          r->as_colors ? HL_DESTINATION_COLORS : HL_DESTINATION_PIECES,
                                          r->set->bundle->path, &r->to, error);
   if (status != HL_OK) return status;
-  return hl_parallel_read(r->set->context, r->pool, r->set->bundle->path, r->stack->grid.dimensions[2],
-                          read_one, r, error);
+  return hl_parallel_read(r->set->context, r->workers.pool, r->set->bundle->path,
+                          r->stack->grid.dimensions[2], read_one, r, error);
 }
 
 /* Whether any slice has padding. Over ranks: whether any rank has such a slice. */
@@ -288,9 +294,9 @@ static hl_status read_all(reading *r, hl_error *error) {
   if (status == HL_OK) status = read_slices(r, error);
   if (status != HL_OK || r->as_floats || !hl_destination_is_apart(&r->to) || !any_padded(r)) return status;
   hl_destination_close(&r->to);
-  for (int w = 0; w < hl_pool_threads(r->pool); w++) {
-    hl_release(r->set->context, r->others[w]); /* voxels of the gap slices have another size now */
-    r->others[w] = NULL;
+  for (int w = 0; w < hl_pool_threads(r->workers.pool); w++) {
+    hl_release(r->set->context, r->workers.others[w]); /* voxels of the gap slices have another size now */
+    r->workers.others[w] = NULL;
   }
   r->as_floats = true;
   r->voxel_bytes = sizeof(float);
@@ -311,8 +317,8 @@ static hl_status make_volume(reading *r, hl_load_request *request, hl_volume **v
   hl_volume_description grid = r->stack->grid;
   grid.type = kept_type(r);
   if (!r->as_floats && !r->as_colors) {
-    grid.value_scale = r->slope;
-    grid.value_offset = r->intercept;
+    grid.value_scale = r->scale.slope;
+    grid.value_offset = r->scale.intercept;
   }
   for (int axis = 0; axis < 3 && request->spacing[0] > 0; axis++) {
     double length = vec3_length(vec3_of(grid.axis[axis]));
@@ -332,13 +338,13 @@ static hl_status read_volume(reading *r, hl_load_request *request, hl_volume **v
   r->slice_voxels = n[0] * n[1];
   hl_status status = make_threads(r, count, error);
   if (status == HL_OK) status = read_all(r, error);
-  for (int w = 0; r->pool != NULL && w < hl_pool_threads(r->pool); w++) {
-    if (r->spaces != NULL) hl_dicom_workspace_release(&r->spaces[w]);
-    if (r->others != NULL) hl_release(r->set->context, r->others[w]);
+  for (int w = 0; r->workers.pool != NULL && w < hl_pool_threads(r->workers.pool); w++) {
+    if (r->workers.spaces != NULL) hl_dicom_workspace_release(&r->workers.spaces[w]);
+    if (r->workers.others != NULL) hl_release(r->set->context, r->workers.others[w]);
   }
-  hl_release(r->set->context, r->spaces);
-  hl_release(r->set->context, r->others);
-  hl_pool_destroy(r->pool);
+  hl_release(r->set->context, r->workers.spaces);
+  hl_release(r->set->context, r->workers.others);
+  hl_pool_destroy(r->workers.pool);
   if (status == HL_OK) status = widen_padded(r, count, error);
   if (status == HL_OK) status = make_volume(r, request, volume, error);
   hl_destination_close(&r->to);

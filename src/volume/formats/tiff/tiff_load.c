@@ -46,10 +46,11 @@ typedef struct stack_reading {
   uint32_t width, height;      /* size at level 0 */
   int component;
   hl_destination to;
-  /* The pool of the threads. */
-  hl_pool *pool;
-  tiff_file *open;  /* owned; [threads]; the file that each thread has open */
-  uint32_t *opened; /* owned; [threads]; the index of that file; UINT32_MAX if there is none */
+  struct {
+    hl_pool *pool;
+    tiff_file *open;  /* owned; [threads]; the file that each thread has open */
+    uint32_t *opened; /* owned; [threads]; the index of that file; UINT32_MAX if there is none */
+  } threads;
 } stack_reading;
 
 /* ---- the first file: its pages, and what its first page says ---- */
@@ -258,15 +259,15 @@ static hl_status decode_slice(stack_reading *r, size_t z, int worker, void *voxe
     memset(voxels, 0, slice_voxels(r) * r->to.voxel_bytes);
     return HL_OK;
   }
-  tiff_file *file = &r->open[worker];
+  tiff_file *file = &r->threads.open[worker];
   stack_file *stack = &r->files[slice->file];
   hl_status status = HL_OK;
-  if (r->opened[worker] != slice->file) {
+  if (r->threads.opened[worker] != slice->file) {
     tiff_file_close(file);
-    r->opened[worker] = slice->file;
+    r->threads.opened[worker] = slice->file;
     file->warnings = TIFF_NO_WARNINGS; /* warnings were logged when the pages were found */
     status = tiff_file_open(r->context, stack->path, stack->memory, stack->memory_size, true, file, error);
-    if (status != HL_OK) r->opened[worker] = UINT32_MAX;
+    if (status != HL_OK) r->threads.opened[worker] = UINT32_MAX;
   }
   tiff_shape shape;
   size_t page = r->plain > 0 ? 0 : slice->page / r->shape.depth;
@@ -297,16 +298,16 @@ static hl_status read_slice(void *data, size_t z, int worker, hl_error *error) {
 static hl_status make_threads(stack_reading *r, int *threads, hl_error *error) {
   bool parallel = r->plan.slice_count > 1 &&
                   slice_voxels(r) * r->to.voxel_bytes * r->plan.slice_count >= PARALLEL_BYTES;
-  hl_status status = hl_pool_create(r->context, parallel ? 0 : 1, &r->pool, error);
+  hl_status status = hl_pool_create(r->context, parallel ? 0 : 1, &r->threads.pool, error);
   if (status != HL_OK) return status;
-  size_t count = (size_t)(*threads = hl_pool_threads(r->pool));
-  r->open = hl_allocate_zeroed(r->context, count, sizeof *r->open);
-  r->opened = hl_allocate(r->context, count, sizeof *r->opened);
-  if (r->open == NULL || r->opened == NULL)
-    return hl_fail_memory(error, count * sizeof *r->open, r->files[0].path);
+  size_t count = (size_t)(*threads = hl_pool_threads(r->threads.pool));
+  r->threads.open = hl_allocate_zeroed(r->context, count, sizeof *r->threads.open);
+  r->threads.opened = hl_allocate(r->context, count, sizeof *r->threads.opened);
+  if (r->threads.open == NULL || r->threads.opened == NULL)
+    return hl_fail_memory(error, count * sizeof *r->threads.open, r->files[0].path);
   for (size_t n = 0; n < count; n++) {
-    r->open[n].descriptor = -1;
-    r->opened[n] = UINT32_MAX;
+    r->threads.open[n].descriptor = -1;
+    r->threads.opened[n] = UINT32_MAX;
   }
   return HL_OK;
 }
@@ -315,12 +316,13 @@ static hl_status read_slices(stack_reading *r, hl_error *error) {
   int threads = 0;
   hl_status status = make_threads(r, &threads, error);
   if (status == HL_OK)
-    status = hl_parallel_read(r->context, r->pool, r->files[0].path, r->plan.slice_count, read_slice, r,
-                              error);
-  for (int n = 0; n < threads && r->open != NULL && r->opened != NULL; n++) tiff_file_close(&r->open[n]);
-  hl_pool_destroy(r->pool);
-  hl_release(r->context, r->open);
-  hl_release(r->context, r->opened);
+    status = hl_parallel_read(r->context, r->threads.pool, r->files[0].path, r->plan.slice_count, read_slice,
+                              r, error);
+  for (int n = 0; n < threads && r->threads.open != NULL && r->threads.opened != NULL; n++)
+    tiff_file_close(&r->threads.open[n]);
+  hl_pool_destroy(r->threads.pool);
+  hl_release(r->context, r->threads.open);
+  hl_release(r->context, r->threads.opened);
   return status;
 }
 

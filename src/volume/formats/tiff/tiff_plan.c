@@ -66,10 +66,11 @@ typedef struct ome_reader {
   size_t size[3];           /* numbers of planes along Z, C, T */
   char order[3];            /* "ZCT" in some order; the first changes fastest */
   bool in_pixels, done, is_planned;
-  /* TiffData */
-  bool is_open, whole; /* is_open: the planes of the current TiffData are not placed yet; whole: they go on to
-                        * the last plane */
-  size_t first[3], count, page;
+  /* The current TiffData. */
+  struct {
+    bool is_open, whole; /* is_open: its planes are not placed yet; whole: they go on to the last plane */
+    size_t first[3], count, page;
+  } element;
   size_t placed; /* number of planes placed by all elements */
   size_t told;   /* number of Channel elements so far */
   char file[NAME_BYTES];
@@ -152,16 +153,18 @@ static hl_status begin_slices(ome_reader *ome, hl_error *error) {
 static hl_status place_planes(ome_reader *ome, hl_error *error) {
   size_t at[3], total = ome->size[0] * ome->size[1] * ome->size[2], place = 0, factor = 1;
   uint32_t file = 0;
-  ome->is_open = false;
+  ome->element.is_open = false;
   hl_status status = begin_slices(ome, error);
   if (status != HL_OK) return status;
   for (int n = 0; n < 3; n++) {
     int axis = axis_of(ome->order[n]);
-    if (ome->first[axis] >= ome->size[axis]) return fail_ome(ome, "names a plane beyond its sizes", error);
-    place += ome->first[axis] * factor;
+    if (ome->element.first[axis] >= ome->size[axis])
+      return fail_ome(ome, "names a plane beyond its sizes", error);
+    place += ome->element.first[axis] * factor;
     factor *= ome->size[axis];
   }
-  size_t count = ome->whole || ome->count > total - place ? total - place : ome->count;
+  size_t count = ome->element.whole || ome->element.count > total - place ? total - place
+                                                                          : ome->element.count;
   const hl_selection *chosen = &ome->request->selection;
   ome->placed += count;
   if (ome->placed > 2 * total) return fail_ome(ome, "names most of its planes more than once", error);
@@ -175,19 +178,21 @@ static hl_status place_planes(ome_reader *ome, hl_error *error) {
     if (at[1] != (size_t)chosen->channel || at[2] != (size_t)chosen->time) continue;
     if (file == 0 && ome->file[0] != 0 && (status = add_file(ome->plan, ome->file, &file, error)) != HL_OK)
       return status;
-    ome->plan->slices[at[0]] = (tiff_slice){file, (uint32_t)(ome->page + n), true};
+    ome->plan->slices[at[0]] = (tiff_slice){file, (uint32_t)(ome->element.page + n), true};
   }
   return HL_OK;
 }
 
 static hl_status begin_planes(ome_reader *ome, const hl_xml_tag *tag, hl_error *error) {
-  if (!read_number(tag, "FirstZ", 0, &ome->first[0]) || !read_number(tag, "FirstC", 0, &ome->first[1]) ||
-      !read_number(tag, "FirstT", 0, &ome->first[2]) || !read_number(tag, "IFD", 0, &ome->page) ||
-      !read_number(tag, "PlaneCount", 1, &ome->count))
+  if (!read_number(tag, "FirstZ", 0, &ome->element.first[0]) ||
+      !read_number(tag, "FirstC", 0, &ome->element.first[1]) ||
+      !read_number(tag, "FirstT", 0, &ome->element.first[2]) ||
+      !read_number(tag, "IFD", 0, &ome->element.page) ||
+      !read_number(tag, "PlaneCount", 1, &ome->element.count))
     return fail_ome(ome, "has a TiffData whose numbers are none", error);
-  ome->whole = hl_xml_attribute(tag, "PlaneCount") == NULL && hl_xml_attribute(tag, "IFD") == NULL;
+  ome->element.whole = hl_xml_attribute(tag, "PlaneCount") == NULL && hl_xml_attribute(tag, "IFD") == NULL;
   ome->file[0] = 0;
-  ome->is_open = true;
+  ome->element.is_open = true;
   return tag->is_end ? place_planes(ome, error) : HL_OK;
 }
 
@@ -227,8 +232,8 @@ static hl_status read_tag(ome_reader *ome, const hl_xml_tag *tag, hl_error *erro
   if (!ome->in_pixels) return tag->is_start && has_name(tag, "Pixels") ? read_pixels(ome, tag, error) : HL_OK;
   if (tag->is_start && has_name(tag, "Channel") && !ome->is_planned) return read_channel(ome, tag, error);
   if (tag->is_start && has_name(tag, "TiffData")) return begin_planes(ome, tag, error);
-  if (tag->is_start && ome->is_open && has_name(tag, "UUID")) return read_file(ome, tag, error);
-  if (tag->is_end && ome->is_open && has_name(tag, "TiffData")) return place_planes(ome, error);
+  if (tag->is_start && ome->element.is_open && has_name(tag, "UUID")) return read_file(ome, tag, error);
+  if (tag->is_end && ome->element.is_open && has_name(tag, "TiffData")) return place_planes(ome, error);
   if (tag->is_end && has_name(tag, "Pixels")) ome->done = true; /* only the first image counts */
   return HL_OK;
 }
@@ -242,8 +247,8 @@ static hl_status finish_ome(ome_reader *ome, hl_error *error) {
   for (size_t z = 0; status == HL_OK && z < ome->plan->slice_count; z++)
     any = any || ome->plan->slices[z].is_there;
   if (status == HL_OK && !any) {
-    memset(ome->first, 0, sizeof ome->first);
-    ome->whole = true, ome->page = 0, ome->file[0] = 0;
+    memset(ome->element.first, 0, sizeof ome->element.first);
+    ome->element.whole = true, ome->element.page = 0, ome->file[0] = 0;
     status = place_planes(ome, error);
   }
   for (size_t z = 0; status == HL_OK && z < ome->plan->slice_count; z++)

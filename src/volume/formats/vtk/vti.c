@@ -40,15 +40,17 @@ typedef struct vti_entry {
 
 typedef struct vti_header {
   hl_vtk_xml xml;
-  double extent[6]; /* first and last point index along x, y, z */
-  double origin[3], spacing[3], direction[9];
-  bool has_extent;
+  struct {
+    double extent[6]; /* first and last point index along x, y, z */
+    double origin[3], spacing[3], direction[9];
+    bool has_extent;
+    hl_vtk_array coordinates[3]; /* coordinates of a rectilinear grid's first piece */
+    int coordinate_count;
+  } grid;
   vti_kind kind;
   vti_piece *pieces;  /* owned; [piece_count] */
   vti_entry *entries; /* owned; [entry_count]; the arrays of all pieces */
   size_t piece_count, piece_room, entry_count, entry_room;
-  hl_vtk_array coordinates[3]; /* coordinates of a rectilinear grid's first piece */
-  int coordinate_count;
   bool is_whole; /* whether the section's last tag or the appended data have been seen */
   section section;
   char active[HL_VTK_NAME_BYTES];  /* name of the section's active scalars */
@@ -75,15 +77,15 @@ static hl_status read_extent(vti_header *header, const hl_xml_tag *tag, const ch
         !(last <= 2147483647.0) || (last < first && !may_be_empty))
       status = hl_vtk_xml_refuse(&header->xml, HL_ERROR_INPUT, name, value, error);
   }
-  header->has_extent = true;
+  header->grid.has_extent = true;
   return status;
 }
 
 static hl_status read_image_tag(vti_header *header, const hl_xml_tag *tag, hl_error *error) {
-  hl_status status = read_extent(header, tag, "WholeExtent", header->extent, false, error);
-  if (status == HL_OK) status = read_numbers(header, tag, "Origin", header->origin, 3, error);
-  if (status == HL_OK) status = read_numbers(header, tag, "Spacing", header->spacing, 3, error);
-  if (status == HL_OK) status = read_numbers(header, tag, "Direction", header->direction, 9, error);
+  hl_status status = read_extent(header, tag, "WholeExtent", header->grid.extent, false, error);
+  if (status == HL_OK) status = read_numbers(header, tag, "Origin", header->grid.origin, 3, error);
+  if (status == HL_OK) status = read_numbers(header, tag, "Spacing", header->grid.spacing, 3, error);
+  if (status == HL_OK) status = read_numbers(header, tag, "Direction", header->grid.direction, 9, error);
   return status;
 }
 
@@ -110,7 +112,7 @@ static hl_status read_piece_tag(vti_header *header, const hl_xml_tag *tag, hl_er
   if (status != HL_OK) return status;
   vti_piece *piece = &header->pieces[header->piece_count++];
   *piece = (vti_piece){.source = NULL};
-  memcpy(piece->extent, header->extent, sizeof piece->extent);
+  memcpy(piece->extent, header->grid.extent, sizeof piece->extent);
   if (header->kind == KIND_PARALLEL) {
     if (source == NULL) return hl_vtk_xml_refuse(&header->xml, HL_ERROR_INPUT, "a Piece's Source", "", error);
     piece->source = hl_copy_text(header->request->context, source);
@@ -136,8 +138,8 @@ static hl_status read_array_tag(vti_header *header, const hl_xml_tag *tag, hl_er
   hl_status status = hl_vtk_xml_array_tag(&header->xml, tag, &array, error);
   if (status != HL_OK) return status;
   if (header->section == SECTION_COORDINATES) {
-    if (header->coordinate_count < 3 && header->piece_count <= 1)
-      header->coordinates[header->coordinate_count++] = array;
+    if (header->grid.coordinate_count < 3 && header->piece_count <= 1)
+      header->grid.coordinates[header->grid.coordinate_count++] = array;
     return HL_OK;
   }
   status = grow(header, (void **)&header->entries, header->entry_count, &header->entry_room,
@@ -192,9 +194,9 @@ static void make_grid(const vti_header *header, const double extent[6], bool cel
   for (int axis = 0; axis < 3; axis++) {
     size_t points = (size_t)(extent[2 * axis + 1] - extent[2 * axis]) + 1;
     grid->dimensions[axis] = cells && points > 1 ? points - 1 : points;
-    grid->origin[axis] = header->origin[axis];
+    grid->origin[axis] = header->grid.origin[axis];
     for (int row = 0; row < 3; row++)
-      grid->axis[axis][row] = header->direction[3 * row + axis] * header->spacing[axis];
+      grid->axis[axis][row] = header->grid.direction[3 * row + axis] * header->grid.spacing[axis];
   }
   for (int axis = 0; axis < 3; axis++) {
     bool between = cells && extent[2 * axis + 1] > extent[2 * axis];
@@ -213,7 +215,7 @@ static int active_array(const vti_header *header) {
 }
 
 static hl_status choose_array(const vti_header *header, hl_error *error) {
-  if (header->request->array_count > 0 && header->has_extent) {
+  if (header->request->array_count > 0 && header->grid.has_extent) {
     hl_status status = hl_arrays_choose(header->request, header->xml.stream->path, active_array(header),
                                         error);
     const hl_array_entry *chosen = &header->request->arrays[header->request->chosen];
@@ -224,7 +226,7 @@ static hl_status choose_array(const vti_header *header, hl_error *error) {
     return status;
   }
   return hl_fail(error, HL_ERROR_INPUT, "%s: the file has no %s", header->xml.stream->path,
-                 header->has_extent ? "DataArray in PointData or CellData" : "WholeExtent or Extent");
+                 header->grid.has_extent ? "DataArray in PointData or CellData" : "WholeExtent or Extent");
 }
 
 static bool is_empty(const vti_piece *piece) {
@@ -285,7 +287,7 @@ static hl_status read_piece(hl_stream **stream, vti_header *header, size_t index
 /* The first voxel of a piece within the whole. */
 static void place_of(const vti_header *header, const vti_piece *piece, size_t first[3]) {
   for (int axis = 0; axis < 3; axis++) {
-    double before = piece->extent[2 * axis] - header->extent[2 * axis];
+    double before = piece->extent[2 * axis] - header->grid.extent[2 * axis];
     first[axis] = before >= 0 ? (size_t)before : SIZE_MAX; /* a piece that begins before the whole does not
                                                             * fit */
   }
@@ -293,8 +295,9 @@ static void place_of(const vti_header *header, const vti_piece *piece, size_t fi
 
 /* Reads all pieces of the file, and puts each at its place. */
 static hl_status read_pieces(hl_stream **stream, vti_header *header, hl_volume **volume, hl_error *error) {
-  const vti_piece whole = {.extent = {header->extent[0], header->extent[1], header->extent[2],
-                                      header->extent[3], header->extent[4], header->extent[5]}};
+  const vti_piece whole = {.extent = {header->grid.extent[0], header->grid.extent[1], header->grid.extent[2],
+                                      header->grid.extent[3], header->grid.extent[4],
+                                      header->grid.extent[5]}};
   const vti_entry *first_entry = entry_of(header, 0);
   hl_payload payload;
   hl_pieces pieces = {.to = {.context = NULL}};
@@ -331,15 +334,16 @@ static hl_status place_rectilinear(hl_stream **stream, vti_header *header, hl_vo
   size_t counts[3];
   hl_status status = HL_OK;
   for (int axis = 0; axis < 3 && status == HL_OK; axis++) {
-    const hl_vtk_array *array = &header->coordinates[axis];
+    const hl_vtk_array *array = &header->grid.coordinates[axis];
     hl_number_code code = {.text = array->encoding == HL_VTK_ASCII, .big_endian = header->xml.big_endian};
     header->xml.stream = *stream;
-    counts[axis] = (size_t)(header->extent[2 * axis + 1] - header->extent[2 * axis]) + 1;
-    status = header->coordinate_count == 3 ? hl_vtk_xml_type(&header->xml, array->type, &code.type, error)
-                                           : hl_fail(error, HL_ERROR_INPUT,
-                                                     "%s: a rectilinear grid without three arrays "
-                                                     "of Coordinates",
-                                                     (*stream)->path);
+    counts[axis] = (size_t)(header->grid.extent[2 * axis + 1] - header->grid.extent[2 * axis]) + 1;
+    status = header->grid.coordinate_count == 3
+                 ? hl_vtk_xml_type(&header->xml, array->type, &code.type, error)
+                 : hl_fail(error, HL_ERROR_INPUT,
+                           "%s: a rectilinear grid without three arrays "
+                           "of Coordinates",
+                           (*stream)->path);
     if (status == HL_OK)
       status = hl_vtk_xml_open_array(stream, &header->xml, array,
                                      counts[axis] * hl_voxel_type_bytes(code.type), error);
@@ -378,7 +382,7 @@ static hl_status read_part(const vti_header *header, size_t index, hl_load_reque
 static hl_volume_description grid_of_parts(const vti_header *header, const hl_volume *part, bool of_cells) {
   hl_volume_description grid;
   hl_volume_description_defaults(&grid);
-  make_grid(header, header->extent, of_cells, &grid);
+  make_grid(header, header->grid.extent, of_cells, &grid);
   grid.type = part->type;
   for (int axis = 0; axis < 3 && header->request->spacing[0] > 0; axis++) {
     double length = vec3_length(vec3_of(grid.axis[axis]));
@@ -391,7 +395,7 @@ static hl_status read_parts(const vti_header *header, hl_volume **volume, hl_err
   hl_load_request *request = header->request;
   hl_pieces pieces = {.to = {.context = NULL}};
   hl_status status = HL_OK;
-  if (!header->has_extent || header->piece_count == 0)
+  if (!header->grid.has_extent || header->piece_count == 0)
     return hl_fail(error, HL_ERROR_INPUT, "%s: the file has no WholeExtent, or no Piece",
                    header->xml.stream->path);
   for (size_t n = 0; n < header->piece_count && status == HL_OK; n++) {
@@ -437,15 +441,15 @@ static hl_status read_parts(const vti_header *header, hl_volume **volume, hl_err
 /* Completes the pieces. The extent of a single piece is its own. A file without a Piece has a single piece,
  * the whole extent. */
 static hl_status finish_pieces(vti_header *header, hl_error *error) {
-  if (header->piece_count == 0 && header->has_extent) {
+  if (header->piece_count == 0 && header->grid.has_extent) {
     hl_status status = grow(header, (void **)&header->pieces, 0, &header->piece_room, sizeof *header->pieces,
                             PIECES_MOST, error);
     if (status != HL_OK) return status;
     header->pieces[header->piece_count++] = (vti_piece){.source = NULL};
-    memcpy(header->pieces[0].extent, header->extent, sizeof header->extent);
+    memcpy(header->pieces[0].extent, header->grid.extent, sizeof header->grid.extent);
   }
   if (header->piece_count != 1 || header->kind == KIND_PARALLEL) return HL_OK;
-  memcpy(header->extent, header->pieces[0].extent, sizeof header->extent);
+  memcpy(header->grid.extent, header->pieces[0].extent, sizeof header->grid.extent);
   if (is_empty(&header->pieces[0]))
     return hl_fail(error, HL_ERROR_INPUT, "%s: its Extent is empty", header->xml.stream->path);
   return HL_OK;
@@ -472,8 +476,8 @@ static hl_status read_image(hl_stream **stream, vti_header *header, bool nested,
 static hl_status load_image(hl_stream **stream, hl_load_request *request, bool nested, hl_volume **volume,
                             hl_error *error) {
   vti_header header = {.xml.stream = *stream,
-                       .spacing = {1, 1, 1},
-                       .direction = {1, 0, 0, 0, 1, 0, 0, 0, 1},
+                       .grid.spacing = {1, 1, 1},
+                       .grid.direction = {1, 0, 0, 0, 1, 0, 0, 0, 1},
                        .active_points = -1,
                        .active_cells = -1,
                        .request = request};

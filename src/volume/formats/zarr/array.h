@@ -63,12 +63,13 @@ typedef struct hl_zarr_array {
   bool separator_untold; /* version 2: whether chunks that are absent under names with '.' are looked for
                           * under names with '/' */
   bool has_prefix;       /* whether names of chunks begin with "c" */
-  /* Whether files are shards, which hold several chunks. */
-  bool is_sharded;
-  uint64_t shard[HL_ZARR_AXES_MOST]; /* size of a shard in chunks; 1 without shards */
-  uint64_t chunks_in_shard;
-  bool index_at_start;
-  int index_checks;
+  struct {
+    bool are_used;                    /* whether files are shards, which hold several chunks */
+    uint64_t size[HL_ZARR_AXES_MOST]; /* size of a shard in chunks; 1 without shards */
+    uint64_t chunks;                  /* number of chunks in a shard */
+    bool index_at_start;
+    int index_checks;
+  } shards;
 } hl_zarr_array;
 
 #endif

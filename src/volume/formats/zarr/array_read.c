@@ -68,7 +68,7 @@ static hl_status read_version_2(const hl_zarr_reading *r, const json_t *node) {
   hl_zarr_array *array = r->array;
   const char *order = json_string_value(json_object_get(node, "order"));
   const json_t *filters = json_object_get(node, "filters");
-  for (int axis = 0; axis < HL_ZARR_AXES_MOST; axis++) array->shard[axis] = 1;
+  for (int axis = 0; axis < HL_ZARR_AXES_MOST; axis++) array->shards.size[axis] = 1;
   hl_status status = read_sizes(r, json_object_get(node, "shape"), "shape", array->shape, &array->rank);
   if (status == HL_OK) status = read_chunk_shape(r, json_object_get(node, "chunks"), "chunks", array->chunk);
   if (status == HL_OK) status = hl_zarr_type_2(r, json_string_value(json_object_get(node, "dtype")));
@@ -106,13 +106,13 @@ static hl_status read_shards(const hl_zarr_reading *r, const json_t *codec) {
   uint64_t outer[HL_ZARR_AXES_MOST];
   memcpy(outer, array->chunk, sizeof outer);
   hl_status status = read_chunk_shape(r, configured(codec, "chunk_shape"), "chunk_shape", array->chunk);
-  array->is_sharded = true;
+  array->shards.are_used = true;
   for (int axis = 0; axis < array->rank && status == HL_OK; axis++) {
-    array->shard[axis] = outer[axis] / array->chunk[axis];
+    array->shards.size[axis] = outer[axis] / array->chunk[axis];
     if (outer[axis] % array->chunk[axis] != 0)
       status = hl_zarr_reading_fail(r, HL_ERROR_INPUT, "shards must hold whole chunks along every axis");
-    else if (__builtin_mul_overflow(array->chunks_in_shard, array->shard[axis], &array->chunks_in_shard) ||
-             array->chunks_in_shard > HL_ZARR_CHUNK_BYTES_MOST / 16)
+    else if (__builtin_mul_overflow(array->shards.chunks, array->shards.size[axis], &array->shards.chunks) ||
+             array->shards.chunks > HL_ZARR_CHUNK_BYTES_MOST / 16)
       status = hl_zarr_reading_fail(r, HL_ERROR_UNSUPPORTED,
                                     "a shard of too many chunks: write the array with smaller shards");
   }
@@ -123,9 +123,9 @@ static hl_status read_shards(const hl_zarr_reading *r, const json_t *codec) {
     status = hl_zarr_reading_fail(r, HL_ERROR_UNSUPPORTED,
                                   "a packed or big-endian index of shards: write the array with codecs "
                                   "\"bytes\" (little) and \"crc32c\" for it");
-  array->index_checks = index.inner_checks;
+  array->shards.index_checks = index.inner_checks;
   const char *place = json_string_value(configured(codec, "index_location"));
-  array->index_at_start = place != NULL && strcmp(place, "start") == 0;
+  array->shards.index_at_start = place != NULL && strcmp(place, "start") == 0;
   return status;
 }
 
@@ -145,7 +145,7 @@ static hl_status read_version_3(const hl_zarr_reading *r, const json_t *node) {
   hl_zarr_array *array = r->array;
   const json_t *grid = json_object_get(node, "chunk_grid");
   const char *grid_name = json_string_value(json_object_get(grid, "name"));
-  for (int axis = 0; axis < HL_ZARR_AXES_MOST; axis++) array->shard[axis] = 1;
+  for (int axis = 0; axis < HL_ZARR_AXES_MOST; axis++) array->shards.size[axis] = 1;
   if (json_array_size(json_object_get(node, "storage_transformers")) > 0 ||
       (grid_name != NULL && strcmp(grid_name, "regular") != 0))
     return hl_zarr_reading_fail(
@@ -178,7 +178,7 @@ hl_status hl_zarr_array_read(const hl_bundle *bundle, const char *folder, hl_zar
                              hl_error *error) {
   hl_zarr_reading r = {.bundle = bundle, .array = array, .error = error};
   json_t *node;
-  *array = (hl_zarr_array){.chunks_in_shard = 1};
+  *array = (hl_zarr_array){.shards.chunks = 1};
   strcpy(array->folder, folder);
   *found = false;
   hl_status status = hl_zarr_metadata_read(bundle, folder, "zarr.json", &node, error);

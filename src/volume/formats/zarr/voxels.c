@@ -66,8 +66,8 @@ static hl_status count_parts(reading *r, hl_error *error) {
   for (int a = 0; a < 3; a++) {
     int axis = r->choice->axis[a];
     r->size[a] = axis < 0 ? 1 : array->shape[axis];
-    r->inner[a] = axis < 0 ? 1 : array->shard[axis];
-    r->files[a] = axis < 0 ? 1 : ceiling(ceiling(r->size[a], array->chunk[axis]), array->shard[axis]);
+    r->inner[a] = axis < 0 ? 1 : array->shards.size[axis];
+    r->files[a] = axis < 0 ? 1 : ceiling(ceiling(r->size[a], array->chunk[axis]), array->shards.size[axis]);
     if (__builtin_mul_overflow(r->parts, r->files[a], &r->parts) ||
         __builtin_mul_overflow(r->parts, r->inner[a], &r->parts) || r->parts > PARTS_MOST)
       return hl_zarr_fail(r->bundle, array->folder, error, HL_ERROR_UNSUPPORTED,
@@ -90,8 +90,8 @@ static bool place_part(const reading *r, uint64_t number, part *p) {
   }
   for (int axis = 0; axis < array->rank; axis++) {
     uint64_t chunk = r->choice->index[axis] / array->chunk[axis];
-    p->file[axis] = chunk / array->shard[axis];
-    p->inner[axis] = chunk % array->shard[axis];
+    p->file[axis] = chunk / array->shards.size[axis];
+    p->inner[axis] = chunk % array->shards.size[axis];
   }
   for (int a = 0; a < 3; a++) {
     int axis = r->choice->axis[a];
@@ -100,7 +100,7 @@ static bool place_part(const reading *r, uint64_t number, part *p) {
     if (axis < 0) continue;
     p->file[axis] = file[a];
     p->inner[axis] = inner[a];
-    p->begin[a] = (file[a] * array->shard[axis] + inner[a]) * array->chunk[axis];
+    p->begin[a] = (file[a] * array->shards.size[axis] + inner[a]) * array->chunk[axis];
     if (p->begin[a] >= r->size[a]) return false;
     uint64_t left = r->size[a] - p->begin[a];
     p->count[a] = left < array->chunk[axis] ? left : array->chunk[axis];
@@ -173,7 +173,7 @@ static void put(const reading *r, const worker *w, const part *p, const unsigned
 
 static hl_status read_index(const reading *r, worker *w, hl_error *error) {
   const hl_zarr_array *array = r->array;
-  size_t bytes = (size_t)array->chunks_in_shard * 16 + 4 * (size_t)array->index_checks, got = 0;
+  size_t bytes = (size_t)array->shards.chunks * 16 + 4 * (size_t)array->shards.index_checks, got = 0;
   uint64_t size = hl_source_size(w->source);
   if (size < bytes)
     return hl_zarr_fail(r->bundle, w->key, error, HL_ERROR_INPUT,
@@ -181,9 +181,9 @@ static hl_status read_index(const reading *r, worker *w, hl_error *error) {
                         (unsigned long long)size, bytes);
   if (w->index == NULL) w->index = hl_allocate(r->bundle->context, bytes, 1);
   if (w->index == NULL) return hl_fail_memory(error, bytes, "the index of a shard");
-  hl_status status = hl_source_read(w->source, array->index_at_start ? 0 : size - bytes, w->index, bytes,
-                                    &got, error);
-  bool sound = got == bytes && (array->index_checks == 0 || hl_zarr_check_sum(w->index, bytes));
+  hl_status status = hl_source_read(w->source, array->shards.index_at_start ? 0 : size - bytes, w->index,
+                                    bytes, &got, error);
+  bool sound = got == bytes && (array->shards.index_checks == 0 || hl_zarr_check_sum(w->index, bytes));
   return status == HL_OK && !sound
              ? hl_zarr_fail(r->bundle, w->key, error, HL_ERROR_INPUT, "the index of a shard is damaged")
              : status;
@@ -201,7 +201,7 @@ static hl_status open_file(const reading *r, worker *w, const part *p, hl_error 
     name_file(r->array, p, '/', key);
     status = hl_bundle_find(r->bundle, key, true, &w->source, error);
   }
-  if (status == HL_OK && w->source != NULL && r->array->is_sharded) status = read_index(r, w, error);
+  if (status == HL_OK && w->source != NULL && r->array->shards.are_used) status = read_index(r, w, error);
   if (status != HL_OK) w->key[0] = 0;
   return status;
 }
@@ -218,8 +218,9 @@ static hl_status find_chunk(const reading *r, const worker *w, const part *p, ui
   uint64_t size = w->source != NULL ? hl_source_size(w->source) : 0, number = 0;
   *offset = 0;
   *length = size;
-  if (w->source == NULL || !r->array->is_sharded) return HL_OK;
-  for (int axis = 0; axis < r->array->rank; axis++) number = number * r->array->shard[axis] + p->inner[axis];
+  if (w->source == NULL || !r->array->shards.are_used) return HL_OK;
+  for (int axis = 0; axis < r->array->rank; axis++)
+    number = number * r->array->shards.size[axis] + p->inner[axis];
   *offset = little_u64(w->index + 16 * number);
   *length = little_u64(w->index + 16 * number + 8);
   if (*offset == UINT64_MAX && *length == UINT64_MAX) *length = 0;
@@ -258,7 +259,7 @@ enum { FILES_AT_A_TIME = 64 };
 /* The greatest length of a file; more would not be read. */
 static uint64_t longest_file(const hl_zarr_array *array) {
   uint64_t chunk = hl_zarr_chunk_most(array) + 16, length;
-  return __builtin_mul_overflow(chunk, array->chunks_in_shard, &length) ? UINT64_MAX : length + 64;
+  return __builtin_mul_overflow(chunk, array->shards.chunks, &length) ? UINT64_MAX : length + 64;
 }
 
 /* Whether any voxel of a file is kept. number: the file's first part. place: one of its parts. */
