@@ -69,7 +69,7 @@ def python_array_released(key: int) -> None:
 
 @ffi.def_extern(error=lib.HL_ERROR_CANCELLED, onerror=_remember)  # type: ignore[untyped-decorator]
 def python_convert(path: Any, content: Any, byte_count: Any, error: Any) -> int:
-    """OpenVDB to NanoVDB: the bytes are kept until `python_converted`."""
+    """Convert OpenVDB to NanoVDB. The bytes are kept until `python_converted` is called."""
     from . import _openvdb  # here: what it needs takes 8 ms to import
     try:
         converted = ffi.from_buffer(_openvdb.convert(os.fsdecode(ffi.string(path))))
@@ -134,7 +134,7 @@ def _exception(status: int, error: Any, path: str | None) -> BaseException:
 
 
 def _frames_to_caller() -> int:
-    """How many frames up the first one outside this package is: where a warning belongs."""
+    """How many frames up the first one outside this package is; warnings are told of that one."""
     depth, frame = 1, sys._getframe(1)
     while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] == __package__:
         depth, frame = depth + 1, frame.f_back

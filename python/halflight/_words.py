@@ -11,7 +11,7 @@ R = TypeVar("R")
 
 
 def nearest(word: str, known: Collection[str]) -> str:
-    """`": did you mean 'x'?"`, or a list of all where none is near."""
+    """What an error adds: `": did you mean 'x'?"`, or a list of all known words where none is near."""
     import difflib
 
     found = difflib.get_close_matches(word.lower(), known, 1, 0.5)
@@ -71,7 +71,7 @@ def suggests_also(further: Collection[str]) -> Callable[[Callable[P, R]], Callab
 
 
 def suggests(function: Callable[P, R], further: Collection[str] = ()) -> Callable[P, R]:
-    """Make `function` answer an unknown keyword with the nearest one that it has. further: what its ** takes."""
+    """Make `function` answer an unknown keyword with the nearest known one. further: the keywords that its ** takes."""
     parameters = inspect.signature(function).parameters.values()
     known = [p.name for p in parameters if p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY) and p.name != "self"]
     known += further

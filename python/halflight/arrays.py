@@ -125,7 +125,9 @@ class _Lying(NamedTuple):
 
 
 def _strides(voxels: np.ndarray[Any, Any]) -> tuple[int, int, int]:
-    """Bytes along x, y, z; along axes of one voxel, where any number does, those of a block."""
+    """Bytes from voxel to voxel along x, y, z. Along axes of one voxel any number would do; there they are a packed
+    block's.
+    """
     found, block = [], voxels.itemsize
     for size, stride in zip(voxels.shape[::-1], voxels.strides[::-1], strict=True):
         found.append(stride if size > 1 else block)
@@ -134,7 +136,9 @@ def _strides(voxels: np.ndarray[Any, Any]) -> tuple[int, int, int]:
 
 
 def _as_it_lies(voxels: np.ndarray[Any, Any], place: Place) -> _Lying:
-    """Axes sorted by their strides, none counted backwards, where that lets the library borrow the voxels."""
+    """The array with its axes sorted by strides and none counted backwards, where the library can then borrow the
+    voxels.
+    """
     if voxels.flags.c_contiguous:
         return _Lying(voxels, place, _strides(voxels))
     origin, steps, turned = list(place.origin), list(place.steps), voxels
@@ -155,7 +159,9 @@ def _as_it_lies(voxels: np.ndarray[Any, Any], place: Place) -> _Lying:
 
 
 class Loan:
-    """Voxels that a volume borrows, [z][y][x], with their place and what a sample of them was when they were borrowed."""
+    """Voxels that a volume borrows, [z][y][x], with their place, and with a sample of them from when they were
+    borrowed.
+    """
 
     __slots__ = ("__weakref__", "owner", "place", "sample", "space", "voxels")
 
@@ -164,7 +170,7 @@ class Loan:
         self.sample = _sample_of(voxels)
 
     def is_unchanged(self) -> bool:
-        """Whether the sample is what it was."""
+        """Whether a new sample equals the one from when the voxels were borrowed."""
         return self.sample == _sample_of(self.voxels)
 
 
@@ -180,14 +186,16 @@ def _sample_of(voxels: np.ndarray[Any, Any]) -> int:
 
 
 class Packed(NamedTuple):
-    """An array as its bytes lie in memory, with what makes the same view of them: so that copies have its order, too."""
+    """An array as its bytes lie in memory, with what turns them into the same view again, so that copies keep the
+    order.
+    """
 
     voxels: np.ndarray[Any, Any]
     order: tuple[int, ...]
     turned: tuple[bool, ...]
 
     def view(self) -> np.ndarray[Any, Any]:
-        """The array, its axes in the order of memory that the packed one's have."""
+        """The array again, with its axes in the order in memory that they had."""
         return self.voxels.transpose(self.order)[_from_the_end(self.turned)]
 
 

@@ -50,7 +50,7 @@ def _write_pixels(struct: Any, path: str) -> None:
 
 
 def _forget_reading(struct: Any) -> None:
-    """The file that was written has one array."""
+    """Forget how the volume was read of its old file: the file that was written has one array."""
     plain = ffi.new("hl_scene_volume *")
     lib.hl_scene_volume_defaults(plain)
     for word in ("array", "series", "component", "time", "channel", "level", "spacing"):

@@ -26,7 +26,7 @@ class Camera:
     fovy_deg : float
         Perspective: the vertical field of view.
     height : float, optional
-        World height of the picture. Given, the projection is orthographic, and `fovy_deg` says nothing.
+        World height of the picture. If it is given, the projection is orthographic, and `fovy_deg` does not count.
 
     Examples
     --------
@@ -74,7 +74,7 @@ class Camera:
             ``viewer.camera``. Where its orientation shows x, y and z left-handed, as napari's own word "right" for axes z,
             y, x says, the world is mirrored, which no camera here does.
         canvas_height : float
-            Of napari's canvas, in its pixels: its zoom counts them.
+            The height of napari's canvas in pixels, which napari's zoom refers to.
         """
         center, view, up = (np.array(one, dtype=float)[-3:][::-1]
                             for one in (camera.center, camera.view_direction, camera.up_direction))

@@ -166,8 +166,8 @@ class Image(NDArrayOperatorsMixin):
         Returns
         -------
         Image
-            Shown or saved, it has this picture's numbers as its colours; without layers. It is opaque, mixed with the
-            scene's background as screens mix, unless that is transparent.
+            A picture without layers. Where it is shown or saved, its colours are this picture's numbers. It is opaque
+            and mixed with the scene's background as screens mix, unless that is transparent.
         """
         alpha, background = self._pixels[..., 3:], self.scene.background
         if not isinstance(background, str):
@@ -179,7 +179,7 @@ class Image(NDArrayOperatorsMixin):
         return _restored(self.scene, np.concatenate([linear, alpha], axis=-1).astype(np.float32), {}, self.statistics)
 
     def _scene_text(self, folder: str | None) -> Any:
-        """The scene for a PNG in a folder; none where volumes are arrays, which no file can name."""
+        """The text of the scene for a PNG in a folder; none where volumes are arrays, which no file can name."""
         try:
             return ffi.new("char[]", self.scene._text(folder).encode())
         except ValueError:
@@ -288,9 +288,10 @@ class Image(NDArrayOperatorsMixin):
         scale_bar : bool or str
             A bar with its length: True, or a length as "50um".
         unit : str, optional
-            Of lengths in the volumes, "mm", "um", ... or any other text, where their files do not tell it.
+            The unit of lengths in the volumes where their files do not tell it: "mm", "um", ... or any other text.
         depth : float or "target", optional
-            Where the bar holds in a perspective picture, which has no one scale: the distance from the eye.
+            For a perspective picture, which has no one scale: the distance from the eye at which the bar's length is
+            right.
         legend : bool or str
             The volumes' colours over their values, with their opacity; or the names of labels. A text is the title.
         axes : "arrows" or "letters", optional
@@ -302,9 +303,10 @@ class Image(NDArrayOperatorsMixin):
         width : float or str, optional
             On paper: millimetres, or a text as "89mm", "3.5in".
         dpi : float, optional
-            Pixels an inch: of .png and .tif; without width it says how large the picture is.
+            Pixels an inch of .png and .tif. Without `width` it decides how large the picture is on paper.
         font_size, font : float, str
-            In points of a picture of that size (89 mm wide where none is said); a family's name.
+            The size of letters in points on a picture of that width (89 mm if none is given); the name of a family of
+            fonts.
 
         Examples
         --------
@@ -327,7 +329,8 @@ class Image(NDArrayOperatorsMixin):
         ax : matplotlib Axes, optional
             Default: a new figure's.
         colorbar, scale_bar : bool
-            The colour bar shows the transfer function's colours; the scale bar holds at the camera's target.
+            The colour bar shows the transfer function's colours; the scale bar's length is right at the camera's
+            target.
         unit : str
             Of the world, for the scale bar.
         """

@@ -16,9 +16,9 @@ def current() -> tuple[int | None, str | None]:
 def limit_memory(limit: int | None, *, scratch_folder: str | os.PathLike[str] | None = None) -> None:
     """Limit what volumes, scenes and renderers hold, and render larger volumes from a scratch file.
 
-    A volume file whose voxels do not fit is read into a file without a name, and frames are the same, bit for bit. So is
-    an array of zarr, h5py or dask, slice by slice: its voxels need twice their room on the disk for a moment. Other
-    arrays are in memory already. Call it while no other thread loads or renders.
+    A volume file whose voxels do not fit is read into a scratch file without a name; frames are the same, bit for bit.
+    An array of zarr, h5py or dask is read into such a file, too, slice by slice; for a moment its voxels need twice
+    their room on the disk. Other arrays are in memory already. Call it while no other thread loads or renders.
 
     Parameters
     ----------

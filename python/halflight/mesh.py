@@ -45,7 +45,8 @@ class Mesh:
         A PLY, STL, OBJ, glTF or VTK PolyData file; vertices (x, y, z) in world units; a data set of PyVista or VTK, of
         which others than PolyData show their surface; a mesh of trimesh or meshio. What is given is copied.
     triangles : array_like of int, shape (m, 3), optional
-        Numbers of vertices, for vertices given as an array. Counter-clockwise ones face the viewer.
+        Numbers of vertices, for vertices given as an array. A triangle whose vertices run counter-clockwise faces the
+        viewer.
     normals : array_like, shape (n, 3), optional
         At the vertices, of any length.
     colors : array_like, shape (n, 3) or (n, 4), optional
@@ -61,15 +62,15 @@ class Mesh:
     line_colors : array_like, shape (n, 3) or (n, 4), optional
         Of the points of all lines, one after the other.
     radius : float, optional
-        Of spheres and lines that have none of their own; by default, of the lines and points of a data set, a 400th of
-        its diagonal.
+        The radius of spheres and lines that have none of their own. For the lines and points of a data set it is by
+        default a 400th of the set's diagonal.
     scalars : str, array_like or False, optional
         What colours the mesh: the name of one of its arrays, of vertices or of cells, or the values; 8-bit RGB and RGBA are
         colours themselves. By default the active array, where the mesh has one and is given no colour; False: none.
     cmap, clim, log_scale : optional
         The colours of `scalars`, as of `render`; by default viridis over all values.
     nan_color : colour
-        Of values that are no numbers.
+        The colour of values that are no numbers.
     affine : array_like, shape (4, 4), optional
         Where the vertices are moved to first, as by an actor's matrix.
     **look : MeshLook
@@ -229,8 +230,8 @@ class Mesh:
 
     @classmethod
     def floor(cls, scene: Any, size: float = 3, **look: Unpack[MeshLook]) -> Mesh:
-        """A square below all that a scene shows, `size` times as wide as what stands on it; matt, grey and
-        whole where the scene is cut (`cut=True`: cut, too).
+        """A square below all that a scene shows, `size` times as wide as what stands on it. It is matt and grey. Cuts
+        of the scene leave it whole, except with `cut=True`.
 
         Parameters
         ----------

@@ -143,7 +143,7 @@ def variable(dataset: Any, name: str) -> Found:
 
 
 def _warn_of_shape(source: Any, steps: dict[str, float], axes: str) -> None:
-    """Degrees beside metres make plates and needles."""
+    """Warn where coordinates make the volume a plate or a needle, as degrees beside metres do."""
     extents = {letter: abs(steps[letter]) * max(size - 1, 1) for letter, size in zip(axes, source.shape, strict=True)}
     if max(extents.values()) > 100 * min(extents.values()):
         said = ", ".join(f"{letter} {extents[letter]:g}" for letter in "xyz")
@@ -151,7 +151,7 @@ def _warn_of_shape(source: Any, steps: dict[str, float], axes: str) -> None:
 
 
 def _xarray(source: Any) -> Found:
-    """Dimensions say the axes by their names or CF attributes; evenly spaced coordinates the place."""
+    """xarray: names or CF attributes of the dimensions tell the axes; evenly spaced coordinates tell the place."""
     if len(source.dims) > 3:  # a time, a member or a channel alone
         single = [name for name, size in zip(source.dims, source.shape, strict=True) if size == 1 and _letter(source, name) is None]
         source = source.isel(dict.fromkeys(single[:len(source.dims) - 3], 0))

@@ -95,8 +95,8 @@ class Particles:
         Parameters
         ----------
         quantity : "log density", "density", or array_like, shape (n,)
-            Numbers are averaged, weighted by mass and kernel, and NaN where no particle reaches. Where the density is below
-            a tenth of the least that a particle has at its own place, the logarithm is that tenth's.
+            Numbers are averaged, weighted by mass and kernel; where no particle reaches, the mean is NaN. The logarithm
+            has a least value: that of a tenth of the least density that any particle has at its own place.
         spacing : float, optional
             World units between voxels; by default half of the smoothing length that one particle in fifty stays below.
         size : int, optional
@@ -131,7 +131,8 @@ class Particles:
         clim : (low, high), optional
             The values that the colours spread over; by default percentiles 2 and 98 of `values`.
         depth : float
-            The optical depth of dense matter, of which a thousandth of the places has more, through a twentieth of the box.
+            The optical depth of dense matter through a twentieth of the box. Dense is the density that only a
+            thousandth of the places exceeds.
         name : str
             What the volume of the mean is called, which is not visible itself.
         spacing, size : optional

@@ -88,7 +88,7 @@ def _step(array: Any) -> int:
 
 
 def volume_of_pieces(array: Any, axes: str, place: Place, space: int) -> Any:
-    """An hl_volume of an array that is read slice by slice; the file that its voxels go through is gone afterwards."""
+    """An hl_volume of an array that is read slice by slice. The file through which its voxels go is removed afterwards."""
     kind = np.dtype(array.dtype).str[1:]
     stored = "u1" if kind == "b1" else "f4" if kind == "f2" else kind
     if stored not in _TYPES:

@@ -18,7 +18,7 @@ _IMAGE = {"pixels": None, "value": None, "second": None}
 
 
 def _parts(place: str, given: Any, standard: Mapping[str, Any], optional: Sequence[str] = ()) -> dict[str, Any]:
-    """The members of a shape, those that are not given as `standard` says."""
+    """The members of a shape; those that are not given are taken from `standard`."""
     if not isinstance(given, Mapping):
         raise TypeError(f"{place}: {given!r} is no dict")
     for word in given:
@@ -69,7 +69,7 @@ def _image(place: str, given: Any) -> dict[str, Any]:
 
 
 class Plane:
-    """What a function of two numbers shows in their plane. Not for users: TransferFunction has the keywords."""
+    """What a function of two numbers shows in the plane of these numbers. Users give the keywords of TransferFunction."""
 
     __slots__ = ("boxes", "image", "polygons", "second")
 

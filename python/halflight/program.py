@@ -117,7 +117,7 @@ class Viewing:
         self._process, self._folder, self.url = process, folder, url
 
     def wait(self) -> None:
-        """Until the viewer ends, as by Ctrl-C."""
+        """Wait until the viewer ends, as by Ctrl-C."""
         try:
             self._process.wait()
         except KeyboardInterrupt:
@@ -145,7 +145,7 @@ class Viewing:
 
 
 def view(source: Any, *, browser: bool = True, options: Sequence[str] = (), **asked: Unpack[Asked]) -> Viewing:
-    """The viewer in the browser, outside of notebooks: ``halflight view`` of a scene. In notebooks: `show`.
+    """Show a scene with the viewer in a browser, as ``halflight view`` does. In notebooks, use `show`.
 
     Parameters
     ----------

@@ -354,7 +354,7 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
         The data values that colours and, unless `opacity` has values of its own, opacities spread over; texts
         such as "1%" and "99.5%" are percentiles of the data.
     log_scale : bool, optional
-        Spread them evenly over the logarithms of the values: `clim` must be above 0.
+        Spread colours and opacities evenly over the logarithms of the values; `clim` must be above 0.
     opacity : float, str or sequence, optional
         A number for all values; "linear", "sigmoid" or "geom" over `clim`; numbers spread evenly over `clim`; or
         pairs (value, opacity). Per `opacity_unit_distance`.

@@ -221,8 +221,8 @@ class Scene:
         """The scene with its data as one page for browsers, with camera, light and all panels alive.
 
         It opens from a disk. Volumes are cut to the box that shows anything, and lie in 8 bits where these hold all values.
-        The viewer's page itself is made by ``scripts/web``: the package has it where it was there when the package was built;
-        elsewhere the environment's ``HALFLIGHT_PAGE`` names it.
+        The viewer's page itself is made by ``scripts/web``. A package has the page if it was there when the package was
+        built; otherwise the variable ``HALFLIGHT_PAGE`` of the environment names it.
 
         Parameters
         ----------
@@ -351,7 +351,7 @@ class Scene:
 
     @property
     def exposure(self) -> float:
-        """Stops, for PNG alone."""
+        """How much brighter a PNG shows the scene, in stops."""
         exposure: float = self._struct.exposure
         return exposure
 
@@ -363,7 +363,7 @@ class Scene:
 
     @property
     def settings(self) -> Mapping[str, Any]:
-        """The `render` keys."""
+        """The settings of the scene file's `render`, by their names."""
         return _settings.read(self._struct.render, lib.HL_SETTINGS_RENDER)
 
     def __repr__(self) -> str:
@@ -396,7 +396,7 @@ def _set_meshes(struct: Any, meshes: Mesh | Sequence[Mesh], keep: list[Any]) -> 
 
 
 def _forget_sky(struct: Any) -> None:
-    """The sky that was chosen for a volume leaves nothing but its zenith."""
+    """Remove the sky that was chosen for a volume, but keep its zenith."""
     plain = ffi.new("hl_scene_description *")
     lib.hl_scene_description_defaults(plain)
     plain.sky.up = list(struct.up)
@@ -473,7 +473,7 @@ def _set_camera(struct: Any, camera: Any) -> None:
 
 
 def _for_meshes() -> Any:
-    """A scene that meshes alone begin with: the program's camera and light for them."""
+    """An empty scene with the camera and the light that the program gives to meshes alone."""
     text = (b'{"halflight": 1, "meshes": [{"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 1]], "triangles": [[0, 1, 2]]}]}')
     return made(lib.hl_scene_from_json, "hl_scene", lib.hl_scene_release, context, text, len(text), ffi.NULL, b"meshes")
 

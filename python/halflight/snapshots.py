@@ -186,7 +186,7 @@ def _smoothing(paths: list[str], name: str, masses: Any, header: dict[str, Any])
 
 
 def _period(header: dict[str, Any], positions: np.ndarray[Any, Any]) -> Any:
-    """The periodic box: particles of an isolated system do not lie within BoxSize, or do not fill it."""
+    """The periodic box, if there is one: particles of an isolated system do not lie within BoxSize, or do not fill it."""
     sizes = np.atleast_1d(header.get("BoxSize", 0)).astype(np.float64)
     sizes = np.repeat(sizes, 3) if sizes.size == 1 else sizes
     finite = positions[np.isfinite(positions).all(axis=1)]

@@ -93,7 +93,7 @@ class TransferFunction:
         Parameters
         ----------
         property : vtkVolumeProperty or vtkPiecewiseFunction
-            Midpoints, sharpness and colour spaces are kept by points in between.
+            Further points between the nodes keep the effect of midpoints, sharpness and colour spaces.
         colors : vtkColorTransferFunction, optional
             Beside a vtkPiecewiseFunction.
         unit_distance : float, optional
@@ -105,7 +105,8 @@ class TransferFunction:
 
     @classmethod
     def from_napari(cls, layer: Any, *, unit_distance: float = 1.0) -> TransferFunction:
-        """The colours of a napari image layer over its contrast limits, and opacity that rises with them, times the layer's.
+        """The colours of a napari image layer over its contrast limits; opacity rises over these limits up to the
+        layer's.
 
         Parameters
         ----------

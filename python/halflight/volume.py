@@ -231,10 +231,10 @@ class Volume:
         "luminance" for voxels with colours; a DICOM series by number, UID or description; the number of the time
         step, channel and resolution. `array` chooses a variable of an xarray.Dataset, too.
     copy : bool
-        The voxels of an array are copied: it may be changed.
+        Copy the voxels of an array, which may then be changed.
     smooth : float, optional
-        Smooth the voxels by a Gaussian of so many voxels along each axis; 0: not at all. Without it brains without
-        their skull, which end in a cliff of voxels, and thick slices are smoothed by 0.8.
+        Smooth the voxels by a Gaussian of so many voxels along each axis; 0: not at all. By default, 0.8 for brains
+        without their skull, which end in a cliff of voxels, and for thick slices; 0 for all else.
     **look : Look
         How it looks and where it stands: `name`, `transfer_function`, `clip`, `scale`, and the keywords of
         `halflight.keywords.VolumeSettings` and `MaterialSettings`.

@@ -33,7 +33,7 @@ def _values(nodes: np.ndarray[Any, Any], straight: bool) -> np.ndarray[Any, Any]
 
 
 def _piecewise(function: Any) -> np.ndarray[Any, Any]:
-    """Rows (value, y). Values that occur twice are a step, which the nodes tell."""
+    """Rows (value, y) of a curve. Where the nodes have a step, the value occurs twice."""
     nodes = _nodes(function, 4)
     straight = bool(np.all(nodes[:, 2] == 0.5) and np.all(nodes[:, 3] == 0))
     if straight:

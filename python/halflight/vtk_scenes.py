@@ -61,7 +61,9 @@ class _Taken:
         self.maximum = self.nearest = False
 
     def color(self, shown: Any) -> Any:
-        """A colour of VTK's as this scene's numbers: linear light, or the numbers themselves where VTK's shading is asked for."""
+        """A colour of VTK's in the numbers of this scene: linear light, or VTK's own numbers where its shading is asked
+        for.
+        """
         values = np.asarray(shown, dtype=np.float64)
         return values if self.display else colors.to_linear(np.clip(values, 0, 1))
 

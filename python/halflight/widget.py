@@ -37,7 +37,7 @@ class _OutdatedError(Exception):
 
 
 class _NoBaseError(Exception):
-    """The scene that a difference is from is not held."""
+    """A page sent a difference from a scene that is not held any more."""
 
 
 def _changed(base: Any, part: Any) -> Any:

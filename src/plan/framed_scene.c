@@ -51,7 +51,8 @@ static void move_volume(const hl_frame_space *space, hl_scene_volume *volume) {
     function->plane.second_scale = hl_plane_second_scale(&function->plane) / space->unit;
 }
 
-/* Gradients are per unit of length. points: room for the volume's gradient opacity. */
+/* Moves the gradient opacity to frame space: gradients are per unit of length. points: room for the new
+ * points. */
 static void move_gradients(const hl_frame_space *space, hl_transfer_function *function,
                            hl_opacity_point *points) {
   if (function->gradient_opacity_count == 0) return;
