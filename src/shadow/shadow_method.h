@@ -129,7 +129,9 @@ struct shadow_method {
   int first_slab;     /* where shadows of a near light within a slab begin. 0: with the part of this slab that
                        * lies beyond the light; 1: with the next slab */
   /* The number of the buffer's pixels by which surfaces take light late (surface/late/lateness.h), where
-   * look-ups are bilinear. Methods that blur by a pixel or more need a greater delay. */
+   * look-ups are bilinear. Such look-ups read less than a pixel to each side, so that the least delay at
+   * which a flat surface does not darken itself is 1. Methods that blur by a pixel or more need a greater
+   * delay. */
   double surface_delay;
   double surface_rise; /* number of pixels by which surfaces lie higher in the buffer than they are */
   void (*plan)(light_shadow *shadow);

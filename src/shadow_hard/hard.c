@@ -14,5 +14,4 @@ static void plan_hard(light_shadow *shadow) {
   hl_shadow_view(shadow->setup.source, shadow->setup.source->direction, &plan->extent, &plan->view);
 }
 
-const shadow_method hl_shadow_hard = {
-    .name = "hard", .surface_delay = 0.75, .plan = plan_hard, .divides = true};
+const shadow_method hl_shadow_hard = {.name = "hard", .surface_delay = 1, .plan = plan_hard, .divides = true};
