@@ -15,7 +15,7 @@ import os
 import queue
 import threading
 import time
-from typing import Any, Unpack
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
@@ -26,6 +26,9 @@ from .render import Asked, Renderer, scene_for
 from .scene import Scene
 from .transfer import colormap_points
 from .volume import Source, Volume
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 __all__ = ["show"]
 
@@ -151,9 +154,10 @@ def _composed(scene: Scene, choices: dict[str, str]) -> Scene:
 class _Frames(threading.Thread):
     """Answers what the page asks, in turn; frames of which a newer one is asked for are not rendered."""
 
-    def __init__(self, named: _Named, title: str, send: Any) -> None:
+    def __init__(self, named: _Named, title: str, send: Any, keep: Callable[[bytes], None]) -> None:
         super().__init__(name="halflight.show", daemon=True)
         self.named, self.title, self.send = named, title, send
+        self.keep = keep  # takes the PNG of a frame at rest
         self.scene = named.scene  # what a page begins with
         self.last: Image | None = None  # the last frame that was wanted as a picture
         self.asked: queue.SimpleQueue[tuple[contextvars.Context, dict[str, Any]] | None] = queue.SimpleQueue()
@@ -241,9 +245,16 @@ class _Frames(threading.Thread):
         rendered = time.monotonic()
         self.last = image
         kind, content = _encoded(image, message)
+        if _is_still(message):
+            self.keep(content)
         times = {"read": 1e3 * (read - began), "render": 1e3 * (rendered - read),
                  "encode": 1e3 * (time.monotonic() - rendered)}
         return {"type": kind, "times": times}, [content]
+
+
+def _is_still(message: dict[str, Any]) -> bool:
+    """Whether a frame that is asked for is one at rest, as the page shows it where no kernel answers (widget.js)."""
+    return message["format"] == "png" and message["depth"] == 8 and not message.get("moving") and not message.get("lane")
 
 
 def _make_class() -> Any:
@@ -272,6 +283,8 @@ def _make_class() -> Any:
         _esm = _page.module()
         sheet = traits.Unicode(_page.style()).tag(sync=True)
         height = traits.Int(560).tag(sync=True)
+        # The last frame at rest, a PNG. A page that has a kernel holds its own: an echo would send each frame once more.
+        still = traits.Bytes().tag(sync=True, echo_update=False)
 
         def __init__(self, scene: Scene, title: str, height: int) -> None:
             super().__init__(height=height)
@@ -281,7 +294,7 @@ def _make_class() -> Any:
             self.camera, self.lights = scene.camera, scene.lights
             self._from_page = False
             self.observe(self._set_from_python, ["camera", "lights"])
-            self._frames = _Frames(self._named, title, self.send)
+            self._frames = _Frames(self._named, title, self.send, lambda png: self.set_state({"still": png}))
             self._frames.start()
             self.on_msg(self._on_message)
 
@@ -340,12 +353,13 @@ def _make_class() -> Any:
             return text
 
         def _repr_mimebundle_(self, **words: Any) -> Any:
-            """The widget, and its picture for pages that run none: GitHub's, nbconvert's."""
+            """The widget, and its picture for pages that run none, such as GitHub's."""
             bundle = super()._repr_mimebundle_(**words)
             plain, *rest = bundle if isinstance(bundle, tuple) else (bundle,)
             if plain is None:
                 return bundle
-            plain = {**plain, "image/png": base64.b64encode(self.picture()._repr_png_()).decode()}
+            self.still = self.picture()._repr_png_()
+            plain = {**plain, "image/png": base64.b64encode(self.still).decode()}
             return (plain, *rest) if isinstance(bundle, tuple) else plain
 
         def close(self) -> None:
@@ -364,6 +378,7 @@ def show(volume: Source, *, height: int = 560, title: str | None = None, **asked
 
     Needs anywidget (``pip install anywidget``); frames come through the notebook's own connection, so that it works
     in JupyterLab, VS Code and Colab and behind a hub. Pillow, where it is installed, makes moving pictures smaller.
+    A notebook that is exported to HTML with the state of its widgets shows the last frame.
 
     Parameters
     ----------

@@ -1,4 +1,5 @@
 """The viewer's traits with the real anywidget, without a browser: tests/notebook has one."""
+import base64
 import json
 import re
 import sys
@@ -69,6 +70,15 @@ def test_pages_without_widgets_show_the_picture(viewer):
     bundle = viewer._repr_mimebundle_()
     data = bundle[0] if isinstance(bundle, tuple) else bundle
     assert "application/vnd.jupyter.widget-view+json" in data and data["image/png"].startswith("iVBOR")
+    assert viewer.get_state("still")["still"] == base64.b64decode(data["image/png"])  # what an exported notebook's widget shows
+
+
+def test_frames_at_rest_are_the_state_and_are_not_sent_back(viewer):
+    """The page has them already."""
+    messages = []
+    viewer.comm.send = lambda *content, **words: messages.append(words)
+    viewer._frames.keep(b"a picture")
+    assert viewer.get_state("still") == {"still": b"a picture"} and not any(words.get("buffers") for words in messages)
 
 
 def test_colab_is_told_where_the_widgets_code_lies(viewer, monkeypatch):

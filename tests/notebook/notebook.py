@@ -20,9 +20,11 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "viewer"
 import checks  # noqa: E402  (the folder is added above)
 from browser import Browser  # noqa: E402
 from checks import check  # noqa: E402
+from exported import check_export, keep_states_of_widgets  # noqa: E402
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
-PACKAGES = ("jupyterlab>=4", "notebook>=7", "anywidget>=0.9", "numpy", "pillow", "cffi", "axe-core-python")  # the last for ../viewer/tools.py
+# shinywidgets is for exported.py, and the last for ../viewer/tools.py.
+PACKAGES = ("jupyterlab>=4", "notebook>=7", "anywidget>=0.9", "numpy", "pillow", "cffi", "shinywidgets", "axe-core-python")
 CELLS = ["""import numpy, halflight
 z, y, x = numpy.mgrid[-1:1:32j, -1:1:32j, -1:1:32j]
 ball = numpy.exp(-6 * ((x - 0.3) ** 2 + y**2 + 1.5 * z**2)).astype(numpy.float32)
@@ -49,7 +51,7 @@ def skip(reason):
 def environment():
     """The virtual environment's folder of programs."""
     folder = BUILD / "jupyter"
-    if not all((folder / "bin" / program).exists() for program, _, _ in HOSTS.values()):
+    if not all((folder / "bin" / program).exists() for program in (*(host[0] for host in HOSTS.values()), "shiny")):
         made = subprocess.run([sys.executable, "-m", "venv", folder], capture_output=True, text=True)
         if made.returncode != 0:
             skip("python3-venv is not installed")
@@ -91,6 +93,7 @@ class Host:
             [programs / program, "--no-browser", f"--port={port}", "--IdentityProvider.token=test", "--allow-root",
              "--ServerApp.root_dir=" + folder, *settings],
             env={**os.environ, **own}, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        keep_states_of_widgets(folder + "/config")
         self._wait(port)
 
     def _wait(self, port):
@@ -174,10 +177,13 @@ def check_viewer(browser, name, picture):
     run_cell(browser, 2)
     browser.wait(f"({VIEWER}).store.scene.camera.position[0] === 120 && ({VIEWER}).store.scene.lights[0].direction[0] === 1", timeout=300)
     browser.wait(f"({VIEWER}).frames.statistics.stage === 'final'", timeout=300)
-    check(pixels(browser) not in (first, turned), f"{name}: Python's camera and light are seen")
+    last = pixels(browser)
+    check(last not in (first, turned), f"{name}: Python's camera and light are seen")
     problems = [one for one in browser.problems if "to activate" not in one]  # the host's plugins on a busy machine
     check(problems == [], f"{name}: the console has errors: {problems}")
     print(f"{name}: {checks.count} checks passed; frames: {browser.run(f'({VIEWER}).frames.statistics')}")
+    browser.run(f"{PANEL}.context.save().then(() => true)", timeout=120)
+    return last
 
 
 chromium = shutil.which("chromium")
@@ -189,6 +195,7 @@ for name in HOSTS:
         host = Host(name, programs, folder)
         try:
             browser.open(host.url)
-            check_viewer(browser, name, sys.argv[2] + f"/{name}.png" if len(sys.argv) > 2 else None)
+            last = check_viewer(browser, name, sys.argv[2] + f"/{name}.png" if len(sys.argv) > 2 else None)
+            check_export(browser, programs, folder, last, sys.argv[2] + f"/{name} exported.png" if len(sys.argv) > 2 else None)
         finally:
             host.close()

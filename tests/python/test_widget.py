@@ -16,7 +16,9 @@ ARRAY = (np.indices((12, 12, 12)).sum(axis=0) % 7 * 36).astype(np.uint8)
 
 def frames_of(scene):
     answers = queue.Queue()
-    thread = widget._Frames(widget._Named(scene), "title", lambda content, buffers: answers.put((content, buffers)))
+    kept = []
+    thread = widget._Frames(widget._Named(scene), "title", lambda content, buffers: answers.put((content, buffers)), kept.append)
+    thread.kept = kept
     thread.start()
     return thread, answers
 
@@ -48,9 +50,20 @@ def test_frames_are_those_of_the_scene():
                        quality=80)
     assert told["type"] == "image/png"
     image = halflight.Renderer().render(scene)
-
-
     assert np.array_equal(np.asarray(Image.open(io.BytesIO(png)).convert("RGBA")), image.to_srgb8())
+    thread.asked.put(None)
+
+
+def test_frames_at_rest_are_kept():
+    """What a page without a kernel shows: no moving frame, no small picture, and none that is made for a file."""
+    thread, answers = frames_of(halflight.Scene(ARRAY, size=(48, 32)))
+    scene = json.dumps(json.loads(ask(thread, answers, kind="start")[0]["text"])["scene"])
+    still = {"format": "png", "depth": 8, "quality": 80}
+    for number, words in enumerate(({"moving": True}, {"lane": "small"}, {"depth": 16}, {"format": "jpeg"}, {"format": "exr"}), 2):
+        ask(thread, answers, kind="frame", number=number, scene=scene, **still | words)
+    assert thread.kept == []
+    _, (png,) = ask(thread, answers, kind="frame", number=9, scene=scene, **still)
+    assert thread.kept == [png]
     thread.asked.put(None)
 
 

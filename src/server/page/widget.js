@@ -2,6 +2,7 @@
 // package joins this file and those that it imports to one module (python/halflight/_page.py); the other end of the
 // channel is python/halflight/widget.py.
 
+import { make } from "./controls.js";
 import { HeldScene } from "./held_scene.js";
 import { mount } from "./viewer.js";
 
@@ -59,8 +60,21 @@ class WidgetChannel {
     const ask = (number, body, base) => this.#ask("frame", { ...asked, scene: body, ...(base === undefined ? {} : { base }) }, number);
     const { type, times, buffers } = await (lane === "" ? this.#held.send(scene, moving, ask) : ask(++this.#number, JSON.stringify(scene)));
     if (type === undefined) return null; // cancelled
+    if (isStill(asked)) this.#model.set("still", buffers[0]); // the page's own copy: nothing is sent
     return { blob: new Blob(buffers, { type }), times };
   }
+}
+
+// Whether a frame is one at rest, as it is shown where no kernel answers.
+const isStill = ({ format, depth, moving, lane }) => format === "png" && depth === 8 && !moving && lane === "";
+
+// The last frame at rest, until the viewer is there. No kernel answers in a notebook that was exported to HTML.
+function showStill(model, cell) {
+  const bytes = model.get("still");
+  if (!bytes?.byteLength) return;
+  const image = make("img", { class: "halflight-still", alt: "The last frame", src: URL.createObjectURL(new Blob([bytes], { type: "image/png" })) });
+  image.addEventListener("load", () => URL.revokeObjectURL(image.src));
+  cell.append(image);
 }
 
 export async function render({ model, el }) {
@@ -75,6 +89,7 @@ export async function render({ model, el }) {
   cell.style.height = `${model.get("height")}px`;
   shadow.append(cell);
   el.append(place);
+  showStill(model, cell);
   const start = await channel.start();
   const viewer = mount(cell, channel, start);
   el.halflight = viewer; // for the browser's console, and for tests
