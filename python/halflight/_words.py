@@ -14,46 +14,63 @@ def nearest(word: str, known: Collection[str]) -> str:
     """What an error adds: `": did you mean 'x'?"`, or a list of all known words where none is near."""
     import difflib
 
-    found = difflib.get_close_matches(word.lower(), known, 1, 0.5)
+    found = difflib.get_close_matches(word.lower(), known, 1, 0.6)
     return f": did you mean '{found[0]}'?" if found else f": use one of {', '.join(known)}"
 
 
-# What other programs call our keywords: the keyword, and how it is given where its name does not tell.
-_ELSEWHERE = {word: (keyword, f" Give {keyword}={form}" if form[0] in "([{" else "") for keyword, form, words in (
-    ("clim", "(low, high)", "vmin vmax clims contrast_limits rng scalar_range value_range window level"),
-    ("size", "(width, height)", "window_size image_size figsize resolution width height shape"),
-    ("iso", "[value, ...]", "isosurfaces isosurface isovalue isovalues contours iso_threshold threshold"),
-    ("cmap", "name", "colormap color_map colourmap lut palette colormaps"),
+# What other programs call our keywords: the keyword, and how it is given where its name does not tell. A word may stand for several: the first that a
+# function has is named.
+_ELSEWHERE = (
+    ("clim", "(low, high)", "vmin vmax clims contrast_limits range rng scalar_range value_range window level"),
+    ("size", "(width, height)", "window_size image_size figsize resolution width height shape dpi"),
+    ("iso", "[value, ...]", "isosurfaces isosurface isovalue isovalues isolevel contours iso_threshold threshold"),
+    ("cmap", "name", "colormap color_map colourmap lut palette colormaps colors"),
     ("spacing", "(dz, dy, dx)", "voxel_size voxelsize voxel_spacing pixdim pixel_size zooms scales"),
     ("background", "color", "bg bgcolor background_color bg_color facecolor"),
+    ("fovy_deg", "degrees", "fov fovy view_angle"),
     ("camera", "(azimuth, elevation)", "cpos camera_position view viewpoint azimuth elevation azim elev"),
+    ("camera", "[position, target, up]", "focal_point look_at lookat view_up viewup"),
+    ("camera", "Camera(...)", "fov fovy view_angle zoom parallel_projection parallel_scale"),
     ("opacity_unit_distance", "length", "opacity_unit scalar_opacity_unit_distance sample_distance"),
     ("lights", "[Directional(...), ...]", "light lightkit light_position light_direction"),
     ("threads", "number", "n_threads num_threads nthreads n_jobs workers"),
-    ("tf", "name or TransferFunction(...)", "transfer_function opacity_transfer_function preset alpha_map"),
-    ("labels", "label map", "segmentation seg label_map labelmap segments"),
+    ("tf", "name", "transfer_function opacity_transfer_function preset alpha_map"),
+    ("labels", "map", "segmentation seg label_map labelmap segments"),
     ("meshes", "[Mesh(...), ...]", "mesh surfaces surface actors"),
-    ("opacity", "number", "alpha transparency"),
-    ("shade", "True or False", "shading lighting smooth_shading"),
+    ("opacity", "number", "alpha transparency opacities"),
+    ("shade", "word", "shading lighting smooth_shading"),
     ("color", "name", "colour tint face_color facecolors"),
-    ("cuts", "{'type': 'plane', ...}", "clipping_planes clip_planes cutting_planes slicer"),
-    ("log_scale", "True", "log log_norm logscale"),
+    ("cuts", "[{'type': 'plane', ...}]", "clipping_planes clip_planes cutting_planes slicer clip crop roi bounds"),
+    ("log_scale", "True", "log log_norm logscale norm"),
     ("ambient", "factor", "ambient_light"),
+    ("array", "name", "scalars variable field data_var"),
+    ("exposure", "stops", "gamma brightness gain"),
+    ("tone", "name", "tone_mapping tone_mapper tonemap tonemapping"),
+    ("kernel", "name", "interpolation interp interpolation_order"),
+    ("compositing", "name", "blending blend_mode rendering"),
+    ("light_samples", "number", "spp samples n_samples shadow_samples"),
+    ("sheet_spacing", "length", "quality step step_size sampling_rate sampling_distance"),
     ("spheres", "centres", "glyphs centers centres"),
-    ("fovy_deg", "degrees", "fov fovy view_angle"),
     ("target", "(x, y, z)", "focal_point look_at lookat center"),
     ("height", "length", "parallel_scale ortho_scale"),
     ("up", "(x, y, z)", "view_up viewup roll"),
-) for word in words.split()}
+)
+
+
+def _here(word: str, known: Collection[str]) -> str:
+    """What another program's keyword is called here: `": did you mean 'x'?"`, with its form; "" if nothing is known of it."""
+    for keyword, form, words in _ELSEWHERE:
+        if keyword in known and word.lower() in words.split():
+            given = f" Give {keyword}={form}" if not form.isalpha() else ""
+            return f": did you mean '{keyword}'?{given}"
+    return ""
 
 
 def check_keywords(place: str, given: Collection[str], known: Collection[str]) -> None:
     """Raise TypeError for the first unknown keyword, with what it is called here."""
     for word in given:
         if word not in known:
-            keyword, given = _ELSEWHERE.get(word.lower(), ("", ""))
-            hint = f": did you mean '{keyword}'?{given}" if keyword in known else nearest(word, known)
-            raise TypeError(f"{place} has no keyword '{word}'{hint}")
+            raise TypeError(f"{place} has no keyword '{word}'{_here(word, known) or nearest(word, known)}")
 
 
 def choice(place: str, word: object, known: Collection[str]) -> str:

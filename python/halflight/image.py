@@ -13,6 +13,7 @@ from . import colors, picture_files
 from ._library import call, context, encoded, ffi, lib, made
 from ._settings import number, table, to_field
 from ._words import choice, suggests
+from .errors import UnsupportedError
 from .scene import Scene
 
 if TYPE_CHECKING:
@@ -214,6 +215,8 @@ class Image(NDArrayOperatorsMixin):
             kind = choice("format", format, [*_FORMATS, *picture_files.FORMATS])
         else:
             kind = "png" if open_file is not None and ending not in (*_FORMATS, *picture_files.FORMATS) else ending
+            if kind not in (*_FORMATS, *picture_files.FORMATS):
+                raise UnsupportedError(f"{name}: unknown picture format: end the name in .png, .exr, .npy, .jpg, .tif, .pdf or .webp")
         shown = {"background": background is not None, "exposure": exposure is not None, "tone": tone is not None}
         for word, given in ({"depth": depth != 8} | (shown if kind not in picture_files.FORMATS else {})).items():
             if given and kind != "png":
@@ -221,7 +224,7 @@ class Image(NDArrayOperatorsMixin):
                     "its colours have 8 bits" if kind in picture_files.FORMATS else ".exr and .npy hold linear floats"))
         if kind in picture_files.FORMATS:
             content = picture_files.encode(self.to_srgb8(background, exposure, tone), kind)
-        elif open_file is None and kind == ending or kind not in _FORMATS:
+        elif open_file is None and kind == ending:
             call(lib.hl_image_write, context, self._handle if kind != "png" else self._plain(), os.fsencode(name),
                  self._with_scene(self._options(background, exposure, tone, depth), metadata, os.path.dirname(name)))
             return
