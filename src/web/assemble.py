@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes the page without a server of its scripts and of the library as WebAssembly.
 
-usage: assemble.py SIMD.wasm RELAXED.wasm FOLDER
+usage: assemble.py SIMD.wasm RELAXED.wasm THREADS.wasm FOLDER
 Writes FOLDER/page/, static files for any web server, and FOLDER/halflight.html, all of it in one file, which opens from a disk.
 """
 import base64
@@ -50,18 +50,18 @@ def element(name, content):
     return f'<script type="text/plain" data-part="{name}">{packed}</script>'
 
 
-simd, relaxed, folder = (pathlib.Path(one) for one in sys.argv[1:])
+simd, relaxed, threads, folder = (pathlib.Path(one) for one in sys.argv[1:])
 parts = {"worker.js": joined("worker").encode(), "halflight.wasm": simd.read_bytes(), "halflight-relaxed.wasm": relaxed.read_bytes()}
 style, script = read("style.css") + read("tab.css"), joined("tab")
 icon = "data:image/svg+xml," + urllib.parse.quote(read("icon.svg"))
 page = folder / "page"
 page.mkdir(parents=True, exist_ok=True)
-for name, content in {**parts, "style.css": style.encode(), "tab.js": script.encode()}.items():
+for name, content in {**parts, "halflight-threads.wasm": threads.read_bytes(), "style.css": style.encode(), "tab.js": script.encode()}.items():
     (page / name).write_bytes(content)
 (page / "index.html").write_text(PAGE.format(icon=icon, style='<link rel="stylesheet" href="style.css">', script='<script type="module" src="tab.js"></script>'))
 single = PAGE.format(icon=icon, style=f"<style>{style}</style>",
                      script="\n    ".join([element(*one) for one in parts.items()] + [f'<script type="module">{script}</script>']))
 (folder / "halflight.html").write_text(single)
-for name in ("halflight-relaxed.wasm", "halflight.wasm"):
-    print(f"{name}: {len(gzip.compress(parts[name], 9))} bytes compressed")
+for name in ("halflight-relaxed.wasm", "halflight.wasm", "halflight-threads.wasm"):
+    print(f"{name}: {len(gzip.compress((page / name).read_bytes(), 9))} bytes compressed")
 print(f"{folder / 'halflight.html'}: {len(single)} bytes")

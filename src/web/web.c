@@ -9,6 +9,7 @@
 
 #include <halflight/halflight.h>
 
+#include "platform/wasi/threads.h"
 #include "simd/lanes.h"
 #include "start/composed.h"
 #include "start/joined.h"
@@ -23,6 +24,7 @@ static struct {
   hl_preview *preview;                    /* owned; null: not yet made */
   hl_renderer *renderer, *quick, *picker; /* owned; null: not yet made. `quick` makes frames while
                                            * something moves; `picker` finds depths by tiny pictures */
+  int threads;                            /* the greatest number of threads that make a picture */
   char *text;                             /* owned; from the page */
   unsigned char *answer;                  /* owned; from malloc */
   size_t answer_bytes;
@@ -79,8 +81,10 @@ static void progress(void *user_data, const char *stage, double fraction) {
   if (strcmp(stage, "load") == 0) web_progress(fraction);
 }
 
-int web_begin(uint32_t mebibytes) {
+int web_begin(uint32_t mebibytes, int threads) {
   hl_error error = {0};
+  web.threads = threads;
+  hl_helpers_allow(threads);
   hl_context_options options;
   hl_context_options_defaults(&options);
   options.cancelled = cancelled;
@@ -90,6 +94,14 @@ int web_begin(uint32_t mebibytes) {
   if (status == HL_OK) status = hl_context_confine(web.context, NULL, &web.sealed, &error);
   return answer_error(status, &error);
 }
+
+int web_helper_arrive(int number) { return hl_helper_arrive(number); }
+
+void web_helper_serve(int number) { hl_helper_serve(number); }
+
+void *web_room(size_t bytes) { return malloc(bytes); }
+
+void web_release(void *room) { free(room); }
 
 double web_memory_held(void) { return (double)hl_context_memory_held(web.context); }
 
@@ -107,7 +119,7 @@ static bool ends_in(const char *text, const char *ending) {
   return length >= end && strcmp(text + length - end, ending) == 0;
 }
 
-static hl_status load_alone(const char *path, hl_scene **scene, hl_error *error) {
+static hl_status load_by_name(const char *path, hl_scene **scene, hl_error *error) {
   hl_volume *volume = NULL;
   hl_scene_mesh mesh;
   *scene = NULL;
@@ -121,6 +133,13 @@ static hl_status load_alone(const char *path, hl_scene **scene, hl_error *error)
   hl_status status = hl_volume_load(web.context, path, &volume, error);
   if (status == HL_OK) status = hl_scene_for_volume(web.context, volume, path, scene, error);
   hl_volume_release(volume);
+  return status;
+}
+
+static hl_status load_alone(const char *path, hl_scene **scene, hl_error *error) {
+  hl_helpers_allow(1); /* helpers have no files */
+  hl_status status = load_by_name(path, scene, error);
+  hl_helpers_allow(web.threads);
   return status;
 }
 

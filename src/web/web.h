@@ -13,8 +13,18 @@
  * engines may choose to round twice: 0. */
 int web_fuses(void);
 
-/* Makes the context, before all other calls. mebibytes: of memory at most. */
-int web_begin(uint32_t mebibytes);
+/* Makes the context, before all other calls. mebibytes: of memory at most; threads: of a picture at most. */
+int web_begin(uint32_t mebibytes, int threads);
+
+/* Of a file that is linked for several threads: a helper's worker says that it is there, 1 if it has a number
+ * from 0 on that the library knows, and then serves the library and does not return
+ * (platform/wasi/threads.h). */
+int web_helper_arrive(int number);
+void web_helper_serve(int number);
+
+/* Room for the page, such as a helper's stack; null: no memory. */
+void *web_room(size_t bytes);
+void web_release(void *room);
 
 /* Room for a text of the caller, until the next call of this function; null: no memory. */
 char *web_text(size_t bytes);

@@ -16,14 +16,14 @@ sys.path.insert(0, str(ROOT / "tests"))
 from equal_scenes import SIZE_DROPPED, render_with, write_all  # noqa: E402
 
 
-def render_web(wasm, folder, scenes):
+def render_web(wasm, threads, taken, folder, scenes):
     """{name: (bytes, milliseconds)}; a text: why there are none."""
     jobs = [{"scene": scene, "files": files, "out": f"web.npy.d/{scene}", "size": None if scene.endswith(".json") else SIZE_DROPPED}
             for scene, files in scenes]
     (folder / "web.npy.d").mkdir(exist_ok=True)
     (folder / "jobs").write_text(json.dumps(jobs))
     done = subprocess.run(["node", "--experimental-wasm-relaxed-simd", ROOT / "tests" / "web" / "render.mjs", ROOT / "src" / "web" / "page" / "engine.js",
-                           wasm, folder, folder / "jobs"], capture_output=True, text=True)
+                           wasm, folder, folder / "jobs", str(threads), str(taken)], capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(f"{wasm}: {done.stderr.strip()[-800:]}")
     if done.stdout.strip() in ("unknown", "unfused"):
@@ -34,19 +34,21 @@ def render_web(wasm, folder, scenes):
 
 def main():
     web, program = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
-    sets = [("simd", web / "simd" / "src" / "web" / "halflight.wasm"), ("relaxed", web / "relaxed" / "src" / "web" / "halflight.wasm")]
-    if shutil.which("node") is None or not all(wasm.exists() for _, wasm in sets):
+    # Name, file, threads, bytes that lie before all else, number of scenes. Pointers behind two gibibytes are negative numbers for a script.
+    sets = [("simd", "simd/src/web/halflight.wasm", 1, 0, None), ("relaxed", "relaxed/src/web/halflight.wasm", 1, 0, None),
+            ("threads", "relaxed/src/web/halflight-threads.wasm", 3, 0, None), ("behind 2 GiB", "relaxed/src/web/halflight.wasm", 1, 2200000000, 4)]
+    if shutil.which("node") is None or not all((web / wasm).exists() for _, wasm, *_ in sets):
         print("1..1\nok 1 - pictures # SKIP node or the library as WebAssembly is not there: scripts/web makes it")
         return
     with tempfile.TemporaryDirectory(prefix="halflight-web-") as text:
         folder = pathlib.Path(text)
         scenes = write_all(folder, program)
         expected = {scene: render_with([program], folder, scene, "native.npy") for scene, _ in scenes}
-        print(f"1..{len(sets) * len(scenes)}")
+        print(f"1..{sum(len(scenes[:some]) for *_, some in sets)}")
         number = failures = 0
-        for name, wasm in sets:
-            found = render_web(wasm, folder, scenes)
-            for scene, _ in scenes:
+        for name, wasm, threads, taken, some in sets:
+            found = render_web(web / wasm, threads, taken, folder, scenes[:some])
+            for scene, _ in scenes[:some]:
                 number += 1
                 if isinstance(found, str):
                     print(f"ok {number} - {name} {scene} # SKIP {found}")

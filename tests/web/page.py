@@ -195,9 +195,18 @@ class Handler(http.server.SimpleHTTPRequestHandler):
         self.end_headers()
 
 
+class IsolatingHandler(Handler):
+    """A server that isolates its pages, so that their workers may share memory."""
+
+    def end_headers(self):
+        self.send_header("Cross-Origin-Opener-Policy", "same-origin")
+        self.send_header("Cross-Origin-Embedder-Policy", "require-corp")
+        super().end_headers()
+
+
 @contextlib.contextmanager
-def serve(folder):
-    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Handler, directory=folder))
+def serve(folder, handler=Handler):
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(handler, directory=folder))
     server.told, server.arrived = [], threading.Event()
     threading.Thread(target=server.serve_forever, daemon=True).start()
     try:
@@ -210,6 +219,7 @@ def serve(folder):
 HASHES = """<!doctype html><script type="module">
 try {
   const { modules, jobs } = await (await fetch("jobs.json")).json();
+  if (crossOriginIsolated) modules.unshift("halflight-threads.wasm");
   const bytes = async (name) => new Uint8Array(await (await fetch(name)).arrayBuffer());
   const worker = new Worker("worker.js"), answers = [];
   let finish;
@@ -226,7 +236,7 @@ try {
     const digest = await crypto.subtle.digest("SHA-256", await blob.arrayBuffer());
     answers.push([scene, [...new Uint8Array(digest)].map((byte) => byte.toString(16).padStart(2, "0")).join("")]);
   }
-  await fetch("tell", { method: "POST", body: JSON.stringify({ answers }) });
+  await fetch("tell", { method: "POST", body: JSON.stringify({ answers, threads: begun.threads, processors: navigator.hardwareConcurrency }) });
 } catch (error) {
   await fetch("tell", { method: "POST", body: JSON.stringify({ problem: String(error) }) });
 }
@@ -250,15 +260,23 @@ def write_hash_page(page, folder, program):
 
 
 def compare_hashes(command, what, folder, expected):
-    with serve(folder) as (server, url), tempfile.TemporaryDirectory(prefix="halflight-web-profile-") as profile:
+    for handler in (Handler, IsolatingHandler):
+        told = hashes_of(command, folder, handler)
+        threads = 1 if handler is Handler else min(told.get("processors", 0), 8)
+        check(dict(told.get("answers", [])) == expected and told["threads"] == threads,
+              f"{what}: {len(expected)} pictures are the program's, {told.get('threads')} threads: {told.get('problem', '')}")
+
+
+def hashes_of(command, folder, handler):
+    """What a browser tells of the pictures of hashes.html."""
+    with serve(folder, handler) as (server, url), tempfile.TemporaryDirectory(prefix="halflight-web-profile-") as profile:
         browser = subprocess.Popen([*command(profile), urllib.parse.urljoin(url, "hashes.html")], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
             server.arrived.wait(HANG)
         finally:
             browser.terminate()
             browser.wait()
-        told = server.told[0] if server.told else {"problem": "the browser does not answer"}
-        check(dict(told.get("answers", [])) == expected, f"{what}: {len(expected)} pictures are the program's: {told.get('problem', '')}")
+        return server.told[0] if server.told else {"problem": "the browser does not answer"}
 
 
 def main():
@@ -275,6 +293,8 @@ def main():
             try_held_scene(Browser, "Chromium", web / "halflight.html", program, folder)
             with serve(web / "page") as (_, url):
                 try_chromium(url, "Chromium, a folder", program, folder)
+            with serve(web / "page", IsolatingHandler) as (_, url):
+                try_chromium(url, "Chromium, an isolated folder", program, folder)
             compare_hashes(lambda profile: ["chromium", "--headless=new", "--no-sandbox", "--disable-gpu", f"--user-data-dir={profile}"],
                            "Chromium", folder / "page", expected)
         else:

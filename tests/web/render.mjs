@@ -1,19 +1,30 @@
 // Renders scenes by the library as WebAssembly in node, as tests/web/equal.py asks.
 //
-// usage: node render.mjs ENGINE.js FILE.wasm FOLDER JOBS.json
-// JOBS.json: [{ scene, files, out, size }], names in FOLDER; scene may be a volume, or a folder. Prints one line for each picture: "NAME MILLISECONDS", or "unfused".
+// usage: node render.mjs ENGINE.js FILE.wasm FOLDER JOBS.json THREADS TAKEN
+// TAKEN: bytes of the library's memory that nothing else may use, so that what it makes lies behind them. JOBS.json: [{ scene, files, out, size }], names in FOLDER; scene may be a volume, or a folder. Prints one line for each picture: "NAME MILLISECONDS", or "unfused".
 
 import fs from "node:fs";
 import path from "node:path";
+import { Worker } from "node:worker_threads";
 
-const [engine, wasm, folder, jobs] = process.argv.slice(2);
-const { Engine } = await import(path.resolve(engine));
+const [engineFile, wasm, folder, jobs, threads, taken] = process.argv.slice(2), engine = path.resolve(engineFile);
+const { Engine } = await import(engine);
 const bytes = fs.readFileSync(wasm);
 if (!WebAssembly.validate(bytes)) {
   console.log("unknown");
   process.exit(0);
 }
-const library = await Engine.of(await WebAssembly.compile(bytes));
+const help = (work) => new Promise((ready, failed) => {
+  new Worker(new URL("helper.mjs", import.meta.url), { workerData: { engine, work } }).once("message", ready).once("error", failed);
+});
+const PIECE = (1 << 29) - (1 << 16); // one block is of less than two gibibytes, and a power of two is not quite filled
+const Instance = WebAssembly.Instance;
+WebAssembly.Instance = function (...of) {
+  const made = new Instance(...of);
+  for (let left = Number(taken); left > 0; left -= PIECE) if (made.exports.web_room(PIECE) === 0) throw new Error(`no ${taken} bytes of memory`);
+  return made;
+};
+const library = await Engine.of(await WebAssembly.compile(bytes), { help }, Number(threads));
 if (!library.fuses) {
   console.log("unfused");
   process.exit(0);
@@ -26,3 +37,4 @@ for (const { scene, files, out, size } of JSON.parse(fs.readFileSync(jobs))) {
   fs.writeFileSync(path.join(folder, out), await library.frame(start.scene, { format: "npy" }));
   console.log(scene, Math.round(performance.now() - began));
 }
+process.exit(0); // helpers wait for ever

@@ -15,8 +15,6 @@
 /* The tag of the exceptions that longjmp() throws: clang names it in each file and defines it in none. */
 __asm__(".globl __c_longjmp\n.tagtype __c_longjmp i32\n__c_longjmp:\n");
 
-int hl_cpu_count(void) { return 1; }
-
 double hl_cpu_quota(const char *root) {
   (void)root;
   return INFINITY;

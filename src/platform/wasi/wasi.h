@@ -1,7 +1,7 @@
 /* platform/wasi/wasi.h - what the sources ask of POSIX and WASI does not declare: included before each source
  * of a build for WebAssembly.
  *
- * A page has one user and one thread. It has no signals, no libraries that are loaded later, and no disk for
+ * A page has one user. It has no signals, no libraries that are loaded later, and no disk for
  * scratch files. The functions fail as they do on a system that has none left. This header includes no other:
  * sources choose the names that the system's headers declare. */
 #ifndef HL_PLATFORM_WASI_WASI_H

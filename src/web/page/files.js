@@ -6,6 +6,9 @@ const FOLDER = 3, REGULAR = 4; // types of files
 const PIECE = 4 << 20; // bytes that are read ahead of a file of the disk
 const ROOT = 3; // the descriptor of "/"
 
+// Pointers of more than two gibibytes come as negative numbers.
+const unsigned = (value) => (typeof value === "number" ? value >>> 0 : value);
+
 // Bytes of a Uint8Array, or of a Blob, which only a worker can read at once.
 function reader(content) {
   if (content instanceof Uint8Array) return { size: content.length, read: (at, count) => content.subarray(at, at + count) };
@@ -44,7 +47,7 @@ export class Files {
 
   // What `path` is below the folder of a descriptor: { path, entry }; entry: true (a folder), what is read, or undefined.
   #find(descriptor, pointer, length) {
-    const at = this.#open.get(descriptor), name = new TextDecoder().decode(this.#bytes(pointer, length));
+    const at = this.#open.get(descriptor), name = new TextDecoder().decode(this.#bytes(pointer, length).slice());
     const parts = [];
     for (const part of `${at?.path}/${name}`.split("/"))
       if (part === "..") parts.pop();
@@ -93,7 +96,7 @@ export class Files {
       environ_get: () => SUCCESS,
       proc_exit: (code) => { throw new Error(`the library ended with ${code}`); },
       sched_yield: () => SUCCESS,
-      random_get: (pointer, count) => { crypto.getRandomValues(this.#bytes(pointer, count)); return SUCCESS; },
+      random_get: (pointer, count) => { this.#bytes(pointer, count).set(crypto.getRandomValues(new Uint8Array(count))); return SUCCESS; },
       clock_time_get: (clock, precision, pointer) => {
         const milliseconds = clock === 0 ? Date.now() : performance.now();
         this.#view().setBigUint64(pointer, BigInt(Math.round(milliseconds * 1e6)), true);
@@ -188,7 +191,7 @@ export class Files {
     return new Proxy({}, {
       get: (_, name) => (...values) => {
         this.#memory = memory();
-        return calls[name]?.(...values) ?? NO_CALL;
+        return calls[name]?.(...values.map(unsigned)) ?? NO_CALL;
       },
     });
   }

@@ -7,6 +7,9 @@ async function unpacked(element) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
+// Whether the parts are files beside the page.
+export const isFolder = () => document.querySelector("script[data-part]") === null;
+
 // The bytes of a part.
 export async function part(name) {
   const element = document.querySelector(`script[data-part="${name}"]`);

@@ -2,7 +2,7 @@
 // do not leave the machine.
 
 import { chosenFiles, droppedFiles } from "./dropped.js";
-import { heldFiles, part } from "./parts.js";
+import { heldFiles, isFolder, part } from "./parts.js";
 import { isOfOpen, keepSession, keptSession, restoreFrom } from "./session.js";
 import { mount } from "./viewer.js";
 import { WorkerChannel } from "./worker_channel.js";
@@ -26,7 +26,9 @@ const welcome = make("section", { className: "tab-welcome" },
 let channel = null;
 
 async function begin() {
-  const [script, ...modules] = await Promise.all(["worker.js", "halflight-relaxed.wasm", "halflight.wasm"].map(part));
+  // Workers share memory where the page's server isolates it; one file has one thread anywhere.
+  const threads = globalThis.crossOriginIsolated && isFolder() ? ["halflight-threads.wasm"] : [];
+  const [script, ...modules] = await Promise.all(["worker.js", ...threads, "halflight-relaxed.wasm", "halflight.wasm"].map(part));
   const url = URL.createObjectURL(new Blob([script], { type: "text/javascript" }));
   channel = new WorkerChannel(new Worker(url));
   channel.onProgress = (fraction) => { message.textContent = `reading: ${Math.round(100 * fraction)} %`; };

@@ -41,10 +41,18 @@ async function blobOf(bytes, format, { width, height }, quality) {
   return canvas.convertToBlob({ type: "image/jpeg", quality: quality / 100 });
 }
 
+// A helper of the library's threads: this script in a worker of its own.
+const help = (work) => new Promise((ready, failed) => {
+  const helper = new Worker(location.href);
+  helper.onmessage = ready;
+  helper.onerror = failed;
+  helper.postMessage({ kind: "help", work });
+});
+
 const calls = {
   async begin({ modules }) {
-    engine = await Engine.best(modules, { cancelled, progress: (part) => postMessage({ part }) });
-    return {};
+    engine = await Engine.best(modules, { cancelled, help, progress: (part) => postMessage({ part }) });
+    return { threads: engine.threads };
   },
   open: async ({ contents, path, title }) => ({ start: await engine.open(contents, path, title) }),
   join: async ({ scene, contents, path, title }) => ({ start: await engine.join(scene, contents, path, title) }),
@@ -83,7 +91,8 @@ async function answerSlices() {
 
 let last = Promise.resolve();
 addEventListener("message", ({ data }) => {
-  if (data.kind === "cancel") gone.add(data.number);
+  if (data.kind === "help") Engine.help(data.work, () => postMessage({}));
+  else if (data.kind === "cancel") gone.add(data.number);
   else if (data.kind === "slice" && current !== 0 && Engine.waits) slices.push(data);
   else last = last.then(() => answer(data)).then(answerSlices);
 });

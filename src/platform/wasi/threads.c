@@ -1,0 +1,222 @@
+/* platform/wasi/threads.c - see threads.h: POSIX threads over WebAssembly's atomic waits, in place of the C
+ * library's functions, which start no thread and wait for none, and a lock around its memory, which is made
+ * for one thread.
+ *
+ * A mutex is Drepper's second one ("Futexes are tricky", 2011): 0 open, 1 held, 2 held and waited for. A
+ * condition is a count of its signals: who waits sleeps while the count is what it was before the mutex was
+ * opened. */
+#include "platform/wasi/threads.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stddef.h>
+
+enum { MISSING, FREE, TAKEN, CALLED, RETURNED }; /* states of a helper */
+
+typedef struct helper {
+  atomic_int state;
+  void *(*function)(void *);
+  void *argument;
+} helper;
+
+static helper helpers[MOST_HELPERS];
+static atomic_int allowed = 1;
+
+/* Sleeps while a number is what is expected. The numbers are 32 bits, as the instructions want. */
+static void wait_while(atomic_int *number, int expected) {
+  __builtin_wasm_memory_atomic_wait32((int *)number, expected, -1);
+}
+
+static void wake(atomic_int *number, unsigned count) {
+  __builtin_wasm_memory_atomic_notify((int *)number, count);
+}
+
+/* ---- helpers ---- */
+
+void hl_helpers_allow(int threads) { atomic_store(&allowed, threads); }
+
+int hl_helpers_free(void) {
+  int count = 0;
+  for (int i = 0; i < MOST_HELPERS; i++) count += atomic_load(&helpers[i].state) == FREE;
+  return count;
+}
+
+int hl_cpu_count(void) {
+  int most = atomic_load(&allowed), count = 1 + hl_helpers_free();
+  return count < most ? count : most;
+}
+
+bool hl_helper_arrive(int number) {
+  if (number < 0 || number >= MOST_HELPERS) return false;
+  atomic_store(&helpers[number].state, FREE);
+  return true;
+}
+
+static void set_state(helper *one, int state) {
+  atomic_store(&one->state, state);
+  wake(&one->state, (unsigned)-1);
+}
+
+void hl_helper_serve(int number) {
+  helper *self = &helpers[number];
+  for (;;) {
+    int state = atomic_load(&self->state);
+    if (state != CALLED) {
+      wait_while(&self->state, state);
+      continue;
+    }
+    self->function(self->argument);
+    set_state(self, RETURNED);
+  }
+}
+
+/* ---- threads ---- */
+
+int pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*function)(void *),
+                   void *argument) {
+  (void)attributes;
+  for (int i = 0; i < MOST_HELPERS; i++) {
+    int expected = FREE;
+    if (!atomic_compare_exchange_strong(&helpers[i].state, &expected, TAKEN)) continue;
+    helpers[i].function = function;
+    helpers[i].argument = argument;
+    set_state(&helpers[i], CALLED);
+    *thread = (pthread_t)&helpers[i];
+    return 0;
+  }
+  return EAGAIN;
+}
+
+int pthread_join(pthread_t thread, void **result) {
+  helper *one = (helper *)thread;
+  for (int state; (state = atomic_load(&one->state)) != RETURNED;) wait_while(&one->state, state);
+  if (result != NULL) *result = NULL; /* no caller asks for it */
+  set_state(one, FREE);
+  return 0;
+}
+
+/* ---- mutexes and conditions ---- */
+
+static void lock(atomic_int *number) {
+  int found = 0;
+  if (atomic_compare_exchange_strong(number, &found, 1)) return;
+  if (found != 2) found = atomic_exchange(number, 2);
+  while (found != 0) {
+    wait_while(number, 2);
+    found = atomic_exchange(number, 2);
+  }
+}
+
+static void unlock(atomic_int *number) {
+  if (atomic_exchange(number, 0) == 2) wake(number, 1);
+}
+
+static atomic_int *number_of(void *object) { return object; }
+
+int pthread_mutex_init(pthread_mutex_t *mutex, const pthread_mutexattr_t *attributes) {
+  (void)attributes;
+  atomic_store(number_of(mutex), 0);
+  return 0;
+}
+
+int pthread_mutex_destroy(pthread_mutex_t *mutex) {
+  (void)mutex;
+  return 0;
+}
+
+int pthread_mutex_lock(pthread_mutex_t *mutex) {
+  lock(number_of(mutex));
+  return 0;
+}
+
+int pthread_mutex_unlock(pthread_mutex_t *mutex) {
+  unlock(number_of(mutex));
+  return 0;
+}
+
+int pthread_cond_init(pthread_cond_t *condition, const pthread_condattr_t *attributes) {
+  (void)attributes;
+  atomic_store(number_of(condition), 0);
+  return 0;
+}
+
+int pthread_cond_destroy(pthread_cond_t *condition) {
+  (void)condition;
+  return 0;
+}
+
+int pthread_cond_wait(pthread_cond_t *condition, pthread_mutex_t *mutex) {
+  int before = atomic_load(number_of(condition));
+  pthread_mutex_unlock(mutex);
+  wait_while(number_of(condition), before);
+  pthread_mutex_lock(mutex);
+  return 0;
+}
+
+int pthread_cond_broadcast(pthread_cond_t *condition) {
+  atomic_fetch_add(number_of(condition), 1);
+  wake(number_of(condition), (unsigned)-1);
+  return 0;
+}
+
+int pthread_cond_signal(pthread_cond_t *condition) { return pthread_cond_broadcast(condition); }
+
+/* ---- memory ---- */
+
+/* The linker calls these for the functions that they are named after (scripts/wasm.ini). */
+void *__real_malloc(size_t bytes);
+void *__real_calloc(size_t count, size_t bytes);
+void *__real_realloc(void *memory, size_t bytes);
+void *__real_aligned_alloc(size_t alignment, size_t bytes);
+int __real_posix_memalign(void **memory, size_t alignment, size_t bytes);
+void __real_free(void *memory);
+void *__wrap_malloc(size_t bytes);
+void *__wrap_calloc(size_t count, size_t bytes);
+void *__wrap_realloc(void *memory, size_t bytes);
+void *__wrap_aligned_alloc(size_t alignment, size_t bytes);
+int __wrap_posix_memalign(void **memory, size_t alignment, size_t bytes);
+void __wrap_free(void *memory);
+
+static atomic_int memory_lock;
+
+void *__wrap_malloc(size_t bytes) {
+  lock(&memory_lock);
+  void *memory = __real_malloc(bytes);
+  unlock(&memory_lock);
+  return memory;
+}
+
+void *__wrap_calloc(size_t count, size_t bytes) {
+  lock(&memory_lock);
+  void *memory = __real_calloc(count, bytes);
+  unlock(&memory_lock);
+  return memory;
+}
+
+void *__wrap_realloc(void *memory, size_t bytes) {
+  lock(&memory_lock);
+  void *moved = __real_realloc(memory, bytes);
+  unlock(&memory_lock);
+  return moved;
+}
+
+void *__wrap_aligned_alloc(size_t alignment, size_t bytes) {
+  lock(&memory_lock);
+  void *memory = __real_aligned_alloc(alignment, bytes);
+  unlock(&memory_lock);
+  return memory;
+}
+
+int __wrap_posix_memalign(void **memory, size_t alignment, size_t bytes) {
+  lock(&memory_lock);
+  int failed = __real_posix_memalign(memory, alignment, bytes);
+  unlock(&memory_lock);
+  return failed;
+}
+
+void __wrap_free(void *memory) {
+  lock(&memory_lock);
+  __real_free(memory);
+  unlock(&memory_lock);
+}
