@@ -106,11 +106,13 @@ static int refuse_value(const cli_option *option, const char *text) {
   return fail(EXIT_CODE_USAGE, "--%s: '%s' is not %s", option->name, text, option->argument);
 }
 
-static bool parse_choice(const cli_option *option, const char *text, cli_value *value) {
+/* Reads a choice, in upper or lower case. *text becomes the choice's own name. */
+static bool parse_choice(const cli_option *option, const char **text, cli_value *value) {
   for (const cli_choice *choice = option->choices; choice != NULL && choice->name != NULL; choice++)
-    if (choice->value != CHOICE_RESERVED && strcmp(choice->name, text) == 0) {
+    if (choice->value != CHOICE_RESERVED && hl_plain_equal(choice->name, *text)) {
       value->chosen = true;
       value->choice = choice->value;
+      *text = choice->name;
       return true;
     }
   return false;
@@ -160,13 +162,13 @@ static int parse_value(const cli_option *option, const char *text, cli_value *va
   switch (option->kind) {
     case OPTION_SWITCH: good = true; break;
     case OPTION_TEXT: good = text[0] != '\0'; break;
-    case OPTION_CHOICE: good = parse_choice(option, text, value); break;
+    case OPTION_CHOICE: good = parse_choice(option, &text, value); break;
     case OPTION_NUMBERS:
-      good = parse_choice(option, text, value) || parse_numbers(option, text, value);
+      good = parse_choice(option, &text, value) || parse_numbers(option, text, value);
       break;
     case OPTION_BYTES: good = parse_bytes(text, value); break;
     case OPTION_COLOR:
-      good = parse_choice(option, text, value) ||
+      good = parse_choice(option, &text, value) ||
              hl_parse_color(text, option->low, option->high, value->number);
       break;
   }
@@ -182,6 +184,11 @@ static int parse_value(const cli_option *option, const char *text, cli_value *va
 /* Whether a text looks like an option. A value may begin with a dash, too: "-30,20", "-.5". */
 static bool looks_like_option(const char *text) {
   return text[0] == '-' && text[1] != '\0' && strchr("0123456789.", text[1]) == NULL;
+}
+
+/* Whether a text is made of a number's characters alone. */
+static bool is_number(const char *text) {
+  return text[0] != '\0' && text[strspn(text, "0123456789+-.eE")] == '\0';
 }
 
 /* The row of the option with this name; the count of rows: there is none. */
@@ -276,12 +283,17 @@ static int parse_option(const cli_command *command, int argument_count, char **a
       return fail(EXIT_CODE_USAGE, "--%s takes no value, but '%s' was given", option->name, attached);
     return parse_value(option, "", value);
   }
+  if (attached == NULL && option->optional &&
+      (*index + 1 >= argument_count || !is_number(arguments[*index + 1]))) {
+    value->given = true;
+    return EXIT_CODE_OK;
+  }
   if (attached == NULL) {
     cli_value chosen = {0}; /* "-y" may be one of the choices */
-    bool missing = *index + 1 >= argument_count || (looks_like_option(arguments[*index + 1]) &&
-                                                    !parse_choice(option, arguments[*index + 1], &chosen));
-    if (missing) return refuse_missing(option);
+    if (*index + 1 >= argument_count) return refuse_missing(option);
     attached = arguments[++*index];
+    if (looks_like_option(attached) && !parse_choice(option, &attached, &chosen))
+      return refuse_missing(option);
   }
   return parse_value(option, attached, value);
 }

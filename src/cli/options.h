@@ -46,6 +46,7 @@ typedef struct cli_option {
   double low, high;    /* the accepted range */
   const char *setting; /* key of a scene's setting, whose range and choices replace these; or null */
   hl_setting_kind setting_kind;
+  bool optional;   /* OPTION_NUMBERS: the numbers may be left out; they are then 0, and `count` is 0 */
   bool repeatable; /* OPTION_TEXT: may be given again; every text is kept */
   bool reserved;   /* not in this version yet: the option is not shown in help, and is refused when given */
 } cli_option;

@@ -121,10 +121,12 @@ const hl_setting_choice *hl_option_choices(const char *name) {
   return row < HL_ASK_COUNT ? hl_row_choices(&hl_option_rows[row]) : NULL;
 }
 
-static bool read_choice(const hl_option_row *row, const char *text, hl_asked *asked) {
+/* Reads a choice, in upper or lower case. *text becomes the choice's own name. */
+static bool read_choice(const hl_option_row *row, const char **text, hl_asked *asked) {
   for (const hl_setting_choice *choice = hl_row_choices(row); choice != NULL && choice->name != NULL;
        choice++)
-    if (strcmp(choice->name, text) == 0) {
+    if (hl_plain_equal(choice->name, *text)) {
+      *text = choice->name;
       asked->chosen = true;
       asked->choice = choice->value;
       return true;
@@ -146,17 +148,17 @@ static bool read_numbers(const hl_option_row *row, const char *text, hl_asked *a
   return true;
 }
 
-static bool read_color(const hl_option_row *row, const char *text, hl_asked *asked) {
+static bool read_color(const hl_option_row *row, const char **text, hl_asked *asked) {
   const hl_setting *setting = hl_setting_find(row->setting_kind, row->setting);
-  return read_choice(row, text, asked) || hl_parse_color(text, setting->low, setting->high, asked->number);
+  return read_choice(row, text, asked) || hl_parse_color(*text, setting->low, setting->high, asked->number);
 }
 
-static bool read_value(const hl_option_row *row, const char *text, hl_asked *asked) {
+static bool read_value(const hl_option_row *row, const char **text, hl_asked *asked) {
   switch (row->kind) {
     case HL_OPTION_SWITCH: return true;
-    case HL_OPTION_TEXT: return text[0] != '\0';
+    case HL_OPTION_TEXT: return (*text)[0] != '\0';
     case HL_OPTION_CHOICE: return read_choice(row, text, asked);
-    case HL_OPTION_NUMBERS: return read_choice(row, text, asked) || read_numbers(row, text, asked);
+    case HL_OPTION_NUMBERS: return read_choice(row, text, asked) || read_numbers(row, *text, asked);
     case HL_OPTION_COLOR: return read_color(row, text, asked);
   }
   return false;
@@ -200,7 +202,7 @@ hl_status hl_options_read(const hl_option *options, size_t count, hl_asked *aske
     if (one->count == (hl_option_rows[which].repeats ? HL_ASK_MOST_TEXTS : 1))
       return hl_fail(error, HL_ERROR_ARGUMENT, "--%s is given more than %d times", options[n].name,
                      one->count);
-    if (!read_value(&hl_option_rows[which], text, one))
+    if (!read_value(&hl_option_rows[which], &text, one))
       return refuse_value(&hl_option_rows[which], text, error);
     one->texts[one->count++] = one->text = text;
     one->given = true;

@@ -1,6 +1,6 @@
-/* compose/cuts.c - "cut-plane" POINT:NORMAL, "cut-box" RANGES and "cut-sphere" CENTRE:RADIUS: parts that are
- * cut out of volumes. For one volume they are given in its file's world, for all volumes of a scene in the
- * scene's world. */
+/* compose/cuts.c - "cut-plane" POINT:NORMAL or AXIS=AT, "cut-box" RANGES and "cut-sphere" CENTRE:RADIUS:
+ * parts that are cut out of volumes. For one volume they are given in its file's world, for all volumes of a
+ * scene in the scene's world. */
 #include <math.h>
 #include <string.h>
 
@@ -39,6 +39,21 @@ static bool read_normal(const char *text, double normal[3]) {
   return normal[0] != 0 || normal[1] != 0 || normal[2] != 0;
 }
 
+/* Reads a plane across an axis. x=AT and x=AT: cut away what lies from AT on, and x=:AT what lies before it.
+ * The other two coordinates of the point do not matter. */
+static bool read_axis_plane(const char *text, typed_cut *cut) {
+  hl_axis_range away = {.axis = *text - 'x'};
+  const char *at = text + 2;
+  const bool alone = *text >= 'x' && *text <= 'z' && text[1] == '=' &&
+                     hl_read_coordinate(&at, &away.ends[0]) && away.ends[0].given && *at == '\0';
+  if (!alone && (!hl_read_range(&text, &away) || *text != '\0')) return false;
+  const bool before = away.ends[1].given;
+  if (before && away.ends[0].given) return false;
+  cut->point[away.axis] = away.ends[before];
+  cut->normal[away.axis] = before ? -1 : 1;
+  return true;
+}
+
 static bool read_box(const char *text, hl_axis_range box[3]) {
   hl_axis_range range;
   do {
@@ -56,6 +71,7 @@ static bool read_radius(const char *text, hl_coordinate *radius) {
 static bool read_cut(hl_cut_type type, const char *text, typed_cut *cut) {
   *cut = (typed_cut){0};
   if (type == HL_CUT_BOX) return read_box(text, cut->box);
+  if (type == HL_CUT_PLANE && strchr(text, '=') != NULL) return read_axis_plane(text, cut);
   if (!read_point(&text, cut->point)) return false;
   return type == HL_CUT_PLANE ? read_normal(text, cut->normal) : read_radius(text, &cut->radius);
 }
@@ -64,7 +80,9 @@ hl_status hl_check_cuts(const hl_asked *asked, hl_error *error) {
   static const char *const wanted[] = {
       [HL_CUT_PLANE] =
           "X,Y,Z:NX,NY,NZ: a point, in fractions of the volume's box or in its own unit (40mm), and the "
-          "direction in which all is cut away (0.5,0.5,0.5:1,0,0)",
+          "direction in which all is cut away (0.5,0.5,0.5:1,0,0); or a plane across an axis: x=0.5 cuts "
+          "away "
+          "what lies beyond it, x=:0.5 what lies before it (a part is kept by --clip x=0.2:0.5)",
       [HL_CUT_BOX] =
           "AXIS=LO:HI,...: ranges along x, y and z, each once, in fractions of the volume's box or in its "
           "own unit (x=0.5:,y=:0.5,z=40mm:)",

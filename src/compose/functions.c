@@ -24,11 +24,12 @@ static const char *colormap_name(const void *data, size_t index) {
   return hl_colormap_name(index);
 }
 
-static bool is_known(const char *name, const char *(*known)(const void *, size_t)) {
+/* The known name that a text is, in upper or lower case; null: the text is none. */
+static const char *find_known(const char *text, const char *(*known)(const void *, size_t)) {
   const char *candidate;
   for (size_t i = 0; (candidate = known(NULL, i)) != NULL; i++)
-    if (strcmp(candidate, name) == 0) return true;
-  return false;
+    if (hl_plain_equal(candidate, text)) return candidate;
+  return NULL;
 }
 
 /* Names that other programs use, each with the name that means nearly the same in this program. */
@@ -62,7 +63,8 @@ static const char *const meanings[][2] = {
 
 static const char *meant_by(const char *name, const char *(*known)(const void *, size_t)) {
   for (size_t n = 0; n < sizeof meanings / sizeof *meanings; n++)
-    if (hl_plain_equal(name, meanings[n][0]) && is_known(meanings[n][1], known)) return meanings[n][1];
+    if (hl_plain_equal(name, meanings[n][0]) && find_known(meanings[n][1], known) != NULL)
+      return meanings[n][1];
   return NULL;
 }
 
@@ -165,12 +167,46 @@ const char *hl_text_for(const hl_composer *composer, hl_ask option, const hl_sce
   return chosen;
 }
 
+/* ---- colormaps in a list ---- */
+
+/* Whether "colormap" lists colormaps and colours, one for each volume. R,G,B is one colour. */
+static bool is_list(const hl_composer *composer, const hl_asked *colormap) {
+  double color[3];
+  return colormap->count == 1 && strchr(colormap->text, ',') != NULL &&
+         after_name(composer->context, colormap->text) == NULL &&
+         !hl_parse_color(colormap->text, 0, 1, color);
+}
+
+static size_t count_items(const char *list) {
+  size_t count = 1;
+  for (; (list = strchr(list, ',')) != NULL; list++) count++;
+  return count;
+}
+
+/* Copies the item of a list that is for volume number `index`. */
+static hl_status copy_item(const hl_composer *composer, const hl_scene_description *description,
+                           const char *list, size_t index, char *item, size_t size) {
+  char names[600];
+  list_names(description, names, sizeof names);
+  if (count_items(list) != description->volume_count)
+    return hl_fail(composer->error, HL_ERROR_ARGUMENT,
+                   "--colormap: '%.200s' has %zu names, and the picture has %zu volume%s (%s): give one name "
+                   "for all, or as many as there are volumes",
+                   list, count_items(list), description->volume_count,
+                   description->volume_count == 1 ? "" : "s", names);
+  for (; index > 0; index--) list = strchr(list, ',') + 1;
+  const size_t length = strcspn(list, ",");
+  snprintf(item, size, "%.*s", (int)(length < size ? length : size - 1), list);
+  return HL_OK;
+}
+
 /* ---- functions ---- */
 
 static hl_status load_function(const hl_composer *composer, const char *name, const hl_volume *volume,
                                hl_transfer_function *function) {
-  if (is_known(name, preset_name))
-    return hl_transfer_function_preset(composer->context, name, volume, function, composer->error);
+  const char *preset = find_known(name, preset_name);
+  if (preset != NULL)
+    return hl_transfer_function_preset(composer->context, preset, volume, function, composer->error);
   if (strpbrk(name, "./") != NULL || hl_file_kind(composer->context, name) != 0)
     return hl_transfer_function_load_for(composer->context, name, volume, function, composer->error);
   return refuse_name("tf", name, "preset or file", "presets", preset_name, composer->error);
@@ -277,16 +313,16 @@ static hl_status color_by_name(const hl_composer *composer, const char *name, co
                                value_range range, bool maximum, hl_transfer_function *function) {
   hl_transfer_function colors = {0};
   double color[3];
-  bool known = is_known(name, colormap_name);
-  if (!known && !hl_parse_color(name, 0, 1, color))
+  const char *map = find_known(name, colormap_name);
+  if (map == NULL && !hl_parse_color(name, 0, 1, color))
     return refuse_name("colormap", name, "colormap and no colour", "colormaps", colormap_name,
                        composer->error);
   hl_status status = range.given
                          ? HL_OK
                          : hl_transfer_function_seen_range(volume, function, range.ends, composer->error);
-  if (status == HL_OK && !known) return color_plainly(composer, color, maximum, range.ends, function);
+  if (status == HL_OK && map == NULL) return color_plainly(composer, color, maximum, range.ends, function);
   if (status == HL_OK)
-    status = hl_transfer_function_colormap_scaled(composer->context, name, range.ends, range.scale, &colors,
+    status = hl_transfer_function_colormap_scaled(composer->context, map, range.ends, range.scale, &colors,
                                                   composer->error);
   if (status == HL_OK) status = replace(composer, &colors, function);
   hl_transfer_function_release(composer->context, &colors);
@@ -319,9 +355,16 @@ hl_status hl_compose_function(const hl_composer *composer, const hl_scene_descri
   const hl_scene_volume *volume = &description->volumes[index];
   const char *named = hl_text_for(composer, HL_ASK_TF, volume, index);
   const char *colormap = hl_text_for(composer, HL_ASK_COLORMAP, volume, index);
+  char item[256];
+  hl_status status = HL_OK;
+  if (is_list(composer, &asked[HL_ASK_COLORMAP])) {
+    status = copy_item(composer, description, colormap, index, item, sizeof item);
+    colormap = item;
+  }
   if (colormap == NULL) colormap = color;
-  hl_status status = hl_transfer_function_copy(composer->context, &volume->transfer_function, function,
-                                               composer->error);
+  if (status == HL_OK)
+    status = hl_transfer_function_copy(composer->context, &volume->transfer_function, function,
+                                       composer->error);
   if (status == HL_OK && named != NULL) {
     hl_transfer_function loaded = {0};
     status = load_function(composer, named, volume->volume, &loaded);

@@ -60,23 +60,32 @@ static bool is_whole(const hl_label *label, const hl_shown_label *shown) {
   return label->name != NULL && strcmp(label->name, shown->whole) == 0;
 }
 
-static bool is_named(const hl_label *label, const hl_shown_label *shown) {
+/* Whether a label has the name that is asked for, in upper or lower case unless `exactly`. */
+static bool has_name(const hl_label *label, const hl_shown_label *shown, bool exactly) {
+  if (label->name == NULL) return false;
+  return exactly ? strcmp(label->name, shown->name) == 0 : hl_plain_equal(label->name, shown->name);
+}
+
+static bool is_named(const hl_label *label, const hl_shown_label *shown, bool exactly) {
   if (is_whole(label, shown)) return true;
   if (shown->wrong != NULL) return false;
   int64_t number;
-  return shown->all || (label->name != NULL && strcmp(label->name, shown->name) == 0) ||
+  return shown->all || has_name(label, shown, exactly) ||
          (hl_text_whole(shown->name, &number) && number == label->value);
 }
 
 /* Shows the labels that the list names, if it names any. "all" shows every label but those that a table
  * hides. */
 void hl_show_labels(hl_shown_list *list, hl_label *labels, size_t count) {
+  bool exactly[HL_MOST_SHOWN] = {false}; /* atlases have names that differ in their case alone */
+  for (size_t s = 0; s < list->count; s++)
+    for (size_t n = 0; n < count; n++) exactly[s] |= has_name(&labels[n], &list->labels[s], true);
   for (size_t n = 0; n < count && list->count > 0; n++) {
     const bool hidden = !labels[n].visible;
     labels[n].visible = 0;
     for (size_t s = 0; s < list->count; s++) {
       hl_shown_label *shown = &list->labels[s];
-      if (!is_named(&labels[n], shown) || (shown->all && hidden)) continue;
+      if (!is_named(&labels[n], shown, exactly[s]) || (shown->all && hidden)) continue;
       const bool whole = is_whole(&labels[n], shown);
       shown->found = true;
       labels[n].visible = 1;

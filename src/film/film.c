@@ -269,6 +269,7 @@ hl_status film_create(const film_options *options, film **result, hl_error *erro
   *f = (film){.context = options->context, .scene = options->scene, .turntable = options->turntable};
   hl_status status = read_keys(f, options, error);
   if (status == HL_OK) f->frames = count_frames(f, options);
+  if (f->turntable == FILM_WHOLE_TURN) f->turntable = f->frames;
   if (status == HL_OK && (f->frames < 1 || f->frames > FILM_MOST_FRAMES)) {
     snprintf(error->message, sizeof error->message, "a film has 1 to %d frames", (int)FILM_MOST_FRAMES);
     status = HL_ERROR_ARGUMENT;

@@ -14,6 +14,8 @@
 
 typedef struct film film;
 
+enum { FILM_WHOLE_TURN = -1 };
+
 typedef struct film_options {
   hl_context *context;
   const hl_scene *scene;
@@ -21,7 +23,8 @@ typedef struct film_options {
   size_t key_count;
   bool smooth;   /* numbers change slowly at both ends of each stretch between keys; if false, at an even
                   * pace */
-  int turntable; /* frames of a whole turn about the picture's vertical axis; 0 for no turn */
+  int turntable; /* frames of a whole turn about the picture's vertical axis; 0 for no turn, FILM_WHOLE_TURN
+                  * for as many as the film has */
   int frames;    /* number of frames; 0 for as many as the turntable has, or up to the last key's last
                   * frame */
 } film_options;

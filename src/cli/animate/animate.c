@@ -52,11 +52,21 @@ static const cli_option animate_options[ANIMATE_OPTION_COUNT] = {
     [ANIMATE_PRESET] = {.name = "preset",
                         .kind = OPTION_CHOICE,
                         .choices = presets,
-                        .help = "turntable: the camera turns once, in four seconds;\nlight-sweep: the first "
-                                "light goes from left "
-                                "to right\nand back, in two seconds"},
-    [ANIMATE_TURNTABLE] = COUNT_OPTION("turntable", "N",
-                                       "turn once about the picture's vertical axis, in N frames"),
+                        .help =
+                            "turntable: the camera turns once, as by --turntable;\nlight-sweep: the first "
+                            "light goes from left "
+                            "to right\nand back, in two seconds"},
+    [ANIMATE_TURNTABLE] = {.name = "turntable",
+                           .kind = OPTION_NUMBERS,
+                           .argument = "[N]",
+                           .help =
+                               "turn once about the picture's vertical axis, in N frames\n(default: in four "
+                               "seconds, or over all files of a pattern)",
+                           .count = 1,
+                           .optional = true,
+                           .whole = true,
+                           .low = 1,
+                           .high = 1e6},
     [ANIMATE_KEY] = {.name = "key",
                      .kind = OPTION_TEXT,
                      .argument = "PATH=FRAME:VALUE,...",
@@ -182,15 +192,15 @@ static bool sweeps(const animate_job *job) {
   return job->values[ANIMATE_PRESET].given && job->values[ANIMATE_PRESET].choice == PRESET_LIGHT_SWEEP;
 }
 
-static void find_motion(const animate_job *job, motion *found) {
+static void find_motion(const animate_job *job, bool series, motion *found) {
   const cli_value *values = job->values;
   size_t count = 0;
   for (int k = 0; k < values[ANIMATE_KEY].count; k++) found->keys[count++] = values[ANIMATE_KEY].texts[k];
   write_sweep(job, found->sweep);
   if (sweeps(job)) found->keys[count++] = found->sweep;
-  int turn = values[ANIMATE_TURNTABLE].given ? (int)values[ANIMATE_TURNTABLE].number[0] : 0;
-  if (values[ANIMATE_PRESET].given && !sweeps(job) && turn == 0)
-    turn = (int)fmax(1, round(4 * frames_per_second(job)));
+  const bool turns = values[ANIMATE_TURNTABLE].given || (values[ANIMATE_PRESET].given && !sweeps(job));
+  int turn = (int)values[ANIMATE_TURNTABLE].number[0]; /* 0: the number is not said */
+  if (turns && turn == 0) turn = series ? FILM_WHOLE_TURN : (int)fmax(1, round(4 * frames_per_second(job)));
   found->film = (film_options){
       .context = job->host.context,
       .scene = job->scene,
@@ -204,11 +214,11 @@ static int plan(animate_job *job) {
   const cli_value *frames = &job->values[ANIMATE_FRAMES];
   motion moving;
   hl_error error = {0};
-  find_motion(job, &moving);
+  find_motion(job, false, &moving);
   film_options *options = &moving.film;
   if (options->turntable == 0 && options->key_count == 0)
     return fail(EXIT_CODE_USAGE,
-                "nothing moves: give --turntable N, --preset NAME, or --key PATH=FRAME:VALUE,...");
+                "nothing moves: give --turntable, --preset NAME, or --key PATH=FRAME:VALUE,...");
   if (frames->given) options->frames = (int)frames->number[0];
   else if (sweeps(job) && options->turntable == 0 && options->key_count == 1)
     options->frames = 2 * (int)fmax(1, frames_per_second(job));
@@ -301,8 +311,8 @@ static int run_series(animate_job *job) {
   char *pattern = NULL;
   int exit_code = EXIT_CODE_OK;
   motion moving;
-  find_motion(job, &moving);
-  const bool moves = moving.film.turntable > 0 || moving.film.key_count > 0;
+  find_motion(job, true, &moving);
+  const bool moves = moving.film.turntable != 0 || moving.film.key_count > 0;
   if (job->values[ANIMATE_FRAMES].given)
     exit_code = fail(EXIT_CODE_USAGE, "--frames: a film of several files has one frame for each of them");
   if (exit_code == EXIT_CODE_OK && (values == NULL || asprintf(&pattern, "%s/%%06d.png", job->folder) < 0))

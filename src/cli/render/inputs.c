@@ -11,6 +11,7 @@
 
 #include "cli/input.h"
 #include "render.h"
+#include "text/plain.h"
 
 /* Errors of a bare volume's scene lose "/volumes/0/file", because INPUT is that file. An error that already
  * begins with the input's name, which may begin with a slash too, is left alone. */
@@ -70,7 +71,7 @@ static int pixels_of(const cli_value *values) {
 int render_channels(const cli_value *values, int channels[HL_CHANNELS_MOST], size_t *count) {
   const cli_value *said = &values[RENDER_CHANNEL];
   *count = 0;
-  if (!said->given || strcmp(said->text, "all") == 0) return EXIT_CODE_OK;
+  if (!said->given || hl_plain_equal(said->text, "all")) return EXIT_CODE_OK;
   for (const char *text = said->text;; text++) {
     char *end;
     long number = strtol(text, &end, 10);
@@ -91,7 +92,7 @@ int render_channels(const cli_value *values, int channels[HL_CHANNELS_MOST], siz
 
 bool render_has_channels(const cli_value *values) {
   const cli_value *said = &values[RENDER_CHANNEL];
-  return said->given && (strcmp(said->text, "all") == 0 || strchr(said->text, ',') != NULL);
+  return said->given && (hl_plain_equal(said->text, "all") || strchr(said->text, ',') != NULL);
 }
 
 void render_load_options(const cli_value *values, hl_volume_load_options *options) {

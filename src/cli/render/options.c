@@ -224,7 +224,8 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
          .kind = OPTION_TEXT,
          .argument = "[NAME=]MAP|COLOR",
          .help = "colours over the visible values, see\n'halflight help colormaps'; or one colour as #rrggbb "
-                 "or\na CSS name (in a maximum projection from black to it);\nNAME as for --tf",
+                 "or\na CSS name (in a maximum projection from black to it);\nNAME as for --tf; or one for "
+                 "each volume or\nchannel, in order (magma,viridis)",
          .repeatable = true},
     [RENDER_RANGE] =
         {.name = "range",
@@ -269,7 +270,8 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                           .kind = OPTION_TEXT,
                           .argument = "X,Y,Z:NX,NY,NZ",
                           .help = "cut away everything beyond a plane through a point\n(fractions, or the "
-                                  "file's own units), in a direction;\ngive it again for more planes",
+                                  "file's own units), in a direction;\nx=0.5 is short for a plane across x, "
+                                  "and x=:0.5 cuts\nthe other side away; give it again for more planes",
                           .repeatable = true},
     [RENDER_CUT_BOX] =
         {.name = "cut-box",

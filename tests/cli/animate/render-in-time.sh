@@ -20,7 +20,9 @@ for frame in 0 2; do
 done
 halflight animate rings.nrrd --size 16x16 --sheet-spacing 4 --quiet --preset light-sweep --fps 2 -o preset
 halflight animate rings.nrrd --size 16x16 --sheet-spacing 4 --quiet --preset turntable --fps 2 -o turntable
-ls preset turntable | grep -c png
+halflight animate --turntable rings.nrrd --size 16x16 --sheet-spacing 4 --quiet --fps 2 -o unnumbered
+ls preset turntable unnumbered | grep -c png
+cmp turntable/0003.png unnumbered/0003.png
 for n in 8 9 10; do cp rings.nrrd flame_$n.nrrd; done
 halflight animate 'flame_*.nrrd' --size 16x16 --sheet-spacing 4 --quiet -o flames
 ls flames
@@ -42,6 +44,10 @@ print(min(round(turned), round(360 - turned)))
 END
 halflight animate 'flame_*.nrrd' --size 16x16 --sheet-spacing 4 --key lights.0.intensity=0:1,2:3 --turntable 6 -o moving 2>&1 |
   grep -o '3 pictures, 0 of them rendered now'
+# A turn without a number goes once around in all files.
+halflight animate 'flame_*.nrrd' --size 16x16 --sheet-spacing 4 --quiet --turntable -o around
+halflight animate 'flame_*.nrrd' --size 16x16 --sheet-spacing 4 --quiet --turntable 3 -o around3
+cmp around/000002.png around3/000002.png
 halflight animate 'flame_*.nrrd' --size 16x16 --key lights.7.azimuth=0:1,4:2 -o no 2>&1 || echo $?
 halflight animate rings.nrrd --key lights.7.azimuth=0:1,4:2 -o no 2>&1 || echo $?
 if command -v ffmpeg >/dev/null; then

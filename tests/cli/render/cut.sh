@@ -7,7 +7,9 @@ cp made.json scene.json
 cuts scene.json --cut-sphere 0,0,0:3mm --cut-shading none --cut-casts-shadow
 tool json made.json "d['volumes'][0]['cut_shading']"
 tool json made.json "d['volumes'][0]['cut_casts_shadow']"
-for cut in plane=0.5,0.5:1,0,0 plane=0,0,0:0,0,0 plane=0,0,2:1,0,0 box=x=0.5:,x=:0.7 box=w=0:1 box=x=0:1, sphere=0,0,0:0 sphere=0,0,0; do
+# A plane across an axis, which cuts away what lies from there on, or before.
+for plane in x=0.25 x=0.25: y=:2mm; do cuts ball_16x16x16_uint8.raw --cut-plane $plane; done
+for cut in plane=0.5,0.5:1,0,0 plane=0,0,0:0,0,0 plane=0,0,2:1,0,0 box=x=0.5:,x=:0.7 box=w=0:1 box=x=0:1, sphere=0,0,0:0 sphere=0,0,0 plane=x=0.2:0.5 plane=x= plane=w=1 plane=x=2; do
   code=0
   halflight render ball_16x16x16_uint8.raw --cut-${cut%%=*} ${cut#*=} 2>message || code=$?
   echo $code

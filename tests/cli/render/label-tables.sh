@@ -19,5 +19,8 @@ shown snap.txt --show 'part: left,part:2:0.5'
 shown snap.txt --show 'part:2'
 shown mark.csv
 shown dseg.tsv --show 'Left Cortex=red:0.25'
+# Names are found in upper or lower case, unless a label has the very name.
+printf '13,Left,0,255,0\n42,LEFT,0,0,255\n' >case.csv
+for name in LEFT left Left; do echo "$name:"; shown case.csv --show "$name"; done
 if halflight render labels.npy --label-table snap.txt --show 'part: right:2' -o p.png 2> refused.txt; then exit 1; fi
 grep -o 'give an opacity from 0 to 1 after the colon' refused.txt
