@@ -29,6 +29,7 @@ def arguments():
     parser.add_argument("--skip-costs", action="store_true")
     parser.add_argument("--reference-only", action="store_true", help="only make the reference's pictures")
     parser.add_argument("--lines-only", action="store_true", help="only the sections about lines, faces and isosurfaces, without the reference")
+    parser.add_argument("--costs-only", action="store_true", help="only the section about costs, without the reference")
     return parser.parse_args()
 
 
@@ -45,12 +46,17 @@ def main():
         except scenes.MissingData as missing:
             print(f"  skipped: there is no {missing}")
             continue
-        if chosen.reference_only:
+        if chosen.costs_only:
+            results.append(measure.scene_costs(name, scene))
+        elif chosen.reference_only:
             scenes.reference(name, scene, "hard")
             scenes.reference(name, scene, "soft")
         else:
             results.append(measure.scene(name, scene, not chosen.skip_costs))
     if chosen.reference_only or not results:
+        return
+    if chosen.costs_only:
+        report.replace_costs(results)
         return
     report.print_table(results)
     if chosen.only:

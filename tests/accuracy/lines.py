@@ -3,6 +3,7 @@
 A floor alone looks as it does without shadows, under any light: what differs is wrong. A smooth ball has no edge within its
 outline: there its picture minus the mean of the pixels around it is what should not be there.
 """
+import json
 import math
 
 import numpy
@@ -75,9 +76,19 @@ def high_passed(difference, bright, alpha):
     return numpy.quantile(lines / numpy.maximum(around, around.max() / 2), 0.999)
 
 
+even_floors = {}  # floors without shadows, which are the same for all methods: {(volume, light, spacing): picture}
+
+
+def even_floor(volume, light, spacing):
+    key = json.dumps([volume, light, spacing])
+    if key not in even_floors:
+        even_floors[key] = picture(volume, FLOOR_CAMERA, light, "lines-even", shadows="off", sheet_spacing=spacing)
+    return even_floors[key]
+
+
 def floor(volume, light, settings, spacing, label):
     """Lines of what differs from the floor without shadows."""
-    even, alpha = picture(volume, FLOOR_CAMERA, light, label, shadows="off", sheet_spacing=spacing)
+    even, alpha = even_floor(volume, light, spacing)
     made, _ = picture(volume, FLOOR_CAMERA, light, label, sheet_spacing=spacing, **settings)
     return high_passed(made - even, even, alpha)
 

@@ -1,4 +1,8 @@
 """Errors of one scene's pictures, and what they cost."""
+import json
+import resource
+import subprocess
+
 import numpy
 
 import scenes
@@ -12,7 +16,7 @@ METHODS = {  # title: settings
     "sublights 8": {"shadows": "soft", "soft_method": "sublights", "light_samples": 8},
 }
 SPACINGS = [2, 1.5, 1, 0.75, 0.5, 0.35, 0.25]
-COST_SIZE, COST_ROUNDS = "512x512", 3
+COST_SIZE, COST_FRAMES = "512x512", 2
 
 
 class Errors:
@@ -56,12 +60,33 @@ def scene(name, described, with_costs):
     return result
 
 
+def processor_seconds(path, kind, frames):
+    """Processor time of a program that makes so many frames, after one that is not counted by it."""
+    def used():
+        spent = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return spent.ru_utime + spent.ru_stime
+    before = used()
+    subprocess.run([scenes.PROGRAM, "bench", path, "--only", kind, "--frames", str(frames), "--threads", "1", "--size", COST_SIZE],
+                   check=True, capture_output=True)
+    return used() - before
+
+
 def costs(name, described, result):
-    """Seconds of rendering by one thread, without loading and preparing, the least of several rounds in turn: other work on
-    the machine only adds."""
-    seconds = {method: [] for method in result.errors}
-    for _ in range(COST_ROUNDS):
-        for method in seconds:
-            done = scenes.run(scenes.changed(described, **METHODS[method]), f"{name}-cost", "--threads", "1", "--size", COST_SIZE)
-            seconds[method].append(done["seconds"]["render"])
-    result.costs = {method: min(times) / min(seconds["hard"]) for method, times in seconds.items()}
+    """Processor time of a frame by one thread: what frames after the first add to a program's time."""
+    seconds = {}
+    for method in result.errors:
+        settings = METHODS[method]
+        kind = "hard" if settings["shadows"] == "hard" else f"soft_{settings['soft_method']}"
+        path = scenes.WORK / f"{name}-cost.json"
+        path.write_text(json.dumps(scenes.changed(described, **settings)))
+        more, one = processor_seconds(path, kind, 1 + COST_FRAMES), processor_seconds(path, kind, 1)
+        seconds[method] = (more - one) / COST_FRAMES
+    result.costs = {method: spent / seconds["hard"] for method, spent in seconds.items()}
+
+
+def scene_costs(name, described):
+    """A result that has costs alone."""
+    result = Result(name, described["description"], None)
+    result.errors = dict.fromkeys(METHODS)
+    costs(name, described, result)
+    return result

@@ -75,7 +75,7 @@ def bars(results):
 def section_of_page(title):
     """A section of the page as it stands: one that was not measured anew."""
     found = re.search(rf"\n## {title}\n.*?(?=\n## )", PATH.read_text(), flags=re.S)
-    return found.group(0) + "\n" if found else ""
+    return found.group(0) if found else ""
 
 
 def cost_section(results):
@@ -87,8 +87,8 @@ def cost_section(results):
     return f"""
 ## Cost
 
-Time of rendering at {measure.COST_SIZE.replace("x", " x ")} with one thread, by the clock, without loading and preparing, in units of the hard-shadow frame;
-the least of {measure.COST_ROUNDS} rounds in turn.
+Processor time of a frame of {measure.COST_SIZE.replace("x", " x ")} pixels by one thread, after the first frame, in units of the hard-shadow frame; the camera
+turns from frame to frame (`halflight bench`). The mean of {measure.COST_FRAMES} frames.
 
 {table(["bar", "measured", "at most", ""], rows)}
 
@@ -138,14 +138,24 @@ def lines_and_faces():
                                              lines.measure(measure.METHODS, iso=[{"value": faces.SURFACE}]), table)
 
 
-def replace_lines(written_sections):
-    """Writes the sections about lines and faces anew; the others stay."""
+def replace(title, following, written_sections):
+    """Writes the sections from a title to the one before `following` anew; the others stay."""
     text = PATH.read_text()
-    written, count = re.subn(r"## Lines\n.*?(?=\n## Hard shadows)", lambda _: written_sections, text, flags=re.S)
+    written, count = re.subn(rf"## {title}\n.*?(?=\n## {following})", lambda _: written_sections, text, flags=re.S)
     if count != 1:
-        raise SystemExit(f"{PATH}: has no section about lines: run scripts/accuracy without --lines-only")
+        raise SystemExit(f"{PATH}: has no section {title!r}: run scripts/accuracy without options")
     PATH.write_text(written)
     print(f"wrote {PATH}")
+
+
+def replace_lines(written_sections):
+    """The sections about lines and faces."""
+    replace("Lines", "Hard shadows", written_sections)
+
+
+def replace_costs(results):
+    """The section about costs."""
+    replace("Cost", "An outside truth", cost_section(results).lstrip("\n"))
 
 
 def write(results, truth, lines_and_faces):
