@@ -16,7 +16,7 @@ METHODS = {  # title: settings
     "sublights 8": {"shadows": "soft", "soft_method": "sublights", "light_samples": 8},
 }
 SPACINGS = [2, 1.5, 1, 0.75, 0.5, 0.35, 0.25]
-COST_SIZE, COST_FRAMES = "512x512", 2
+COST_SIZE, COST_FRAMES = "512x512", 8
 
 
 class Errors:
