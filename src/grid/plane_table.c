@@ -196,8 +196,8 @@ static table_place place_between(float x, int count) {
   return (table_place){(int)x, x - (float)(int)x};
 }
 
-/* The mean colour over the column around a position, from the differences of the colour's integrals in two
- * rows. */
+/* The mean of a channel of the colour over the table's column that holds a position, interpolated between two
+ * rows. In a row, it is the difference of the channel's integrals at the column's two ends. */
 static float color_between(const plane_table *table, table_place column, table_place row, int c) {
   float of_row[2];
   for (int r = 0; r < 2; r++) {

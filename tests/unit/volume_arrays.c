@@ -22,14 +22,25 @@ static void on_log(void *user_data, hl_log_level level, const char *message) {
   snprintf(t->last, sizeof t->last, "%s", message);
 }
 
-static hl_context *make_context(told *t) {
+/* What every test has: a context, and the warnings that it told. */
+static told t;
+static hl_context *context;
+
+static int begin(void **state) {
+  (void)state;
   hl_context_options options;
   hl_context_options_defaults(&options);
-  options.user_data = t;
+  options.user_data = &t;
   options.log = on_log;
-  hl_context *context = NULL;
-  assert_int_equal(hl_context_create(&options, &context, NULL), HL_OK);
-  return context;
+  t = (told){0};
+  return hl_context_create(&options, &context, NULL) == HL_OK ? 0 : -1;
+}
+
+static int end(void **state) {
+  (void)state;
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+  return 0;
 }
 
 static hl_volume_load_options load_options(const char *array, int component) {
@@ -40,12 +51,16 @@ static hl_volume_load_options load_options(const char *array, int component) {
   return options;
 }
 
-/* Loads a file's content from memory. */
-static hl_volume *load(hl_context *context, const byte_buffer *file, const char *array, int component,
-                       hl_error *error) {
+static hl_volume_load_options options_of(const byte_buffer *file, const char *array, int component) {
   hl_volume_load_options options = load_options(array, component);
   options.bytes = file->data;
   options.byte_count = file->length;
+  return options;
+}
+
+/* Loads a file's content from memory. */
+static hl_volume *load(const byte_buffer *file, const char *array, int component, hl_error *error) {
+  hl_volume_load_options options = options_of(file, array, component);
   hl_volume *volume = NULL;
   hl_status status = hl_volume_load_with(context, "memory", &options, &volume, error);
   assert_true((status == HL_OK) == (volume != NULL));
@@ -62,12 +77,10 @@ static const char two_arrays[] =
 
 static void test_arrays_are_chosen_by_name(void **state) {
   (void)state;
-  told t = {0};
-  hl_context *context = make_context(&t);
   byte_buffer file = {.length = 0};
   add(&file, two_arrays, strlen(two_arrays));
   hl_error error = {0};
-  hl_volume *volume = load(context, &file, NULL, HL_COMPONENT_DEFAULT, &error); /* the active one */
+  hl_volume *volume = load(&file, NULL, HL_COMPONENT_DEFAULT, &error); /* the active one */
   assert_true(hl_volume_value(volume, 0, 0, 0) == 9);
   assert_int_equal(t.warnings, 1);
   assert_non_null(strstr(t.last, "of 3 arrays, b is taken"));
@@ -81,35 +94,31 @@ static void test_arrays_are_chosen_by_name(void **state) {
   assert_true(!array.chosen && array.components == 3 && array.type == HL_VOXEL_F32 && !array.of_cells);
   assert_int_equal(hl_volume_get_array(volume, 3, &array), HL_ERROR_ARGUMENT);
   hl_volume_release(volume);
-  volume = load(context, &file, "a", HL_COMPONENT_DEFAULT, &error);
+  volume = load(&file, "a", HL_COMPONENT_DEFAULT, &error);
   assert_true(hl_volume_value(volume, 1, 1, 1) == 8);
   hl_volume_release(volume);
   assert_int_equal(t.warnings, 1); /* what was named needs no word */
-  assert_null(load(context, &file, "c", HL_COMPONENT_DEFAULT, &error));
+  assert_null(load(&file, "c", HL_COMPONENT_DEFAULT, &error));
   assert_int_equal(error.code, HL_ERROR_INPUT);
   assert_non_null(strstr(error.message, "no array \"c\": there is a; b; v (3 components)"));
-  assert_int_equal(hl_context_memory_held(context), 0);
-  hl_context_destroy(context);
 }
 
 static void test_components(void **state) {
   (void)state;
-  told t = {0};
-  hl_context *context = make_context(&t);
   byte_buffer file = {.length = 0};
   add(&file, two_arrays, strlen(two_arrays));
   hl_error error = {0};
   for (int component = 0; component < 3; component++) {
-    hl_volume *volume = load(context, &file, "v", component, &error);
+    hl_volume *volume = load(&file, "v", component, &error);
     assert_true(hl_volume_value(volume, 1, 1, 1) == (component == 0 ? 2 : component == 1 ? 3 : 6));
     hl_volume_release(volume);
   }
   assert_int_equal(t.warnings, 0);
-  hl_volume *volume = load(context, &file, "v", HL_COMPONENT_MAGNITUDE, &error);
+  hl_volume *volume = load(&file, "v", HL_COMPONENT_MAGNITUDE, &error);
   assert_true(hl_volume_value(volume, 0, 0, 0) == 5 && hl_volume_value(volume, 1, 1, 1) == 7);
   hl_volume_release(volume);
   assert_int_equal(t.warnings, 0);
-  volume = load(context, &file, "v", HL_COMPONENT_DEFAULT, &error); /* of three the magnitude, told */
+  volume = load(&file, "v", HL_COMPONENT_DEFAULT, &error); /* of three the magnitude, told */
   assert_true(hl_volume_value(volume, 0, 0, 0) == 5);
   assert_int_equal(t.warnings, 1);
   assert_non_null(strstr(t.last, "their magnitude is taken"));
@@ -117,20 +126,16 @@ static void test_components(void **state) {
   assert_int_equal(hl_volume_get_array(volume, 2, &array), HL_OK);
   assert_true(array.chosen && array.component == HL_COMPONENT_MAGNITUDE);
   hl_volume_release(volume);
-  assert_null(load(context, &file, "v", 3, &error));
+  assert_null(load(&file, "v", 3, &error));
   assert_non_null(strstr(error.message, "no component 3: choose 0 to 2, or magnitude"));
-  assert_null(load(context, &file, "a", 1, &error));
-  assert_null(load(context, &file, "a", HL_COMPONENT_MAGNITUDE, &error));
+  assert_null(load(&file, "a", 1, &error));
+  assert_null(load(&file, "a", HL_COMPONENT_MAGNITUDE, &error));
   assert_non_null(strstr(error.message, "one component, 0"));
-  assert_int_equal(hl_context_memory_held(context), 0);
-  hl_context_destroy(context);
 }
 
 /* A series: each volume is a component; scaled values; the magnitude of signed, scaled planes. */
 static void test_series(void **state) {
   (void)state;
-  told t = {0};
-  hl_context *context = make_context(&t);
   byte_buffer file = {.length = 0};
   add_text(&file,
            "NDims = 4\nDimSize = 2 1 1 3\nElementType = MET_CHAR\nElementToIntensityFunctionSlope = 0.5\n"
@@ -138,28 +143,25 @@ static void test_series(void **state) {
   add(&file, (const signed char[]){2, 4, 6, -8, 10, -12}, 6);
   hl_error error = {0};
   for (int step = 0; step < 3; step++) {
-    hl_volume *volume = load(context, &file, NULL, step, &error);
+    hl_volume *volume = load(&file, NULL, step, &error);
     assert_true(hl_volume_value(volume, 0, 0, 0) == 2 + 2 * step);
     hl_volume_release(volume);
   }
   assert_int_equal(t.warnings, 0);
-  hl_volume *volume = load(context, &file, NULL, HL_COMPONENT_MAGNITUDE, &error);
+  hl_volume *volume = load(&file, NULL, HL_COMPONENT_MAGNITUDE, &error);
   assert_true(fabs(hl_volume_value(volume, 0, 0, 0) - sqrt(4 + 16 + 36)) < 1e-6);
   assert_true(fabs(hl_volume_value(volume, 1, 0, 0) - sqrt(9 + 9 + 25)) < 1e-6);
   hl_volume_release(volume);
-  volume = load(context, &file, NULL, HL_COMPONENT_DEFAULT, &error);
+  volume = load(&file, NULL, HL_COMPONENT_DEFAULT, &error);
   assert_true(hl_volume_value(volume, 1, 0, 0) == 3);
   assert_int_equal(t.warnings, 1);
   assert_non_null(strstr(t.last, "a series of volumes: the first, 0, is taken"));
   hl_volume_release(volume);
-  assert_int_equal(hl_context_memory_held(context), 0);
-  hl_context_destroy(context);
 }
 
-static hl_status load_step(hl_context *context, const byte_buffer *file, int time, int channel, int level,
-                           double *value, hl_error *error) {
-  hl_volume_load_options options = load_options(NULL, HL_COMPONENT_DEFAULT);
-  options.bytes = file->data, options.byte_count = file->length;
+static hl_status load_step(const byte_buffer *file, int time, int channel, int level, double *value,
+                           hl_error *error) {
+  hl_volume_load_options options = options_of(file, NULL, HL_COMPONENT_DEFAULT);
   options.time = time, options.channel = channel, options.level = level;
   hl_volume *volume = NULL;
   hl_status status = hl_volume_load_with(context, "memory", &options, &volume, error);
@@ -178,8 +180,6 @@ static hl_status load_step(hl_context *context, const byte_buffer *file, int tim
 /* NIfTI: the fourth axis is time, the fifth channels. */
 static void test_times_and_channels(void **state) {
   (void)state;
-  told t = {0};
-  hl_context *context = make_context(&t);
   byte_buffer file = {.length = 0};
   unsigned char header[352] = {
       [0] = 348 & 255, [1] = 348 >> 8, [40] = 5, [42] = 2,    [44] = 1, [46] = 1, [48] = 3,
@@ -191,38 +191,33 @@ static void test_times_and_channels(void **state) {
   double value = 0;
   for (int time = 0; time < 3; time++)
     for (int channel = 0; channel < 2; channel++) {
-      assert_int_equal(load_step(context, &file, time, channel, HL_INDEX_DEFAULT, &value, &error), HL_OK);
+      assert_int_equal(load_step(&file, time, channel, HL_INDEX_DEFAULT, &value, &error), HL_OK);
       assert_true(value == 1 + 2 * (time + 3 * channel));
     }
   assert_int_equal(t.warnings, 0);
-  assert_int_equal(load_step(context, &file, HL_INDEX_DEFAULT, 1, 0, &value, &error), HL_OK);
+  assert_int_equal(load_step(&file, HL_INDEX_DEFAULT, 1, 0, &value, &error), HL_OK);
   assert_true(value == 7);
-  assert_int_equal(load_step(context, &file, -1, -1, -1, &value, &error), HL_OK);
+  assert_int_equal(load_step(&file, -1, -1, -1, &value, &error), HL_OK);
   assert_true(value == 1 && t.warnings == 1);
   assert_non_null(strstr(t.last, "(--time)"));
-  assert_int_equal(load_step(context, &file, 3, 0, 0, &value, &error), HL_ERROR_INPUT);
+  assert_int_equal(load_step(&file, 3, 0, 0, &value, &error), HL_ERROR_INPUT);
   assert_non_null(strstr(error.message, "there is no time 3: choose 0 to 2"));
-  assert_int_equal(load_step(context, &file, 0, 2, 0, &value, &error), HL_ERROR_INPUT);
+  assert_int_equal(load_step(&file, 0, 2, 0, &value, &error), HL_ERROR_INPUT);
   assert_non_null(strstr(error.message, "there is no channel 2: choose 0 to 1"));
-  assert_int_equal(load_step(context, &file, 0, 0, 1, &value, &error), HL_ERROR_INPUT);
+  assert_int_equal(load_step(&file, 0, 0, 1, &value, &error), HL_ERROR_INPUT);
   assert_non_null(strstr(error.message, "there is no level 1: the file has one, 0"));
-  assert_int_equal(load_step(context, &file, -2, 0, 0, &value, &error), HL_ERROR_ARGUMENT);
-  hl_volume_load_options options = load_options(NULL, 1);
-  options.bytes = file.data, options.byte_count = file.length;
+  assert_int_equal(load_step(&file, -2, 0, 0, &value, &error), HL_ERROR_ARGUMENT);
+  hl_volume_load_options options = options_of(&file, NULL, 1);
   options.time = 1;
   hl_volume *volume = NULL;
   assert_int_equal(hl_volume_load_with(context, "memory", &options, &volume, &error), HL_ERROR_INPUT);
   assert_non_null(strstr(error.message, "leave \"component\" (--component) out"));
-  assert_int_equal(hl_context_memory_held(context), 0);
-  hl_context_destroy(context);
 }
 
 /* More values than a stage holds, in blocks that are read and blocks that are passed over. */
 static void test_large_components(void **state) {
   (void)state;
   enum { W = 300, H = 300, STEPS = 4 };
-  told t = {0};
-  hl_context *context = make_context(&t);
   unsigned char *bytes = malloc(200 + STEPS * W * H);
   for (int side_by_side = 0; side_by_side < 2; side_by_side++) {
     int head = sprintf((char *)bytes, "NRRD0004\ntype: uint8\nencoding: raw\ndimension: 4\n%s\n\n",
@@ -245,20 +240,15 @@ static void test_large_components(void **state) {
     }
   }
   free(bytes);
-  hl_context_destroy(context);
 }
 
 static void test_spacing_takes_the_place_of_the_files(void **state) {
   (void)state;
-  told t = {0};
-  hl_context *context = make_context(&t);
   byte_buffer file = {.length = 0};
   add_text(&file,
            "NRRD0004\ntype: uint8\nencoding: raw\ndimension: 3\nsizes: 2 1 1\n"
            "space directions: (0,3,0) (1,0,0) (0,0,1)\nspace origin: (5,6,7)\n\n12");
-  hl_volume_load_options options = load_options(NULL, HL_COMPONENT_DEFAULT);
-  options.bytes = file.data;
-  options.byte_count = file.length;
+  hl_volume_load_options options = options_of(&file, NULL, HL_COMPONENT_DEFAULT);
   options.spacing[0] = 0.5, options.spacing[1] = 2, options.spacing[2] = 4;
   hl_volume *volume = NULL;
   hl_volume_info info = {.struct_size = sizeof info};
@@ -275,14 +265,11 @@ static void test_spacing_takes_the_place_of_the_files(void **state) {
   }
   options.struct_size = 8;
   assert_int_equal(hl_volume_load_with(context, "memory", &options, &volume, &error), HL_ERROR_ARGUMENT);
-  hl_context_destroy(context);
 }
 
 /* MRC: voxels of four bits, complex numbers, a cell of other angles, and headers that are refused. */
 static void test_mrc(void **state) {
   (void)state;
-  told t = {0};
-  hl_context *context = make_context(&t);
   byte_buffer file = {.length = 1024};
   static const unsigned char words[] = {3, 0, 0, 0, 2, 0, 0, 0, 1, 0, 0, 0, 101, 0, 0, 0};
   static const float cell[6] = {6, 4, 5, 90, 120, 60};
@@ -293,7 +280,7 @@ static void test_mrc(void **state) {
   memcpy(file.data + 208, "MAP ", 4);
   add(&file, (const unsigned char[]){0x21, 0xf3, 0x54, 0x06}, 4);
   hl_error error = {0};
-  hl_volume *volume = load(context, &file, NULL, HL_COMPONENT_DEFAULT, &error);
+  hl_volume *volume = load(&file, NULL, HL_COMPONENT_DEFAULT, &error);
   static const double values[6] = {1, 2, 3, 4, 5, 6};
   for (size_t n = 0; n < 6; n++) assert_true(hl_volume_value(volume, n % 3, n / 3, 0) == values[n]);
   hl_volume_info info = {.struct_size = sizeof info};
@@ -311,28 +298,24 @@ static void test_mrc(void **state) {
   file.data[12] = 3; /* pairs of 16 bits */
   file.length = 1024;
   for (int n = 0; n < 6; n++) add(&file, (const int16_t[]){(int16_t)(3 * n), (int16_t)(-4 * n)}, 4);
-  volume = load(context, &file, NULL, HL_COMPONENT_DEFAULT, &error);
+  volume = load(&file, NULL, HL_COMPONENT_DEFAULT, &error);
   assert_true(hl_volume_value(volume, 2, 1, 0) == 25);
   hl_volume_release(volume);
-  volume = load(context, &file, NULL, 1, &error);
+  volume = load(&file, NULL, 1, &error);
   assert_true(hl_volume_value(volume, 2, 1, 0) == -20);
   hl_volume_release(volume);
   file.data[56] = file.data[60] = 0, file.data[58] = 52, file.data[59] = 67; /* beta 180: flat */
-  assert_null(load(context, &file, NULL, 1, &error));
+  assert_null(load(&file, NULL, 1, &error));
   assert_int_equal(error.code, HL_ERROR_INPUT);
   file.data[95] = 0x80;
   file.data[58] = file.data[59] = 0;
-  assert_null(load(context, &file, NULL, 1, &error));
+  assert_null(load(&file, NULL, 1, &error));
   assert_non_null(strstr(error.message, "extended header"));
-  assert_int_equal(hl_context_memory_held(context), 0);
-  hl_context_destroy(context);
 }
 
 /* IEEE 754 binary16: subnormal, normal, greatest, negative, infinite. */
 static void test_values_of_half_floats(void **state) {
   (void)state;
-  told t = {0};
-  hl_context *context = make_context(&t);
   static const struct {
     unsigned bits;
     double value;
@@ -342,9 +325,7 @@ static void test_values_of_half_floats(void **state) {
   enum { COUNT = sizeof halves / sizeof *halves };
   byte_buffer file = {.length = 0};
   for (int n = 0; n < COUNT; n++) add_integer(&file, halves[n].bits, 2, false);
-  hl_volume_load_options options = load_options(NULL, HL_COMPONENT_DEFAULT);
-  options.bytes = file.data;
-  options.byte_count = file.length;
+  hl_volume_load_options options = options_of(&file, NULL, HL_COMPONENT_DEFAULT);
   hl_volume *volume = NULL;
   assert_int_equal(hl_volume_load_with(context, "h_10x1x1_float16.raw", &options, &volume, NULL), HL_OK);
   for (size_t n = 0; n < COUNT; n++) {
@@ -352,7 +333,6 @@ static void test_values_of_half_floats(void **state) {
     assert_true(isfinite(halves[n].value) ? value == halves[n].value : isnan(value));
   }
   hl_volume_release(volume);
-  hl_context_destroy(context);
 }
 
 /* A pipe is read once: up to the first array of one component, or of the wanted name. */
@@ -366,8 +346,6 @@ static void test_a_pipe_is_read_once(void **state) {
     const char *array;
     double first;
   } wanted[] = {{NULL, 7}, {"q", 9}, {"v", 5}};
-  told t = {0};
-  hl_context *context = make_context(&t);
   for (size_t n = 0; n < 3; n++) {
     int ends[2];
     char path[40];
@@ -383,19 +361,18 @@ static void test_a_pipe_is_read_once(void **state) {
     hl_volume_release(volume);
     close(ends[0]);
   }
-  assert_int_equal(hl_context_memory_held(context), 0);
-  hl_context_destroy(context);
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_arrays_are_chosen_by_name),
-                                     cmocka_unit_test(test_components),
-                                     cmocka_unit_test(test_series),
-                                     cmocka_unit_test(test_times_and_channels),
-                                     cmocka_unit_test(test_large_components),
-                                     cmocka_unit_test(test_spacing_takes_the_place_of_the_files),
-                                     cmocka_unit_test(test_mrc),
-                                     cmocka_unit_test(test_values_of_half_floats),
-                                     cmocka_unit_test(test_a_pipe_is_read_once)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test_setup_teardown(test_arrays_are_chosen_by_name, begin, end),
+      cmocka_unit_test_setup_teardown(test_components, begin, end),
+      cmocka_unit_test_setup_teardown(test_series, begin, end),
+      cmocka_unit_test_setup_teardown(test_times_and_channels, begin, end),
+      cmocka_unit_test_setup_teardown(test_large_components, begin, end),
+      cmocka_unit_test_setup_teardown(test_spacing_takes_the_place_of_the_files, begin, end),
+      cmocka_unit_test_setup_teardown(test_mrc, begin, end),
+      cmocka_unit_test_setup_teardown(test_values_of_half_floats, begin, end),
+      cmocka_unit_test_setup_teardown(test_a_pipe_is_read_once, begin, end)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

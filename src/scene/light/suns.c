@@ -394,8 +394,9 @@ void hl_suns_release(hl_context *context, sky_suns *found) {
 /* Makes the parallel light that shines as a sun does. Derived: a sky of irradiance E from about one
  * direction gives a surface E / pi times the cosine to the mean of its directions, and a medium E / (4 pi)
  * times its phase function (halflight/scene.h); a light of colour I gives I times the cosine to its middle,
- * and I times the phase function. So I is E / pi times the length of that mean. A medium takes 1 / 4
- * divided by this length of it (hl_sun_part_of_media). */
+ * and I times the phase function. So for surfaces I is E / pi times the length of that mean. For media,
+ * I would have to be E / (4 pi): so a medium takes only the part 1 / (4 length) of the light
+ * (hl_sun_part_of_media). */
 hl_light hl_sun_light(const hl_sky *sky, const sky_sun *sun) {
   const sky_axes axes = hl_sky_axes(sky);
   hl_light light;
