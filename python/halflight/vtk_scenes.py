@@ -385,9 +385,11 @@ def from_vtk(renderer: Any, *, size: Any = None, shading: Shading = "light", **s
         warn("the background's gradient is left out: it has the lower colour")
     words: dict[str, Any] = {
         "size": (width, height), "camera": taken.camera, "lights": _lights(taken, shadows == "soft"), "sky": 0.0,
-        "ambient": taken.color(renderer.GetAmbient()).tolist(), "background": colors.to_linear(np.array(background)).tolist(), "shadows": shadows}
-    if taken.maximum:
+        "background": colors.to_linear(np.array(background)).tolist()}
+    if taken.maximum:  # without light
         words["compositing"] = "maximum"
+    else:
+        words |= {"ambient": taken.color(renderer.GetAmbient()).tolist(), "shadows": shadows}
     if taken.volumes:
         words["kernel"] = "linear"  # as VTK samples
     return Scene([*taken.volumes, *taken.meshes], **{**words, **settings})

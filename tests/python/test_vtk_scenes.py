@@ -1,4 +1,6 @@
 """Renderers of VTK as scenes, without a picture by VTK; scripts/test_integrations compares pictures with PyVista's."""
+import warnings
+
 import numpy as np
 import pytest
 
@@ -107,7 +109,9 @@ def test_volumes(renderer):
     volume.SetProperty(prop)
     volume.SetPosition(10, 0, 0)
     renderer.AddViewProp(volume)
-    scene = halflight.from_vtk(renderer, size=32)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # nothing is said of what the renderer did not ask for
+        scene = halflight.from_vtk(renderer, size=32)
     found = scene.volumes[0]
     assert np.array_equal(np.asarray(found), values) and found.affine.tolist() == [[1, 0, 0, 14], [0, 2, 0, 5], [0, 0, 3, 6], [0, 0, 0, 1]]
     assert found.look["shading"] == "phong" and found.look["transfer_function"].unit_distance == 2
