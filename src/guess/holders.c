@@ -1,7 +1,7 @@
 /* guess/holders.c - finds the holders of a scanned object, as bodies of cells, and planes that cut them off.
  *
- * All lengths are in the world of the volume's file. Of each row of a body's cells only the two ends are
- * kept: planes need no more, because half spaces are convex. */
+ * All lengths are in the world of the volume's file. Of each row of a body's cells only the two ends tell how
+ * far the body reaches, because half spaces are convex. */
 #include "guess/holders.h"
 
 #include <string.h>
@@ -26,24 +26,30 @@
 
 #define LEFT      0.01 /* fraction of a holder that may remain in the gap beside the object */
 #define RIM_LEVEL 0.3  /* fraction of the level from which cells are seen as rims */
-#define MANY      0.1  /* least fraction of all rims that a plane must cut off */
 
-enum { DIRECTIONS = 1000, VOXELS = 4096 };
-enum { FOR_EACH = 4, FOR_RIMS = 4 };     /* most planes for one holder, and for all rims */
-static const uint32_t RIMS = UINT32_MAX; /* stands in place of a body's number */
+enum { DIRECTIONS = 1000 };
+enum { SAMPLE = 4096 };                    /* most cells or voxels of a body that are looked at */
+enum { FOR_EACH = 4 };                     /* most planes that cut off one holder */
+static const uint32_t BESIDE = UINT32_MAX; /* stands in place of a body's number: holders and rims */
 
 /* The levels by which cells belong to bodies: mean optical depths, as fractions of the greatest cell's. At
  * the first level faint holders are seen. At the second one, foam and clothes no longer join a holder to the
  * object. */
 static const double levels[] = {0.02, 0.1};
 
-/* The two end cells of each row of a body's cells. */
-typedef struct body_ends {
-  vec3 *point;    /* owned; [count]; centres of cells */
-  uint32_t *cell; /* owned; [count] */
+/* Cells of a body: the two end cells of each row of its cells, or all cells. */
+typedef struct body_cells {
+  vec3 *point; /* owned; [count]; centres of cells */
   size_t count;
   bool at_border; /* the body has cells at the grid's border */
-} body_ends;
+} body_cells;
+
+/* A direction, and what is measured along it. */
+typedef struct side {
+  vec3 direction;
+  double cell_width; /* of one cell */
+  double hull;       /* reach of the object's cell centres */
+} side;
 
 typedef struct search {
   hl_context *context;
@@ -51,38 +57,41 @@ typedef struct search {
   const hl_seen *seen;
   affine3 cell_to_world; /* maps whole numbers of cells to their centres */
   hl_bodies bodies;
-  vec3 direction[DIRECTIONS];
-  double cell_width[DIRECTIONS]; /* width of one cell along each direction */
-  double hull[DIRECTIONS];       /* reach of the object's cell centres along each direction */
+  side sides[DIRECTIONS];
+  body_cells object;
   double object_length;
-  double densest;                   /* distance from the background; NaN: not found yet */
-  float faint;                      /* mean depth of the cells in the faintest rims */
-  uint32_t plane[HL_HOLDER_PLANES]; /* numbers of the planes' directions */
+  double grid_length; /* along the grid's three edges; no two cells are farther apart */
+  double densest;     /* distance from the background; NaN: not found yet */
+  float faint;        /* mean depth of the cells in the faintest rims */
+  side planes[HL_HOLDER_PLANES];
   size_t plane_count;
 } search;
 
 /* ---- bodies ---- */
 
-static void ends_release(hl_context *context, body_ends *ends) {
-  hl_release(context, ends->point);
-  hl_release(context, ends->cell);
+static void cells_release(hl_context *context, body_cells *cells) { hl_release(context, cells->point); }
+
+static bool lies_beyond(vec3 point, const side *plane) {
+  return vec3_dot(point, plane->direction) > plane->hull + CLEAR * plane->cell_width;
 }
 
-static void add_end(const search *s, body_ends *ends, int i, int j, int k) {
+static vec3 center_of(const search *s, int i, int j, int k) {
+  return affine3_apply(s->cell_to_world, (vec3){i, j, k});
+}
+
+static void add_cell(const search *s, body_cells *cells, int i, int j, int k) {
   const int *n = s->seen->size;
-  ends->point[ends->count] = affine3_apply(s->cell_to_world, (vec3){i, j, k});
-  ends->cell[ends->count++] = ((uint32_t)k * (uint32_t)n[1] + (uint32_t)j) * (uint32_t)n[0] + (uint32_t)i;
-  ends->at_border = ends->at_border || i == 0 || j == 0 || k == 0 || i == n[0] - 1 || j == n[1] - 1 ||
-                    k == n[2] - 1;
+  cells->point[cells->count++] = center_of(s, i, j, k);
+  cells->at_border = cells->at_border || i == 0 || j == 0 || k == 0 || i == n[0] - 1 || j == n[1] - 1 ||
+                     k == n[2] - 1;
 }
 
 /* Finds the ends of a body. Fails for lack of memory; release the ends in any case. */
-static hl_status find_ends(const search *s, uint32_t body, body_ends *ends, hl_error *error) {
+static hl_status find_ends(const search *s, uint32_t body, body_cells *ends, hl_error *error) {
   const int *n = s->seen->size;
   size_t rows = (size_t)n[1] * (size_t)n[2];
-  *ends = (body_ends){.point = hl_allocate(s->context, 2 * rows, sizeof *ends->point),
-                      .cell = hl_allocate(s->context, 2 * rows, sizeof *ends->cell)};
-  if (ends->point == NULL || ends->cell == NULL)
+  *ends = (body_cells){.point = hl_allocate(s->context, 2 * rows, sizeof *ends->point)};
+  if (ends->point == NULL)
     return hl_fail_memory(error, 2 * rows * sizeof *ends->point, "the rows of a volume's bodies");
   for (size_t row = 0; row < rows; row++) {
     const uint32_t *cells = s->bodies.body + row * (size_t)n[0];
@@ -90,22 +99,48 @@ static hl_status find_ends(const search *s, uint32_t body, body_ends *ends, hl_e
     while (first < n[0] && cells[first] != body) first++;
     while (last > first && cells[last] != body) last--;
     if (first == n[0]) continue;
-    add_end(s, ends, first, j, k);
-    if (last > first) add_end(s, ends, last, j, k);
+    add_cell(s, ends, first, j, k);
+    if (last > first) add_cell(s, ends, last, j, k);
   }
   return HL_OK;
 }
 
-/* The reach of a body's cells along a direction, and the body's width there. */
-static double reach(const search *s, const body_ends *ends, int d, double *width) {
+/* Finds all cells of a body. Fails for lack of memory; release the cells in any case. */
+static hl_status find_cells(const search *s, uint32_t body, body_cells *found, hl_error *error) {
+  const int *n = s->seen->size;
+  const size_t cells = (size_t)n[0] * (size_t)n[1] * (size_t)n[2];
+  size_t count = 0;
+  for (size_t c = 0; c < cells; c++) count += s->bodies.body[c] == body;
+  *found = (body_cells){.point = hl_allocate(s->context, count + 1, sizeof *found->point)};
+  if (found->point == NULL)
+    return hl_fail_memory(error, (count + 1) * sizeof *found->point, "the cells of a volume's bodies");
+  for (size_t c = 0; c < cells; c++)
+    if (s->bodies.body[c] == body)
+      add_cell(s, found, (int)(c % (size_t)n[0]), (int)(c / (size_t)n[0] % (size_t)n[1]),
+               (int)(c / (size_t)n[0] / (size_t)n[1]));
+  return HL_OK;
+}
+
+/* The reach of a body's cells along a side, and the body's width there. */
+static double reach(const body_cells *ends, const side *along, double *width) {
   double low = INFINITY, high = -INFINITY;
   for (size_t n = 0; n < ends->count; n++) {
-    double at = vec3_dot(ends->point[n], s->direction[d]);
+    double at = vec3_dot(ends->point[n], along->direction);
     low = fmin(low, at);
     high = fmax(high, at);
   }
-  *width = high - low + s->cell_width[d];
+  *width = high - low + along->cell_width;
   return high;
+}
+
+/* Measures the object along a direction. */
+static side side_along(const search *s, vec3 direction) {
+  side along = {.direction = direction};
+  double width;
+  for (int a = 0; a < 3; a++)
+    along.cell_width += fabs(vec3_dot(mat3_column(s->cell_to_world.linear, a), direction));
+  along.hull = reach(&s->object, &along, &width);
+  return along;
 }
 
 /* Looks at voxels in the middle of a body's cells. Finds a quantile of their distances from the background
@@ -113,10 +148,10 @@ static double reach(const search *s, const body_ends *ends, int d, double *width
 static hl_status look_at_matter(const search *s, uint32_t body, const double *limit, double *found,
                                 hl_error *error) {
   const hl_seen *seen = s->seen;
-  float distances[VOXELS];
+  float distances[SAMPLE];
   size_t nx = (size_t)seen->size[0], ny = (size_t)seen->size[1], cells = nx * ny * (size_t)seen->size[2],
-         each = s->bodies.places[body] / VOXELS + 1, met = 0, count = 0, above = 0;
-  for (size_t c = 0; c < cells && count < VOXELS; c++) {
+         each = s->bodies.places[body] / SAMPLE + 1, met = 0, count = 0, above = 0;
+  for (size_t c = 0; c < cells && count < SAMPLE; c++) {
     if (s->bodies.body[c] != body || met++ % each != 0) continue;
     size_t step = seen->step, half = step / 2;
     double value = hl_volume_value_within(seen->volume, c % nx * step + half, c / nx % ny * step + half,
@@ -163,56 +198,84 @@ static hl_status find_object(search *s, double level, bool *is_one, hl_error *er
 }
 
 static hl_status measure_object(search *s, hl_error *error) {
-  body_ends ends;
-  hl_status status = find_ends(s, s->bodies.largest, &ends, error);
+  hl_status status = find_ends(s, s->bodies.largest, &s->object, error);
   s->object_length = 0;
   for (int d = 0; status == HL_OK && d < DIRECTIONS; d++) {
     double width;
-    s->hull[d] = reach(s, &ends, d, &width);
+    s->sides[d] = side_along(s, hl_even_direction(d, DIRECTIONS));
+    reach(&s->object, &s->sides[d], &width);
     s->object_length = fmax(s->object_length, width);
   }
-  ends_release(s->context, &ends);
   return status;
 }
 
 /* ---- holders ---- */
 
-static bool lies_beyond(const search *s, vec3 point, size_t d) {
-  return vec3_dot(point, s->direction[d]) > s->hull[d] + CLEAR * s->cell_width[d];
+/* The number of cells that lie beyond a plane, of at most SAMPLE that are looked at. */
+static size_t count_beyond(const body_cells *cells, const side *plane) {
+  size_t count = 0, each = cells->count / SAMPLE + 1;
+  for (size_t n = 0; n < cells->count; n += each) count += lies_beyond(cells->point[n], plane);
+  return count;
 }
 
-static bool is_cut_off(const search *s, vec3 point) {
-  bool cut = false;
-  for (size_t p = 0; p < s->plane_count && !cut; p++) cut = lies_beyond(s, point, s->plane[p]);
-  return cut;
+/* Takes the cells beyond a plane out. */
+static void take_out(body_cells *cells, const side *plane) {
+  size_t left = 0;
+  for (size_t n = 0; n < cells->count; n++)
+    if (!lies_beyond(cells->point[n], plane)) cells->point[left++] = cells->point[n];
+  cells->count = left;
 }
 
-/* Adds planes, at most `most_planes`, and removes the ends that they cut off. Each plane is the one that cuts
- * off most of the rest of a body. It must cut off more than a fraction of the body, or, once nearly nothing
- * is left, anything at all. True if nearly nothing is left. */
-static bool cut_off(search *s, int most_planes, double fraction, body_ends *ends) {
-  const double enough = fraction * (double)ends->count, rest = LEFT * (double)ends->count;
-  for (int added = 0;; added++) {
-    size_t left = 0, most = 0;
-    for (size_t n = 0; n < ends->count; n++)
-      if (!is_cut_off(s, ends->point[n])) ends->point[left++] = ends->point[n];
-    ends->count = left;
-    const bool nearly = (double)left <= rest;
-    if (left == 0 || added == most_planes || s->plane_count == HL_HOLDER_PLANES) return nearly;
-    for (uint32_t d = 0; d < DIRECTIONS; d++) {
-      size_t beyond = 0;
-      for (size_t n = 0; n < left; n++) beyond += lies_beyond(s, ends->point[n], d);
-      if (beyond > most) most = beyond, s->plane[s->plane_count] = d;
+/* Tilts a plane, by smaller and smaller angles, so that it cuts off more of a body. *most: as for
+ * best_plane(). The first angle is between neighbouring sides; derived: each of these directions
+ * has 4 pi / DIRECTIONS of the sphere. The last angle moves no cell of the grid by more than half a cell. */
+static side tilt(const search *s, const body_cells *cells, side plane, size_t *most) {
+  const double first = sqrt(4 * HL_PI / DIRECTIONS);
+  for (double angle = first; angle * s->grid_length > plane.cell_width / 2; angle /= 2) {
+    const vec3 from = plane.direction, across = vec3_perpendicular(from), along = vec3_cross(from, across);
+    for (int way = 0; way < 9; way++) { /* eight ways, and none */
+      const vec3 to = vec3_add(vec3_scale(across, way % 3 - 1), vec3_scale(along, way / 3 - 1));
+      const side tilted = side_along(s, vec3_normalise(vec3_add(from, vec3_scale(to, angle))));
+      const size_t beyond = count_beyond(cells, &tilted);
+      if (beyond > *most) *most = beyond, plane = tilted;
     }
-    if (!((double)most > (nearly ? 0 : enough))) return nearly;
-    s->plane_count++;
   }
+  return plane;
 }
 
-static bool is_long_and_thin(const search *s, const body_ends *ends) {
+/* The plane that cuts off most of a body. *most: how many of the cells that are looked at. */
+static side best_plane(const search *s, const body_cells *cells, size_t *most) {
+  side plane = s->sides[0];
+  *most = 0;
+  for (int d = 0; d < DIRECTIONS; d++) {
+    const size_t beyond = count_beyond(cells, &s->sides[d]);
+    if (beyond > *most) *most = beyond, plane = s->sides[d];
+  }
+  return *most > 0 ? tilt(s, cells, plane, most) : plane;
+}
+
+/* Adds planes until there are `most_planes`, each of which cuts off as much as it can of what is left of a
+ * body. *left: the fraction of the body that is left in the end. Fails for lack of memory. */
+static hl_status cut_off(search *s, uint32_t body, size_t most_planes, double *left, hl_error *error) {
+  body_cells cells;
+  hl_status status = find_cells(s, body, &cells, error);
+  const double all = (double)cells.count;
+  while (status == HL_OK && cells.count > 0 && s->plane_count < most_planes) {
+    size_t most;
+    const side plane = best_plane(s, &cells, &most);
+    if (most == 0) break;
+    s->planes[s->plane_count++] = plane;
+    take_out(&cells, &plane);
+  }
+  *left = all > 0 ? (double)cells.count / all : 0;
+  cells_release(s->context, &cells);
+  return status;
+}
+
+static bool is_long_and_thin(const search *s, const body_cells *ends) {
   double most = 0, least = INFINITY, width;
   for (int d = 0; d < DIRECTIONS; d++) {
-    reach(s, ends, d, &width);
+    reach(ends, &s->sides[d], &width);
     most = fmax(most, width);
     least = fmin(least, width);
   }
@@ -228,77 +291,98 @@ static hl_status holds_dense_matter(search *s, uint32_t body, bool *dense, hl_er
   return status;
 }
 
-/* Cuts the body off if it is a holder. */
-static hl_status take(search *s, uint32_t body, bool *is_holder, hl_error *error) {
-  body_ends ends;
-  const size_t planes = s->plane_count;
+/* Finds whether a body is a holder, which a few planes of its own cut off nearly whole. */
+static hl_status is_holder(search *s, uint32_t body, bool *is_one, hl_error *error) {
+  body_cells ends;
   bool dense = false;
+  double left = 1;
   hl_status status = find_ends(s, body, &ends, error);
-  *is_holder = status == HL_OK && ends.at_border && is_long_and_thin(s, &ends) &&
-               cut_off(s, FOR_EACH, 0, &ends);
-  if (*is_holder) status = holds_dense_matter(s, body, &dense, error);
-  if (dense) *is_holder = false;
-  if (!*is_holder) s->plane_count = planes;
-  ends_release(s->context, &ends);
+  if (status == HL_OK && ends.at_border && is_long_and_thin(s, &ends))
+    status = cut_off(s, body, FOR_EACH, &left, error);
+  s->plane_count = 0;
+  if (status == HL_OK && left <= LEFT) status = holds_dense_matter(s, body, &dense, error);
+  *is_one = left <= LEFT && !dense;
+  cells_release(s->context, &ends);
   return status;
 }
 
 /* Finds whether a plane would cut a body that is no holder. */
 static hl_status is_met(const search *s, uint32_t body, bool *met, hl_error *error) {
-  body_ends ends;
+  body_cells ends;
   hl_status status = find_ends(s, body, &ends, error);
   for (size_t n = 0; status == HL_OK && n < ends.count && !*met; n++)
     for (size_t p = 0; p < s->plane_count && !*met; p++) {
-      uint32_t d = s->plane[p];
-      *met = vec3_dot(ends.point[n], s->direction[d]) > s->hull[d] + (RIM - 0.5) * s->cell_width[d];
+      const side *plane = &s->planes[p];
+      *met = vec3_dot(ends.point[n], plane->direction) > plane->hull + (RIM - 0.5) * plane->cell_width;
     }
-  ends_release(s->context, &ends);
+  cells_release(s->context, &ends);
   return status;
 }
 
 /* True if a plane could cut off a point. */
 static bool is_beside(const search *s, vec3 point) {
   bool beside = false;
-  for (uint32_t d = 0; d < DIRECTIONS && !beside; d++) beside = lies_beyond(s, point, d);
+  for (int d = 0; d < DIRECTIONS && !beside; d++) beside = lies_beyond(point, &s->sides[d]);
   return beside;
 }
 
-/* Cuts off the faint rims of holders: adds planes that each take away much of all rims beside the object. */
-static hl_status cut_rims_off(search *s, hl_error *error) {
+/* Drops what no plane could cut off. In each row these lie in one stretch, since they are all cells
+ * that are beyond no side. */
+static void drop_what_is_within(search *s) {
+  const int *n = s->seen->size;
+  for (int k = 0; k < n[2]; k++)
+    for (int j = 0; j < n[1]; j++) {
+      uint32_t *cells = s->bodies.body + ((size_t)k * (size_t)n[1] + (size_t)j) * (size_t)n[0];
+      int first = 0, last = n[0] - 1;
+      while (first < n[0] && (cells[first] != BESIDE || is_beside(s, center_of(s, first, j, k)))) first++;
+      while (last > first && (cells[last] != BESIDE || is_beside(s, center_of(s, last, j, k)))) last--;
+      for (int i = first; i <= last; i++)
+        if (cells[i] == BESIDE) cells[i] = 0;
+    }
+}
+
+/* Cuts off the holders and the faint rims around them, all together. other: [bodies + 1]; bodies that are
+ * neither. */
+static hl_status cut_holders_off(search *s, const unsigned char *other, hl_error *error) {
   const hl_seen *seen = s->seen;
   const size_t cells = (size_t)seen->size[0] * (size_t)seen->size[1] * (size_t)seen->size[2];
-  body_ends ends;
+  double left;
   for (size_t c = 0; c < cells; c++)
-    if (s->bodies.body[c] != s->bodies.largest) s->bodies.body[c] = seen->mean[c] > s->faint ? RIMS : 0;
-  hl_status status = find_ends(s, RIMS, &ends, error);
-  size_t beside = 0;
-  for (size_t n = 0; status == HL_OK && n < ends.count; n++)
-    if (!is_cut_off(s, ends.point[n]) && is_beside(s, ends.point[n])) ends.point[beside++] = ends.point[n];
-  ends.count = beside;
-  if (status == HL_OK) cut_off(s, FOR_RIMS, MANY, &ends);
-  ends_release(s->context, &ends);
+    if (!other[s->bodies.body[c]]) s->bodies.body[c] = seen->mean[c] > s->faint ? BESIDE : 0;
+  drop_what_is_within(s);
+  return cut_off(s, BESIDE, HL_HOLDER_PLANES, &left, error);
+}
+
+/* Tells holders, and specks, from other bodies. other: [bodies + 1]. *any: there is a holder. */
+static hl_status find_holders(search *s, unsigned char *other, bool *any, hl_error *error) {
+  const double least = LEAST * s->bodies.places[s->bodies.largest];
+  hl_status status = HL_OK;
+  for (uint32_t b = 1; status == HL_OK && b <= s->bodies.count; b++) {
+    bool is_one = false;
+    other[b] = b == s->bodies.largest || !(s->bodies.places[b] < least);
+    if (b == s->bodies.largest || !other[b]) continue;
+    status = is_holder(s, b, &is_one, error);
+    other[b] = !is_one;
+    *any = *any || is_one;
+  }
   return status;
 }
 
 /* Finds the planes at one level; where in doubt, none. */
 static hl_status find_planes(search *s, double level, hl_error *error) {
-  bool is_one = false, doubt = false;
+  bool is_one = false, any = false, doubt = false;
   hl_status status = find_object(s, level, &is_one, error);
   if (status != HL_OK || !is_one) return status;
-  double least = LEAST * s->bodies.places[s->bodies.largest];
-  unsigned char *holder = hl_allocate_zeroed(s->context, (size_t)s->bodies.count + 1, 1);
-  if (holder == NULL) return hl_fail_memory(error, (size_t)s->bodies.count + 1, "a volume's bodies");
+  unsigned char *other = hl_allocate_zeroed(s->context, (size_t)s->bodies.count + 1, 1);
+  if (other == NULL) return hl_fail_memory(error, (size_t)s->bodies.count + 1, "a volume's bodies");
   status = measure_object(s, error);
-  for (int pass = 0; pass < 2; pass++)
-    for (uint32_t b = 1; status == HL_OK && b <= s->bodies.count; b++) {
-      if (b == s->bodies.largest || s->bodies.places[b] < least || holder[b]) continue;
-      bool is_holder = false;
-      status = pass == 0 ? take(s, b, &is_holder, error) : is_met(s, b, &doubt, error);
-      holder[b] = is_holder;
-    }
-  if (status == HL_OK && !doubt && s->plane_count > 0) status = cut_rims_off(s, error);
+  if (status == HL_OK) status = find_holders(s, other, &any, error);
+  if (status == HL_OK && any) status = cut_holders_off(s, other, error);
+  for (uint32_t b = 1; status == HL_OK && any && b <= s->bodies.count; b++)
+    if (other[b] && b != s->bodies.largest) status = is_met(s, b, &doubt, error);
   if (doubt) s->plane_count = 0;
-  hl_release(s->context, holder);
+  cells_release(s->context, &s->object);
+  hl_release(s->context, other);
   return status;
 }
 
@@ -310,18 +394,14 @@ static void set_out(search *s, affine3 index_to_world) {
   for (int row = 0; row < 3; row++)
     s->cell_to_world.linear.row[row] = vec3_scale(index_to_world.linear.row[row], step);
   s->cell_to_world.offset = affine3_apply(index_to_world, (vec3){middle, middle, middle});
-  for (int d = 0; d < DIRECTIONS; d++) {
-    s->direction[d] = hl_even_direction(d, DIRECTIONS);
-    s->cell_width[d] = 0;
-    for (int a = 0; a < 3; a++)
-      s->cell_width[d] += fabs(vec3_dot(mat3_column(s->cell_to_world.linear, a), s->direction[d]));
-  }
+  for (int a = 0; a < 3; a++)
+    s->grid_length += s->seen->size[a] * vec3_length(mat3_column(s->cell_to_world.linear, a));
 }
 
 static void make_cuts(const search *s, hl_cut planes[HL_HOLDER_PLANES]) {
   for (size_t p = 0; p < s->plane_count; p++) {
-    const uint32_t d = s->plane[p];
-    const vec3 normal = s->direction[d], at = vec3_scale(normal, s->hull[d] + RIM * s->cell_width[d]);
+    const side *plane = &s->planes[p];
+    const vec3 normal = plane->direction, at = vec3_scale(normal, plane->hull + RIM * plane->cell_width);
     hl_cut_defaults(&planes[p]);
     memcpy(planes[p].normal, &normal, sizeof planes[p].normal);
     memcpy(planes[p].point, &at, sizeof planes[p].point);

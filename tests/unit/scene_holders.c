@@ -52,6 +52,21 @@ static double with_piece(int i, int j, int k) {
   return hypot(hypot(i - 8, j - 8), k - 2) < 8 ? 80 + 4 * noise(i, j, k) : ball(i, j, k);
 }
 
+/* A slanted board two voxels thick, three voxels from the ball, and wider than it. */
+static bool in_slanted_board(int i, int j, int k) {
+  double along = 0.36 * (i - 32) + 0.18 * (j - 32) + 0.9154 * (k - 32);
+  return along > -27 && along < -25 && abs(j - 32) < 18;
+}
+static double on_slanted_board(int i, int j, int k) {
+  return in_slanted_board(i, j, k) ? 80 + 4 * noise(i, j, k) : ball(i, j, k);
+}
+
+/* A board below, and a compact piece above: the board is a holder, and the piece is none. */
+static bool in_upper_piece(int i, int j, int k) { return hypot(hypot(i - 8, j - 8), k - 58) < 8; }
+static double on_board_with_piece(int i, int j, int k) {
+  return in_upper_piece(i, j, k) ? 80 + 4 * noise(i, j, k) : on_board(i, j, k);
+}
+
 /* axes: hl_volume_description's. */
 static hl_scene *make_scene(hl_context *context, double (*each)(int i, int j, int k),
                             const double axes[3][3]) {
@@ -66,8 +81,31 @@ static hl_scene *make_scene(hl_context *context, double (*each)(int i, int j, in
   return scene;
 }
 
-/* The board is cut away but for what lies within two cells of the ball's hull; of the ball nothing is, nor of
- * the voxel around it. Wherever the grid lies and however it is turned. */
+/* The number of a body's voxels, and of those that no plane cuts off. */
+typedef struct counts {
+  int all, left;
+} counts;
+
+/* Counts the voxels of a body. None of the ball's is cut off, nor of the voxel around it. */
+static counts count_left(hl_context *context, const hl_scene_volume *volume,
+                         bool (*in)(int i, int j, int k)) {
+  cut_shape *cuts;
+  counts found = {0, 0};
+  assert_int_equal(hl_cut_shapes(context, volume, &cuts, NULL), HL_OK);
+  for (int v = 0; v < COUNT; v++) {
+    int i = v % N, j = v / N % N, k = v / N / N;
+    bool stays = hl_cuts_leave(cuts, volume->cut_count, (vec3){i, j, k});
+    if (from_middle(i, j, k) < 22) assert_true(stays);
+    if (!in(i, j, k)) continue;
+    found.all++;
+    found.left += stays;
+  }
+  hl_release(context, cuts);
+  return found;
+}
+
+/* The board is cut away but for what lies within two cells of the ball's hull, wherever the grid lies and
+ * however it is turned. */
 static void boards_are_cut_away(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -75,21 +113,38 @@ static void boards_are_cut_away(void **state) {
     hl_scene *scene = make_scene(context, on_board, turn ? turned : straight);
     const hl_scene_volume *volume = &hl_scene_describe(scene)->volumes[0];
     assert_true(volume->cut_count > 0 && volume->cut_count <= 8);
-    cut_shape *cuts;
-    assert_int_equal(hl_cut_shapes(context, volume, &cuts, NULL), HL_OK);
-    int board = 0, left = 0;
-    for (int v = 0; v < COUNT; v++) {
-      int i = v % N, j = v / N % N, k = v / N / N;
-      bool stays = hl_cuts_leave(cuts, volume->cut_count, (vec3){i, j, k});
-      if (from_middle(i, j, k) < 22) assert_true(stays);
-      if (!in_board(i, j, k)) continue;
-      board++;
-      left += stays;
-    }
-    assert_true(board == 12 * 2 * N && left * 100 <= board);
-    hl_release(context, cuts);
+    counts board = count_left(context, volume, in_board);
+    assert_true(board.all == 12 * 2 * N && board.left * 100 <= board.all);
     hl_scene_release(scene);
   }
+  hl_context_destroy(context);
+}
+
+/* A plane that lies just as a slanted board cuts it off alone, and whole. */
+static void one_plane_cuts_a_board_off(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  hl_scene *scene = make_scene(context, on_slanted_board, straight);
+  const hl_scene_volume *volume = &hl_scene_describe(scene)->volumes[0];
+  counts board = count_left(context, volume, in_slanted_board);
+  assert_true(board.all > 3000);
+  assert_int_equal(board.left, 0);
+  assert_int_equal(volume->cut_count, 1);
+  hl_scene_release(scene);
+  hl_context_destroy(context);
+}
+
+/* Planes that cut a holder off cut nothing of a body that is none. */
+static void planes_spare_other_bodies(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  hl_scene *scene = make_scene(context, on_board_with_piece, straight);
+  const hl_scene_volume *volume = &hl_scene_describe(scene)->volumes[0];
+  counts board = count_left(context, volume, in_board), piece = count_left(context, volume, in_upper_piece);
+  assert_true(board.left * 100 <= board.all);
+  assert_true(piece.all > 1500);
+  assert_int_equal(piece.left, piece.all);
+  hl_scene_release(scene);
   hl_context_destroy(context);
 }
 
@@ -107,7 +162,8 @@ static void other_bodies_stay(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(boards_are_cut_away),
-                                     cmocka_unit_test(other_bodies_stay)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(boards_are_cut_away), cmocka_unit_test(one_plane_cuts_a_board_off),
+      cmocka_unit_test(planes_spare_other_bodies), cmocka_unit_test(other_bodies_stay)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
