@@ -23,7 +23,7 @@ static const struct {
     {"depth", "bits bit-depth color-depth"},
     {"background",
      "bg background-color bgcolor background-colour canvas backdrop world-color transparent alpha"},
-    {"layers", "passes aov aovs channels buffers depth-map zbuffer normals render-layers"},
+    {"layers", "passes aov aovs buffers depth-map zbuffer normals render-layers"},
     {"azimuth",
      "rotate rotation yaw theta angle turn spin orbit rotate-z heading azim camera-position camera"},
     {"elevation", "pitch phi tilt altitude elev rotate-x inclination"},
