@@ -18,7 +18,8 @@ typedef enum hl_particles_quantity {
   HL_PARTICLES_LOG_DENSITY = 0, /* logarithm to base 10 of the density. Voxels get at least a tenth of the
                                  * least density that any particle has at its own place */
   HL_PARTICLES_DENSITY = 1,     /* mass per cubed world unit; 0 where no particle reaches */
-  HL_PARTICLES_MEAN = 2 /* mean of `values`, weighted by mass and kernel; NaN where no particle reaches */
+  HL_PARTICLES_MEAN =
+      2 /* mean of `values`, weighted by mass and kernel; `outside` where no particle reaches */
 } hl_particles_quantity;
 
 /* All arrays are borrowed during the call. */
@@ -31,6 +32,7 @@ typedef struct hl_particles_description {
   const float *lengths; /* [count]; smoothing lengths in world units: kernels reach to twice the smoothing
                          * length; null (default): half of the distance of the 48th neighbour */
   const float *values;  /* [count]; finite; for HL_PARTICLES_MEAN */
+  float outside; /* for HL_PARTICLES_MEAN: the value where no particle reaches; NaN (default): no data */
   double period_low[3]; /* world: where the periodic box begins; default 0 */
   double period[3];     /* the length of the world's periodic box along x, y, z; 0 (default): not periodic
                          * along the axis */
@@ -44,10 +46,11 @@ typedef struct hl_particles_description {
 
 HL_API void hl_particles_description_defaults(hl_particles_description *description);
 
-/* Makes a volume of particles: floats, axes along the world's. Along a periodic axis the first and the last
- * voxel stand at the ends of the period, and have the same values. The bytes do not depend on threads.
- * *volume is owned by the caller. HL_ERROR_INPUT for numbers that cannot be right; HL_ERROR_MEMORY where the
- * memory limit leaves no room for the wanted spacing. */
+/* Makes a volume of particles: floats, axes along the world's. Where most of the box is empty or smooth, the
+ * field is kept in bricks, whose spacing is 2^l voxels where no kernel is narrow. Along a periodic axis the
+ * first and the last voxel stand at the ends of the period, and have the same values. The bytes do not depend
+ * on threads. *volume is owned by the caller. HL_ERROR_INPUT for numbers that cannot be right;
+ * HL_ERROR_MEMORY where the memory limit leaves no room for the wanted spacing. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_from_particles(hl_context *context,
                                                          const hl_particles_description *description,
                                                          hl_volume **volume, hl_error *error);

@@ -10,7 +10,7 @@ from ._library import call, context, ffi, lib, made
 from ._settings import number, numbers_of
 from ._words import choice
 from .transfer import TransferFunction
-from .volume import Look, Volume, volume_of_handle
+from .volume import Info, Look, Volume, volume_of_handle
 
 __all__ = ["Particles"]
 
@@ -104,20 +104,28 @@ class Particles:
         **look
             Keywords of `Volume`.
         """
-        struct = self._describe()
-        values = None
         if isinstance(quantity, str):
+            struct = self._on_grid(spacing, size)
             struct.quantity = getattr(lib, _QUANTITIES[choice("quantity", quantity, _QUANTITIES)])
             look.setdefault("name", quantity)
+            volume = _made(struct)
         else:
-            values = self._numbers("values", quantity)
-            struct.quantity, struct.values = lib.HL_PARTICLES_MEAN, ffi.cast("float *", values.ctypes.data)
+            volume = self._mean(self._numbers("values", quantity), np.nan, spacing, size)
+        return volume.replace(**look)
+
+    def _on_grid(self, spacing: float | None, size: int | None) -> Any:
+        struct = self._describe()
         if spacing is not None:
             struct.spacing = number("spacing", spacing)
         if size is not None:
             struct.side = int(size)
-        handle = made(lib.hl_volume_from_particles, "hl_volume", lib.hl_volume_release, context, struct)
-        return volume_of_handle(handle).replace(**look)
+        return struct
+
+    def _mean(self, values: np.ndarray[Any, np.dtype[np.float32]], outside: float, spacing: float | None, size: int | None) -> Volume:
+        """The mean of values, and `outside` where no particle reaches."""
+        struct = self._on_grid(spacing, size)
+        struct.quantity, struct.values, struct.outside = lib.HL_PARTICLES_MEAN, ffi.cast("float *", values.ctypes.data), outside
+        return _made(struct)
 
     def colored(self, values: Any, cmap: Any = "viridis", *, clim: Sequence[float] | None = None, depth: float = 2.0,
                 name: str = "value", spacing: float | None = None, size: int | None = None) -> list[Volume]:
@@ -129,7 +137,7 @@ class Particles:
             Of each particle, such as its temperature.
         cmap : str, matplotlib colormap or colours
         clim : (low, high), optional
-            The values that the colours spread over; by default percentiles 2 and 98 of `values`.
+            The values that the colours spread over; by default percentiles 2 and 98 of `values`. Values beyond it count as its ends.
         depth : float
             The optical depth of dense matter through a twentieth of the box. Dense is the density that only a
             thousandth of the places exceeds.
@@ -143,19 +151,20 @@ class Particles:
         list of Volume
             The density, and the mean that gives it its colours: give both to `render`.
         """
+        self.h  # found once for both volumes
         density = self.volume(spacing=spacing, size=size)
-        mean = self.volume(values, spacing=spacing, size=size)
-        voxels = np.array(mean)
         given = self._numbers("values", values)
         low, high = numbers_of("clim", np.percentile(given, (2, 98)) if clim is None else clim, 2)
         if not high > low:
             low, high = low - 0.5, low + 0.5
-        voxels[~np.isfinite(voxels)] = np.mean(given)
+        # The function has no colours beyond its range, so no mean may leave it, not even by rounding.
+        margin = 1e-5 * (high - low)
+        held = np.clip(given, low, high)
+        mean = self._mean(held, float(np.mean(held)), spacing, size)
         step = float(min(density.info().spacing))
         bottom, top = density.info().range
         # Optical depth is proportional to density, whose logarithm the volume holds.
-        held = np.array(density)
-        dense = np.percentile(held[held > bottom], 99.9) if top > bottom else top
+        dense = _dense(density.info())
         rise = 10 ** (np.linspace(bottom, top, _STEPS) - dense)
         rise[0] = 0
         length = max(density.dimensions) * step / 20
@@ -166,9 +175,24 @@ class Particles:
         pixels[..., 3] = opacity
         pixels[..., :3] = shades[::-1, None, :] * opacity[None, :, None]
         function = TransferFunction(second={"volume": name}, unit_distance=step,
-                                    image={"pixels": pixels, "value": (bottom, top), "second": (low, high)})
-        colored_by = Volume(np.clip(voxels, low, high), affine=mean.affine, name=name, visible=False, casts_shadow=False)
+                                    image={"pixels": pixels, "value": (bottom, top), "second": (low - margin, high + margin)})
+        colored_by = mean.replace(name=name, visible=False, casts_shadow=False)
         return [density.replace(transfer_function=function, shading="none"), colored_by]
+
+
+def _made(struct: Any) -> Volume:
+    return volume_of_handle(made(lib.hl_volume_from_particles, "hl_volume", lib.hl_volume_release, context, struct))
+
+
+def _dense(info: Info) -> float:
+    """The logarithm of density that one of a thousand voxels with matter exceeds."""
+    bottom, top = info.range
+    counts = info.histogram.astype(float)
+    counts[0] = 0  # voxels without matter have the least number
+    if not counts.sum() > 0:
+        return top
+    above = np.cumsum(counts[::-1])[::-1]
+    return bottom + (top - bottom) * (int(np.sum(above > above[0] / 1000)) / len(counts))
 
 
 def _box(periodic: Any) -> tuple[list[float], list[float]]:

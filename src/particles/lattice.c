@@ -9,8 +9,10 @@
 enum {
   BINS_OF_OCTAVE = 8,
   OCTAVES = 320, /* floats have exponents from -149 to 128 */
-  LEVELS_MOST = 8,
-  LEAST_CELLS = 4, /* least number of cells of the coarsest level along the longest axis */
+  /* The least number of cells of the coarsest level along the longest axis. So the box, which is at least a
+   * quarter as long along each axis that is not periodic (see PART_OF_EXTENT), has at least four of them
+   * there, and kernels find points within their margin (levels.h). */
+  LEAST_CELLS = 16,
   /* the lattice extends beyond the outermost places by the reach of a kernel of middling size, and at most
    * by the longest extent divided by this number */
   PART_OF_EXTENT = 8
@@ -66,7 +68,7 @@ static void find_box(const hl_particle_set *set, const lengths *l, double low[3]
  * them lie along the longest axis. */
 static int levels_for(double most, double spacing, double longest) {
   int levels = 1;
-  while (levels < LEVELS_MOST && most >= 4 * spacing && longest / 2 >= LEAST_CELLS) {
+  while (levels < HL_PARTICLE_LEVELS && most >= 4 * spacing && longest / 2 >= LEAST_CELLS) {
     spacing *= 2, longest /= 2;
     levels++;
   }

@@ -8,9 +8,15 @@
  * coarse to fine: c[l] = S c[l + 1] + p[l], where p[l] is the sum of the kernels spread on level l, and S
  * subdivides a spline's coefficients exactly.
  *
+ * Each level keeps only the blocks of its points where the sum may differ from 0. The sum becomes an array of
+ * all points of level 0, or bricks at levels (bricks/bricks.h): there a place has the level of the narrowest
+ * kernel that reaches it. Both are the same field, because a brick of a level begins two points before the
+ * first kernel of this level: so every coefficient that the bricks' builder subdivides has no kernel of its
+ * own.
+ *
  * In:  places, the quantity that each particle carries, and smoothing lengths or none
- * (volume/formats/particles/particles.c). Out: coefficients on the points of level 0. The bytes are the same
- * with any number of threads. */
+ * (volume/formats/particles/particles.c). Out: coefficients on the points of level 0, or bricks. The bytes
+ * are the same with any number of threads. */
 #ifndef HL_PARTICLES_PARTICLES_H
 #define HL_PARTICLES_PARTICLES_H
 
@@ -18,8 +24,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "bricks/build.h"
 #include "core/error.h"
 #include "core/pool.h"
+#include "particles/block_table.h"
 
 /* The particles of a caller; all arrays are borrowed. */
 typedef struct hl_particle_input {
@@ -41,6 +49,8 @@ typedef struct hl_particle_set {
   double low[3], unit[3]; /* world */
   bool periodic[3];
 } hl_particle_set;
+
+enum { HL_PARTICLE_LEVELS = 12 }; /* the most levels of a lattice */
 
 /* Levels of a lattice. Level l has cells[a] >> l cells along axis a, and one point more where the axis is not
  * periodic. */
@@ -82,36 +92,61 @@ hl_status hl_particles_lattice(const hl_particle_set *set, const hl_particle_lim
                                const char *subject, hl_particle_lattice *lattice, hl_error *error);
 
 /* The number of points of one level along an axis. */
-static inline size_t hl_lattice_points(const hl_particle_lattice *lattice, int level, int axis) {
+static inline size_t hl_particle_points(const hl_particle_lattice *lattice, int level, int axis) {
   return (lattice->cells[axis] >> level) + (lattice->periodic[axis] ? 0 : 1);
 }
 
+/* Which blocks of which levels are needed. A block has HL_PARTICLE_BLOCK points an axis: block b of a level
+ * holds the points b HL_PARTICLE_BLOCK to (b + 1) HL_PARTICLE_BLOCK - 1 of this level. */
+enum { HL_PARTICLE_BLOCK_SHIFT = 4, HL_PARTICLE_BLOCK = 1 << HL_PARTICLE_BLOCK_SHIFT };
+#define HL_PARTICLE_BLOCK_POINTS ((size_t)HL_PARTICLE_BLOCK * HL_PARTICLE_BLOCK * HL_PARTICLE_BLOCK)
+typedef struct hl_particle_plan {
+  hl_particle_lattice lattice;
+  uint8_t *level_of; /* owned; [set->count]; the level on which each particle is spread */
+  hl_block_table blocks[HL_PARTICLE_LEVELS];
+  hl_bricks_leaf *leaves; /* owned; null: the field becomes an array of all points */
+  size_t leaf_count;
+} hl_particle_plan;
+
+/* Finds the blocks that are needed. in_bricks: whether the field becomes bricks. *plan must be released also
+ * after a failure. */
+hl_status hl_particles_plan(hl_context *context, const hl_particle_set *set,
+                            const hl_particle_lattice *lattice, bool in_bricks, const char *subject,
+                            hl_particle_plan *plan, hl_error *error);
+void hl_particle_plan_release(hl_context *context, hl_particle_plan *plan);
+
+/* The bytes of the bricks of a plan, and the bytes of one field while it is spread. */
+double hl_particle_plan_brick_bytes(const hl_particle_plan *plan);
+double hl_particle_plan_field_bytes(const hl_particle_plan *plan);
+
+/* Coefficients of all levels. Points that lie in no block have the number `outside`. */
+typedef struct hl_particle_field {
+  const hl_particle_plan *plan;
+  float *points[HL_PARTICLE_LEVELS]; /* owned; [blocks][z][y][x], HL_PARTICLE_BLOCK points an axis */
+  float outside;
+} hl_particle_field;
+
 /* Spreads the weights of the particles. weights: [set->count], one for each particle, in the set's order;
- * null: each is 1. *field: [z][y][x] points of level 0; weight per world volume; owned by the caller
- * (hl_release). The sum of the field times the volume of a cell is the sum of the weights, to the rounding of
- * floats. */
+ * null: each is 1. The field is weight per world volume; the plan is borrowed by the field. The sum of the
+ * coefficients of level 0, times the volume of a cell, is the sum of the weights, to the rounding of floats.
+ * *field must be released also after a failure. */
 hl_status hl_particles_spread(hl_context *context, hl_pool *pool, const hl_particle_set *set,
-                              const float *weights, const hl_particle_lattice *lattice, const char *subject,
-                              float **field, hl_error *error);
+                              const float *weights, const hl_particle_plan *plan, const char *subject,
+                              hl_particle_field *field, hl_error *error);
+void hl_particle_field_release(hl_context *context, hl_particle_field *field);
 
-/* ---- between the files of this room ---- */
+/* The number of floats of points[level]. */
+static inline size_t hl_particle_field_floats(const hl_particle_field *field, int level) {
+  return field->plan->blocks[level].count * HL_PARTICLE_BLOCK_POINTS;
+}
 
-/* One level while it is filled. */
-typedef struct hl_particle_level {
-  size_t points[3];
-  bool periodic[3];
-  double spacing[3]; /* world */
-  double low[3];     /* world */
-  float *field;      /* [z][y][x] points */
-} hl_particle_level;
+/* Copies the points of level 0, and along periodic axes the first point to the end once more. voxels:
+ * [z][y][x], lattice.cells + 1 points an axis. */
+void hl_particle_field_copy(const hl_particle_field *field, hl_pool *pool, float *voxels);
 
-/* Adds the particles of one level to its field. level: [set->count]; the level of each particle. */
-hl_status hl_particles_splat(hl_context *context, hl_pool *pool, const hl_particle_set *set,
-                             const float *weights, const uint8_t *level_of, int level,
-                             const hl_particle_level *grid, const char *subject, hl_error *error);
-
-/* Adds the subdivided coefficients of a coarse level to the level below it. */
-hl_status hl_particles_subdivide(hl_context *context, hl_pool *pool, const hl_particle_level *coarse,
-                                 const hl_particle_level *fine, const char *subject, hl_error *error);
+/* Makes bricks of a field whose plan has leaves. Along periodic axes the bricks reach from one end of the
+ * period to the other. *bricks is empty on failure. */
+hl_status hl_particle_field_bricks(hl_context *context, hl_pool *pool, const hl_particle_field *field,
+                                   const char *subject, hl_bricks *bricks, hl_error *error);
 
 #endif

@@ -1,16 +1,16 @@
-/* particles/splat.c - spreads the particles of one level over its lattice.
+/* particles/splat.c - adds the particles of one level to its field.
  *
- * In: particles, their weights and levels. Out: coefficients, added to the level's field. A particle's kernel
- * is narrowed, because the B-spline of a coefficient widens it again. Kernel and spline have the variances
- * 3/10 h^2 and s^2 / 3. So with h'^2 = h^2 - 10/9 s^2 the narrowed kernel and the spline together have the
- * variance of the kernel (derived). The kernel is sampled at the points and divided by the sum of its
- * samples, so the weight is kept whatever the samples are.
+ * In: particles, their weights and levels. Out: coefficients, added to the level's blocks. A particle's
+ * kernel is narrowed, because the B-spline of a coefficient widens it again. Kernel and spline have the
+ * variances 3/10 h^2 and s^2 / 3. So with h'^2 = h^2 - 10/9 s^2 the narrowed kernel and the spline together
+ * have the variance of the kernel (derived). The kernel is sampled at the points and divided by the sum of
+ * its samples, so the weight is kept whatever the samples are.
  *
  * A kernel reaches to less than eight points from its particle. Particles are dealt to tiles of at least
- * sixteen points a side. Tiles that are not neighbours touch different points, so the tiles of one colour of
- * a 2x2x2 pattern are filled in parallel: each point gets its sums in one order, and no addition needs a
- * lock. */
-#include "particles/particles.h"
+ * sixteen points a side. The particles of a tile are summed up in a box of points, which is then added to the
+ * blocks. Tiles that are not neighbours touch different points, so the tiles of one colour of a 2x2x2 pattern
+ * are filled in parallel: each point gets its sums in one order, and no addition needs a lock. */
+#include "particles/levels.h"
 
 #include <math.h>
 #include <string.h>
@@ -19,29 +19,24 @@
 #include "particles/kernel.h"
 
 enum {
-  ROW = 16, /* the most points that a kernel reaches along an axis */
-  LEAST_TILE = 16
+  ROW = HL_PARTICLE_ROW,
+  LEAST_TILE = 16,
+  BOX = 2 * LEAST_TILE + ROW /* the most points of a tile's box along an axis */
 };
-#define NARROWING 1.11 /* a little less than 10/9 */
-/* The least h', in spacings, for kernels that the level does not resolve. With it, some point always lies
- * nearer than 2 h'. */
-#define LEAST_LENGTH 0.7
-/* The greatest h in least spacings. The level above takes wider kernels; where there is none, they are
- * narrowed. */
-#define MOST_LENGTH 3.99
 
 typedef struct splatting {
   const hl_particle_set *set;
   const float *weights;
-  const hl_particle_level *grid;
+  hl_particle_field *field;
+  int level;
+  hl_particle_level grid;
   hl_pool *pool;
-  size_t tiles[3];
-  uint32_t *begin;            /* owned; [tiles + 1]; the index in `listed` where a tile's particles begin */
-  uint32_t *listed;           /* owned; particles by tile, in the set's order */
-  double scale[3], offset[3]; /* lattice coordinate = scale * place + offset */
-  double mean_square;         /* the mean of the squared spacings */
-  double least_spacing;
-  int color;
+  size_t tiles[3];         /* number of tiles along each axis: 1 or an even number */
+  hl_block_table occupied; /* tiles that have particles */
+  uint32_t *begin;         /* owned; [occupied tiles + 1]; where a tile's particles begin in `listed` */
+  uint32_t *listed;        /* owned; particles by tile, in the set's order */
+  uint32_t *of_color;      /* owned; [occupied tiles]; the tiles of a colour */
+  float *boxes;            /* owned; [threads][BOX^3] */
 } splatting;
 
 /* A particle's samples: rows along x. */
@@ -53,36 +48,49 @@ typedef struct samples {
   float sums[ROW];        /* the n-th sum is over the n-th samples of all rows */
 } samples;
 
-static double coordinate(const splatting *s, size_t n, int axis) {
-  double at = s->scale[axis] * s->set->place[n][axis] + s->offset[axis];
-  double last = (double)s->grid->points[axis] - (s->grid->periodic[axis] ? 0 : 1);
-  return at < 0 ? 0 : at > last ? last : at;
-}
+/* ---- tiles ---- */
 
-static size_t tile_of(const splatting *s, size_t n) {
-  size_t tile[3];
+static void find_tile(const splatting *s, size_t n, int32_t tile[3]) {
   for (int a = 0; a < 3; a++) {
-    tile[a] = (size_t)coordinate(s, n, a) * s->tiles[a] / s->grid->points[a];
-    if (tile[a] >= s->tiles[a]) tile[a] = s->tiles[a] - 1;
+    size_t at = (size_t)(hl_particle_coordinate(s->set, &s->grid, n, a) * (double)s->tiles[a] /
+                         (double)s->grid.points[a]);
+    tile[a] = (int32_t)(at < s->tiles[a] ? at : s->tiles[a] - 1);
   }
-  return (tile[2] * s->tiles[1] + tile[1]) * s->tiles[0] + tile[0];
 }
 
 /* Lists the level's particles, tile by tile. */
-static hl_status deal(hl_context *context, splatting *s, const uint8_t *level_of, int level,
-                      const char *subject, hl_error *error) {
-  size_t tiles = s->tiles[0] * s->tiles[1] * s->tiles[2], count = 0;
-  for (size_t n = 0; n < s->set->count; n++) count += level_of[n] == level;
-  s->begin = hl_allocate_zeroed(context, tiles + 2, sizeof *s->begin);
+static hl_status deal(hl_context *context, splatting *s, const char *subject, hl_error *error) {
+  const uint8_t *level_of = s->field->plan->level_of;
+  size_t count = 0, number;
+  int32_t tile[3];
+  for (size_t n = 0; n < s->set->count; n++) count += level_of[n] == s->level;
+  uint32_t *tile_of = hl_allocate(context, count, sizeof *tile_of), *next = tile_of;
   s->listed = hl_allocate(context, count, sizeof *s->listed);
-  if (s->begin == NULL || s->listed == NULL) return hl_fail_memory(error, count * sizeof *s->listed, subject);
-  for (size_t n = 0; n < s->set->count; n++)
-    if (level_of[n] == level) s->begin[tile_of(s, n) + 2]++;
-  for (size_t t = 1; t < tiles + 2; t++) s->begin[t] += s->begin[t - 1];
-  for (size_t n = 0; n < s->set->count; n++)
-    if (level_of[n] == level) s->listed[s->begin[tile_of(s, n) + 1]++] = (uint32_t)n;
-  return HL_OK;
+  hl_status status = tile_of != NULL && s->listed != NULL
+                         ? HL_OK
+                         : hl_fail_memory(error, count * sizeof *s->listed, subject);
+  for (size_t n = 0; status == HL_OK && n < s->set->count; n++) {
+    if (level_of[n] != s->level) continue;
+    find_tile(s, n, tile);
+    status = hl_block_add(context, &s->occupied, tile, subject, &number, error);
+    *next++ = (uint32_t)number;
+  }
+  s->begin = hl_allocate_zeroed(context, s->occupied.count + 2, sizeof *s->begin);
+  s->of_color = hl_allocate(context, s->occupied.count, sizeof *s->of_color);
+  if (status == HL_OK && (s->begin == NULL || s->of_color == NULL))
+    status = hl_fail_memory(error, (s->occupied.count + 2) * sizeof *s->begin, subject);
+  if (status == HL_OK) {
+    for (size_t n = 0; n < count; n++) s->begin[tile_of[n] + 2]++;
+    for (size_t t = 1; t < s->occupied.count + 2; t++) s->begin[t] += s->begin[t - 1];
+    next = tile_of;
+    for (size_t n = 0; n < s->set->count; n++)
+      if (level_of[n] == s->level) s->listed[s->begin[*next++ + 1]++] = (uint32_t)n;
+  }
+  hl_release(context, tile_of);
+  return status;
 }
+
+/* ---- samples ---- */
 
 static float row_across(const samples *p, int j, int k) { return p->squared[1][j] + p->squared[2][k]; }
 
@@ -92,27 +100,22 @@ static void sample_row(const float along[ROW], float across, float row[ROW], flo
 }
 
 /* Finds the points along an axis that the kernel reaches, and their distances. */
-static void measure_axis(const hl_particle_level *grid, int axis, double at, double length, samples *p) {
-  double reach = 2 * length / grid->spacing[axis];
-  int first = (int)ceil(at - reach), last = (int)floor(at + reach), end = (int)grid->points[axis] - 1;
-  if (!grid->periodic[axis]) {
-    first = first < 0 ? 0 : first;
-    last = last > end ? end : last;
-  }
-  p->first[axis] = first;
-  p->count[axis] = last - first + 1 < ROW ? last - first + 1 : ROW;
+static void measure_axis(const hl_particle_level *grid, int axis, double at, double narrowed, samples *p) {
+  int range[2];
+  hl_particle_range(grid, axis, at, narrowed, range);
+  p->first[axis] = range[0];
+  p->count[axis] = range[1] - range[0] + 1;
   for (int i = 0; i < ROW; i++) {
-    float away = i < p->count[axis] ? (float)((first + i - at) * grid->spacing[axis] / length) : 2;
+    float away = i < p->count[axis] ? (float)((range[0] + i - at) * grid->spacing[axis] / narrowed) : 2;
     p->squared[axis][i] = away * away;
   }
 }
 
 /* Samples a particle's kernel; returns the sum of the samples. */
 static float sample(const splatting *s, size_t n, samples *p) {
-  double length = fmin((double)s->set->length[n], MOST_LENGTH * s->least_spacing),
-         square = length * length - NARROWING * s->mean_square,
-         narrowed = sqrt(fmax(square, LEAST_LENGTH * LEAST_LENGTH * s->mean_square));
-  for (int a = 0; a < 3; a++) measure_axis(s->grid, a, coordinate(s, n, a), narrowed, p);
+  const double narrowed = hl_particle_narrowed(s->set, &s->grid, n);
+  for (int a = 0; a < 3; a++)
+    measure_axis(&s->grid, a, hl_particle_coordinate(s->set, &s->grid, n, a), narrowed, p);
   memset(p->sums, 0, sizeof p->sums);
   for (int k = 0; k < p->count[2]; k++)
     for (int j = 0; j < p->count[1]; j++)
@@ -123,71 +126,86 @@ static float sample(const splatting *s, size_t n, samples *p) {
   return sum;
 }
 
-static size_t wrapped(int index, size_t points) {
-  int count = (int)points;
-  return (size_t)((index % count + count) % count);
+/* ---- the box of a tile ---- */
+
+typedef struct point_box {
+  ptrdiff_t first[3];
+  size_t count[3];
+  float *points; /* [z][y][x] */
+} point_box;
+
+static void find_box(const splatting *s, size_t tile, point_box *box) {
+  int low[3] = {INT32_MAX, INT32_MAX, INT32_MAX}, high[3] = {INT32_MIN, INT32_MIN, INT32_MIN};
+  for (size_t at = s->begin[tile]; at < s->begin[tile + 1]; at++) {
+    const size_t n = s->listed[at];
+    const double narrowed = hl_particle_narrowed(s->set, &s->grid, n);
+    for (int a = 0; a < 3; a++) {
+      int range[2];
+      hl_particle_range(&s->grid, a, hl_particle_coordinate(s->set, &s->grid, n, a), narrowed, range);
+      low[a] = range[0] < low[a] ? range[0] : low[a];
+      high[a] = range[1] > high[a] ? range[1] : high[a];
+    }
+  }
+  for (int a = 0; a < 3; a++) box->first[a] = low[a], box->count[a] = (size_t)(high[a] - low[a] + 1);
+  memset(box->points, 0, box->count[0] * box->count[1] * box->count[2] * sizeof *box->points);
 }
 
-static void add_row(const hl_particle_level *grid, float *line, const samples *p, const float *row,
-                    float scale) {
-  int first = p->first[0], count = p->count[0];
-  if (first >= 0 && first + count <= (int)grid->points[0])
-    for (int i = 0; i < count; i++) line[first + i] += scale * row[i];
-  else
-    for (int i = 0; i < count; i++) line[wrapped(first + i, grid->points[0])] += scale * row[i];
-}
-
-static void splat_particle(const splatting *s, size_t n, samples *p) {
-  const hl_particle_level *grid = s->grid;
+static void splat_particle(const splatting *s, size_t n, const point_box *box, samples *p) {
+  const hl_particle_level *grid = &s->grid;
   double cell = grid->spacing[0] * grid->spacing[1] * grid->spacing[2];
   double weight = s->weights != NULL ? (double)s->weights[n] : 1;
   float scale = (float)(weight / (cell * (double)sample(s, n, p)));
   for (int k = 0; k < p->count[2]; k++)
     for (int j = 0; j < p->count[1]; j++) {
       if (!(row_across(p, j, k) < 4)) continue;
-      size_t y = wrapped(p->first[1] + j, grid->points[1]), z = wrapped(p->first[2] + k, grid->points[2]);
-      add_row(grid, grid->field + (z * grid->points[1] + y) * grid->points[0], p, p->row[k * ROW + j], scale);
+      size_t y = (size_t)(p->first[1] + j - box->first[1]), z = (size_t)(p->first[2] + k - box->first[2]);
+      float *line = box->points + (z * box->count[1] + y) * box->count[0] + (p->first[0] - box->first[0]);
+      for (int i = 0; i < p->count[0]; i++) line[i] += scale * p->row[k * ROW + j][i];
     }
-}
-
-/* The number of tiles of the colour along an axis. */
-static size_t colored(const splatting *s, int axis) {
-  size_t odd = (size_t)(s->color >> axis & 1);
-  return (s->tiles[axis] + 1 - odd) / 2;
 }
 
 static void splat_tile(void *data, size_t index, int worker) {
   const splatting *s = data;
-  size_t nx = colored(s, 0), ny = colored(s, 1);
-  size_t x = 2 * (index % nx) + (size_t)(s->color & 1),
-         y = 2 * (index / nx % ny) + (size_t)(s->color >> 1 & 1),
-         z = 2 * (index / nx / ny) + (size_t)(s->color >> 2 & 1);
-  size_t tile = (z * s->tiles[1] + y) * s->tiles[0] + x;
+  size_t tile = s->of_color[index];
+  point_box box = {.points = s->boxes + (size_t)worker * BOX * BOX * BOX};
   samples p;
-  for (size_t n = s->begin[tile]; n < s->begin[tile + 1]; n++) {
-    if (n % 1024 == 0 && hl_pool_stops(s->pool, worker)) return;
-    splat_particle(s, s->listed[n], &p);
+  find_box(s, tile, &box);
+  for (size_t at = s->begin[tile]; at < s->begin[tile + 1]; at++) {
+    if (at % 1024 == 0 && hl_pool_stops(s->pool, worker)) return;
+    splat_particle(s, s->listed[at], &box, &p);
   }
+  hl_particle_field_add(s->field, s->level, box.first, box.count, box.points);
+}
+
+static void splat_color(splatting *s, int color) {
+  size_t count = 0;
+  for (size_t t = 0; t < s->occupied.count; t++) {
+    const int32_t *at = s->occupied.place[t];
+    if (((at[0] & 1) | (at[1] & 1) << 1 | (at[2] & 1) << 2) == color) s->of_color[count++] = (uint32_t)t;
+  }
+  hl_pool_run(s->pool, count, splat_tile, s);
 }
 
 hl_status hl_particles_splat(hl_context *context, hl_pool *pool, const hl_particle_set *set,
-                             const float *weights, const uint8_t *level_of, int level,
-                             const hl_particle_level *grid, const char *subject, hl_error *error) {
-  splatting s = {.set = set, .weights = weights, .grid = grid, .pool = pool};
-  s.least_spacing = fmin(fmin(grid->spacing[0], grid->spacing[1]), grid->spacing[2]);
+                             const float *weights, hl_particle_field *field, int level, const char *subject,
+                             hl_error *error) {
+  splatting s = {.set = set, .weights = weights, .field = field, .level = level, .pool = pool};
+  size_t floats = (size_t)hl_pool_threads(pool) * BOX * BOX * BOX;
+  s.grid = hl_particle_level_of(set, &field->plan->lattice, level);
   for (int a = 0; a < 3; a++) {
-    s.tiles[a] = grid->points[a] / (2 * LEAST_TILE) *
+    s.tiles[a] = s.grid.points[a] / (2 * LEAST_TILE) *
                  2; /* an even number, so that the two ends of a period have two colours */
     if (s.tiles[a] == 0) s.tiles[a] = 1;
-    s.scale[a] = set->unit[a] / grid->spacing[a];
-    s.offset[a] = (set->low[a] - grid->low[a]) / grid->spacing[a];
-    s.mean_square += grid->spacing[a] * grid->spacing[a] / 3;
   }
-  hl_status status = deal(context, &s, level_of, level, subject, error);
-  for (s.color = 0; status == HL_OK && s.color < 8; s.color++)
-    hl_pool_run(pool, colored(&s, 0) * colored(&s, 1) * colored(&s, 2), splat_tile, &s);
+  s.boxes = hl_allocate(context, floats, sizeof *s.boxes);
+  hl_status status = s.boxes != NULL ? deal(context, &s, subject, error)
+                                     : hl_fail_memory(error, floats * sizeof *s.boxes, subject);
+  for (int color = 0; status == HL_OK && color < 8; color++) splat_color(&s, color);
+  hl_block_table_release(context, &s.occupied);
   hl_release(context, s.begin);
   hl_release(context, s.listed);
+  hl_release(context, s.of_color);
+  hl_release(context, s.boxes);
   if (status == HL_OK && hl_pool_cancelled(pool))
     status = hl_fail(error, HL_ERROR_CANCELLED, "%s: stopped", subject);
   return status;

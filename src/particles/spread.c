@@ -1,63 +1,74 @@
 /* particles/spread.c - spreads particles over all levels of a lattice, and adds the levels up.
  *
- * In: particles, weights and a lattice. Out: coefficients of the finest level. */
-#include "particles/particles.h"
-
-#include <math.h>
+ * In: particles, weights and a plan. Out: coefficients of all levels: c[l] = S c[l + 1] + p[l]. */
 #include <string.h>
 
+#include "bricks/subdivide.h"
 #include "core/context.h"
 #include "core/memory.h"
+#include "particles/levels.h"
 
-/* The coarsest level whose spacing is at most half of the smoothing length. */
-static void choose_levels(const hl_particle_set *set, const hl_particle_lattice *lattice, uint8_t *level_of) {
-  double least = fmin(fmin(lattice->spacing[0], lattice->spacing[1]), lattice->spacing[2]);
-  for (size_t n = 0; n < set->count; n++) {
-    int level = 0;
-    while (level + 1 < lattice->levels && (double)set->length[n] >= 2 * ldexp(least, level + 1)) level++;
-    level_of[n] = (uint8_t)level;
+enum {
+  COARSE_MOST = (HL_PARTICLE_BLOCK / 2 + 2) * (HL_PARTICLE_BLOCK / 2 + 2) * (HL_PARTICLE_BLOCK / 2 + 2)
+};
+
+typedef struct subdividing {
+  hl_particle_field *field;
+  int level;      /* the level that is filled */
+  float *scratch; /* owned; [threads][scratch_floats] */
+  size_t scratch_floats;
+} subdividing;
+
+static hl_lattice_box box_of(const int32_t place[3]) {
+  hl_lattice_box box;
+  for (int a = 0; a < 3; a++) {
+    box.first[a] = (ptrdiff_t)place[a] * HL_PARTICLE_BLOCK;
+    box.count[a] = HL_PARTICLE_BLOCK;
   }
+  return box;
 }
 
-static hl_status begin_level(hl_context *context, hl_pool *pool, const hl_particle_lattice *lattice,
-                             int level, const char *subject, hl_particle_level *grid, hl_error *error) {
-  size_t count = 1;
-  for (int a = 0; a < 3; a++) {
-    grid->points[a] = hl_lattice_points(lattice, level, a);
-    grid->periodic[a] = lattice->periodic[a];
-    grid->spacing[a] = ldexp(lattice->spacing[a], level);
-    grid->low[a] = lattice->low[a];
-    count *= grid->points[a];
+/* Fills a block with the coarser level's coefficients, subdivided. */
+static void subdivide_block(void *data, size_t index, int worker) {
+  const subdividing *s = data;
+  const hl_lattice_box box = box_of(s->field->plan->blocks[s->level].place[index]),
+                       coarse = hl_subdivision_source(&box);
+  float *block = s->field->points[s->level] + index * HL_PARTICLE_BLOCK_POINTS,
+        *from = s->scratch + (size_t)worker * s->scratch_floats;
+  hl_particle_field_read(s->field, s->level + 1, coarse.first, coarse.count, from);
+  hl_subdivide(&box, from, from + COARSE_MOST, block);
+}
+
+static hl_status begin_level(hl_context *context, hl_pool *pool, hl_particle_field *field, int level,
+                             const char *subject, hl_error *error) {
+  size_t floats = hl_particle_field_floats(field, level);
+  field->points[level] = hl_allocate(context, floats, sizeof(float));
+  if (field->points[level] == NULL) return hl_fail_memory(error, floats * sizeof(float), subject);
+  if (level + 1 == field->plan->lattice.levels) {
+    hl_pool_clear(pool, field->points[level], floats * sizeof(float));
+    return HL_OK;
   }
-  grid->field = hl_allocate(context, count, sizeof *grid->field);
-  if (grid->field == NULL) return hl_fail_memory(error, count * sizeof *grid->field, subject);
-  hl_pool_clear(pool, grid->field, count * sizeof *grid->field);
-  return HL_OK;
+  subdividing s = {.field = field, .level = level};
+  const hl_lattice_box box = box_of((const int32_t[3]){0, 0, 0});
+  s.scratch_floats = COARSE_MOST + hl_subdivision_scratch(&box);
+  size_t scratch = (size_t)hl_pool_threads(pool) * s.scratch_floats;
+  s.scratch = hl_allocate(context, scratch, sizeof(float));
+  if (s.scratch == NULL) return hl_fail_memory(error, scratch * sizeof(float), subject);
+  hl_pool_run(pool, field->plan->blocks[level].count, subdivide_block, &s);
+  hl_release(context, s.scratch);
+  return hl_pool_cancelled(pool) ? hl_fail(error, HL_ERROR_CANCELLED, "%s: stopped", subject) : HL_OK;
 }
 
 hl_status hl_particles_spread(hl_context *context, hl_pool *pool, const hl_particle_set *set,
-                              const float *weights, const hl_particle_lattice *lattice, const char *subject,
-                              float **field, hl_error *error) {
-  hl_particle_level coarse = {.field = NULL}, grid = {.field = NULL};
-  *field = NULL;
-  uint8_t *level_of = hl_allocate(context, set->count, sizeof *level_of);
-  if (level_of == NULL) return hl_fail_memory(error, set->count, subject);
-  choose_levels(set, lattice, level_of);
+                              const float *weights, const hl_particle_plan *plan, const char *subject,
+                              hl_particle_field *field, hl_error *error) {
   hl_status status = HL_OK;
-  for (int level = lattice->levels - 1; level >= 0 && status == HL_OK; level--) {
-    status = begin_level(context, pool, lattice, level, subject, &grid, error);
-    if (status == HL_OK && coarse.field != NULL)
-      status = hl_particles_subdivide(context, pool, &coarse, &grid, subject, error);
-    hl_release(context, coarse.field);
-    coarse = (hl_particle_level){.field = NULL};
+  *field = (hl_particle_field){.plan = plan};
+  for (int level = plan->lattice.levels - 1; level >= 0 && status == HL_OK; level--) {
+    status = begin_level(context, pool, field, level, subject, error);
     if (status == HL_OK)
-      status = hl_particles_splat(context, pool, set, weights, level_of, level, &grid, subject, error);
+      status = hl_particles_splat(context, pool, set, weights, field, level, subject, error);
     hl_progress(context, "load", 1.0 / (1 + level));
-    coarse = grid;
-    grid.field = NULL;
   }
-  hl_release(context, level_of);
-  if (status == HL_OK) *field = coarse.field;
-  else hl_release(context, coarse.field);
   return status;
 }

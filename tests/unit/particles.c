@@ -13,6 +13,11 @@
 
 #include <halflight/halflight.h>
 
+#include "bricks/evaluate.h"
+#include "core/memory.h"
+#include "core/pool.h"
+#include "particles/particles.h"
+
 enum { MOST = 20000 };
 
 static hl_context *context;
@@ -334,6 +339,79 @@ static void a_mean_is_of_mass(void **state) {
   hl_volume_release(volume);
 }
 
+/* ---- bricks ---- */
+
+static hl_particle_field spread_over(hl_pool *pool, const hl_particle_set *set, const float *weights,
+                                     const hl_particle_lattice *lattice, bool in_bricks,
+                                     hl_particle_plan *plan) {
+  hl_particle_field field;
+  assert_int_equal(hl_particles_plan(context, set, lattice, in_bricks, "test", plan, NULL), HL_OK);
+  assert_int_equal(hl_particles_spread(context, pool, set, weights, plan, "test", &field, NULL), HL_OK);
+  return field;
+}
+
+/* The greatest difference between the coefficients of bricks and those of an array, in parts of each. */
+static double differ(const hl_bricks *bricks, const float *voxels, const size_t points[3]) {
+  double most = 0;
+  const float *voxel = voxels;
+  int64_t at[3];
+  for (at[2] = 0; at[2] < (int64_t)points[2]; at[2]++)
+    for (at[1] = 0; at[1] < (int64_t)points[1]; at[1]++)
+      for (at[0] = 0; at[0] < (int64_t)points[0]; at[0]++, voxel++) {
+        double in_bricks = (double)hl_bricks_coefficient(bricks, at);
+        if (*voxel == 0) assert_true(in_bricks == 0);
+        else most = fmax(most, fabs(in_bricks / (double)*voxel - 1));
+      }
+  return most;
+}
+
+static void compare_bricks(hl_pool *pool, const double period[3], size_t side) {
+  hl_particles_description d = clusters(2000);
+  hl_particle_input input = {.count = d.count, .positions = positions, .is_double = true, .lengths = lengths};
+  for (int a = 0; a < 3; a++) input.period[a] = period[a];
+  hl_particle_set set;
+  hl_particle_lattice lattice;
+  hl_particle_plan in_bricks, all;
+  const hl_particle_limits limits = {0, SIZE_MAX, side};
+  assert_int_equal(hl_particles_order(context, pool, &input, "test", &set, NULL), HL_OK);
+  assert_int_equal(hl_particles_lattice(&set, &limits, "test", &lattice, NULL), HL_OK);
+  hl_particle_field field = spread_over(pool, &set, masses, &lattice, true, &in_bricks),
+                    dense = spread_over(pool, &set, masses, &lattice, false, &all);
+  const size_t points[3] = {lattice.cells[0] + 1, lattice.cells[1] + 1, lattice.cells[2] + 1};
+  float *voxels = hl_allocate(context, points[0] * points[1] * points[2], sizeof *voxels);
+  hl_bricks bricks;
+  assert_non_null(voxels);
+  hl_particle_field_copy(&dense, pool, voxels);
+  assert_int_equal(hl_particle_field_bricks(context, pool, &field, "test", &bricks, NULL), HL_OK);
+  double difference = differ(&bricks, voxels, points),
+         part = hl_particle_plan_brick_bytes(&in_bricks) /
+                (4.0 * (double)(points[0] * points[1] * points[2]));
+  print_message(
+      "# %zu x %zu x %zu points, %d levels: %zu bricks, %.3f of the voxels' bytes, difference %.2g\n",
+      points[0], points[1], points[2], lattice.levels, in_bricks.leaf_count, part, difference);
+  assert_true(lattice.levels >= 3 && part < 0.6);
+  assert_true(difference < 1e-5);
+  hl_bricks_release(context, &bricks);
+  hl_release(context, voxels);
+  hl_particle_field_release(context, &field);
+  hl_particle_field_release(context, &dense);
+  hl_particle_plan_release(context, &in_bricks);
+  hl_particle_plan_release(context, &all);
+  hl_particles_release(context, &set);
+}
+
+/* The field in bricks is the field of all points, coefficient by coefficient, so its mass is the same, too.
+ */
+static void bricks_have_all_coefficients(void **state) {
+  (void)state;
+  hl_pool *pool = NULL;
+  assert_int_equal(hl_pool_create(context, 2, &pool, NULL), HL_OK);
+  compare_bricks(pool, (const double[3]){0, 0, 0}, 240);
+  compare_bricks(pool, (const double[3]){1.2, 1.3, 1.7}, 250);
+  compare_bricks(pool, (const double[3]){0, 1.1, 0}, 200);
+  hl_pool_destroy(pool);
+}
+
 static void expect(const hl_particles_description *d, hl_status code, const char *part) {
   hl_volume *volume = NULL;
   hl_error error = {0};
@@ -391,6 +469,7 @@ int main(void) {
       cmocka_unit_test(neighbours_are_the_nearest),
       cmocka_unit_test(threads_do_not_matter),
       cmocka_unit_test(a_mean_is_of_mass),
+      cmocka_unit_test(bricks_have_all_coefficients),
       cmocka_unit_test(wrong_numbers_are_refused),
       cmocka_unit_test(wild_numbers_make_volumes),
   };

@@ -12,6 +12,7 @@
 #include "core/door.h"
 #include "core/memory.h"
 #include "particles/particles.h"
+#include "volume/in_bricks.h"
 
 enum {
   SIDE = 512,            /* voxels along an axis at most, by default */
@@ -25,7 +26,7 @@ enum {
 void hl_particles_description_defaults(hl_particles_description *description) {
   if (description == NULL) return;
   *description = (hl_particles_description){
-      .struct_size = sizeof *description, .position_type = HL_VOXEL_F64, .side = SIDE};
+      .struct_size = sizeof *description, .position_type = HL_VOXEL_F64, .outside = NAN, .side = SIDE};
 }
 
 /* ---- checks ---- */
@@ -73,7 +74,17 @@ static hl_status check(const hl_particles_description *d, const char *subject, h
   return status;
 }
 
-/* ---- from particles to voxels ---- */
+/* ---- from particles to a field ---- */
+
+/* One call of hl_particles_to_volume(). */
+typedef struct making {
+  hl_context *context;
+  hl_pool *pool;
+  const hl_particles_description *d;
+  hl_particle_set set;
+  const char *subject;
+  hl_error *error;
+} making;
 
 static hl_particle_input input_of(const hl_particles_description *d) {
   hl_particle_input input = {.count = d->count,
@@ -107,23 +118,17 @@ static float *weights_of(hl_context *context, const hl_particles_description *d,
   return weights;
 }
 
-static hl_status spread(hl_context *context, hl_pool *pool, const hl_particles_description *d,
-                        const hl_particle_set *set, const hl_particle_lattice *lattice, bool with_values,
-                        const char *subject, float **field, hl_error *error) {
+static hl_status spread(const making *m, const hl_particle_plan *plan, bool with_values,
+                        hl_particle_field *field) {
   float *weights = NULL;
-  if (d->masses != NULL || with_values) {
-    weights = weights_of(context, d, set, with_values);
-    if (weights == NULL) return hl_fail_memory(error, set->count * sizeof *weights, subject);
+  if (m->d->masses != NULL || with_values) {
+    weights = weights_of(m->context, m->d, &m->set, with_values);
+    if (weights == NULL) return hl_fail_memory(m->error, m->set.count * sizeof *weights, m->subject);
   }
-  hl_status status = hl_particles_spread(context, pool, set, weights, lattice, subject, field, error);
-  hl_release(context, weights);
+  hl_status status = hl_particles_spread(m->context, m->pool, &m->set, weights, plan, m->subject, field,
+                                         m->error);
+  hl_release(m->context, weights);
   return status;
-}
-
-static size_t point_count(const hl_particle_lattice *lattice) {
-  size_t count = 1;
-  for (int a = 0; a < 3; a++) count *= hl_lattice_points(lattice, 0, a);
-  return count;
 }
 
 /* The density below which a voxel counts as empty: a tenth of the least density that any particle alone has
@@ -137,89 +142,158 @@ static float empty_density(const hl_particles_description *d, const hl_particle_
   return isfinite(least) ? (float)(0.1 * least) : 1;
 }
 
-typedef struct logarithms {
+/* What is done with each number of a field. */
+typedef struct conversion {
   float *field;
+  const float *by; /* the density, for means */
   size_t count;
-  float least;
-} logarithms;
+  float least;   /* for logarithms */
+  float outside; /* for means */
+} conversion;
 
-enum { LOGARITHMS_AT_ONCE = 1 << 16 };
+enum { NUMBERS_AT_ONCE = 1 << 16 };
 
 /* Turns densities into logarithms. The logarithm of a double, rounded to a float, is nearly everywhere the
  * same on all machines. */
 static void take_logarithms(void *data, size_t index, int worker) {
-  const logarithms *l = data;
+  const conversion *c = data;
   (void)worker;
-  for (size_t n = index * LOGARITHMS_AT_ONCE; n < (index + 1) * LOGARITHMS_AT_ONCE && n < l->count; n++)
-    l->field[n] = (float)log10((double)(l->field[n] > l->least ? l->field[n] : l->least));
+  for (size_t n = index * NUMBERS_AT_ONCE; n < (index + 1) * NUMBERS_AT_ONCE && n < c->count; n++)
+    c->field[n] = (float)log10((double)(c->field[n] > c->least ? c->field[n] : c->least));
 }
 
-static void divide(float *field, const float *by, size_t count) {
-  for (size_t n = 0; n < count; n++) field[n] = by[n] > 0 ? field[n] / by[n] : NAN;
+static void divide(void *data, size_t index, int worker) {
+  const conversion *c = data;
+  (void)worker;
+  for (size_t n = index * NUMBERS_AT_ONCE; n < (index + 1) * NUMBERS_AT_ONCE && n < c->count; n++)
+    c->field[n] = c->by[n] > 0 ? c->field[n] / c->by[n] : c->outside;
 }
 
-/* Appends to the field the points at the ends of periodic axes. *field is replaced. */
-static hl_status close_periods(hl_context *context, const hl_particle_lattice *lattice, const char *subject,
-                               float **field, hl_error *error) {
-  size_t from[3], to[3];
-  for (int a = 0; a < 3; a++) from[a] = hl_lattice_points(lattice, 0, a), to[a] = lattice->cells[a] + 1;
-  if (from[0] == to[0] && from[1] == to[1] && from[2] == to[2]) return HL_OK;
-  float *closed = hl_allocate(context, to[0] * to[1] * to[2], sizeof *closed), *at = closed;
-  if (closed == NULL) return hl_fail_memory(error, to[0] * to[1] * to[2] * sizeof *closed, subject);
-  for (size_t z = 0; z < to[2]; z++)
-    for (size_t y = 0; y < to[1]; y++)
-      for (size_t x = 0; x < to[0]; x++)
-        *at++ = (*field)[((z % from[2]) * from[1] + y % from[1]) * from[0] + x % from[0]];
-  hl_release(context, *field);
-  *field = closed;
-  return HL_OK;
+/* Makes the wanted quantity of the levels that the volume takes. density: null, or the density of a mean. */
+static void convert(const making *m, hl_particle_field *field, const hl_particle_field *density) {
+  bool in_bricks = field->plan->leaves != NULL;
+  if (m->d->quantity == HL_PARTICLES_DENSITY) return;
+  conversion c = {.least = fmaxf(empty_density(m->d, &m->set), FLT_MIN), .outside = m->d->outside};
+  for (int level = 0; level < (in_bricks ? field->plan->lattice.levels : 1); level++) {
+    c.field = field->points[level];
+    c.by = density != NULL ? density->points[level] : NULL;
+    c.count = hl_particle_field_floats(field, level);
+    hl_pool_run(m->pool, c.count / NUMBERS_AT_ONCE + 1, density != NULL ? divide : take_logarithms, &c);
+  }
+  field->outside = density != NULL ? c.outside : (float)log10((double)c.least);
 }
 
-static hl_status make_field(hl_context *context, hl_pool *pool, const hl_particles_description *d,
-                            const hl_particle_set *set, const hl_particle_lattice *lattice,
-                            const char *subject, float **field, hl_error *error) {
-  float *density = NULL;
-  bool mean = d->quantity == HL_PARTICLES_MEAN;
-  hl_status status = spread(context, pool, d, set, lattice, mean, subject, field, error);
-  if (status == HL_OK && mean)
-    status = spread(context, pool, d, set, lattice, false, subject, &density, error);
-  if (status == HL_OK && mean) divide(*field, density, point_count(lattice));
-  hl_release(context, density);
-  logarithms l = {*field, point_count(lattice), fmaxf(empty_density(d, set), FLT_MIN)};
-  if (status == HL_OK && d->quantity == HL_PARTICLES_LOG_DENSITY)
-    hl_pool_run(pool, l.count / LOGARITHMS_AT_ONCE + 1, take_logarithms, &l);
-  if (status == HL_OK) status = close_periods(context, lattice, subject, field, error);
+static hl_status make_field(const making *m, const hl_particle_plan *plan, hl_particle_field *field) {
+  hl_particle_field density = {.plan = NULL};
+  bool mean = m->d->quantity == HL_PARTICLES_MEAN;
+  hl_status status = spread(m, plan, mean, field);
+  if (status == HL_OK && mean) status = spread(m, plan, false, &density);
+  if (status == HL_OK) convert(m, field, mean ? &density : NULL);
+  hl_particle_field_release(m->context, &density);
   return status;
 }
 
-static hl_status make_volume(hl_context *context, hl_pool *pool, const hl_particles_description *d,
-                             const char *subject, hl_volume **volume, hl_error *error) {
-  hl_particle_set set;
-  hl_particle_input input = input_of(d);
+/* ---- the lattice, and whether the field becomes bricks ---- */
+
+/* Bricks are made where they need less memory than this part of an array of all voxels. */
+#define BRICKS_PART 0.6
+/* The most bytes of bricks, and of the fields of which they are made, where there is no memory limit. */
+#define BRICK_BYTES 1073741824.0
+
+static size_t fields_of(const hl_particles_description *d) {
+  return d->quantity == HL_PARTICLES_MEAN ? 2 : 1;
+}
+
+static double voxel_bytes(const hl_particle_lattice *lattice) {
+  double bytes = sizeof(float);
+  for (int a = 0; a < 3; a++) bytes *= (double)lattice->cells[a] + 1;
+  return bytes;
+}
+
+/* Plans bricks. Where their memory has no room, and no spacing is wanted, the spacing grows. *plan has no
+ * leaves where an array of voxels is better, or where no bricks of the wanted spacing have room. */
+static hl_status plan_bricks(const making *m, hl_particle_plan *plan) {
+  const uint64_t limit = m->context->options.memory_limit;
+  const double most = limit > 0 ? (double)limit / 2 : BRICK_BYTES;
+  hl_particle_limits limits = {m->d->spacing, SIZE_MAX, m->d->side};
   hl_particle_lattice lattice;
-  float *field = NULL;
-  hl_status status = hl_particles_order(context, pool, &input, subject, &set, error);
-  hl_particle_limits limits = {d->spacing, most_points(context, d, set.count), d->side};
-  if (status == HL_OK) status = hl_particles_lattice(&set, &limits, subject, &lattice, error);
-  if (status == HL_OK) status = make_field(context, pool, d, &set, &lattice, subject, &field, error);
-  if (status == HL_OK && set.count < d->count)
-    hl_log(context, HL_LOG_WARNING, "%s: %zu particles without a finite place are left out", subject,
-           d->count - set.count);
-  hl_particles_release(context, &set);
-  if (status != HL_OK) {
-    hl_release(context, field);
-    return status;
+  for (;;) {
+    if (hl_particles_lattice(&m->set, &limits, m->subject, &lattice, m->error) != HL_OK) return HL_OK;
+    hl_status status = hl_particles_plan(m->context, &m->set, &lattice, true, m->subject, plan, m->error);
+    if (status != HL_OK) return status;
+    double bricks = hl_particle_plan_brick_bytes(plan),
+           bytes = bricks + (double)fields_of(m->d) * hl_particle_plan_field_bytes(plan);
+    bool sparse = bricks < BRICKS_PART * voxel_bytes(&lattice);
+    if (sparse && bytes <= most) return HL_OK;
+    hl_particle_plan_release(m->context, plan);
+    if (!sparse || m->d->spacing > 0) return HL_OK;
+    limits.spacing = fmax(fmax(lattice.spacing[0], lattice.spacing[1]), lattice.spacing[2]) *
+                     fmax(cbrt(bytes / most), 1.05);
   }
+}
+
+static hl_status choose_plan(const making *m, hl_particle_plan *plan) {
+  hl_particle_limits limits = {m->d->spacing, most_points(m->context, m->d, m->set.count), m->d->side};
+  hl_particle_lattice lattice;
+  hl_status status = plan_bricks(m, plan);
+  if (status != HL_OK || plan->leaves != NULL) return status;
+  status = hl_particles_lattice(&m->set, &limits, m->subject, &lattice, m->error);
+  if (status == HL_OK)
+    status = hl_particles_plan(m->context, &m->set, &lattice, false, m->subject, plan, m->error);
+  return status;
+}
+
+/* ---- the volume ---- */
+
+static hl_status take_bricks(const making *m, const hl_volume_description *grid, hl_particle_field *field,
+                             hl_volume **volume) {
+  hl_bricks bricks;
+  hl_status status = hl_particle_field_bricks(m->context, m->pool, field, m->subject, &bricks, m->error);
+  hl_particle_field_release(m->context, field);
+  return status == HL_OK ? hl_volume_take_bricks(m->context, &bricks, grid, m->subject, volume, m->error)
+                         : status;
+}
+
+static hl_status take_voxels(const making *m, const hl_volume_description *grid, hl_particle_field *field,
+                             hl_volume **volume) {
+  size_t count = grid->dimensions[0] * grid->dimensions[1] * grid->dimensions[2];
+  float *voxels = hl_allocate(m->context, count, sizeof *voxels);
+  if (voxels == NULL) return hl_fail_memory(m->error, count * sizeof *voxels, m->subject);
+  hl_particle_field_copy(field, m->pool, voxels);
+  hl_particle_field_release(m->context, field);
+  return hl_volume_adopt(m->context, grid, m->subject, voxels, volume, m->error);
+}
+
+static hl_status take_field(const making *m, hl_particle_field *field, hl_volume **volume) {
+  const hl_particle_lattice *lattice = &field->plan->lattice;
   hl_volume_description grid;
   hl_volume_description_defaults(&grid);
   grid.type = HL_VOXEL_F32;
   for (int a = 0; a < 3; a++) {
-    grid.dimensions[a] = lattice.cells[a] + 1;
-    grid.origin[a] = lattice.low[a];
-    grid.axis[a][a] = lattice.spacing[a];
+    grid.dimensions[a] = lattice->cells[a] + 1;
+    grid.origin[a] = lattice->low[a];
+    grid.axis[a][a] = lattice->spacing[a];
   }
-  status = hl_volume_adopt(context, &grid, subject, field, volume, error);
-  if (status == HL_OK) (*volume)->is_log_density = d->quantity == HL_PARTICLES_LOG_DENSITY;
+  hl_status status = field->plan->leaves != NULL ? take_bricks(m, &grid, field, volume)
+                                                 : take_voxels(m, &grid, field, volume);
+  if (status == HL_OK) (*volume)->is_log_density = m->d->quantity == HL_PARTICLES_LOG_DENSITY;
+  return status;
+}
+
+static hl_status make_volume(making *m, hl_volume **volume) {
+  hl_particle_input input = input_of(m->d);
+  hl_particle_plan plan = {.leaves = NULL};
+  hl_particle_field field = {.plan = NULL};
+  hl_status status = hl_particles_order(m->context, m->pool, &input, m->subject, &m->set, m->error);
+  if (status == HL_OK) status = choose_plan(m, &plan);
+  if (status == HL_OK) status = make_field(m, &plan, &field);
+  if (status == HL_OK && m->set.count < m->d->count)
+    hl_log(m->context, HL_LOG_WARNING, "%s: %zu particles without a finite place are left out", m->subject,
+           m->d->count - m->set.count);
+  hl_particles_release(m->context, &m->set);
+  if (status == HL_OK) status = take_field(m, &field, volume);
+  hl_particle_field_release(m->context, &field);
+  hl_particle_plan_release(m->context, &plan);
   return status;
 }
 
@@ -229,7 +303,8 @@ hl_status hl_particles_to_volume(hl_context *context, const hl_particles_descrip
   hl_status status = check(description, subject, error);
   if (status == HL_OK) status = hl_pool_create(context, description->threads, &pool, error);
   if (status != HL_OK) return status;
-  status = make_volume(context, pool, description, subject, volume, error);
+  making m = {.context = context, .pool = pool, .d = description, .subject = subject, .error = error};
+  status = make_volume(&m, volume);
   hl_pool_destroy(pool);
   return status;
 }

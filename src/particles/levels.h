@@ -1,0 +1,106 @@
+/* particles/levels.h - one level of a lattice: where particles stand in it, which points their kernels reach,
+ * and the pieces of boxes of points that lie in one block each. For the files of this room. */
+#ifndef HL_PARTICLES_LEVELS_H
+#define HL_PARTICLES_LEVELS_H
+
+#include <math.h>
+
+#include "particles/particles.h"
+
+#define HL_PARTICLE_NARROWING 1.11 /* a little less than 10/9: see splat.c */
+/* The least h', in spacings, for kernels that the level does not resolve. With it, some point always lies
+ * nearer than 2 h'. */
+#define HL_PARTICLE_LEAST_LENGTH 0.7
+/* The greatest h in least spacings. The level above takes wider kernels; where there is none, they are
+ * narrowed. */
+#define HL_PARTICLE_MOST_LENGTH 3.99
+
+enum { HL_PARTICLE_ROW = 16 }; /* the most points that a kernel reaches along an axis */
+
+typedef struct hl_particle_level {
+  size_t points[3];
+  bool periodic[3];
+  int margin; /* along axes that are not periodic, kernels have no points nearer to a face than this: such
+               * points would reach beyond the face when they are subdivided to level 0 */
+  double spacing[3];          /* world */
+  double scale[3], offset[3]; /* lattice coordinate = scale * place + offset */
+  double mean_square;         /* the mean of the squared spacings */
+  double least_spacing;
+} hl_particle_level;
+
+static inline hl_particle_level hl_particle_level_of(const hl_particle_set *set,
+                                                     const hl_particle_lattice *lattice, int level) {
+  /* Point j of level l becomes the points from 2^l j - 2 (2^l - 1) on of level 0 (derived). */
+  hl_particle_level grid = {.margin = level < 2 ? level : 2};
+  for (int a = 0; a < 3; a++) {
+    grid.points[a] = hl_particle_points(lattice, level, a);
+    grid.periodic[a] = lattice->periodic[a];
+    grid.spacing[a] = ldexp(lattice->spacing[a], level);
+    grid.scale[a] = set->unit[a] / grid.spacing[a];
+    grid.offset[a] = (set->low[a] - lattice->low[a]) / grid.spacing[a];
+    grid.mean_square += grid.spacing[a] * grid.spacing[a] / 3;
+  }
+  grid.least_spacing = fmin(fmin(grid.spacing[0], grid.spacing[1]), grid.spacing[2]);
+  return grid;
+}
+
+/* The lattice coordinate of a particle along an axis. */
+static inline double hl_particle_coordinate(const hl_particle_set *set, const hl_particle_level *grid,
+                                            size_t n, int axis) {
+  double at = grid->scale[axis] * set->place[n][axis] + grid->offset[axis];
+  double last = (double)grid->points[axis] - (grid->periodic[axis] ? 0 : 1);
+  return at < 0 ? 0 : at > last ? last : at;
+}
+
+/* The length h' of a particle's narrowed kernel; world. */
+static inline double hl_particle_narrowed(const hl_particle_set *set, const hl_particle_level *grid,
+                                          size_t n) {
+  double length = fmin((double)set->length[n], HL_PARTICLE_MOST_LENGTH * grid->least_spacing),
+         square = length * length - HL_PARTICLE_NARROWING * grid->mean_square;
+  return sqrt(fmax(square, HL_PARTICLE_LEAST_LENGTH * HL_PARTICLE_LEAST_LENGTH * grid->mean_square));
+}
+
+/* The points along an axis that a kernel reaches: range[0] to range[1]. Along periodic axes some may lie
+ * outside of the field. */
+static inline void hl_particle_range(const hl_particle_level *grid, int axis, double at, double narrowed,
+                                     int range[2]) {
+  double reach = 2 * narrowed / grid->spacing[axis];
+  int end = (int)grid->points[axis] - 1 - grid->margin;
+  range[0] = (int)ceil(at - reach);
+  range[1] = (int)floor(at + reach);
+  if (!grid->periodic[axis]) {
+    range[0] = range[0] < grid->margin ? grid->margin : range[0];
+    range[1] = range[1] > end ? end : range[1];
+  }
+  if (range[1] - range[0] + 1 > HL_PARTICLE_ROW) range[1] = range[0] + HL_PARTICLE_ROW - 1;
+}
+
+/* Points of a box along an axis that lie one after the other in one block. */
+typedef struct hl_particle_run {
+  int32_t block;
+  size_t within; /* the first point's place in the block */
+  size_t count;
+  size_t from; /* the first point's place in the box */
+} hl_particle_run;
+
+/* Calls `visit` for each piece of a box of points of a level, in a fixed order. Along periodic axes the box
+ * goes on at the other end. Along other axes the points at the faces stand for the points beyond them. */
+void hl_particle_visit(const hl_particle_lattice *lattice, int level, const ptrdiff_t first[3],
+                       const size_t count[3],
+                       void (*visit)(void *data, const int32_t block[3], const hl_particle_run run[3]),
+                       void *data);
+
+/* Copies a box of points of a level. */
+void hl_particle_field_read(const hl_particle_field *field, int level, const ptrdiff_t first[3],
+                            const size_t count[3], float *out);
+
+/* Adds a box of points to a level. Points that lie in no block must be 0, and none may lie beyond a face. */
+void hl_particle_field_add(hl_particle_field *field, int level, const ptrdiff_t first[3],
+                           const size_t count[3], const float *box);
+
+/* Adds the particles of one level to the field. */
+hl_status hl_particles_splat(hl_context *context, hl_pool *pool, const hl_particle_set *set,
+                             const float *weights, hl_particle_field *field, int level, const char *subject,
+                             hl_error *error);
+
+#endif
