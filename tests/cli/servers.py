@@ -317,6 +317,25 @@ def who_is_asked(case, server):
     case.ok("info of a URL", found.get("levels") == 3 and found.get("file") == store, (done.stdout, done.stderr))
 
 
+def viewer(case, server):
+    """The viewer opens a URL of its command line, and fails like `render` where the server does."""
+    case.fresh()
+    server.forget()
+    words = [case.program, "view", "--no-browser", "--quiet", f"{server.url}/v2.zarr"]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=case.environment,
+                          cwd=case.folder) as process:
+        line = process.stdout.readline()
+        process.terminate()
+        said = process.communicate()[1]
+    chunks = [name for name in server.requests if name.split("/")[-1].isdigit()]
+    case.ok("the viewer opens a URL", line.startswith("http://127.0.0.1:") and bool(chunks), (line, said, server.requests))
+    case.fresh()
+    server.forget(**{"v2.zarr__.zattrs": ["always", "403"]})
+    done = subprocess.run(words, capture_output=True, text=True, env=case.environment, cwd=case.folder)
+    case.ok("the viewer of a URL that a server refuses ends", done.returncode != 0 and done.stdout == "" and
+            "the server answers 403" in done.stderr, (done.stdout, done.stderr))
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         case = Case(os.path.abspath(sys.argv[1]), folder)
@@ -333,6 +352,7 @@ def main():
         passing_faults(case, server)
         lasting_faults(case, server)
         who_is_asked(case, server)
+        viewer(case, server)
         print(f"1..{case.number}")
         return 1 if case.failed else 0
 
