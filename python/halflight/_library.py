@@ -116,12 +116,24 @@ def unlend(description: Any) -> None:
     _lent.pop(int(ffi.cast("uintptr_t", description.release_data)), None)
 
 
+def is_url(path: str) -> bool:
+    """Whether a path is a URL of a web server."""
+    return path.lower().startswith(("http://", "https://"))
+
+
+def _copies_folder() -> str:
+    """Where copies of servers' files are kept, as the program keeps them; "" where there is no place."""
+    cache, home = os.environ.get("XDG_CACHE_HOME", ""), os.environ.get("HOME", "")
+    folder = cache if cache.startswith("/") else f"{home}/.cache" if home.startswith("/") else ""
+    return f"{folder}/halflight/servers" if folder else ""
+
+
 def _exception(status: int, error: Any, path: str | None) -> BaseException:
     message = text_of(error.message) or text_of(lib.hl_status_name(status))
     if status == lib.HL_ERROR_CANCELLED:
         failure, _calls.failure = _calls.failure, None
         return failure or KeyboardInterrupt()
-    if path is not None and not os.path.exists(path) and status in (lib.HL_ERROR_IO, lib.HL_ERROR_INPUT):
+    if path is not None and not is_url(path) and not os.path.exists(path) and status in (lib.HL_ERROR_IO, lib.HL_ERROR_INPUT):
         return FileNotFoundError(message)
     if status == lib.HL_ERROR_INPUT:
         failed = InputError(message)
@@ -164,10 +176,13 @@ def call(function: Any, *arguments: Any, path: str | None = None) -> None:
     function : C function
         One that returns hl_status and takes hl_error last.
     path : str, optional
-        The file that is read: where it is missing, the exception is FileNotFoundError.
+        The file that is read: where it is missing, the exception is FileNotFoundError. Or the URL of a store, for whose
+        files the server is asked.
     """
     error = ffi.new("hl_error *")
     lib.python_call_begin(bool(_calls.reports) and _calls.reports[-1] is not None)
+    if path is not None and is_url(path):
+        lib.python_call_may_ask(os.fsencode(path), os.fsencode(_copies_folder()))
     try:
         status = function(*arguments, error)
     finally:

@@ -1,0 +1,68 @@
+"""Stores on web servers by their URLs: the folder's voxels, one line for what a server does wrong, and no server unasked."""
+from __future__ import annotations
+
+import json
+import shutil
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import halflight as hl
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "cli"))
+import servers  # type: ignore[import-not-found]  # the server of the program's tests
+
+pytestmark = pytest.mark.skipif(shutil.which("curl") is None, reason="there is no curl")
+
+
+@pytest.fixture
+def server(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
+    """Serves stores/v2.zarr; copies are kept in the test's folder."""
+    servers.write_store(tmp_path / "stores/v2.zarr", 2)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setenv("no_proxy", "127.0.0.1")
+    monkeypatch.delenv("http_proxy", raising=False)
+    made = servers.Server(tmp_path / "stores")
+    yield made
+    made.http.shutdown()
+    made.http.server_close()
+
+
+def test_a_url_is_its_folder(server: Any) -> None:
+    url, folder = f"{server.url}/v2.zarr", server.folder / "v2.zarr"
+    for level in (0, 1, 2):
+        assert np.array_equal(hl.Volume(url, level=level), hl.Volume(folder, level=level))
+    assert np.array_equal(np.asarray(hl.render(url, size=(32, 32))), np.asarray(hl.render(folder, size=(32, 32))))
+    assert (server.folder.parent / "halflight/servers").is_dir()
+    server.forget()
+    hl.Volume(url, level=0)
+    assert server.answers and set(server.answers) <= {304, 404}
+
+
+@pytest.mark.parametrize("fault, words", [("403", "the server answers 403"), ("page", "a chunk does not unpack"),
+                                          ("half", "a chunk does not unpack")])
+def test_faults_are_told(server: Any, fault: str, words: str) -> None:
+    server.forget(**{"v2.zarr__0__1__1__1": ["always", fault]})
+    with pytest.raises((OSError, hl.InputError), match=words) as failed:
+        hl.Volume(f"{server.url}/v2.zarr", level=0)
+    assert not isinstance(failed.value, FileNotFoundError)
+
+
+def test_only_what_is_named_is_asked_for(server: Any, tmp_path: Path) -> None:
+    scene = tmp_path / "scene.json"
+    scene.write_text(json.dumps({"halflight": 1, "volumes": [{"file": f"{server.url}/v2.zarr"}]}))
+    with pytest.raises(hl.UnsupportedError, match="a URL in a file"):
+        hl.Scene.load(scene)
+    assert server.requests == []
+
+
+def test_copies_need_a_place(server: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("XDG_CACHE_HOME")
+    monkeypatch.delenv("HOME")
+    with pytest.raises(OSError, match="no place for copies"):
+        hl.Volume(f"{server.url}/v2.zarr")
+    assert server.requests == []
