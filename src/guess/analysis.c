@@ -358,7 +358,7 @@ hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, h
   return status == HL_OK ? keep(volume, analysis, error) : status;
 }
 
-/* ---- label maps: few whole numbers, each in blocks.
+/* ---- label maps: few whole numbers, each in blocks, or whole numbers that the file says are labels.
  *
  * Noise and the edges of smooth shapes may be whole numbers too, but there few neighbours are equal. */
 
@@ -371,7 +371,7 @@ typedef struct tally {
                               * neighbours that have the value, too */
 } tally;
 
-enum { TALLIES = 4 * HL_MOST_LABELS, NO_ROOM = -1 };
+enum { TALLIES = 4 * HL_FEW_LABELS, NO_ROOM = -1 };
 
 /* A hash table of the values that were met. Where the place of a hash is taken, the next free place is
  * used. */
@@ -386,7 +386,7 @@ static int place_of(value_table *table, int64_t value) {
   size_t place = (size_t)(((uint64_t)value * 0x9e3779b97f4a7c15u) >> 32) % TALLIES;
   while (table->tallies[place].seen != 0 && table->tallies[place].value != value)
     place = (place + 1) % TALLIES;
-  if (table->tallies[place].seen == 0 && table->count++ > HL_MOST_LABELS) return NO_ROOM;
+  if (table->tallies[place].seen == 0 && table->count++ > HL_FEW_LABELS) return NO_ROOM;
   table->tallies[place].value = value;
   return (int)place;
 }
@@ -446,15 +446,15 @@ static int compare_values(const void *a, const void *b) {
   return x < y ? -1 : x > y;
 }
 
-/* Lists the labels in rising order: all values but the background. The background is 0 if any value is 0 or
- * less. True if there are two or more labels, and most of them lie in blocks. */
+/* Lists the labels in rising order: all values but the background, or as many as there is room for. The
+ * background is 0 if any value is 0 or less. Returns whether there are two or more labels, and most of them
+ * lie in blocks. */
 static bool list(const value_table *table, double least, hl_data_analysis *a) {
   size_t found = 0, in_blocks = 0;
   double background = least <= 0 ? 0 : a->background;
-  for (size_t t = 0; t < TALLIES; t++) {
+  for (size_t t = 0; t < TALLIES && found < HL_FEW_LABELS; t++) {
     const tally *own = &table->tallies[t];
     if (own->seen == 0 || (double)own->value == background) continue;
-    if (found == HL_MOST_LABELS) return false;
     a->labels[found++] = (double)own->value;
     in_blocks += (double)own->shared > IN_BLOCKS * (double)own->seen;
   }
@@ -469,8 +469,10 @@ hl_status hl_data_find_labels(const hl_volume *volume, hl_data_analysis *analysi
   if (analysis->kind == HL_DATA_CONSTANT || volume->minimum != floor(volume->minimum)) return HL_OK;
   value_table *table = hl_allocate_zeroed(volume->context, 1, sizeof *table);
   if (table == NULL) return hl_fail_memory(error, sizeof *table, "a count of labels");
-  if (count_neighbours(volume, table) && list(table, volume->minimum, analysis))
-    analysis->kind = HL_DATA_LABELS;
+  bool are_few = count_neighbours(volume, table), are_many = table->count > HL_FEW_LABELS,
+       in_blocks = list(table, volume->minimum, analysis),
+       some_named = volume->says_labels && (are_few || are_many) && analysis->label_count > 0;
+  if (some_named || (are_few && in_blocks)) analysis->kind = HL_DATA_LABELS;
   else analysis->label_count = 0;
   hl_release(volume->context, table);
   return HL_OK;

@@ -20,7 +20,7 @@ typedef enum hl_data_kind {
   HL_DATA_PARTICLES = 7 /* the logarithm of the density of particles, over decades */
 } hl_data_kind;
 
-#define HL_MOST_LABELS    255
+#define HL_FEW_LABELS     255 /* most labels of a map that is told by its values alone */
 #define HL_MOST_MATERIALS 4
 
 /* "Objects" are the voxels that differ from the background. "Distances" are differences of values from the
@@ -43,7 +43,7 @@ typedef struct hl_data_analysis {
   double filled;       /* fraction of the voxels beyond solid */
   double middle;       /* the commonest data value */
   double lower, upper; /* how far values lie below and above the middle at most, apart from a few voxels */
-  double labels[HL_MOST_LABELS]; /* ascending data values, without the background */
+  double labels[HL_FEW_LABELS]; /* ascending data values, without the background */
   size_t label_count;
   double valleys[HL_MOST_MATERIALS - 1]; /* distances that divide materials, rising; [material_count - 1] */
   int material_count; /* number of materials of scanned objects; 0: they were not looked for */
@@ -75,9 +75,11 @@ static inline bool hl_is_hounsfield(const hl_volume *volume) {
 
 /* ---- label maps: volumes whose values are names of regions ---- */
 
-/* Where the volume is a label map, sets the kind to HL_DATA_LABELS and lists the labels; otherwise changes
- * nothing. The values of a label map are whole numbers: the background and 2 to HL_MOST_LABELS labels. Most
- * labels lie in blocks, so that a voxel's neighbours mostly have its value. Fails for lack of memory. */
+/* Where the volume is a label map, sets the kind to HL_DATA_LABELS and lists labels; otherwise changes
+ * nothing. The values of a label map are whole numbers: the background and 2 to HL_FEW_LABELS labels. Most
+ * labels lie in blocks, so that a voxel's neighbours mostly have its value. If the file says that its values
+ * are labels, then one label is enough, they need not lie in blocks, and there may be more of them than the
+ * list has room for. Fails for lack of memory. */
 hl_status hl_data_find_labels(const hl_volume *volume, hl_data_analysis *analysis, hl_error *error);
 
 /* Whether a volume's values are names of regions: its file names segments, or the values look like labels. */

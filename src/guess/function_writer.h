@@ -8,8 +8,8 @@
 typedef struct hl_function_writer {
   const hl_data_analysis *analysis;
   double direction; /* direction of rising distance in data values: +1 or -1 */
-  hl_opacity_point opacity[4 * HL_MOST_LABELS];
-  hl_color_point color[4 * HL_MOST_LABELS];
+  hl_opacity_point opacity[4 * HL_FEW_LABELS];
+  hl_color_point color[4 * HL_FEW_LABELS];
   size_t opacity_count, color_count;
 } hl_function_writer;
 

@@ -139,6 +139,7 @@ static void place(const coarsening *c, hl_volume_description *d) {
 static void inherit(const hl_volume *volume, hl_volume *made) {
   made->unit = volume->unit;
   made->is_anatomical = volume->is_anatomical;
+  made->says_labels = volume->says_labels;
   made->has_surroundings = volume->has_surroundings;
   made->surroundings = volume->surroundings;
   memcpy(made->window, volume->window, sizeof made->window);

@@ -335,6 +335,7 @@ static hl_status finish(hl_load_request *request, const char *path, hl_status st
   if (request->window[0] < request->window[1])
     memcpy((*volume)->window, request->window, sizeof request->window);
   (*volume)->is_anatomical = request->is_anatomical;
+  (*volume)->says_labels = request->says_labels;
   /* A spacing from the caller has no unit. */
   (*volume)->unit = request->spacing[0] > 0 ? NULL : request->unit;
   (*volume)->selection = request->selection;

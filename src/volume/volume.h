@@ -92,6 +92,7 @@ struct hl_volume {
   const char *unit;   /* unit of lengths in the world, static; null if unknown */
   bool is_anatomical; /* whether the space is meant, as in DICOM and NIfTI; other programs write
                        * left-posterior-superior for any data */
+  bool says_labels;   /* whether the file says that its values are names of regions */
   double window[2]; /* data values between which the file asks to show greys; NAN: the file does not say it */
   double minimum, maximum; /* data values over finite voxels */
   uint64_t whole_range[2]; /* least and greatest value as 64-bit integers of `type`, where doubles round

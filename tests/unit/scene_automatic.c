@@ -1,4 +1,8 @@
 /* tests/unit/scene_automatic.c - automatic transfer functions, presets, colormaps, default scenes. */
+#define _GNU_SOURCE /* mkstemps */
+#include <stdio.h>
+#include <unistd.h>
+
 #include "guess/analysis.h"
 #include "guess/sample.h"
 #include "guess/view.h"
@@ -458,6 +462,52 @@ static void repeated_voxels_are_no_labels(void **state) {
   }
 }
 
+/* A NIfTI file of 300 values, none of which lies in a block, with the intent code. */
+static void write_nifti(const char *path, int intent) {
+  enum { SIDE = 16, HEADER = 352 };
+  static unsigned char bytes[HEADER + 2 * SIDE * SIDE * SIDE];
+  const int16_t header[] = {3, SIDE, SIDE, SIDE, 1, 1, 1, 1}, codes[] = {(int16_t)intent, 4, 16};
+  const int32_t size = 348;
+  const float offset = HEADER, slope = 1;
+  memset(bytes, 0, HEADER);
+  memcpy(bytes, &size, sizeof size);
+  memcpy(bytes + 40, header, sizeof header);
+  memcpy(bytes + 68, codes, sizeof codes);
+  memcpy(bytes + 108, &offset, sizeof offset);
+  memcpy(bytes + 112, &slope, sizeof slope);
+  memcpy(bytes + 344, "n+1", 4);
+  for (int n = 0; n < SIDE * SIDE * SIDE; n++) {
+    const int16_t value = (int16_t)(n % 3 == 0 ? 0 : (unsigned)n * 2654435761u % 300);
+    memcpy(bytes + HEADER + 2 * n, &value, sizeof value);
+  }
+  FILE *file = fopen(path, "wb");
+  assert_non_null(file);
+  assert_int_equal(fwrite(bytes, 1, sizeof bytes, file), sizeof bytes);
+  assert_int_equal(fclose(file), 0);
+}
+
+/* The intent code for labels makes a label map of values that would not be taken for one, however many there
+ * are. */
+static void files_say_that_they_hold_labels(void **state) {
+  (void)state;
+  char path[] = "/tmp/halflight-labels-XXXXXX.nii";
+  const int made = mkstemps(path, 4);
+  assert_true(made >= 0);
+  close(made);
+  for (int labels = 0; labels < 2; labels++) {
+    write_nifti(path, labels ? 1002 : 0);
+    hl_context *context = make_context();
+    hl_volume *volume = NULL;
+    int is_map = -1;
+    assert_int_equal(hl_volume_load(context, path, &volume, NULL), HL_OK);
+    assert_int_equal(hl_volume_is_label_map(context, volume, &is_map, NULL), HL_OK);
+    assert_int_equal(is_map, labels);
+    hl_volume_release(volume);
+    hl_context_destroy(context);
+  }
+  assert_int_equal(remove(path), 0);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(separates_air_from_things),
@@ -473,6 +523,7 @@ int main(void) {
       cmocka_unit_test(heads_do_not_hang),
       cmocka_unit_test(ids_of_any_size_are_labels),
       cmocka_unit_test(repeated_voxels_are_no_labels),
+      cmocka_unit_test(files_say_that_they_hold_labels),
       cmocka_unit_test(thin_surfaces_of_small_grids_get_more_sheets),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -27,6 +27,7 @@ typedef struct hl_load_request {
   const char *unit;       /* set by readers: the unit of lengths, static; null if the file does not tell it */
   bool is_anatomical;     /* set by readers of formats that hold bodies: the anatomical space that the
                            * file states is meant */
+  bool says_labels;       /* set by readers: the file says that its values are names of regions */
   const char *series;     /* DICOM: the number, UID or description of the wanted series; null if the
                            * reader may choose */
   hl_array_entry *arrays; /* owned; [array_count]; in the file's order */

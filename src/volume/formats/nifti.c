@@ -23,14 +23,14 @@ enum { HEADER_1_BYTES = 348, HEADER_2_BYTES = 540, NAME_BYTES = 1024 };
 /* The offsets of the fields in a version's header. */
 typedef struct nifti_layout {
   int version;
-  size_t header_bytes, magic, dim, datatype, pixdim, vox_offset, slope, intercept, qform_code, sform_code,
-      quaternion, qoffset, srow;
+  size_t header_bytes, magic, dim, intent, datatype, pixdim, vox_offset, slope, intercept, qform_code,
+      sform_code, quaternion, qoffset, srow;
 } nifti_layout;
 
-static const nifti_layout layout_1 = {1,  HEADER_1_BYTES, 344, 40, 70, 76, 108, 112, 116, 252, 254, 256, 268,
-                                      280};
-static const nifti_layout layout_2 = {2,  HEADER_2_BYTES, 4, 16, 12, 104, 168, 176, 184, 344, 348, 352, 376,
-                                      400};
+static const nifti_layout layout_1 = {
+    1, HEADER_1_BYTES, 344, 40, 68, 70, 76, 108, 112, 116, 252, 254, 256, 268, 280};
+static const nifti_layout layout_2 = {
+    2, HEADER_2_BYTES, 4, 16, 504, 12, 104, 168, 176, 184, 344, 348, 352, 376, 400};
 
 typedef struct nifti_header {
   unsigned char bytes[HEADER_2_BYTES];
@@ -145,6 +145,13 @@ static const char *unit_of(const nifti_header *header) {
   enum { AT_1 = 123, AT_2 = 500 };
   uint64_t code = header->layout->version == 1 ? header->bytes[AT_1] : load_bits(header, AT_2, 4);
   return units[code & 7];
+}
+
+/* Whether the header's intent code says that values are labels (nifti1.h, NIFTI_INTENT_LABEL). ANALYZE has
+ * another field at this place. */
+static bool says_labels(const nifti_header *header) {
+  enum { LABEL = 1002 };
+  return !header->is_analyze && load_code(header, header->layout->intent) == LABEL;
 }
 
 /* Reads the type. components: the number of values that lie side by side in each voxel, as for colours. */
@@ -358,6 +365,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   place(&header, &payload.grid);
   payload.grid.space = HL_SPACE_RAS;
   request->is_anatomical = true;
+  request->says_labels = says_labels(&header);
   request->unit = header.is_analyze ? "millimetre" : unit_of(&header);
   status = hl_volume_check_grid(&payload.grid, (*stream)->path, error);
   payload.big_endian = header.big_endian;
