@@ -278,9 +278,7 @@ hl_status hl_view_widen(const hl_scene_description *description, hl_outline *out
     hl_view at = given;
     at.azimuth_deg += turns[n] * HL_VIEW_AZIMUTH;
     look(&job, &at);
-    frame_place place = fit(&job, FILLED);
-    double wide = (reach(&job, job.forward, 0) - reach(&job, vec3_scale(job.forward, -1), 0)) / 2 -
-                  place.forward;
+    const double wide = reach(&job, job.right, 0) + reach(&job, vec3_scale(job.right, -1), 0);
     if (wide <= WIDER * most) continue;
     most = wide;
     view->azimuth_deg = at.azimuth_deg;

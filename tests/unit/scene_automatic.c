@@ -359,6 +359,30 @@ static void things_stand_upright(void **state) {
   hl_context_destroy(context);
 }
 
+/* Four lobes in one plane, of changing sign, are seen from before the plane, where they are widest. From the
+ * plane's end the near lobes are large, and hide the others. across: the axis that the plane is across. */
+static void fields_are_seen_from_their_wide_side(void **state) {
+  (void)state;
+  static float values[N * N * N];
+  hl_context *context = make_context();
+  for (int across = 0; across < 2; across++) {
+    for (int v = 0; v < N * N * N; v++) {
+      const double p[3] = {v % N - 20, v / N % N - 20, v / N / N - 20}, along = p[1 - across];
+      values[v] = (float)(along * p[2] * exp(-hypot(hypot(p[0], p[1]), p[2]) / 3));
+    }
+    hl_volume *volume = scaled_volume(context, values, 1, 0);
+    hl_scene *scene = NULL;
+    assert_int_equal(hl_scene_for_volume(context, volume, NULL, &scene, NULL), HL_OK);
+    const hl_camera *camera = &hl_scene_describe(scene)->camera;
+    double away[2];
+    for (int a = 0; a < 2; a++) away[a] = fabs(camera->position[a] - camera->target[a]);
+    assert_true(away[across] > 1.5 * away[1 - across]);
+    hl_scene_release(scene);
+    hl_volume_release(volume);
+  }
+  hl_context_destroy(context);
+}
+
 /* The z of the way up in which a head is shown: a smooth vault, a ragged jaw under the face, and nothing
  * under its back. over: it lies upside down in the grid. */
 static double up_of_head(hl_context *context, bool over) {
@@ -521,6 +545,7 @@ int main(void) {
       cmocka_unit_test(names_and_statistics),
       cmocka_unit_test(things_stand_upright),
       cmocka_unit_test(heads_do_not_hang),
+      cmocka_unit_test(fields_are_seen_from_their_wide_side),
       cmocka_unit_test(ids_of_any_size_are_labels),
       cmocka_unit_test(repeated_voxels_are_no_labels),
       cmocka_unit_test(files_say_that_they_hold_labels),
