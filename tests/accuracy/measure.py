@@ -78,6 +78,7 @@ def costs(name, described, result):
         settings = METHODS[method]
         kind = "hard" if settings["shadows"] == "hard" else f"soft_{settings['soft_method']}"
         path = scenes.WORK / f"{name}-cost.json"
+        path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(json.dumps(scenes.changed(described, **settings)))
         more, one = processor_seconds(path, kind, 1 + COST_FRAMES), processor_seconds(path, kind, 1)
         seconds[method] = (more - one) / COST_FRAMES
