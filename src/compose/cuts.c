@@ -138,7 +138,7 @@ static void add_cuts(const hl_asked *asked, const double low[3], const double hi
     }
 }
 
-/* Extends a box to the box around a volume in the scene's world. */
+/* Extends a box so that it contains a volume, too; in the scene's world. */
 static hl_status extend_box(const hl_scene_volume *volume, double low[3], double high[3], hl_error *error) {
   double ends[2][3];
   hl_volume_info info = {.struct_size = sizeof info};

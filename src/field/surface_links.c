@@ -113,8 +113,8 @@ static int32_t round_down(double x) {
   return whole - (x < whole);
 }
 
-/* Finds the whole numbers between two places. most: the greatest number at which a line still meets the
- * lattice. */
+/* Finds the whole numbers from `low` to `high`, positions along an axis. most: lines at whole numbers beyond
+ * -most and most do not meet the lattice, and are left out. */
 static whole_numbers whole_between(double low, double high, double most) {
   if (!(low <= most && high >= -most)) return (whole_numbers){0, -1};
   return (whole_numbers){-round_down(-greater(low, -most)), round_down(lesser(high, most))};

@@ -235,8 +235,9 @@ LANES_INLINE void weights_in_brick(const kernel *kernel, lanes part, lanes weigh
   else tap_weights(kernel, HL_KERNEL_DEGREE, part, weight);
 }
 
-/* The sums over a field in bricks, brick by brick. Each brick's sums are those of sum_in_memory(). cell,
- * part: cells of the grid, and places in them. */
+/* Sums the weighted coefficients around sixteen positions of a field in bricks, brick by brick. In each brick
+ * sum_in_memory() finds the sums. cell, part: the positions' cells in the grid, and the places in these
+ * cells. */
 static __attribute__((noinline)) lanes sum_in_bricks(const grid *grid, const kernel *kernel,
                                                      const lanes_int cell[3], const lanes part[3],
                                                      uint32_t active) {

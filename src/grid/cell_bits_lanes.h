@@ -45,9 +45,10 @@ LANES_INLINE lanes bits_two_held_rows(const grid *grid, int32_t x, int32_t y, in
 
 /* ---- bounds of four cells along an axis ---- */
 
-/* The Bezier points of a cell in units of a third. Derived: the Bezier points of the cell between voxels b
- * and c are the thirds 2 b + c and b + 2 c, and its knots. A knot is the mean of the thirds on its two sides:
- * (b + 4 c + d) / 6 = ((b + 2 c) / 3 + (2 c + d) / 3) / 2. */
+/* The two inner Bezier points of a cell along an axis, times 3. Derived: the cell between voxels b and c has
+ * the inner Bezier points (2 b + c) / 3 and (b + 2 c) / 3. Its two outer points are the values at its ends,
+ * and each is the mean of the inner points on its two sides: (b + 4 c + d) / 6 = ((b + 2 c) / 3 + (2 c + d) /
+ * 3) / 2. */
 typedef struct bits_thirds {
   lanes first, second; /* the points at a third and at two thirds of the way from b to c */
 } bits_thirds;

@@ -323,7 +323,8 @@ static bool begin(const hl_scene_description *scene, double empty, double left, 
   return true;
 }
 
-/* The brightness of all pixels that show anything, and the thickness of all surfaces that they show. */
+/* Two lists: the brightness of each pixel that shows anything, and the thickness of each surface that a pixel
+ * shows. */
 typedef struct pixels {
   float brightness[SIDE * SIDE], thickness[SIDE * SIDE];
   size_t bright_count, surface_count;

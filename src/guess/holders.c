@@ -11,8 +11,8 @@
 #include "guess/sample.h"
 #include "guess/seen_cells.h"
 
-#define OBJECT_CELLS 0.8  /* least fraction of all visible cells that the object has */
-#define OBJECT_DEPTH 0.95 /* least fraction of the visible cells' optical depth that the object has */
+#define OBJECT_CELLS 0.8  /* least fraction of all visible cells that must belong to the object */
+#define OBJECT_DEPTH 0.95 /* least fraction of the visible cells' optical depth that must belong to it */
 /* Least number of cells of a body, as a fraction of the object's cells; smaller bodies are specks. */
 #define LEAST         0.005
 #define LONG          0.5   /* least length of a holder, as a fraction of the object's length */

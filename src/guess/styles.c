@@ -22,8 +22,8 @@ static void add_steps(hl_function_writer *w, const opacity_step *steps, int coun
   for (int n = 0; n < count; n++) hl_add_opacity(w, steps[n].distance, steps[n].opacity);
 }
 
-/* The distance from which matter is inner matter: where it is dense. In objects that are mostly dense the
- * dense part stands out from nothing, so there it is where matter is solid. */
+/* The least distance of inner matter, which is the dense matter of an object. In objects that are dense for
+ * the most part, all solid matter counts as inner matter, because little of them is less dense. */
 static double inner_of(const hl_data_analysis *a) {
   return a->dense_share > 0.5 ? a->solid : fmax(a->dense, 1.001 * a->solid);
 }

@@ -409,8 +409,8 @@ static bool is_there(const hl_json_reader *reader, const char *file) {
   return there;
 }
 
-/* Where the volume's file is absent, replaces *value by a copy with the keys of its stand-in. The shelf owns
- * the copy. */
+/* A volume in JSON may name a stand-in for its file. Where the file is absent, *value becomes a copy of the
+ * volume's JSON with the keys of the stand-in. The copy is owned by the shelf. */
 static hl_status choose_stand_in(hl_json_reader *reader, const json_t **value, hl_volume_shelf *shelf) {
   const json_t *stand_in = json_object_get(*value, "stand_in");
   const char *file = NULL;

@@ -24,8 +24,8 @@ typedef struct sheet_light {
   vec3 middle; /* the middle of the light's projection; frame space; for parallel light the mean direction
                 * of travel */
   vec3 u, v;   /* unit vectors in the sheets: the projection's principal axes, u the longer */
-  double width_u,
-      width_v; /* widths of boxes with the same variance; frame units, or per unit of height if parallel */
+  double width_u, width_v; /* widths of the boxes that have the variance of the projection; frame units. Of
+                            * parallel lights they are per unit of height */
   mat3 spread; /* mean of x x' over the light itself, where x is a point of the light counted from its
                 * centre; along u, v and the sheets' normal */
   bool parallel;

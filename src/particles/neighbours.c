@@ -265,8 +265,9 @@ static size_t middle_of(const tree *t, size_t leaf, size_t begin, size_t end) {
   return nearest;
 }
 
-/* Finds the k-th distances of a leaf's particles. bound: a number that the k-th distance at the middle
- * particle does not exceed. Returns the k-th distance at this particle. */
+/* Finds the distance of each of a leaf's particles to its k-th neighbour. bound: a number that this distance
+ * does not exceed for the particle in the middle of the leaf. Returns this distance for the middle
+ * particle. */
 static float search_leaf(search *s, crowd *c, size_t leaf, size_t middle, float bound) {
   const float more = 1.2f; /* In even matter, distances of 48th neighbours differ by 5 %. */
   const tree *t = s->tree;

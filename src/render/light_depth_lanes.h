@@ -75,12 +75,13 @@ LANES_INLINE lanes coordinate_seen(const block_density *d) {
   return lanes_fma(d->after - d->before, d->seen, d->before);
 }
 
-/* An even extinction that gives the light's way through the slab, down to where a volume's matter is seen,
- * the right optical depth (derived). The extinction along the eye's ray does not serve, because that ray
- * may run along a surface which the light's ray crosses. At a distance s towards the light from the point
- * seen, the density is f - s g.l to first order, g the gradient; its mean extinction is the result, before
- * a correction: with even extinction the eye would see the slab at another position (`evenly`), and a
- * factor makes the depths agree there. */
+/* Finds an even extinction for the light's way through the slab, down to the point where a volume's matter is
+ * seen. With it, this way has the right optical depth (derived). The extinction along the eye's ray would be
+ * wrong: the eye's ray may run along a surface that the light's ray crosses. Let f be the density at the
+ * point, g the gradient, and l the direction to the light. At the distance s towards the light, the density
+ * is then f - s g.l to first order. The mean extinction of these densities is the result but for a factor.
+ * Even extinction would let the eye see the slab at another position (`evenly`); the factor makes the optical
+ * depths of both positions equal. */
 LANES_INLINE lanes extinction_towards(const block_density *d, lanes3 towards, lanes way) {
   const classifier *classifier = d->patch->volume->classifier;
   if (lanes_bits(d->sloped) == 0) return d->sums.extinction;

@@ -234,7 +234,7 @@ static void lay_out_light(const sweep *sweep, sweep_light *light, hl_layout *lay
   if (is_exchanged(sweep, &light->shadow)) light->owned = hl_layout_take(layout, tiles, sizeof *light->owned);
 }
 
-/* Lays out the buffers of all lights whose reads are limited. */
+/* Lays out the buffers of the lights of which only those pixels are made that samples may read. */
 static read_buffer *lay_out_buffers(const sweep *sweep, hl_layout *layout) {
   size_t count = 0;
   for (int i = 0; i < sweep->geometry->light_count; i++)

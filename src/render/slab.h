@@ -33,8 +33,8 @@ typedef struct shade_volume {
   const kernel *kernel;
   int phong, visible, receives_shadow;
   int lit;     /* 0: the volume is shaded flat, and no light changes it */
-  int even;    /* surfaces send on all light that arrives, from any angle; set for the shadow layer of a
-                * light */
+  int even;    /* surfaces reflect all light that arrives, from whatever angle it comes; set for the shadow
+                * layer of a light */
   float voxel; /* the smallest edge of a voxel; frame units */
   float ambient, diffuse, specular, shininess; /* ka kd ks n */
   float emission;                              /* ke; 1 for a volume shaded flat */

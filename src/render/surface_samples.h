@@ -10,7 +10,7 @@ enum { SURFACE_SAMPLES = 16 };
 /* Up to sixteen samples of one mesh in one slab. Unused samples repeat the first one. */
 typedef struct surface_samples {
   _Alignas(64) float position[3][SURFACE_SAMPLES]; /* frame space */
-  float normal[3][SURFACE_SAMPLES];                /* unit vector on the eye's side; 0: the sample is black */
+  float normal[3][SURFACE_SAMPLES];                /* unit normal on the eye's side; 0: the sample is black */
   float towards_eye[3][SURFACE_SAMPLES];           /* unit */
   float color[3][SURFACE_SAMPLES];                 /* linear RGB */
   float lit[3][SURFACE_SAMPLES];                   /* the result: the light that leaves towards the eye */

@@ -61,7 +61,8 @@ typedef struct view_sheets {
   kept_patch *kept; /* [patches][ring]; says which densities are in `density` */
   int reached;      /* number of sheets whose sources are kept: the sheets of a stretch and of its bundles */
   fill_source *sources; /* [reached][grids]; the source of sheet k lies in row k % reached */
-  slab_run *runs; /* [run_count][grids]; runs of slabs that a stretch touches; run k is row k % run_count */
+  slab_run
+      *runs; /* [run_count][grids]; the runs of slabs that a stretch touches; run k is in row k % run_count */
   int run_count;
   patch_run *patch_runs; /* [patches] */
   slab_row *rows;        /* [patches]; no slab from the last requested one up to the row touches the row's

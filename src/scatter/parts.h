@@ -46,7 +46,8 @@ vec3 hl_scatter_way(int line, bool onwards);
 float hl_scatter_line_weight(int line);
 
 /* Finds the sky's light that enters the grid, in each channel. Each of the 26 directions has the mean
- * radiance of the sky's directions that are nearest to it; the sum is the whole sky's light. */
+ * radiance of the sky's directions that are nearest to it. One factor for all of them makes their sum the
+ * light of the whole sky. */
 void hl_scatter_sky_inflow(const hl_sky *sky, scatter_inflow inflow[3]);
 
 /* Where w is the albedo, the field of the sky, whose cells are finer than the nodes, lights samples with (1
@@ -90,8 +91,9 @@ void hl_scatter_fill_direct(const scatter_scene *scene, const scatter_nodes *nod
 void hl_scatter_fill_walls(const scatter_scene *scene, const scatter_nodes *nodes, const surface_tree *tree,
                            const scatter_walls *walls);
 
-/* Sets the depth between a node and the next node of a line, which are `length` apart. Adds the depth of
- * meshes between them to the depths at both nodes. */
+/* Sets the optical depth between a node and the next node of a line, which are `length` apart: the depth of
+ * the medium and of the meshes between them. Raises the depths at both nodes by a part of the meshes' depth.
+ */
 void hl_scatter_add_wall(const scatter_walls *walls, int line, size_t node, size_t next,
                          const float *extinction, float length);
 

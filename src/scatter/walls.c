@@ -39,7 +39,7 @@ typedef struct wall_job {
  * node. */
 typedef struct wall_ray {
   vec3 origin, step; /* position of the first node, and step from node to node */
-  vec3 tilt; /* the vector by which the ray's ways to the sky are tilted, as a fraction of their length */
+  vec3 tilt;         /* added to a way of unit length from a node to the sky, it tilts the way */
   double passing[SCATTER_MOST_NODES + 1];
   int count; /* number of nodes */
 } wall_ray;

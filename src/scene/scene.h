@@ -25,7 +25,7 @@ struct hl_scene {
   placed_cuts cut;    /* the placed description's volumes, where the scene has cuts */
   drawn_scene *drawn; /* owned; what frames draw of the scene; null until a frame asks for it */
   char *field_errors; /* owned; JSON that says how much the volumes' fields differ from their files
-                       * (field_errors.c); null if it is known of none */
+                       * (field_errors.c); null if this is known of no volume */
   uint64_t sky_mark;  /* a number that identifies the pixels of the sky's image, for the keys of kept
                        * results */
 };

@@ -166,7 +166,7 @@ void hl_exact_note(hl_exact *exact, bool swap, const void *source, size_t first,
   else note_in_memory(exact, swap, from, first, count);
 }
 
-/* Gives a voxel whose number was not noted the number that its float holds. */
+/* Sets the whole number of voxel n to the value of its float. For voxels whose whole number was not noted. */
 static void fill_number(hl_voxel_type type, double stored, size_t n, void *numbers) {
   switch (type) {
     case HL_VOXEL_U32:

@@ -241,7 +241,8 @@ static uint16_t half_of(double value) {
                            * 2^(exponent - 11) */
   int last = exponent - 11 > -24 ? exponent - 11 : -24;
   double units = nearbyint(ldexp(size, -last)); /* at most 2048; below 1024 only for subnormals */
-  int biased = last + 24; /* the exponent field, less one, of numbers whose fraction is 1024 units or more */
+  /* The exponent field of a half, less 1, where the number is 1024 units or more and thus no subnormal. */
+  int biased = last + 24;
   return (uint16_t)(sign | (units < 1024 ? (unsigned)units
                                          : ((unsigned)(biased + 1) << 10) + (unsigned)(units - 1024)));
 }
