@@ -226,7 +226,11 @@ hl_status hl_page_write(const hl_figure *figure, bool pdf, hl_output *output, hl
   const double width = figure->width * points_per_millimetre, height = figure->height * points_per_millimetre;
   cairo_surface_t *surface = pdf ? cairo_pdf_surface_create_for_stream(on_write, output->file, width, height)
                                  : cairo_svg_surface_create_for_stream(on_write, output->file, width, height);
-  if (pdf) cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATOR, "Halflight");
+  if (pdf) {
+    cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATOR, "Halflight");
+    /* Without a time of creation, one figure has the same bytes whenever it is made. */
+    cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "");
+  }
   cairo_t *cairo = cairo_create(surface);
   hl_status status = draw_panels(output->context, figure, cairo, false, error);
   cairo_destroy(cairo);

@@ -163,6 +163,7 @@ def physical_sizes():
     check(Image.open("deep.tif").tag_v2[258] == (16, 16, 16), "16 bits")
     page = re.search(r"Page size:\s+(\S+) x (\S+)", tool("pdfinfo", "a.pdf")).groups()
     check(all(abs(float(side) - 30 / 25.4 * 72) < 0.3 for side in page), f"{page}")
+    check("CreationDate" not in tool("pdfinfo", "a.pdf"), "a PDF has the same bytes whenever it is made")
     tool("pdfimages", "-png", "a.pdf", "inside")
     check(np.array_equal(np.asarray(Image.open("inside-000.png").convert("RGB")), np.asarray(png.convert("RGB"))), "the PDF has the PNG's pixels")
     halflight(*look, "--size", "50x40", "-o", "unsized.png")
