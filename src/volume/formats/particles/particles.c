@@ -223,7 +223,7 @@ static hl_status plan_bricks(const making *m, hl_particle_plan *plan) {
     if (status != HL_OK) return status;
     double bricks = hl_particle_plan_brick_bytes(plan),
            bytes = bricks + (double)fields_of(m->d) * hl_particle_plan_field_bytes(plan);
-    bool sparse = bricks < BRICKS_PART * voxel_bytes(&lattice);
+    bool sparse = plan->leaves != NULL && bricks < BRICKS_PART * voxel_bytes(&lattice);
     if (sparse && bytes <= most) return HL_OK;
     hl_particle_plan_release(m->context, plan);
     if (!sparse || m->d->spacing > 0) return HL_OK;
