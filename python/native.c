@@ -1,11 +1,10 @@
 /* python/native.c - callbacks of the context, which are C as long as possible (python/native.h). */
-#include <stdio.h>
 #include <string.h>
 #include <time.h>
 
 #include <halflight/halflight.h>
 
-#include "fetch/fetch.h"
+#include "fetch/asking.h"
 #include "native.h"
 
 /* Python functions that cffi defines (halflight/_library.py). */
@@ -23,8 +22,7 @@ static const double SECONDS_BETWEEN_QUESTIONS = 0.05;
 typedef struct native_call {
   double asked, told; /* when Python was asked last whether to stop, and told its progress; seconds */
   int listening, stopped;
-  char url[4096],
-      folder[4096]; /* what the call may ask a server for, and where copies are kept; "" for none */
+  const char *url; /* the store that the call may ask a server for; null: none */
 } native_call;
 static _Thread_local native_call call;
 
@@ -38,10 +36,7 @@ void python_call_begin(int listening) { call = (native_call){.asked = now(), .li
 
 void python_call_end(void) { call = (native_call){.asked = now()}; }
 
-void python_call_may_ask(const char *url, const char *folder) {
-  snprintf(call.url, sizeof call.url, "%s", url);
-  snprintf(call.folder, sizeof call.folder, "%s", folder);
-}
+void python_call_may_ask(const char *url) { call.url = url; }
 
 static int on_cancelled(void *user_data) {
   (void)user_data;
@@ -78,20 +73,14 @@ static void on_converted(void *user_data, const void *bytes, size_t byte_count) 
   python_converted(bytes);
 }
 
-/* Brings files of the store that the caller names. What a file names is not asked for. */
+/* Fetches files of the store that the caller names. */
 static hl_status on_fetch(void *user_data, const char *url, const char *const *names, size_t count,
                           uint64_t most, hl_fetched_file *files, hl_error *error) {
-  const uint64_t copies_limit = (uint64_t)4 << 30;
-  const fetcher f = {call.folder, copies_limit, on_cancelled, user_data};
-  int named = strcmp(call.url, url) == 0;
-  if (named && call.folder[0] != '\0') return fetch_files(&f, url, names, count, most, files, error);
-  snprintf(
-      error->message, sizeof error->message,
-      named
-          ? "%.400s: no place for copies of a server's files: set HOME, or XDG_CACHE_HOME to a folder"
-          : "%.400s: a URL in a file: servers are asked for stores that a program names: give it to Volume()",
-      url);
-  return named ? HL_ERROR_IO : HL_ERROR_UNSUPPORTED;
+  const fetch_permission permission = {.named = call.url != NULL && strcmp(call.url, url) == 0,
+                                       .instead = "stores that a program names: give it to Volume()",
+                                       .cancelled = on_cancelled,
+                                       .user_data = user_data};
+  return fetch_if_named(&permission, url, names, count, most, files, error);
 }
 
 hl_status python_context_create(hl_context **context, hl_error *error) {

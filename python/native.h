@@ -11,9 +11,9 @@ hl_status python_context_create(hl_context **context, hl_error *error);
 void python_call_begin(int listening);
 void python_call_end(void);
 
-/* Lets the thread's call ask a web server for the files of the store at a URL, and for no others. folder:
- * where copies are kept; "" where there is no place. Both are copied, and forgotten when the call ends. */
-void python_call_may_ask(const char *url, const char *folder);
+/* Lets the thread's call ask a web server for the files of the store at a URL, and for no others. url:
+ * borrowed until the call ends. */
+void python_call_may_ask(const char *url);
 
 /* Makes a borrowing description tell python_array_released() when its voxels are no longer needed. */
 void python_lend(hl_volume_description *description, uintptr_t key);

@@ -52,6 +52,7 @@
 #include "grids.h"
 #include "image.h"
 #include "layers.h"
+#include "light.h"
 #include "mesh.h"
 #include "page.h"
 #include "particles.h"

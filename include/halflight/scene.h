@@ -1,4 +1,4 @@
-/* halflight/scene.h - scenes: camera, lights, volumes and render settings.
+/* halflight/scene.h - scenes: camera, volumes, meshes and render settings; light.h has the lights.
  *
  * A description is plain data. hl_scene_create() checks it and keeps a deep copy, which never changes.
  * Lengths are in world units, angles in degrees, and colours in linear RGB. Axes are right-handed. */
@@ -6,6 +6,7 @@
 #define HALFLIGHT_SCENE_H
 
 #include "image.h"
+#include "light.h"
 #include "mesh.h"
 #include "shape.h"
 #include "transfer_function.h"
@@ -23,118 +24,6 @@ typedef struct hl_camera {
   double fovy_deg; /* perspective: vertical field of view */
   double height;   /* orthographic: world height of the picture */
 } hl_camera;
-
-typedef enum hl_light_type {
-  HL_LIGHT_DIRECTIONAL = 0,
-  HL_LIGHT_POINT = 1,
-  HL_LIGHT_SPOT = 2,
-  HL_LIGHT_RECT = 3,
-  HL_LIGHT_DISK = 4,
-  HL_LIGHT_POLYGON = 5
-} hl_light_type;
-
-typedef enum hl_shadows {
-  HL_SHADOWS_DEFAULT = 0, /* for a light: what the render settings say */
-  HL_SHADOWS_OFF = 1,
-  HL_SHADOWS_HARD = 2,
-  HL_SHADOWS_SOFT = 3
-} hl_shadows;
-
-typedef enum hl_falloff { HL_FALLOFF_NONE = 0, HL_FALLOFF_INVERSE_SQUARE = 1 } hl_falloff;
-
-/* An image that a light projects, like a slide (section 4 of the paper). It stands on a screen, a
- * parallelogram in space. Each ray of the light has over its whole length the colour that the image has where
- * the ray crosses the screen. Rays that miss the screen are dark. The image is interpolated bilinearly
- * between the middles of its pixels. */
-typedef struct hl_light_texture {
-  const char *file;    /* where the pixels came from, for hl_scene_to_json; may be null */
-  const float *pixels; /* [height][width][3]: linear RGB, top row first; null: the light has no texture */
-  int width, height;
-  double screen_center[3];
-  double screen_right[3]; /* from the screen's centre to the middle of the image's right edge */
-  double screen_up[3];    /* from the centre to the middle of its top edge */
-} hl_light_texture;
-
-/* An image on the surface of an extended light. Each point of the surface sends the image's colour there,
- * times the light's color and intensity. Soft shadows have the image's shape and colours; a light without
- * soft shadows has its mean colour. On a rect, edge1 points to the image's right edge and edge2 to its top.
- * On a disk or polygon the image fills the square or rectangle around it, with its top towards `up`, and is
- * not mirrored as seen from the side that the normal points to. On a sphere or a directional light, every
- * sample sees the image from its front. The image is interpolated bilinearly between the middles of its
- * pixels. */
-typedef struct hl_light_emission {
-  const char *file;    /* where the pixels came from, for hl_scene_to_json; may be null */
-  const float *pixels; /* [height][width][3]: linear RGB, top row first; null: the light is even */
-  int width, height;
-  double up[3]; /* the direction in which the image's top lies, for all lights but rects; where it is
-                 * parallel to the light's normal, [0, 1, 0] is used instead */
-} hl_light_emission;
-
-/* The axes that a light's positions and directions are measured in. */
-typedef enum hl_light_frame {
-  HL_LIGHT_FRAME_WORLD = 0,
-  HL_LIGHT_FRAME_CAMERA = 1 /* x is right, y up, z towards the viewer, and the origin is the camera's
-                             * target: the light moves with the camera */
-} hl_light_frame;
-
-typedef struct hl_light {
-  hl_light_type type;
-  hl_light_frame frame;        /* the axes in which all vectors below are given, also those of texture and
-                                * emission */
-  double direction[3];         /* directional, spot: the way the light travels */
-  double angular_diameter_deg; /* directional: above 0, its shadows can be soft */
-  double position[3];          /* point, spot, rect, disk (its centre) */
-  double radius;               /* point and spot (spheres), disk */
-  double normal[3];            /* disk */
-  double edge1[3], edge2[3];   /* rect: full edges */
-  double opening_angle_deg;    /* spot: full angle of the cone of light; no light leaves the lamp outside
-                                * of it */
-  double falloff_angle_deg;    /* spot: width of the smooth edge inside the cone */
-  const double (*vertices)[3]; /* polygon; [vertex_count][3] */
-  size_t vertex_count;
-  double color[3];
-  double intensity; /* a sample receives color * intensity at any distance, unless falloff is set */
-  hl_falloff falloff;
-  hl_shadows shadows;
-  hl_light_texture texture;   /* copied with its pixels by hl_scene_create() */
-  hl_light_emission emission; /* the image on the light's own surface; copied with its pixels; a light has
-                                 this or a texture, not both */
-} hl_light;
-
-typedef enum hl_sky_type {
-  HL_SKY_NONE = 0,
-  HL_SKY_UNIFORM = 1,  /* one colour */
-  HL_SKY_GRADIENT = 2, /* the radiance changes from the horizon to the zenith and from the horizon to the
-                        * ground, linearly in the sine of the elevation */
-  HL_SKY_IMAGE = 3     /* an environment: an equirectangular image */
-} hl_sky_type;
-
-/* Light from all directions, which everything that casts shadows attenuates. A surface receives diffuse / pi
- * times the integral of radiance x transmittance x cosine over all directions. A medium receives the mean of
- * radiance x transmittance x phase function over all directions. So where nothing hides an even sky of
- * radiance 1, a medium receives 1, and a surface receives its diffuse reflectance. A sky makes no
- * highlights.
- *
- * The image's top row is the zenith, and its bottom row the opposite point. Its middle column lies in the
- * direction up x right. The direction `right` is the world's x axis, made perpendicular to up; where up is
- * within 8 degrees of x, it is the y axis instead. So with up along z, the image's middle lies towards +y,
- * and seen from within the sky the image is not mirrored. The image is interpolated bilinearly between the
- * middles of its pixels. */
-typedef struct hl_sky {
-  hl_sky_type type;
-  double color[3];                         /* uniform: radiance */
-  double zenith[3], horizon[3], ground[3]; /* gradient: radiance */
-  const char *file;    /* image: where the pixels came from, for hl_scene_to_json; may be null */
-  const float *pixels; /* image: [height][width][3]: linear RGB, copied by hl_scene_create() */
-  int width, height;
-  double rotation_deg; /* image: the angle by which the image is turned about up, counterclockwise as seen
-                        * from above */
-  double up[3];        /* direction of the zenith, of any length; world */
-  int hemisphere;      /* non-zero: nothing shines below the horizon */
-  double strength;     /* a factor on all colours */
-  int suns; /* image: non-zero (the default): where the scene has shadows, up to four compact bright
-               spots of the image shine as parallel lights; all light together stays the same */
-} hl_sky;
 
 typedef enum hl_shading {
   HL_SHADING_PHONG = 0,

@@ -117,15 +117,8 @@ def unlend(description: Any) -> None:
 
 
 def is_url(path: str) -> bool:
-    """Whether a path is a URL of a web server."""
-    return path.lower().startswith(("http://", "https://"))
-
-
-def _copies_folder() -> str:
-    """Where copies of servers' files are kept, as the program keeps them; "" where there is no place."""
-    cache, home = os.environ.get("XDG_CACHE_HOME", ""), os.environ.get("HOME", "")
-    folder = cache if cache.startswith("/") else f"{home}/.cache" if home.startswith("/") else ""
-    return f"{folder}/halflight/servers" if folder else ""
+    """Whether a path is a URL of a web server, for the library, too."""
+    return path.startswith(("http://", "https://"))
 
 
 def _exception(status: int, error: Any, path: str | None) -> BaseException:
@@ -182,7 +175,8 @@ def call(function: Any, *arguments: Any, path: str | None = None) -> None:
     error = ffi.new("hl_error *")
     lib.python_call_begin(bool(_calls.reports) and _calls.reports[-1] is not None)
     if path is not None and is_url(path):
-        lib.python_call_may_ask(os.fsencode(path), os.fsencode(_copies_folder()))
+        url = ffi.new("char[]", os.fsencode(path))  # borrowed until the call ends
+        lib.python_call_may_ask(url)
     try:
         status = function(*arguments, error)
     finally:

@@ -9,7 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "fetch/fetch.h"
+#include "fetch/asking.h"
 #include "openvdb.h"
 #include "platform/paths.h"
 
@@ -84,23 +84,16 @@ static hl_status on_convert(void *user_data, const char *format, const char *pat
   return openvdb_convert(path, host->memory_limit, on_cancelled, user_data, bytes, byte_count, error);
 }
 
-/* Fetches files of a store that the command line names. Stores that only a file names are not fetched. */
+/* Fetches files of a store that the command line names. */
 static hl_status on_fetch(void *user_data, const char *url, const char *const *names, size_t count,
                           uint64_t most, hl_fetched_file *files, hl_error *error) {
-  const uint64_t copies_limit = (uint64_t)4 << 30;
   const cli_host *host = user_data;
-  const fetcher f = {host->copies_folder, copies_limit, on_cancelled, user_data};
-  bool named = false;
+  fetch_permission permission = {.instead = "INPUTs of the command line alone: give it there",
+                                 .cancelled = on_cancelled,
+                                 .user_data = user_data};
   for (char *const *operand = host->operands; operand != NULL && *operand != NULL; operand++)
-    named = named || strcmp(*operand, url) == 0;
-  if (named && host->copies_folder[0] != '\0') return fetch_files(&f, url, names, count, most, files, error);
-  snprintf(
-      error->message, sizeof error->message,
-      named
-          ? "%.400s: no place for copies of a server's files: set HOME, or XDG_CACHE_HOME to a folder"
-          : "%.400s: a URL in a file: servers are asked for INPUTs of the command line alone: give it there",
-      url);
-  return named ? HL_ERROR_IO : HL_ERROR_UNSUPPORTED;
+    permission.named = permission.named || strcmp(*operand, url) == 0;
+  return fetch_if_named(&permission, url, names, count, most, files, error);
 }
 
 static void on_converted(void *user_data, const void *bytes, size_t byte_count) {
@@ -149,14 +142,6 @@ static const char *choose_scratch_folder(void) {
   return named != NULL && named[0] != '\0' ? named : hl_temporary_folder();
 }
 
-/* The folder of compiled kernels, [bytes]; empty: none. */
-static void choose_cache_folder(char *folder, size_t bytes) {
-  const char *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
-  folder[0] = '\0';
-  if (cache != NULL && cache[0] == '/') snprintf(folder, bytes, "%s/halflight", cache);
-  else if (home != NULL && home[0] == '/') snprintf(folder, bytes, "%s/.cache/halflight", home);
-}
-
 int host_open(const cli_host_options *options, cli_host *host) {
   memset(host, 0, sizeof *host);
   host->quiet = options->quiet;
@@ -185,10 +170,8 @@ int host_open(const cli_host_options *options, cli_host *host) {
   context_options.scratch_folder = choose_scratch_folder();
   context_options.data_folder = choose_data_folder(options->data_folder);
   char cache_folder[1024];
-  choose_cache_folder(cache_folder, sizeof cache_folder);
+  fetch_choose_cache_folder(cache_folder, sizeof cache_folder);
   host->operands = options->operands;
-  if (cache_folder[0] != '\0')
-    snprintf(host->copies_folder, sizeof host->copies_folder, "%s/servers", cache_folder);
   context_options.device = options->device;
   context_options.cache_folder = cache_folder[0] != '\0' ? cache_folder : NULL;
   hl_error error = {0};

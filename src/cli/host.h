@@ -21,8 +21,7 @@ typedef struct cli_host {
   uint64_t memory_limit;               /* bytes; 0: unknown */
   cli_read_files read;                 /* the files that the context has read */
   char *const *operands;               /* see cli_host_options */
-  char copies_folder[1100]; /* folder of the copies of servers' files; "" where no folder can be made */
-  char subject[32];         /* the input's name beside the bar, cut to keep the line short */
+  char subject[32];                    /* the input's name beside the bar, cut to keep the line short */
 } cli_host;
 
 typedef struct cli_host_options {

@@ -186,14 +186,15 @@ static size_t count_items(const char *list) {
 /* Copies the item of a list that is for volume number `index`. */
 static hl_status copy_item(const hl_composer *composer, const hl_scene_description *description,
                            const char *list, size_t index, char *item, size_t size) {
-  char names[600];
-  list_names(description, names, sizeof names);
-  if (count_items(list) != description->volume_count)
+  const size_t count = count_items(list);
+  if (count != description->volume_count) {
+    char names[600];
+    list_names(description, names, sizeof names);
     return hl_fail(composer->error, HL_ERROR_ARGUMENT,
                    "--colormap: '%.200s' has %zu names, and the picture has %zu volume%s (%s): give one name "
                    "for all, or as many as there are volumes",
-                   list, count_items(list), description->volume_count,
-                   description->volume_count == 1 ? "" : "s", names);
+                   list, count, description->volume_count, description->volume_count == 1 ? "" : "s", names);
+  }
   for (; index > 0; index--) list = strchr(list, ',') + 1;
   const size_t length = strcspn(list, ",");
   snprintf(item, size, "%.*s", (int)(length < size ? length : size - 1), list);

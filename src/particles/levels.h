@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "bricks/subdivide.h"
 #include "particles/particles.h"
 
 #define HL_PARTICLE_NARROWING 1.11 /* a little less than 10/9: see splat.c */
@@ -42,6 +43,16 @@ static inline hl_particle_level hl_particle_level_of(const hl_particle_set *set,
   }
   grid.least_spacing = fmin(fmin(grid.spacing[0], grid.spacing[1]), grid.spacing[2]);
   return grid;
+}
+
+/* The points of a block. */
+static inline hl_lattice_box hl_particle_block_box(const int32_t block[3]) {
+  hl_lattice_box box;
+  for (int a = 0; a < 3; a++) {
+    box.first[a] = (ptrdiff_t)block[a] * HL_PARTICLE_BLOCK;
+    box.count[a] = HL_PARTICLE_BLOCK;
+  }
+  return box;
 }
 
 /* The lattice coordinate of a particle along an axis. */

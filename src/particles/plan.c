@@ -144,12 +144,8 @@ static void need_points(planning *p, int level, const ptrdiff_t first[3], const 
 static void need_coarser(planning *p) {
   for (int level = 0; level + 1 < p->plan->lattice.levels; level++)
     for (size_t n = 0; n < p->plan->blocks[level].count && p->status == HL_OK; n++) {
-      hl_lattice_box box, coarse;
-      for (int a = 0; a < 3; a++) {
-        box.first[a] = (ptrdiff_t)p->plan->blocks[level].place[n][a] * HL_PARTICLE_BLOCK;
-        box.count[a] = HL_PARTICLE_BLOCK;
-      }
-      coarse = hl_subdivision_source(&box);
+      const hl_lattice_box box = hl_particle_block_box(p->plan->blocks[level].place[n]),
+                           coarse = hl_subdivision_source(&box);
       need_points(p, level + 1, coarse.first, coarse.count);
     }
 }

@@ -19,19 +19,10 @@ typedef struct subdividing {
   size_t scratch_floats;
 } subdividing;
 
-static hl_lattice_box box_of(const int32_t place[3]) {
-  hl_lattice_box box;
-  for (int a = 0; a < 3; a++) {
-    box.first[a] = (ptrdiff_t)place[a] * HL_PARTICLE_BLOCK;
-    box.count[a] = HL_PARTICLE_BLOCK;
-  }
-  return box;
-}
-
 /* Fills a block with the coarser level's coefficients, subdivided. */
 static void subdivide_block(void *data, size_t index, int worker) {
   const subdividing *s = data;
-  const hl_lattice_box box = box_of(s->field->plan->blocks[s->level].place[index]),
+  const hl_lattice_box box = hl_particle_block_box(s->field->plan->blocks[s->level].place[index]),
                        coarse = hl_subdivision_source(&box);
   float *block = s->field->points[s->level] + index * HL_PARTICLE_BLOCK_POINTS,
         *from = s->scratch + (size_t)worker * s->scratch_floats;
@@ -49,7 +40,7 @@ static hl_status begin_level(hl_context *context, hl_pool *pool, hl_particle_fie
     return HL_OK;
   }
   subdividing s = {.field = field, .level = level};
-  const hl_lattice_box box = box_of((const int32_t[3]){0, 0, 0});
+  const hl_lattice_box box = hl_particle_block_box((const int32_t[3]){0, 0, 0});
   s.scratch_floats = COARSE_MOST + hl_subdivision_scratch(&box);
   size_t scratch = (size_t)hl_pool_threads(pool) * s.scratch_floats;
   s.scratch = hl_allocate(context, scratch, sizeof(float));

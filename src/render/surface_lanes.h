@@ -14,8 +14,8 @@ LANES_INLINE lanes3 load3(const float v[3][SURFACE_SAMPLES]) {
 typedef struct lit_sample {
   lanes3 position, normal; /* unit normal, on the side that is lit */
   lanes3 towards;          /* unit direction to the light */
-  lanes facing;            /* the cosine of the angle between the normal and the light's direction; greater
-                            * than 0 where the light is wanted */
+  lanes facing; /* the cosine of the angle between the normal and the way to the light; the light is
+                 * wanted in lanes where it is above 0 */
 } lit_sample;
 
 /* The direction in which a look-up moves away from a surface, at most of length 1: along the normal n, but

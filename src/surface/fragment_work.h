@@ -38,8 +38,8 @@ typedef struct fragments_source {
   double delay;  /* pixels of the view by which a fragment is delayed: it takes light from the height on
                   * that its surface's plane has this far away. So a surface does not darken itself where
                   * look-ups interpolate */
-  /* Distance in pixels of the view: a fragment of a light's view fills all slabs that its surface's plane
-   * crosses within this distance. So rays of other directions than the view's find no gap between the
+  /* A distance in pixels. In a light's view, a fragment fills all slabs that its surface's plane crosses
+   * within this distance of the fragment. So rays of other directions than the view's find no gap between the
    * pixels of a slanted surface. 0: a fragment fills one slab. */
   double rise;
   uint64_t *marks; /* [sheets][tile_words], bit = tile; may be null. A sheet's bits are set for tiles in

@@ -174,8 +174,8 @@ static double frames_per_second(const animate_job *job) {
   return job->values[ANIMATE_FPS].given ? job->values[ANIMATE_FPS].number[0] : 30;
 }
 
-/* Writes the key of a sweep: in two seconds the camera moves from the left by 75 degrees to either side of
- * its own azimuth, and back. */
+/* Writes the key of a light sweep: in two seconds the first light's azimuth goes from -75 degrees, on the
+ * left, to 75 degrees, and back. */
 static void write_sweep(const animate_job *job, char text[80]) {
   int half = (int)fmax(1, frames_per_second(job));
   snprintf(text, 80, "lights.0.azimuth=0:-75,%d:75,%d:-75", half, 2 * half);

@@ -265,7 +265,7 @@ static int job_write(render_job *job) {
   return status == HL_OK ? exit_code : host_fail(&job->host, PHASE_RUN, status, &error);
 }
 
-/* Finds out, for the report, which kind of data a bare volume was taken for, and the next best look; This
+/* Finds out, for the report, which kind of data a bare volume was taken for, and the next best look. This
  * is done only if the volume's transfer function was chosen by this kind. */
 static void find_choice(render_job *job) {
   const hl_scene_description *description = job->result.description;

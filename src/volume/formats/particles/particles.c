@@ -195,7 +195,8 @@ static hl_status make_field(const making *m, const hl_particle_plan *plan, hl_pa
 
 /* ---- the lattice, and whether the field becomes bricks ---- */
 
-/* Bricks are made where they need less memory than this part of an array of all voxels. */
+/* Bricks are made where they need less memory than this part of an array of all voxels. The number is chosen,
+ * not measured: values are found more slowly in bricks, so that bricks must save much memory. */
 #define BRICKS_PART 0.6
 /* The most bytes of bricks, and of the fields of which they are made, where there is no memory limit. */
 #define BRICK_BYTES 1073741824.0
