@@ -16,7 +16,6 @@
 #include "core/memory.h"
 #include "core/vector.h"
 #include "grid/classifier.h"
-#include "scene/geometry/cut.h"
 
 enum {
   FIELD_LANES = 16,
@@ -60,23 +59,6 @@ typedef struct field_matter {
   int visible;
   int smooth; /* the voxels are coefficients of the interpolating kernel */
 } field_matter;
-
-/* A mesh's triangles and spheres; frame space. The fourth number of a colour is opacity. Where colours are
- * null, opacity is 1 everywhere. */
-typedef struct field_surface {
-  const float (*positions)[3];
-  const float (*colors)[4]; /* one for each position from first_vertex on */
-  size_t first_vertex;
-  const uint32_t (*triangles)[3];  /* [triangle_count]; indices of positions */
-  const float (*face_colors)[4];   /* [triangle_count] */
-  const float (*spheres)[4];       /* [sphere_count]; centre and radius */
-  const float (*sphere_colors)[4]; /* [sphere_count] */
-  uint32_t triangle_count, sphere_count;
-  double opacity;
-  bool visible, casts_shadow;
-  const cut_shape *cuts; /* [cut_count]; frame space; parts inside these shapes are cut out of the mesh */
-  size_t cut_count;
-} field_surface;
 
 /* How much light is lost in each cell, for each axis along which light crosses the cell. */
 typedef struct opacity_field {

@@ -294,12 +294,6 @@ static size_t floats_along(const field_lattice *lattice, int axis) {
   return 3 * (size_t)s.slices * (size_t)s.rows * (size_t)s.stride;
 }
 
-/* Marks the cells in which the eye may see meshes. */
-static void mark_surfaces(const field_content *content, opacity_field *field) {
-  for (size_t i = 0; i < content->surface_count; i++)
-    if (content->surfaces[i].visible) hl_surface_mark_seen(&content->surfaces[i], field);
-}
-
 void hl_opacity_find(const field_content *content, const field_functions *functions,
                      const opacity_scratch *scratch, field_share *share, opacity_field *field,
                      hl_pool *pool) {
@@ -315,7 +309,7 @@ void hl_opacity_find(const field_content *content, const field_functions *functi
       field, content, functions, samples_of(field->lattice.cell, content->voxel), (const float(*)[3])reach,
       share, 0,       0};
   find_slabs(&job, pool);
-  mark_surfaces(content, field);
+  if (content->surfaces != NULL) hl_surface_mark_seen(content->surfaces, field);
   spread(field, scratch->seen, pool);
   for (int a = 0; a < 3; a++)
     hl_pool_run(pool, (size_t)field->lattice.count[a], find_flags, &(flags_job){field, share, a});

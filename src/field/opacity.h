@@ -5,14 +5,14 @@
 #include "core/pool.h"
 #include "field/field.h"
 #include "field/field_share.h"
+#include "surface/surfaces.h"
 
 /* The content whose opacity is found. */
 typedef struct field_content {
   const field_matter *matter; /* [count] */
   int count;
-  const field_surface *surfaces; /* [surface_count] */
-  size_t surface_count;
-  double voxel; /* the smallest edge of a voxel; frame units */
+  const surfaces *surfaces; /* null: there are no meshes */
+  double voxel;             /* the smallest edge of a voxel; frame units */
 } field_content;
 
 /* FIELD_MARGIN: the width, in cells, of the margin that a lattice has on every side. The function makes a

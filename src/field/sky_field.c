@@ -215,7 +215,7 @@ static void sweep_end(const sky_content *content, const opacity_field *opacity, 
  * their place. */
 static size_t cell_floats(const sky_content *content) {
   if (content->channels == 1) return 16;
-  return FIELD_HARMONICS * (size_t)content->channels + 1 + (content->content.surface_count > 0 ? 3 : 0);
+  return FIELD_HARMONICS * (size_t)content->channels + 1 + (content->content.surfaces != NULL ? 3 : 0);
 }
 
 _Static_assert(16 * sizeof(float) >= SKY_CELL * sizeof(int16_t) && 16 >= FIELD_HARMONICS + 4,
@@ -245,7 +245,7 @@ typedef struct passing_arrays {
 static void lay_out(const sky_content *content, passing_arrays *arrays, hl_layout *layout) {
   arrays->opacity.lattice = content->lattice;
   hl_opacity_lay_out(&arrays->opacity, &arrays->scratch, layout);
-  if (content->content.surface_count > 0) hl_surface_links_lay_out(&content->lattice, &arrays->links, layout);
+  if (content->content.surfaces != NULL) hl_surface_links_lay_out(&content->lattice, &arrays->links, layout);
   arrays->light = hl_layout_take(layout, most_light(content), sizeof(float));
   arrays->matter = hl_layout_take(layout, (size_t)content->content.count, sizeof *arrays->matter);
   hl_field_share_lay_out(content->exchange, (size_t)content->lattice.count[2], &arrays->share, layout);
@@ -273,9 +273,9 @@ static const surface_links *find_links(const sky_content *content, const surface
                                        const sky_target *target, float *field, int axis, hl_pool *pool) {
   const field_content *of = &content->content;
   link_places places = {.first = field + FIELD_HARMONICS * content->channels + 1 + axis};
-  if (of->surface_count == 0) return NULL;
+  if (of->surfaces == NULL) return NULL;
   memcpy(places.step, target->step, sizeof places.step);
-  hl_surface_links_find(of->surfaces, of->surface_count, &content->lattice, axis, links, &places, pool);
+  hl_surface_links_find(of->surfaces, &content->lattice, axis, links, &places, pool);
   return links;
 }
 
@@ -413,7 +413,7 @@ hl_status hl_sky_make(hl_context *context, hl_pool *pool, const sky_content *con
   *light = (sky_light){.channels = content->channels,
                        .cell = (float)content->lattice.cell,
                        .color = {1, 1, 1},
-                       .cut = content->content.surface_count > 0};
+                       .cut = content->content.surfaces != NULL};
   vec3_store(light->low, content->lattice.low);
   light->lift = (float)(LIFT_CELLS * content->lattice.cell);
   light->inverse_cell = (float)(1 / content->lattice.cell);

@@ -9,6 +9,7 @@
 
 #include "core/pool.h"
 #include "field/field.h"
+#include "surface/surfaces.h"
 
 /* The links along one axis. */
 typedef struct surface_links {
@@ -30,10 +31,10 @@ typedef struct link_places {
 
 /* Finds the links along an axis. places: for each cell, the fraction (above 0) of the way to the next cell
  * along the axis at which the first surface lies. Places without a surface are not changed. */
-void hl_surface_links_find(const field_surface *surfaces, size_t count, const field_lattice *lattice,
-                           int axis, const surface_links *links, const link_places *places, hl_pool *pool);
+void hl_surface_links_find(const surfaces *all, const field_lattice *lattice, int axis,
+                           const surface_links *links, const link_places *places, hl_pool *pool);
 
-/* Marks the cells in which a mesh may be seen. */
-void hl_surface_mark_seen(const field_surface *surface, opacity_field *field);
+/* Marks the cells in which meshes may be seen. */
+void hl_surface_mark_seen(const surfaces *all, opacity_field *field);
 
 #endif

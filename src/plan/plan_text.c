@@ -46,7 +46,7 @@ static json_t *mesh_of(const frame_mesh *mesh, const surface_mesh *placed) {
                            "visible", mesh->look.visible, "casts_shadow", mesh->look.casts_shadow);
   for (int k = 0; k < PRIMITIVE_KINDS; k++)
     json_object_set_new(made, hl_primitive_kinds[k]->noun,
-                        json_integer((json_int_t)hl_primitive_kinds[k]->count(placed)));
+                        json_integer((json_int_t)placed->primitives[k].count));
   add_name(made, mesh->name);
   return made;
 }

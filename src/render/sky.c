@@ -46,24 +46,6 @@ static field_matter matter_of(const prepared_volume *prepared, const grid *grid)
   return matter;
 }
 
-static field_surface surface_of(const surfaces *all, const surface_mesh *mesh) {
-  return (field_surface){
-      .positions = (const float(*)[3])all->positions,
-      .colors = mesh->colors,
-      .first_vertex = mesh->first_vertex,
-      .triangles = (const uint32_t(*)[3])(all->triangles + mesh->first_triangle),
-      .face_colors = mesh->face_colors,
-      .spheres = mesh->sphere_count == 0 ? NULL : (const float(*)[4])(all->spheres + mesh->first_sphere),
-      .sphere_colors = mesh->sphere_colors,
-      .triangle_count = mesh->triangle_count,
-      .sphere_count = mesh->sphere_count,
-      .opacity = mesh->look.opacity,
-      .visible = mesh->look.visible,
-      .casts_shadow = mesh->look.casts_shadow,
-      .cuts = all->cuts,
-      .cut_count = mesh->is_cut ? all->cut_count : 0};
-}
-
 /* The number of channels of the sky's field. One channel is enough where the sky has one colour and all
  * matter takes the same fraction of red, green and blue light. */
 static int channels_of(const hl_scene_description *scene) {
@@ -93,21 +75,17 @@ hl_status hl_frame_sky_update(hl_context *context, hl_pool *pool, const hot_func
   hl_status status = hl_key_renew(context, write_key, of, &field->key, &same, error);
   if (status != HL_OK || same) return status;
   const surfaces *all = of->frame->surfaces;
-  size_t surface_count = all == NULL ? 0 : all->mesh_count;
   field_matter *matter = hl_allocate(context, scene->volume_count, sizeof *matter);
-  field_surface *surfaces = hl_allocate(context, surface_count, sizeof *surfaces);
   double(*colors)[3] = hl_allocate(context, scene->volume_count, sizeof *colors);
-  if (matter == NULL || colors == NULL || surfaces == NULL)
-    status = hl_fail_memory(error, sizeof *matter, "the sky");
+  if (matter == NULL || colors == NULL) status = hl_fail_memory(error, sizeof *matter, "the sky");
   for (size_t v = 0; v < scene->volume_count && status == HL_OK; v++) {
     matter[v] = matter_of(&of->volumes[v], &of->grids[v]);
     memcpy(colors[v], scene->volumes[v].attenuation_color, sizeof colors[v]);
   }
-  for (size_t m = 0; m < surface_count && status == HL_OK; m++)
-    surfaces[m] = surface_of(all, &all->meshes[m]);
   sky_content content = {
       .sky = &scene->sky,
-      .content = {matter, (int)scene->volume_count, surfaces, surface_count, of->frame->content.voxel},
+      .content = {matter, (int)scene->volume_count, all != NULL && all->mesh_count > 0 ? all : NULL,
+                  of->frame->content.voxel},
       .colors = (const double(*)[3])colors,
       .lattice = hl_field_lattice(of->frame->content.points, of->frame->content.point_count,
                                   of->frame->content.voxel, MOST_CELLS),
@@ -116,7 +94,6 @@ hl_status hl_frame_sky_update(hl_context *context, hl_pool *pool, const hot_func
   if (status == HL_OK) status = make(context, pool, hot, &content, room, field, error);
   if (status != HL_OK) hl_sky_release(context, field);
   hl_release(context, matter);
-  hl_release(context, surfaces);
   hl_release(context, colors);
   return status;
 }

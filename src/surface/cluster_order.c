@@ -17,7 +17,7 @@ typedef struct ordering {
 } ordering;
 
 static const float *place_of(const surfaces *all, uint32_t primitive) {
-  return hl_primitive_kind(all, primitive)->place(all, primitive);
+  return hl_primitive_kind(all, primitive)->point(all, primitive);
 }
 
 /* Puts two zeros after each of ten bits. */

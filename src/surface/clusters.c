@@ -20,25 +20,25 @@ static uint16_t filled_up(uint32_t vertices) { return (uint16_t)((vertices + 15)
 
 /* How many clusters a scene's meshes have. */
 typedef struct cluster_counts {
-  size_t all, triangles; /* clusters; those of triangles */
+  size_t all, with_corners; /* clusters; clusters of primitives that have corners */
   size_t primitives;
   uint64_t most; /* primitives of one kind of the largest mesh */
 } cluster_counts;
 
-static void count_mesh(uint64_t triangles, uint64_t spheres, cluster_counts *counts) {
-  counts->triangles += clusters_of(triangles);
-  counts->all += clusters_of(triangles) + clusters_of(spheres);
-  counts->primitives += triangles + spheres;
-  counts->most = triangles > counts->most ? triangles : counts->most;
-  counts->most = spheres > counts->most ? spheres : counts->most;
+/* Counts the primitives of kind number k that a mesh has. */
+static void count_kind(int k, uint64_t primitives, cluster_counts *counts) {
+  if (hl_primitive_kinds[k]->has_corners) counts->with_corners += clusters_of(primitives);
+  counts->all += clusters_of(primitives);
+  counts->primitives += primitives;
+  counts->most = primitives > counts->most ? primitives : counts->most;
 }
 
 /* The clusters begin the block. */
 static void lay_out(const cluster_counts *counts, surfaces *all, hl_layout *layout) {
   all->clusters = hl_layout_take(layout, counts->all, sizeof *all->clusters);
   all->order = hl_layout_take(layout, counts->primitives, sizeof *all->order);
-  all->cluster_corners = hl_layout_take(layout, counts->triangles, sizeof *all->cluster_corners);
-  all->cluster_normals = hl_layout_take(layout, counts->triangles, sizeof *all->cluster_normals);
+  all->cluster_corners = hl_layout_take(layout, counts->with_corners, sizeof *all->cluster_corners);
+  all->cluster_normals = hl_layout_take(layout, counts->with_corners, sizeof *all->cluster_normals);
 }
 
 static uint32_t *lay_out_spare(const cluster_counts *counts, hl_layout *layout) {
@@ -52,12 +52,11 @@ static void lay_out_vertices(size_t vertices, surfaces *all, hl_layout *layout) 
 void hl_clusters_count(const hl_scene_description *scene, hl_layout *layout) {
   cluster_counts counts = {0};
   surfaces all = {0};
-  for (size_t m = 0; m < scene->mesh_count; m++) {
-    const hl_mesh_description *d = &scene->meshes[m].mesh->description;
-    count_mesh(d->triangle_count, d->sphere_count, &counts);
-  }
+  for (size_t m = 0; m < scene->mesh_count; m++)
+    for (int k = 0; k < PRIMITIVE_KINDS; k++)
+      count_kind(k, hl_primitive_kinds[k]->count(&scene->meshes[m].mesh->description), &counts);
   lay_out(&counts, &all, layout);
-  lay_out_vertices(counts.triangles * CLUSTER_SIZE, &all, layout);
+  lay_out_vertices(counts.with_corners * CLUSTER_SIZE, &all, layout);
   const size_t kept = layout->bytes;
   lay_out_spare(&counts, layout);
   hl_layout_give_back(layout, kept);
@@ -190,13 +189,11 @@ static size_t cut(surface_cluster *clusters, size_t mesh, uint32_t first, uint32
 /* Orders the primitives, and cuts them into clusters. */
 static void cut_all(hl_pool *pool, surfaces *all, uint32_t *spare) {
   size_t count = 0;
-  for (size_t k = 0; k < PRIMITIVE_KINDS; k++)
+  for (int k = 0; k < PRIMITIVE_KINDS; k++)
     for (size_t m = 0; m < all->mesh_count; m++) {
-      const surface_mesh *mesh = &all->meshes[m];
-      const uint32_t first = hl_primitive_kinds[k]->first(all, mesh),
-                     own = hl_primitive_kinds[k]->count(mesh);
-      hl_cluster_order_fill(pool, all, first, own, spare);
-      count += cut(all->clusters + count, m, first, own);
+      const primitive_range own = all->meshes[m].primitives[k];
+      hl_cluster_order_fill(pool, all, own.first, own.count, spare);
+      count += cut(all->clusters + count, m, own.first, own.count);
     }
 }
 
@@ -214,7 +211,7 @@ static size_t place_vertices(surfaces *all, size_t triangles) {
 hl_status hl_clusters_create(hl_context *context, hl_pool *pool, surfaces *all, hl_error *error) {
   cluster_counts counts = {0};
   for (size_t m = 0; m < all->mesh_count; m++)
-    count_mesh(all->meshes[m].triangle_count, all->meshes[m].sphere_count, &counts);
+    for (int k = 0; k < PRIMITIVE_KINDS; k++) count_kind(k, all->meshes[m].primitives[k].count, &counts);
   const size_t tasks = (counts.all + A_TASK - 1) / A_TASK;
   uint32_t *spare = NULL;
   hl_layout kept = {0}, passing = {0}, vertices = {0};
@@ -226,7 +223,7 @@ hl_status hl_clusters_create(hl_context *context, hl_pool *pool, surfaces *all, 
   cut_all(pool, all, spare);
   hl_release(context, passing.base);
   hl_pool_run(pool, tasks, describe_task, all);
-  const size_t vertex_count = place_vertices(all, counts.triangles);
+  const size_t vertex_count = place_vertices(all, counts.with_corners);
   while (hl_layout_pass(&vertices, context)) lay_out_vertices(vertex_count, all, &vertices);
   if (vertices.base == NULL) return hl_fail_memory(error, vertices.bytes, "the meshes");
   hl_pool_run(pool, tasks, copy_task, all);

@@ -1,5 +1,5 @@
 /* surface/primitive.h - the interface of a kind of primitive: triangles or spheres. (Tubes are triangles
- * and spheres: mesh/tubes.c.)
+ * and spheres: mesh/tubes.c.) primitive_kinds.h lists the kinds.
  *
  * A kind is a table in a file of its own. Other code asks the table and names no kind. The functions for
  * sixteen primitives at a time (small_triangles.h, small_spheres_lanes.h) are made for one kind each: the
@@ -7,9 +7,11 @@
 #ifndef HL_SURFACE_PRIMITIVE_H
 #define HL_SURFACE_PRIMITIVE_H
 
+#include "core/memory.h"
 #include "surface/surface_plane.h"
 
-typedef struct primitive_raster primitive_raster; /* primitive_raster.h */
+typedef struct primitive_lattice primitive_lattice; /* primitive_lattice.h */
+typedef struct primitive_raster primitive_raster;   /* primitive_raster.h */
 
 /* The points origin + s way with first < s < last, which may be infinite. */
 typedef struct surface_ray {
@@ -28,13 +30,16 @@ typedef struct primitive_kind {
   /* Whether primitives are flat between three corners, which all->triangles lists: such a primitive has one
    * normal and one plane, and its cluster keeps a copy of its vertices. */
   bool has_corners;
-  const primitive_raster *raster; /* what views see of it */
-  /* The number of a mesh's first primitive of this kind, and the number of such primitives that the mesh
-   * has. */
-  uint32_t (*first)(const surfaces *all, const surface_mesh *mesh);
-  uint32_t (*count)(const surface_mesh *mesh);
+  const primitive_raster *raster;   /* what views see of it */
+  const primitive_lattice *lattice; /* where lines through a lattice meet it */
+  /* How many of its primitives a mesh has. */
+  size_t (*count)(const hl_mesh_description *mesh);
+  /* Takes the arrays of the primitives of all meshes. */
+  void (*lay_out)(surfaces *made, hl_layout *layout);
+  /* Brings the primitives of a mesh to frame space. */
+  void (*place)(hl_pool *pool, surfaces *made, const surface_mesh *mesh);
   /* A point of it; [3]. */
-  const float *(*place)(const surfaces *all, uint32_t primitive);
+  const float *(*point)(const surfaces *all, uint32_t primitive);
   /* A box around it, wider by what rounding may take. */
   void (*bound)(const surfaces *all, uint32_t primitive, float low[3], float high[3]);
   /* The fraction of light that a primitive stops, at its middle. */
@@ -61,18 +66,6 @@ typedef struct primitive_kind {
   bool (*parts)(const surfaces *all, uint32_t primitive, const hull_ball *balls, int count, double least);
 } primitive_kind;
 
-/* The list of kinds of primitives, in the order of their primitives' numbers. A kind "sphere" has the table
- * hl_primitive_sphere in sphere.c, and the table hl_raster_sphere in sphere_raster.c. The build reads the
- * names here. */
-/* clang-format off */
-#define HL_PRIMITIVES     \
-  HL_PRIMITIVE(triangle)  \
-  HL_PRIMITIVE(sphere)
-/* clang-format on */
-
-#define HL_PRIMITIVE(name) PRIMITIVE_##name,
-enum primitive_number { HL_PRIMITIVES PRIMITIVE_KINDS };
-#undef HL_PRIMITIVE
 #define HL_PRIMITIVE(name) extern const primitive_kind hl_primitive_##name;
 HL_PRIMITIVES
 #undef HL_PRIMITIVE
@@ -80,9 +73,16 @@ HL_PRIMITIVES
 static const primitive_kind *const hl_primitive_kinds[PRIMITIVE_KINDS] = {HL_PRIMITIVES};
 #undef HL_PRIMITIVE
 
+/* The number of a primitive's kind in the list. */
+static inline int hl_primitive_number(const surfaces *all, uint32_t primitive) {
+  int kind = 0;
+  while (kind + 1 < PRIMITIVE_KINDS && primitive >= all->first[kind + 1]) kind++;
+  return kind;
+}
+
 /* The table of a primitive's kind. */
 static inline const primitive_kind *hl_primitive_kind(const surfaces *all, uint32_t primitive) {
-  return primitive < all->triangle_count ? &hl_primitive_triangle : &hl_primitive_sphere;
+  return hl_primitive_kinds[hl_primitive_number(all, primitive)];
 }
 
 static inline bool hl_has_corners(const surfaces *all, uint32_t primitive) {
@@ -91,14 +91,11 @@ static inline bool hl_has_corners(const surfaces *all, uint32_t primitive) {
 
 /* Of a sphere: its centre and radius. */
 static inline const float *hl_sphere_of(const surfaces *all, uint32_t primitive) {
-  return all->spheres[primitive - all->triangle_count];
+  return all->spheres[primitive - all->first[PRIMITIVE_sphere]];
 }
 
 /* The index of the mesh that a primitive belongs to. This is slow; a fragment knows its mesh. */
 size_t hl_surface_mesh_of(const surfaces *all, uint32_t primitive);
-
-/* One past the last primitive of a mesh that has the same kind as a given primitive of the mesh. */
-uint32_t hl_surface_mesh_end(const surfaces *all, size_t mesh, uint32_t primitive);
 
 /* The fraction of light that a primitive stops, at its middle. */
 float hl_primitive_opacity(const surfaces *all, const surface_mesh *mesh, uint32_t primitive);

@@ -40,7 +40,7 @@ struct primitive_raster {
   double (*height)(const sheet_stack *sheets, const shown_surface *shown, double u, double v);
 };
 
-/* The tables, one a file (primitive.h). */
+/* The tables, one a file (primitive_kinds.h). */
 #define HL_PRIMITIVE(name) extern const primitive_raster hl_raster_##name;
 HL_PRIMITIVES
 #undef HL_PRIMITIVE

@@ -1,11 +1,25 @@
 /* surface/sphere.c - the kind of primitive that a sphere is. */
+#include "mesh/mesh.h"
+#include "surface/primitive_lattice.h"
 #include "surface/primitive_raster.h"
 
-static uint32_t first_of(const surfaces *all, const surface_mesh *mesh) {
-  return all->triangle_count + mesh->first_sphere;
+static size_t count_of(const hl_mesh_description *mesh) { return mesh->sphere_count; }
+
+static void lay_out(surfaces *made, hl_layout *layout) {
+  const uint32_t count = made->first[PRIMITIVE_sphere + 1] - made->first[PRIMITIVE_sphere];
+  made->spheres = hl_layout_take(layout, count, sizeof *made->spheres);
 }
 
-static uint32_t count_of(const surface_mesh *mesh) { return mesh->sphere_count; }
+static void place(hl_pool *pool, surfaces *made, const surface_mesh *mesh) {
+  const float(*from)[4] = mesh->mesh->description.spheres;
+  const primitive_range own = mesh->primitives[PRIMITIVE_sphere];
+  float(*to)[4] = made->spheres + (own.first - made->first[PRIMITIVE_sphere]);
+  (void)pool;
+  for (uint32_t n = 0; n < own.count; n++) {
+    vec3_store(to[n], affine3_apply(mesh->placement, hl_surface_vector(from[n])));
+    to[n][3] = (float)((double)from[n][3] * mesh->scale);
+  }
+}
 
 static double lesser(double a, double b) { return a < b ? a : b; }
 static double greater(double a, double b) { return a > b ? a : b; }
@@ -19,14 +33,15 @@ static void bound(const surfaces *all, uint32_t primitive, float low[3], float h
 }
 
 /* Its own colour; null: it has none. */
-static const float *color_of(const surfaces *all, const surface_mesh *mesh, uint32_t primitive) {
+static const float *color_of(const surface_mesh *mesh, uint32_t primitive) {
   if (mesh->sphere_colors == NULL) return NULL;
-  return mesh->sphere_colors[primitive - all->triangle_count - mesh->first_sphere];
+  return mesh->sphere_colors[primitive - mesh->primitives[PRIMITIVE_sphere].first];
 }
 
 static double opacity(const surfaces *all, const surface_mesh *mesh, uint32_t primitive) {
+  (void)all;
   double opacity = mesh->look.opacity;
-  const float *own = color_of(all, mesh, primitive);
+  const float *own = color_of(mesh, primitive);
   return own == NULL ? opacity : opacity * fmin(fmax((double)own[3], 0), 1);
 }
 
@@ -44,7 +59,7 @@ static void plane(const view *view, const sheet_stack *sheets, const surfaces *a
 
 static vec3 look(const surfaces *all, const surface_mesh *mesh, uint32_t primitive, vec3 at, vec3 *normal,
                  double color[3]) {
-  hl_primitive_color(mesh, color_of(all, mesh, primitive), color);
+  hl_primitive_color(mesh, color_of(mesh, primitive), color);
   *normal = vec3_normalise(vec3_subtract(at, hl_surface_vector(hl_sphere_of(all, primitive))));
   return *normal;
 }
@@ -54,7 +69,7 @@ static vec3 look(const surfaces *all, const surface_mesh *mesh, uint32_t primiti
 static double bend(const surfaces *all, const surface_mesh *mesh, uint32_t primitive, vec3 at, vec3 normal,
                    vec3 along) {
   (void)along;
-  const float *sphere = hl_sphere_of(all, primitive), *color = color_of(all, mesh, primitive);
+  const float *sphere = hl_sphere_of(all, primitive), *color = color_of(mesh, primitive);
   if (color != NULL && color[3] < 1) return 0;
   vec3 inwards = vec3_subtract(hl_surface_vector(sphere), at);
   return (vec3_dot(inwards, normal) > 0 ? 1 : -1) / (double)sphere[3];
@@ -93,9 +108,11 @@ static bool parts(const surfaces *all, uint32_t primitive, const hull_ball *ball
 const primitive_kind hl_primitive_sphere = {.noun = "spheres",
                                             .has_corners = false,
                                             .raster = &hl_raster_sphere,
-                                            .first = first_of,
+                                            .lattice = &hl_lattice_sphere,
                                             .count = count_of,
-                                            .place = hl_sphere_of,
+                                            .lay_out = lay_out,
+                                            .place = place,
+                                            .point = hl_sphere_of,
                                             .bound = bound,
                                             .opacity = opacity,
                                             .normal = normal,

@@ -74,22 +74,20 @@ static mesh_held held_of(const surface_mesh *mesh, double distance) {
   return isinf(distance) || !mesh->mesh->closed ? HELD_WHOLE : HELD_NOT;
 }
 
-/* Whether a tree for a given distance holds a mesh's primitive number i, counted among the mesh's
- * primitives of one kind. near: the primitives with corners that the tree holds, beside other primitives
+/* Whether a tree for a given distance holds a mesh's primitive number i of a kind, counted from the mesh's
+ * first one. near: the primitives with corners that the tree holds, beside other primitives
  * that are cut; null: all primitives. */
-static bool takes(const surfaces *all, const surface_mesh *mesh, const primitive_kind *kind, uint32_t i,
-                  const bool *near) {
+static bool takes(const surfaces *all, const surface_mesh *mesh, int kind, uint32_t i, const bool *near) {
   if (near == NULL) return true;
-  if (kind->has_corners) return near[i];
-  return mesh->is_cut && hl_surface_cut(all, mesh, kind->first(all, mesh) + i) == CUT_LEAVES_SOME;
+  if (hl_primitive_kinds[kind]->has_corners) return near[i];
+  return mesh->is_cut && hl_surface_cut(all, mesh, mesh->primitives[kind].first + i) == CUT_LEAVES_SOME;
 }
 
 static void take_primitives(surface_tree *tree, const surface_mesh *mesh, const bool *near) {
   for (int k = 0; k < PRIMITIVE_KINDS; k++) {
-    const primitive_kind *kind = hl_primitive_kinds[k];
-    const uint32_t first = kind->first(tree->all, mesh), count = kind->count(mesh);
-    for (uint32_t i = 0; i < count; i++)
-      if (takes(tree->all, mesh, kind, i, near)) tree->primitives[tree->count++] = first + i;
+    const primitive_range own = mesh->primitives[k];
+    for (uint32_t i = 0; i < own.count; i++)
+      if (takes(tree->all, mesh, k, i, near)) tree->primitives[tree->count++] = own.first + i;
   }
 }
 
@@ -106,8 +104,9 @@ static tree_size size_of(const surfaces *all, double distance) {
   for (size_t m = 0; all != NULL && m < all->mesh_count; m++) {
     const surface_mesh *mesh = &all->meshes[m];
     if (held_of(mesh, distance) == HELD_NOT) continue;
-    for (int k = 0; k < PRIMITIVE_KINDS; k++) size.primitives += hl_primitive_kinds[k]->count(mesh);
-    size.triangles = mesh->triangle_count > size.triangles ? mesh->triangle_count : size.triangles;
+    for (int k = 0; k < PRIMITIVE_KINDS; k++) size.primitives += mesh->primitives[k].count;
+    const uint32_t triangles = mesh->primitives[PRIMITIVE_triangle].count;
+    size.triangles = triangles > size.triangles ? triangles : size.triangles;
   }
   return size;
 }

@@ -12,6 +12,7 @@
 #include "core/pool.h"
 #include "core/vector.h"
 #include "scene/geometry/cut.h"
+#include "surface/primitive_kinds.h"
 
 /* How a mesh looks, and what it takes of light. */
 typedef struct surface_look {
@@ -33,31 +34,29 @@ typedef struct surface_mesh {
   affine3 placement;               /* maps the mesh to frame space */
   double scale;                    /* length in frame space of 1 in the mesh */
   const float (*colors)[4];        /* borrowed; [vertices of the mesh]; null: none */
-  const float (*face_colors)[4];   /* borrowed; [triangle_count]; null: none */
-  const float (*sphere_colors)[4]; /* borrowed; [sphere_count]; null: none */
-  const uint32_t (*edges)[3];      /* borrowed; [triangle_count]; as in hl_mesh */
+  const float (*face_colors)[4];   /* borrowed; [triangles of the mesh]; null: none */
+  const float (*sphere_colors)[4]; /* borrowed; [spheres of the mesh]; null: none */
+  const uint32_t (*edges)[3];      /* borrowed; [triangles of the mesh]; as in hl_mesh */
   size_t first_vertex;             /* the number of the mesh's first vertex in positions and normals */
   size_t first_edge_normal;
-  uint32_t first_triangle, triangle_count;
-  uint32_t first_sphere, sphere_count; /* the mesh's spheres in `spheres` */
-  bool is_cut;                         /* the cuts may remove a part of the mesh */
+  primitive_range primitives[PRIMITIVE_KINDS];
+  bool is_cut; /* the cuts may remove a part of the mesh */
 } surface_mesh;
 
 typedef struct surface_cluster surface_cluster; /* clusters.h */
 typedef struct surface_seam surface_seam;       /* late/surface_seams.h */
 
-/* A primitive is a triangle or a sphere. Numbers below triangle_count are triangles; higher numbers are
- * spheres. */
+/* A primitive has a number. The primitives of a kind follow those of the kind before. */
 typedef struct surfaces {
   surface_mesh *meshes;      /* owned, in one block with the next five arrays; [mesh_count]; the primitives
                               * of a mesh follow the primitives of the mesh before */
   float (*positions)[3];     /* [vertex_count]; frame space */
   float (*normals)[3];       /* [vertex_count]; unit normals, or 0 where a vertex has none; frame space */
   float (*edge_normals)[3];  /* [edge_normal_count]; unit; frame space */
-  uint32_t (*triangles)[3];  /* [triangle_count]; indices of positions */
-  float (*spheres)[4];       /* [sphere_count]; centre and radius; frame space */
+  uint32_t (*triangles)[3];  /* [triangles]; indices of positions */
+  float (*spheres)[4];       /* [spheres]; centre and radius; frame space */
   surface_cluster *clusters; /* owned with the next three; [cluster_count] */
-  uint32_t *order;           /* [triangle_count + sphere_count]; the primitives in the order of clusters */
+  uint32_t *order;           /* [primitives]; the primitives in the order of clusters */
   uint8_t (*cluster_corners)[3][64]; /* [clusters of triangles]; numbers of the cluster's vertices */
   float (*cluster_normals)[3][64];   /* [clusters of triangles]; hl_corner_product() of each triangle, axis by
                                       * axis; frame space */
@@ -66,16 +65,15 @@ typedef struct surfaces {
   cut_shape *cuts;                   /* owned; [cut_count]; the scene's cuts, in frame space */
   size_t cut_count, cluster_count, seam_count;
   size_t mesh_count, vertex_count, edge_normal_count;
-  uint32_t triangle_count, sphere_count;
+  uint32_t first[PRIMITIVE_KINDS + 1]; /* the number of the first primitive of each kind; at last the number
+                                        * of primitives */
 } surfaces;
 
 /* Adds to a key everything on which the light that surfaces take depends. all: null for no surfaces. */
 void hl_surfaces_key_add(hl_key *key, const surfaces *all);
 
 /* The number of primitives. */
-static inline uint32_t hl_surfaces_count(const surfaces *all) {
-  return all->triangle_count + all->sphere_count;
-}
+static inline uint32_t hl_surfaces_count(const surfaces *all) { return all->first[PRIMITIVE_KINDS]; }
 
 /* Whether the cuts leave a point of a mesh; frame space. */
 static inline bool hl_surface_left(const surfaces *all, const surface_mesh *mesh, vec3 point) {

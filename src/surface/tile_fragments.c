@@ -171,18 +171,16 @@ static void add_cluster(const fragment_work *work, fragment_worker *worker, tile
 
 /* ---- all primitives of a tile ---- */
 
-/* Prepares a batch for the mesh of a primitive. of_mesh: the mesh's first primitive of this kind, and one
- * past its last one. */
+/* Prepares a batch for the mesh of a primitive. own: the mesh's primitives of this kind. */
 static void begin_mesh(const fragment_work *work, small_batch *batch, uint32_t primitive,
-                       uint32_t of_mesh[2]) {
+                       primitive_range *own) {
   const surfaces *all = work->source->surfaces;
   batch->mesh = hl_surface_mesh_of(all, primitive);
-  const surface_mesh *mesh = &all->meshes[batch->mesh];
-  batch->kind = hl_primitive_kind(all, primitive);
+  const int kind = hl_primitive_number(all, primitive);
+  batch->kind = hl_primitive_kinds[kind];
   batch->view.dark_backs = work->dark_backs[batch->mesh];
   batch->view.fronts = work->wanted[batch->mesh] == BINNED_FRONTS;
-  of_mesh[0] = batch->kind->first(all, mesh);
-  of_mesh[1] = hl_surface_mesh_end(all, batch->mesh, primitive);
+  *own = all->meshes[batch->mesh].primitives[kind];
 }
 
 /* Adds the fragments of a cluster's primitives, parts of which cuts may remove. */
@@ -206,10 +204,10 @@ static void add_run(const fragment_work *work, fragment_worker *worker, tile_par
 }
 
 static void add_next_run(const fragment_work *work, fragment_worker *worker, tile_part *part,
-                         small_batch *batch, primitive_run run, uint32_t of_mesh[2]) {
-  if (run.primitive < of_mesh[0] || run.primitive >= of_mesh[1]) {
+                         small_batch *batch, primitive_run run, primitive_range *own) {
+  if (run.primitive < own->first || run.primitive - own->first >= own->count) {
     add_batch(work, worker, part, batch);
-    begin_mesh(work, batch, run.primitive, of_mesh);
+    begin_mesh(work, batch, run.primitive, own);
   }
   if (!worker->failed) add_run(work, worker, part, batch, run);
 }
@@ -238,14 +236,14 @@ static void add_runs(const fragment_work *work, fragment_worker *worker, tile_pa
                      small_batch *batch) {
   const primitive_run *runs = work->bins->runs + work->bins->first[tile];
   uint32_t count = work->bins->first[tile + 1] - work->bins->first[tile];
-  uint32_t of_mesh[2] = {0, 0};
+  primitive_range own = {0, 0};
   if (batch->may_be_covered && !make_room_for_runs(work->source->context, worker, count)) return;
   order_key *order = worker->runs;
   for (uint32_t i = 0; batch->may_be_covered && i < count; i++)
     order[i] = (order_key){hl_ordered_bits(lowest_of(work, runs[i]), false), i};
   if (batch->may_be_covered && count > 1) hl_sort_keys(order, order + count, count);
   for (uint32_t i = 0; i < count && !worker->failed; i++)
-    add_next_run(work, worker, part, batch, runs[batch->may_be_covered ? order[i].index : i], of_mesh);
+    add_next_run(work, worker, part, batch, runs[batch->may_be_covered ? order[i].index : i], &own);
   if (!worker->failed) add_batch(work, worker, part, batch);
 }
 

@@ -1,15 +1,9 @@
 /* surface/triangle.c - the kind of primitive that a triangle is. */
 #include "surface/triangle.h"
+#include "surface/primitive_lattice.h"
 #include "surface/primitive_raster.h"
 
-static uint32_t first_of(const surfaces *all, const surface_mesh *mesh) {
-  (void)all;
-  return mesh->first_triangle;
-}
-
-static uint32_t count_of(const surface_mesh *mesh) { return mesh->triangle_count; }
-
-static const float *place_of(const surfaces *all, uint32_t primitive) {
+static const float *point_of(const surfaces *all, uint32_t primitive) {
   return all->positions[all->triangles[primitive][0]];
 }
 
@@ -35,7 +29,7 @@ static double clamped(float opacity) { return fmin(fmax((double)opacity, 0), 1);
 static double opacity(const surfaces *all, const surface_mesh *mesh, uint32_t primitive) {
   double opacity = mesh->look.opacity, sum = 0;
   if (mesh->face_colors != NULL)
-    return opacity * clamped(mesh->face_colors[primitive - mesh->first_triangle][3]);
+    return opacity * clamped(mesh->face_colors[primitive - mesh->primitives[PRIMITIVE_triangle].first][3]);
   if (mesh->colors == NULL) return opacity;
   for (int i = 0; i < 3; i++)
     sum += clamped(mesh->colors[all->triangles[primitive][i] - mesh->first_vertex][3]);
@@ -76,9 +70,11 @@ static bool parts(const surfaces *all, uint32_t primitive, const hull_ball *ball
 const primitive_kind hl_primitive_triangle = {.noun = "triangles",
                                               .has_corners = true,
                                               .raster = &hl_raster_triangle,
-                                              .first = first_of,
-                                              .count = count_of,
-                                              .place = place_of,
+                                              .lattice = &hl_lattice_triangle,
+                                              .count = hl_triangle_count,
+                                              .lay_out = hl_triangle_lay_out,
+                                              .place = hl_triangle_place,
+                                              .point = point_of,
                                               .bound = bound,
                                               .opacity = opacity,
                                               .normal = normal,

@@ -9,7 +9,11 @@
 /* A triangle's unit normal; *from: a point's distance from its plane, above 0 on the normal's side. */
 vec3 hl_triangle_normal(const surfaces *all, uint32_t triangle, vec3 point, double *from);
 
-/* The functions `look` and `bend` of primitive.h for triangles (triangle_look.c, late/triangle_bend.c). */
+/* The functions of primitive.h for triangles that stand in files of their own: `count`, `lay_out` and `place`
+ * (triangle_place.c), `look` (triangle_look.c) and `bend` (late/triangle_bend.c). */
+size_t hl_triangle_count(const hl_mesh_description *mesh);
+void hl_triangle_lay_out(surfaces *made, hl_layout *layout);
+void hl_triangle_place(hl_pool *pool, surfaces *made, const surface_mesh *mesh);
 vec3 hl_triangle_look(const surfaces *all, const surface_mesh *mesh, uint32_t triangle, vec3 at, vec3 *normal,
                       double color[3]);
 double hl_triangle_bend(const surfaces *all, const surface_mesh *mesh, uint32_t triangle, vec3 at,
@@ -18,7 +22,8 @@ double hl_triangle_bend(const surfaces *all, const surface_mesh *mesh, uint32_t 
 /* The normal of a triangle's corner: the triangle's own normal where the corner is at a sharp edge, else
  * the vertex's normal. */
 static inline vec3 hl_corner_normal(const surfaces *all, const surface_mesh *mesh, uint32_t triangle, int i) {
-  uint32_t edge = mesh->edges != NULL ? mesh->edges[triangle - mesh->first_triangle][i] : HL_NO_EDGE;
+  uint32_t edge = mesh->edges != NULL ? mesh->edges[triangle - mesh->primitives[PRIMITIVE_triangle].first][i]
+                                      : HL_NO_EDGE;
   return hl_surface_vector(edge != HL_NO_EDGE ? all->edge_normals[mesh->first_edge_normal + edge]
                                               : all->normals[all->triangles[triangle][i]]);
 }

@@ -44,7 +44,7 @@ vec3 hl_triangle_look(const surfaces *all, const surface_mesh *mesh, uint32_t tr
   find_weights(at, cross, point, weight);
   *normal = mesh->look.smooth ? smooth_normal(all, mesh, triangle, weight, flat) : flat;
   if (mesh->face_colors != NULL)
-    hl_primitive_color(mesh, mesh->face_colors[triangle - mesh->first_triangle], color);
+    hl_primitive_color(mesh, mesh->face_colors[triangle - mesh->primitives[PRIMITIVE_triangle].first], color);
   else if (mesh->colors != NULL) interpolate_color(mesh, corner, weight, color);
   else hl_primitive_color(mesh, NULL, color);
   return flat;

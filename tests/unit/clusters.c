@@ -60,15 +60,14 @@ static int set_up(void **state) {
   assert_int_equal(hl_context_create(NULL, &r->context, NULL), HL_OK);
   assert_int_equal(hl_pool_create(r->context, 2, &r->pool, NULL), HL_OK);
   place_ring(r);
-  r->mesh = (surface_mesh){.triangle_count = TRIANGLES, .sphere_count = SPHERES};
+  r->mesh = (surface_mesh){.primitives = {{0, TRIANGLES}, {TRIANGLES, SPHERES}}};
   r->all = (surfaces){.meshes = &r->mesh,
                       .mesh_count = 1,
                       .positions = r->positions,
                       .triangles = r->triangles,
                       .spheres = r->spheres,
                       .vertex_count = VERTICES,
-                      .triangle_count = TRIANGLES,
-                      .sphere_count = SPHERES};
+                      .first = {0, TRIANGLES, TRIANGLES + SPHERES}};
   assert_int_equal(hl_clusters_create(r->context, r->pool, &r->all, NULL), HL_OK);
   *state = r;
   return 0;

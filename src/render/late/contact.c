@@ -300,7 +300,7 @@ static uint32_t samples_within(const sweep *sweep, const surface_batch *batch) {
   for (int i = 0; i < batch->count; i++) {
     uint32_t primitive = batch->fragments[i]->primitive;
     if (!hl_has_corners(all, primitive)) continue;
-    int inside = batch->mesh->mesh->insides[primitive - batch->mesh->first_triangle];
+    int inside = batch->mesh->mesh->insides[primitive - batch->mesh->primitives[PRIMITIVE_triangle].first];
     vec3 normal = hl_surface_normal(all, primitive);
     double side = inside * vec3_dot(normal, vector_of(batch->samples.towards_eye, i));
     within |= (uint32_t)(side > 0) << i;

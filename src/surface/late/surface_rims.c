@@ -11,8 +11,8 @@
 /* Adds each edge's hash to both of its vertices, with the sign of its direction (derived as in mesh.c: the
  * sum is 0 at a vertex where each edge is used equally often in both directions). */
 static void sum_edges(const surfaces *all, const surface_mesh *mesh, uint64_t *sum) {
-  for (uint32_t t = 0; t < mesh->triangle_count; t++) {
-    const uint32_t *corner = all->triangles[mesh->first_triangle + t];
+  for (uint32_t t = 0; t < mesh->primitives[PRIMITIVE_triangle].count; t++) {
+    const uint32_t *corner = all->triangles[mesh->primitives[PRIMITIVE_triangle].first + t];
     for (int i = 0; i < 3; i++) {
       uint32_t a = corner[i] - (uint32_t)mesh->first_vertex,
                b = corner[(i + 1) % 3] - (uint32_t)mesh->first_vertex;
@@ -30,14 +30,15 @@ static const float AT_CORNER = -1;
  * of marked vertices. first: [vertices]; becomes the first triangle of each vertex. */
 static size_t mark_corners(const surfaces *all, const surface_mesh *mesh, uint32_t *first, float *from_edge) {
   size_t count = 0;
-  for (uint32_t t = mesh->triangle_count; t-- > 0;)
-    for (int i = 0; i < 3; i++) first[all->triangles[mesh->first_triangle + t][i] - mesh->first_vertex] = t;
-  for (uint32_t t = 0; t < mesh->triangle_count; t++) {
-    vec3 own = hl_surface_normal(all, mesh->first_triangle + t);
+  for (uint32_t t = mesh->primitives[PRIMITIVE_triangle].count; t-- > 0;)
+    for (int i = 0; i < 3; i++)
+      first[all->triangles[mesh->primitives[PRIMITIVE_triangle].first + t][i] - mesh->first_vertex] = t;
+  for (uint32_t t = 0; t < mesh->primitives[PRIMITIVE_triangle].count; t++) {
+    vec3 own = hl_surface_normal(all, mesh->primitives[PRIMITIVE_triangle].first + t);
     for (int i = 0; i < 3; i++) {
-      size_t vertex = all->triangles[mesh->first_triangle + t][i] - mesh->first_vertex;
+      size_t vertex = all->triangles[mesh->primitives[PRIMITIVE_triangle].first + t][i] - mesh->first_vertex;
       if (first[vertex] == t || from_edge[vertex] < 0) continue;
-      vec3 other = hl_surface_normal(all, mesh->first_triangle + first[vertex]);
+      vec3 other = hl_surface_normal(all, mesh->primitives[PRIMITIVE_triangle].first + first[vertex]);
       if (fabs(vec3_dot(own, other)) >= HL_MESH_ROUNDED) continue;
       from_edge[vertex] = AT_CORNER;
       count++;
@@ -60,8 +61,9 @@ static void begin_distances(const surfaces *all, const surface_mesh *mesh, const
 
 /* Sets the distance of the vertices of triangles that the scene's cuts cross to 0. */
 static void begin_at_cuts(const surfaces *all, const surface_mesh *mesh, float *from_edge) {
-  for (uint32_t t = 0; t < mesh->triangle_count && mesh->is_cut; t++) {
-    const uint32_t triangle = mesh->first_triangle + t, *corner = all->triangles[triangle];
+  for (uint32_t t = 0; t < mesh->primitives[PRIMITIVE_triangle].count && mesh->is_cut; t++) {
+    const uint32_t triangle = mesh->primitives[PRIMITIVE_triangle].first + t,
+                   *corner = all->triangles[triangle];
     if (hl_surface_cut(all, mesh, triangle) != CUT_LEAVES_SOME) continue;
     for (int i = 0; i < 3; i++) from_edge[corner[i] - mesh->first_vertex] = 0;
   }
@@ -71,7 +73,7 @@ static void begin_at_cuts(const surfaces *all, const surface_mesh *mesh, float *
  * between. Returns whether a distance changed. */
 static bool follow_edges(const surfaces *all, const surface_mesh *mesh, uint32_t triangle, float distance,
                          float *from_edge) {
-  const uint32_t *corner = all->triangles[mesh->first_triangle + triangle];
+  const uint32_t *corner = all->triangles[mesh->primitives[PRIMITIVE_triangle].first + triangle];
   bool changed = false, any = false;
   for (int i = 0; i < 3; i++) any |= from_edge[corner[i] - mesh->first_vertex] < distance;
   for (int i = 0; i < 3 && any; i++)
@@ -120,12 +122,12 @@ hl_status hl_surface_rims(hl_context *context, const surfaces *all, const surfac
   bool changed = true;
   for (int pass = 0; pass < RIM_PASSES && changed; pass++) {
     changed = false;
-    for (uint32_t i = 0; i < mesh->triangle_count; i++)
-      changed |= follow_edges(all, mesh, pass % 2 ? mesh->triangle_count - 1 - i : i, (float)distance,
-                              search.from_edge);
+    for (uint32_t i = 0; i < mesh->primitives[PRIMITIVE_triangle].count; i++)
+      changed |= follow_edges(all, mesh, pass % 2 ? mesh->primitives[PRIMITIVE_triangle].count - 1 - i : i,
+                              (float)distance, search.from_edge);
   }
-  for (uint32_t t = 0; t < mesh->triangle_count; t++) {
-    const uint32_t *corner = all->triangles[mesh->first_triangle + t];
+  for (uint32_t t = 0; t < mesh->primitives[PRIMITIVE_triangle].count; t++) {
+    const uint32_t *corner = all->triangles[mesh->primitives[PRIMITIVE_triangle].first + t];
     near[t] = false;
     for (int i = 0; i < 3; i++)
       near[t] |= search.from_edge[corner[i] - mesh->first_vertex] <= (float)distance;

@@ -81,7 +81,8 @@ static void list_edges(seam_search *search) {
     if (!may_hold_large(search, cluster) || mesh->mesh->closed) continue;
     for (uint32_t i = 0; i < cluster->count && search->edge_count + 3 <= search->edge_room; i++) {
       uint32_t triangle = all->order[cluster->first + i];
-      if (mesh->mesh->insides[triangle - mesh->first_triangle] == 0) add_edges(search, triangle);
+      if (mesh->mesh->insides[triangle - mesh->primitives[PRIMITIVE_triangle].first] == 0)
+        add_edges(search, triangle);
     }
   }
 }
@@ -193,9 +194,9 @@ static hl_status find_seams(hl_context *context, seam_search *search, hl_error *
 }
 
 hl_status hl_surface_seams_create(hl_context *context, surfaces *all, hl_error *error) {
-  seam_search search = search_of(all, all->triangle_count);
+  seam_search search = search_of(all, all->first[PRIMITIVE_triangle + 1]);
   hl_layout layout = {0};
-  if (all->triangle_count == 0) return HL_OK;
+  if (all->first[PRIMITIVE_triangle + 1] == 0) return HL_OK;
   while (hl_layout_pass(&layout, context)) lay_out_edges(&search, &layout);
   if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the corners of meshes");
   set_scale(&search);

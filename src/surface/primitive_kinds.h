@@ -1,0 +1,26 @@
+/* surface/primitive_kinds.h - the list of the kinds of primitives, in the order of their primitives' numbers.
+ *
+ * A kind "sphere" has the table hl_primitive_sphere (primitive.h) in sphere.c, and the table hl_raster_sphere
+ * (primitive_raster.h) in sphere_raster.c. The kinds that have corners come first. */
+#ifndef HL_SURFACE_PRIMITIVE_KINDS_H
+#define HL_SURFACE_PRIMITIVE_KINDS_H
+
+#include <stdint.h>
+
+/* The build reads the names here. */
+/* clang-format off */
+#define HL_PRIMITIVES     \
+  HL_PRIMITIVE(triangle)  \
+  HL_PRIMITIVE(sphere)
+/* clang-format on */
+
+#define HL_PRIMITIVE(name) PRIMITIVE_##name,
+enum primitive_number { HL_PRIMITIVES PRIMITIVE_KINDS };
+#undef HL_PRIMITIVE
+
+/* The primitives of one kind that a mesh has; their numbers follow each other. */
+typedef struct primitive_range {
+  uint32_t first, count;
+} primitive_range;
+
+#endif

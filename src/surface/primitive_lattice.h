@@ -1,0 +1,66 @@
+/* surface/primitive_lattice.h - where straight lines through a lattice of cells meet a kind of primitive.
+ *
+ * Each kind of primitive (primitive.h) has one such table. The sky's light goes from cell to cell along such
+ * lines (field/surface_links.h). */
+#ifndef HL_SURFACE_PRIMITIVE_LATTICE_H
+#define HL_SURFACE_PRIMITIVE_LATTICE_H
+
+#include "surface/primitive.h"
+
+/* Parallel lines along an axis of a lattice, or aslant to it. A line has the number (c, r) if it goes through
+ * the column c and the row r at the height 0. At the height h it is at the column c - slope_across h and at
+ * the row r - slope_down h. Columns, rows and heights are counted in cells, from the middle of the first cell
+ * on. */
+typedef struct lattice_lines {
+  int axis, across, down;      /* the axes of heights, columns and rows */
+  double low[3], inverse_cell; /* the lattice's low corner, and 1 over the edge of a cell; frame space */
+  double middle[3];            /* the middle of the first cell, in cells from the low corner */
+  int slope_across, slope_down;
+  double farthest; /* lines whose column or row is farther than this from 0 are left out */
+} lattice_lines;
+
+/* Takes note of a place at which a line meets a primitive. opacity: the part of the light that the primitive
+ * stops there. */
+typedef void lines_meet_function(const void *data, int32_t column, int32_t row, double height,
+                                 double opacity);
+
+/* Takes note of a point; frame space. */
+typedef void point_function(void *data, const double at[3]);
+
+struct primitive_lattice {
+  /* Finds all places at which lines with whole numbers meet a primitive. Two triangles that share an edge
+   * never both meet a line on the edge. */
+  void (*meet)(const surfaces *all, const surface_mesh *mesh, uint32_t primitive, const lattice_lines *lines,
+               lines_meet_function *met, const void *data);
+  /* Visits points on a primitive, or near it, that are at most `apart` from each other. */
+  void (*visit)(const surfaces *all, uint32_t primitive, double apart, point_function *point, void *data);
+};
+
+/* The tables, one a file (primitive_kinds.h). */
+#define HL_PRIMITIVE(name) extern const primitive_lattice hl_lattice_##name;
+HL_PRIMITIVES
+#undef HL_PRIMITIVE
+
+/* A place along an axis of the lattice, in cells; 0 is the middle of the first cell. */
+static inline double hl_lattice_place(const lattice_lines *lines, int axis, double at) {
+  return (at - lines->low[axis]) * lines->inverse_cell - lines->middle[axis];
+}
+
+/* The whole numbers between two places. */
+typedef struct whole_numbers {
+  int32_t first, last; /* there are none where last < first */
+} whole_numbers;
+
+static inline int32_t hl_round_down(double x) {
+  const int32_t whole = (int32_t)x;
+  return whole - (x < whole);
+}
+
+/* Finds the whole numbers from `low` to `high` that are at most `most` away from 0. */
+static inline whole_numbers hl_whole_between(double low, double high, double most) {
+  if (!(low <= most && high >= -most)) return (whole_numbers){0, -1};
+  return (whole_numbers){-hl_round_down(-(low > -most ? low : -most)),
+                         hl_round_down(high < most ? high : most)};
+}
+
+#endif
