@@ -23,7 +23,9 @@ static int read_rank(int *part, int *parts) {
   bool good = sscanf(by.rank, "%6d%n", part, &used) == 1 && by.rank[used] == '\0' &&
               sscanf(by.size, "%6d%n", parts, &used_of_size) == 1 && by.size[used_of_size] == '\0';
   if (good && *part >= 0 && *part < *parts) return EXIT_CODE_OK;
-  return fail(EXIT_CODE_USAGE, "--frames-over-ranks: %s is '%s' and %s is '%s': no rank of so many",
+  return fail(EXIT_CODE_USAGE,
+              "--frames-over-ranks: %s is '%s' and %s is '%s': the first must be a whole number from 0 on, "
+              "and less than the second",
               by.rank_name, by.rank, by.size_name, by.size);
 }
 

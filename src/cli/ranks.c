@@ -37,9 +37,10 @@ int ranks_begin(cli_host *host, const char *option, hl_ranks **ranks) {
   if (hl_ranks_join(host->context, NULL, ranks, &error) != HL_OK)
     return fail(EXIT_CODE_FAILURE, "--%s: %s", option, error.message);
   if (atoi(found.size) != hl_ranks_size(*ranks))
-    return fail(EXIT_CODE_FAILURE,
-                "--%s: %s is %s, but MPI's processes are %d: its library is not the launcher's", option,
-                found.size_name, found.size, hl_ranks_size(*ranks));
+    return fail(
+        EXIT_CODE_FAILURE,
+        "--%s: %s is %s, but MPI's processes are %d: the library and the launcher belong to different MPIs",
+        option, found.size_name, found.size, hl_ranks_size(*ranks));
   host->quiet = host->quiet || hl_ranks_rank(*ranks) > 0;
   host->bar = host->bar && !host->quiet;
   return EXIT_CODE_OK;

@@ -366,7 +366,7 @@ static hl_status read_element(ply_reader *reader, ply_element *element) {
     return hl_fail(reader->error, HL_ERROR_INPUT,
                    "%s: claims an element of %zu items, but has only %zu bytes left", reader->parts->path,
                    element->count, left - 1);
-  if (element->vertices && reader->has_vertices) return fail(reader, "vertices twice");
+  if (element->vertices && reader->has_vertices) return fail(reader, "the header has vertices twice");
   reader->has_vertices |= element->vertices;
   hl_status status = element->vertices ? begin_vertices(reader, element) : HL_OK;
   element->face_colors = element->faces && has_role(element, ROLE_COLOR, ROLE_COLOR + 2);

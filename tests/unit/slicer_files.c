@@ -164,17 +164,20 @@ static void components_that_cannot_be_shown_are_refused(void **state) {
     const char *message;
   } faults[] = {
       {COMPONENTS("", COMPONENT("0.25")), HL_COMPONENT_DEFAULT,
-       "/volumeProperties/0/components: are 2: load the file for a volume, whose component tells which of "
+       "/volumeProperties/0/components: has 2 entries: load the file for a volume, whose component tells "
+       "which of "
        "them is meant"},
       {COMPONENTS("", COMPONENT("0.25")), HL_COMPONENT_MAGNITUDE,
-       "/volumeProperties/0/components: are 2, and none of them is for component magnitude of the volume: "
+       "/volumeProperties/0/components: has 2 entries, and none of them is for component magnitude of the "
+       "volume: "
        "give a \"component\" from 0 to 1, and a volume for each that is to be shown"},
       {COMPONENTS("", COMPONENT("0.25")), 2,
-       "/volumeProperties/0/components: are 2, and none of them is for component 2 of the volume: "
+       "/volumeProperties/0/components: has 2 entries, and none of them is for component 2 of the volume: "
        "give a \"component\" from 0 to 1, and a volume for each that is to be shown"},
       {COMPONENTS("\"independentComponents\": false, ", COMPONENT("0.25")), 0,
-       "/volumeProperties/0/components: depend on each other (independentComponents is false), which is not "
-       "supported: set it to true, or show colours by \"component\": \"color\""},
+       "/volumeProperties/0/components: components that depend on each other (independentComponents is "
+       "false) are "
+       "not supported: set it to true, or show colours by \"component\": \"color\""},
       {COMPONENTS("", "\"componentWeight\": 0.5, " COMPONENT("0.25")), 1,
        "/volumeProperties/0/components/0/componentWeight: 0.5 is not supported: set it to 1, and lower the "
        "opacities"}};

@@ -31,7 +31,8 @@ static int check_kinds(const cli_value *values, const cli_input *inputs, size_t 
   for (size_t n = 0; n < count && count > 1; n++)
     if (inputs[n].kind != INPUT_VOLUME)
       return fail(EXIT_CODE_USAGE,
-                  "'%s' is no volume file: several INPUTs are volumes of one picture, a scene stands alone",
+                  "'%s' is no volume file: several INPUTs are the volumes of one picture, and a scene is a "
+                  "picture of its own",
                   inputs[n].path);
   if (values[RENDER_SMOOTH].given && render_has_channels(values))
     return fail(EXIT_CODE_USAGE, "--smooth is for one channel: leave it out, or name one --channel");

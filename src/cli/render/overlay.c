@@ -127,10 +127,10 @@ int render_overlay_check_options(const cli_value *values, const char *path) {
                        render_options[drawn[n]].name);
   }
   if (exit_code == EXIT_CODE_OK && values[RENDER_UNIT].given && !values[RENDER_SCALE_BAR].given)
-    exit_code = fail(EXIT_CODE_USAGE, "--unit is of the lengths of --scale-bar: give that, too");
+    exit_code = fail(EXIT_CODE_USAGE, "--unit is the unit of the scale bar's length: add --scale-bar");
   if (exit_code == EXIT_CODE_OK && values[RENDER_FONT_SIZE].given && !overlay.drawn)
     exit_code = fail(EXIT_CODE_USAGE,
-                     "--font-size is of what is drawn over the picture: add --scale-bar, --legend, "
+                     "--font-size is the size of letters drawn over the picture: add --scale-bar, --legend, "
                      "--axes or --annotate");
   const cli_value *size = &values[RENDER_SIZE];
   if (exit_code == EXIT_CODE_OK && size->given && overlay.width > 0 && overlay.pixels_per_inch > 0 &&

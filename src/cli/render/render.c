@@ -310,7 +310,7 @@ static int render_one(const cli_value *values, char **operands) {
     if (!values[RENDER_STRIPS].given && !values[RENDER_VOLUME].given)
       return render_series(values, operands, NULL);
     return fail(EXIT_CODE_USAGE,
-                "--%s makes one picture: of several share the pictures by --frames-over-ranks",
+                "--%s shares one picture between processes: --frames-over-ranks shares out several pictures",
                 render_options[values[RENDER_STRIPS].given ? RENDER_STRIPS : RENDER_VOLUME].name);
   }
   render_job job = {.input = {.all = operands, .first = operands[0]}, .started = clock_seconds()};

@@ -87,7 +87,7 @@ static int load_first(series_job *job, bool *bare) {
                     ? render_add_meshes(&job->host, operands, 0, true, &job->scene)
                     : render_load_volumes(&job->host, job->values, operands, bare, &job->scene);
     if (exit_code == EXIT_CODE_OK && !*bare)
-      return fail(EXIT_CODE_USAGE, "'%s' is no file of a volume or a mesh, which a series is of",
+      return fail(EXIT_CODE_USAGE, "'%s' is neither a volume's file nor a mesh's: a series is made of these",
                   job->files.names[n]);
     if (exit_code != EXIT_CODE_OK && exit_code != EXIT_CODE_INPUT && exit_code != EXIT_CODE_UNSUPPORTED)
       return exit_code;

@@ -84,7 +84,8 @@ static int part_meshes(series_job *job) {
   job->files.of_meshes = meshes > 0;
   if (meshes == 0 || meshes == job->files.count) return EXIT_CODE_OK;
   return fail(EXIT_CODE_USAGE,
-              "a pattern that finds meshes beside volumes: name each mesh that shall be in all pictures");
+              "a pattern found meshes, and there are volumes: name each mesh that shall be in all pictures "
+              "by its whole name");
 }
 
 int series_find_files(series_job *job, char **operands) {

@@ -79,7 +79,8 @@ static int check_options(views_job *job) {
   job->files = has_name(job->output);
   if (!job->files && (has_extension(job->output, ".exr") || has_extension(job->output, ".npy")))
     return fail(EXIT_CODE_USAGE,
-                "--views: '%s' holds linear light, a sheet is drawn: put %%s into its name, for a file "
+                "--views: a sheet is a drawn picture, and '%s' would hold linear light: put %%s into its "
+                "name, for a file "
                 "of each side",
                 job->output);
   int exit_code = render_check_options(job->values);

@@ -119,17 +119,18 @@ static hl_status choose_component(hl_json_reader *reader, size_t count, const hl
   *chosen = 0;
   if (count == 1) return HL_OK;
   if (volume == NULL)
-    return hl_json_fail(reader, HL_ERROR_INPUT, NULL,
-                        "are %zu: load the file for a volume, whose component tells which of them is meant",
-                        count);
+    return hl_json_fail(
+        reader, HL_ERROR_INPUT, NULL,
+        "has %zu entries: load the file for a volume, whose component tells which of them is meant", count);
   if (components_of(volume, &read) == 1) return HL_OK;
   if (read < 0 || (size_t)read >= count) {
     char number[16];
     snprintf(number, sizeof number, "%d", read);
-    return hl_json_fail(reader, HL_ERROR_INPUT, NULL,
-                        "are %zu, and none of them is for component %s of the volume: give a \"component\" "
-                        "from 0 to %zu, and a volume for each that is to be shown",
-                        count, read < 0 ? hl_component_name(read) : number, count - 1);
+    return hl_json_fail(
+        reader, HL_ERROR_INPUT, NULL,
+        "has %zu entries, and none of them is for component %s of the volume: give a \"component\" "
+        "from 0 to %zu, and a volume for each that is to be shown",
+        count, read < 0 ? hl_component_name(read) : number, count - 1);
   }
   *chosen = (size_t)read;
   return HL_OK;
@@ -141,8 +142,8 @@ static hl_status refuse_mixing(hl_json_reader *reader, const json_t *properties,
   if (json_is_false(json_object_get(properties, "independentComponents")))
     return hl_json_fail(
         reader, HL_ERROR_UNSUPPORTED, NULL,
-        "depend on each other (independentComponents is false), which is not supported: set it "
-        "to true, or show colours by \"component\": \"color\"");
+        "components that depend on each other (independentComponents is false) are not supported: set it to "
+        "true, or show colours by \"component\": \"color\"");
   for (size_t n = 0; n < json_array_size(components); n++) {
     size_t mark = hl_json_enter_index(reader, n);
     double weight = 1;

@@ -24,11 +24,11 @@ hl_status hl_bundle_open_server(hl_context *context, const char *url, hl_bundle 
   if (bundle->path == NULL) return hl_fail_memory(error, strlen(url), url);
   bundle->brought = hl_allocate_zeroed(context, 1, sizeof *bundle->brought);
   if (bundle->brought == NULL) return hl_fail_memory(error, sizeof *bundle->brought, url);
-  return context->options.fetch != NULL
-             ? HL_OK
-             : hl_fail(error, HL_ERROR_UNSUPPORTED,
-                       "%s: a store on a server, and this program asks no server: give the folder of a copy",
-                       url);
+  return context->options.fetch != NULL ? HL_OK
+                                        : hl_fail(error, HL_ERROR_UNSUPPORTED,
+                                                  "%s: a store on a server, and this host of the library "
+                                                  "gave it no way to ask servers: give the folder of a copy",
+                                                  url);
 }
 
 void hl_brought_release(hl_bundle *bundle) {

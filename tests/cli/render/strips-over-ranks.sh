@@ -35,4 +35,4 @@ env -u OMPI_COMM_WORLD_SIZE -u PMI_SIZE "$HALFLIGHT" render rings.nrrd --strips-
 variable=PMI
 [ $mpi = mpich ] || variable=OMPI_COMM_WORLD
 env ${variable}_RANK=0 ${variable}_SIZE=3 "$HALFLIGHT" render rings.nrrd --strips-over-ranks -o x.png >alone.txt 2>&1 || echo $?
-grep -o -m 1 "SIZE is 3, but MPI's processes are 1: its library is not the launcher's" alone.txt
+grep -o -m 1 "SIZE is 3, but MPI's processes are 1: the library and the launcher belong to different MPIs" alone.txt
