@@ -2,9 +2,7 @@
  * bit: with every method of shadows, several sweeps, hidden matter, oversampling and surfaces. And a part
  * works through the light that falls on it alone. Renderers in threads of one process exchange light as ranks
  * do. A renderer's next frame uses the memory of the one before. */
-#define _POSIX_C_SOURCE 200809L /* barriers */
 #include <math.h>
-#include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -13,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "light_meeting.h"
 #include "reference_stage.h"
 #include "render/renderer_state.h"
 
@@ -223,161 +222,6 @@ static void test_light_of_part(void **state) {
 }
 
 /* ---- renderers that exchange light ---- */
-
-enum { MOST_BANDS = 8, MOST_POSTS = 20000 };
-
-/* What a part has sent. */
-typedef struct sent_post {
-  unsigned char *bytes; /* owned; [count] */
-  size_t count;
-} sent_post;
-
-/* A place where all parts of a picture meet. */
-typedef struct meeting {
-  int parts;
-  pthread_barrier_t barrier;
-  const void *from[MOST_BANDS];
-  pthread_mutex_t lock;
-  pthread_cond_t arrived;
-  sent_post posts[MOST_BANDS][MOST_POSTS];
-  int post_count[MOST_BANDS];
-} meeting;
-
-typedef struct part_thread {
-  meeting *meeting;
-  light_exchange exchange;
-  void (*prepare)(stage *set);
-  uint64_t filled, gathered; /* pixels of the light; bytes of this part, sent ones too */
-  int looks;                 /* at posts under way */
-  bool spoiled;              /* a post was changed on its way */
-  float *pixels;
-  int width, height, frames;
-  hl_status status;
-} part_thread;
-
-static void gather_parts(void *data, const void *from, size_t bytes, void *to) {
-  part_thread *part = data;
-  meeting *meeting = part->meeting;
-  part->gathered += bytes;
-  meeting->from[part->exchange.part] = from;
-  pthread_barrier_wait(&meeting->barrier);
-  for (int i = 0; i < meeting->parts; i++)
-    memcpy((unsigned char *)to + (size_t)i * bytes, meeting->from[i], bytes);
-  pthread_barrier_wait(&meeting->barrier); /* nobody changes what others still read */
-}
-
-static void send_post(void *data, const light_post *post) {
-  part_thread *part = data;
-  meeting *meeting = part->meeting;
-  int own = part->exchange.part, *number = post->memory;
-  assert_true(post->bytes <= post->most && meeting->post_count[own] < MOST_POSTS);
-  part->gathered += post->bytes;
-  memset(post->to, 0xff, (size_t)meeting->parts * post->most); /* nobody reads what has not arrived */
-  pthread_mutex_lock(&meeting->lock);
-  *number = meeting->post_count[own]++;
-  sent_post *sent = &meeting->posts[own][*number];
-  *sent = (sent_post){malloc(post->bytes), post->bytes};
-  memcpy(sent->bytes, post->from, post->bytes);
-  pthread_cond_broadcast(&meeting->arrived);
-  pthread_mutex_unlock(&meeting->lock);
-}
-
-static void look_at_post(void *data, const light_post *post) {
-  (void)post;
-  ((part_thread *)data)->looks++;
-}
-
-static void receive_post(void *data, const light_post *post) {
-  part_thread *part = data;
-  meeting *meeting = part->meeting;
-  int number = *(int *)post->memory;
-  pthread_mutex_lock(&meeting->lock);
-  for (int i = 0; i < meeting->parts; i++) {
-    while (meeting->post_count[i] <= number) pthread_cond_wait(&meeting->arrived, &meeting->lock);
-    const sent_post *sent = &meeting->posts[i][number];
-    if (i != part->exchange.part)
-      memcpy((unsigned char *)post->to + (size_t)i * post->most, sent->bytes, sent->count);
-    else part->spoiled = part->spoiled || memcmp(post->from, sent->bytes, sent->count) != 0;
-  }
-  pthread_mutex_unlock(&meeting->lock);
-}
-
-static void *render_exchanging(void *data) {
-  part_thread *part = data;
-  stage set;
-  hl_scene *scene = NULL;
-  hl_renderer *renderer = NULL;
-  hl_render_statistics statistics = {.struct_size = sizeof statistics};
-  stage_open(&set);
-  part->prepare(&set);
-  set.scene.width = part->width;
-  set.scene.height = part->height;
-  set.scene.render.threads = 1;
-  set.scene.render.sheet_spacing = 1;
-  part->status = hl_scene_create(set.context, &set.scene, &scene, NULL);
-  if (part->status == HL_OK) part->status = hl_renderer_create(set.context, &renderer, NULL);
-  if (part->status == HL_OK) hl_renderer_exchange(renderer, &part->exchange);
-  for (int frame = 0; frame < part->frames && part->status == HL_OK; frame++)
-    part->status = hl_renderer_render(renderer, scene, part->pixels, 4 * (size_t)part->width, &statistics,
-                                      NULL);
-  part->filled = statistics.pixels_filled_light;
-  hl_renderer_destroy(renderer);
-  hl_scene_release(scene);
-  stage_close(&set);
-  return NULL;
-}
-
-enum { TOGETHER_SIDE = 256 };
-
-/* How parts exchange light: they wait for each other; they go on meanwhile; in posts of a few tiles. */
-typedef enum exchange_way { WAITING, POSTING, LITTLE_POSTS } exchange_way;
-
-/* Renders a picture by so many parts at once; its pixels are the parts' sum. A second frame finds memory that
- * the first has used. threads: [parts]. */
-static void render_together(part_thread *threads, int parts, exchange_way how, int width, int height,
-                            int frames, void (*prepare)(stage *set), float *pixels) {
-  static float kept[MOST_BANDS][TOGETHER_SIDE * TOGETHER_SIDE * 4];
-  static meeting meeting;
-  meeting = (struct meeting){.parts = parts};
-  pthread_t running[MOST_BANDS];
-  assert_true(parts <= MOST_BANDS && width <= TOGETHER_SIDE && height <= TOGETHER_SIDE);
-  pthread_barrier_init(&meeting.barrier, NULL, (unsigned)parts);
-  pthread_mutex_init(&meeting.lock, NULL);
-  pthread_cond_init(&meeting.arrived, NULL);
-  light_exchange exchange = {.parts = parts, .gather = gather_parts};
-  if (how != WAITING) {
-    exchange.send = send_post;
-    exchange.look = look_at_post;
-    exchange.receive = receive_post;
-    exchange.post_bytes = sizeof(int);
-    exchange.most_posted = how == LITTLE_POSTS ? 100000 : 0;
-  }
-  for (int i = 0; i < parts; i++) {
-    threads[i] = (part_thread){.meeting = &meeting,
-                               .exchange = exchange,
-                               .prepare = prepare,
-                               .pixels = kept[i],
-                               .width = width,
-                               .height = height,
-                               .frames = frames};
-    threads[i].exchange.part = i;
-    threads[i].exchange.data = &threads[i];
-    assert_int_equal(pthread_create(&running[i], NULL, render_exchanging, &threads[i]), 0);
-  }
-  size_t floats = (size_t)width * (size_t)height * 4;
-  memset(pixels, 0, floats * sizeof *pixels);
-  for (int i = 0; i < parts; i++) {
-    pthread_join(running[i], NULL);
-    assert_int_equal(threads[i].status, HL_OK);
-    assert_false(threads[i].spoiled);
-    for (size_t k = 0; k < floats; k++) pixels[k] += kept[i][k];
-  }
-  for (int i = 0; i < parts; i++)
-    for (int n = 0; n < meeting.post_count[i]; n++) free(meeting.posts[i][n].bytes);
-  pthread_barrier_destroy(&meeting.barrier);
-  pthread_mutex_destroy(&meeting.lock);
-  pthread_cond_destroy(&meeting.arrived);
-}
 
 static void add_soft_noise(stage *set) {
   add_noise(set, 0.4);
