@@ -3,204 +3,24 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Literal, Unpack
+from typing import Any, Unpack
 
 import numpy as np
 
 from . import _settings, arrays, cuts, grids, isosurface, mask, neighbours, pieces, vtk_grids
 from ._library import call, context, ffi, lib, made, text_of
 from ._words import check_keywords, choice
-from .keywords import MaterialSettings, VolumeSettings
-from .transfer import TransferFunction, function_from
+from .transfer import function_from
+from .volume_info import FileArray, FileChannel, FileSegment, FileSeries, Info, read_info
+from .volume_look import Look, fill_look
 
 __all__ = ["FileArray", "FileChannel", "FileSegment", "FileSeries", "Info", "Look", "Volume", "info"]
 
 Source = Any  # a path, an array, or an object of one of the packages that halflight.neighbours knows
 
-
-class Look(VolumeSettings, MaterialSettings, total=False):
-    """How a volume looks and where it stands: keywords of `Volume`. What is not given is chosen from the data.
-
-    Parameters
-    ----------
-    name : str
-        What the volume is called.
-    transfer_function : TransferFunction
-        Which values are seen, and in which colour.
-    clip : ((x, y, z), (x, y, z)) or None
-        The corners of the box that is kept, in the world before the transform.
-    scale : float or 3 floats
-        Along the world's axes, before the rotation.
-    iso : a value, (value, color, opacity), or a list of them
-        Surfaces on which the volume has one value, in place of what an automatic transfer function shows. Colour and
-        opacity may be left out.
-    cuts : a mapping or a list of them
-        What is cut out of the volume, as in a scene file: {"type": "plane", "point": (x, y, z), "normal": (x, y, z)},
-        {"type": "box", "min": ..., "max": ...}, {"type": "sphere", "center": ..., "radius": ...}; with "keep":
-        "inside" all else is cut away.
-    mask : a label map (path, array or Volume), or a mapping
-        Where the volume shows: within the map's labels. A mapping has the map as `volume`; as `show` the labels, by
-        name or number, alone or with a colour, an opacity from 0 to 1, or (colour, opacity); as `rest` what is
-        left outside of them; as `table` a file of names and colours: ``{"volume": "organs.seg.nrrd", "show":
-        {"bone": None, "tumour": "red", "liver": 0.3}, "rest": 0.02}``.
-    labels : bool, a label, a list of labels, or a mapping
-        The volume is a label map, and its labels show as smooth surfaces: all of them, or those that are named, by name or
-        number, with what a mask's `show` may say of each; a mapping may have a `table` of names and colours beside `show`.
-        A volume that is taken for a label map shows all its labels without being told; False: it is drawn by its values, as
-        with a `transfer_function`, `iso` or `mask`.
-    look : str
-        "surface", "translucent", "xray", "smoke" or "vessels": the transfer function and shading of that look.
-    """
-
-    name: str
-    transfer_function: TransferFunction
-    clip: tuple[Sequence[float], Sequence[float]] | None
-    scale: float | Sequence[float]
-    iso: Any
-    cuts: Any
-    mask: Any
-    labels: Any
-    look: Literal["auto", "surface", "translucent", "xray", "smoke", "vessels"]
-
-
 _OF_FILES = ("array", "component", "series", "time", "channel", "level")
 _OF_VALUES = ("transfer_function", "iso", "mask")
-_MATERIAL = _settings.names(lib.HL_SETTINGS_MATERIAL)
 _FIELDS = _settings.names(lib.HL_SETTINGS_VOLUME, "scale", "clip_min", "clip_max")
-
-
-@dataclass(frozen=True)
-class FileArray:
-    """An array of a volume's file: `components` values for each voxel; `chosen` was read."""
-
-    name: str
-    type: str | None
-    components: int
-    of_cells: bool
-    chosen: bool
-
-
-@dataclass(frozen=True)
-class FileSeries:
-    """A DICOM series: `dimensions` are columns, rows and slices; `number` is None where the files have none."""
-
-    uid: str
-    number: float | None
-    modality: str
-    description: str
-    dimensions: tuple[int, int, int]
-    chosen: bool
-
-
-@dataclass(frozen=True)
-class FileChannel:
-    """What a volume's file tells of a channel: "" and None where it tells nothing. `window`: the data values between which
-    it is to be shown."""
-
-    name: str
-    color: tuple[float, float, float] | None
-    window: tuple[float, float] | None
-    chosen: bool
-
-
-@dataclass(frozen=True)
-class FileSegment:
-    """A segment that a label map's file names: `layer` is the component whose voxels have the `value`."""
-
-    value: int
-    name: str
-    layer: int
-    color: tuple[float, float, float] | None
-
-
-@dataclass(frozen=True)
-class FieldError:
-    """How far the field of a volume is from what its file says.
-
-    Attributes
-    ----------
-    value : float or None
-        In data values; None where nothing could be compared, as in a mesh of one layer of cells.
-    of_range : float or None
-        `value` as a part of the volume's range.
-    kind : str
-        "exact": `value` is the greatest difference; "bound": no difference is greater.
-    source : str
-        What the field was compared with, in words.
-    """
-
-    value: float | None
-    of_range: float | None
-    kind: str
-    source: str
-
-
-@dataclass(frozen=True)
-class Info:
-    """What a volume holds, as ``halflight info --json`` says it. Values are data values.
-
-    Attributes
-    ----------
-    dimensions : tuple of 3 int
-        Voxels along the index axes x, y, z.
-    type : str
-        Of the voxels: "uint8", "int16", "float32", ...
-    spacing, origin : ndarray of float64, shape (3,)
-        World units: the distance of voxels along x, y, z, and the centre of the first voxel.
-    direction : ndarray of float64, shape (3, 3)
-        Its columns are the unit vectors of the index axes x, y, z.
-    range : tuple of 2 float
-        The least and the greatest finite value; an int where a float would round it.
-    mean : float
-        Of the finite voxels.
-    nonfinite_count : int
-        NaN and infinite voxels, which are transparent.
-    histogram : ndarray of uint64, shape (256,)
-        Finite voxels in equal bins over `range`.
-    space : str or None
-        "RAS", "LPS" or "LAS" where the world's axes are known.
-    taken_for : str
-        What an automatic look takes the volume for.
-    arrays : tuple of FileArray
-        The arrays of the volume's file; none where it is no file.
-    times, channels, levels : int
-        How many the file has of each, at least 1.
-    time, channel, level : int
-        Which of them was read.
-    series : tuple of FileSeries
-        Of DICOM files: what the folder or archive holds.
-    segments : tuple of FileSegment
-        Of label maps whose file names its labels.
-    channel_list : tuple of FileChannel
-        The file's channels, where it tells anything of them.
-    field_error : FieldError or None
-        Of meshes of cells, grids with refinement and sparse grids, whose field is made of what the file says; None for
-        volumes that are their voxels.
-    """
-
-    dimensions: tuple[int, int, int]
-    type: str
-    spacing: np.ndarray[Any, np.dtype[np.float64]]
-    origin: np.ndarray[Any, np.dtype[np.float64]]
-    direction: np.ndarray[Any, np.dtype[np.float64]]
-    range: tuple[float, float]
-    mean: float
-    nonfinite_count: int
-    histogram: np.ndarray[Any, np.dtype[np.uint64]]
-    space: str | None
-    taken_for: str
-    arrays: tuple[FileArray, ...] = ()
-    times: int = 1
-    time: int = 0
-    channels: int = 1
-    channel: int = 0
-    levels: int = 1
-    level: int = 0
-    series: tuple[FileSeries, ...] = ()
-    segments: tuple[FileSegment, ...] = ()
-    channel_list: tuple[FileChannel, ...] = ()
-    field_error: FieldError | None = None
 
 
 class Volume:
@@ -555,35 +375,7 @@ class Volume:
 
     def info(self) -> Info:
         """Size, type, place and statistics."""
-        raw = _sized("info")
-        if lib.hl_volume_get_info(self._handle, raw) != lib.HL_OK:
-            raise RuntimeError("the volume is not known")
-        kind = ffi.new("const char **")
-        call(lib.hl_volume_guess, self._handle, self._file_text(), kind)
-        dimensions = self._order or tuple(raw.dimensions)
-        return Info(
-            dimensions=(int(dimensions[0]), int(dimensions[1]), int(dimensions[2])),
-            type=text_of(lib.hl_voxel_type_name(raw.type)), spacing=np.array(list(raw.spacing)),
-            origin=np.array(list(raw.origin)), direction=np.array([list(row) for row in raw.direction]),
-            range=(self._range_end(0, raw.range[0]), self._range_end(1, raw.range[1])), mean=raw.mean, nonfinite_count=raw.nonfinite_count,
-            histogram=np.array(list(raw.histogram), dtype=np.uint64),
-            space=None if lib.hl_space_name(raw.space) == ffi.NULL else text_of(lib.hl_space_name(raw.space)),
-            taken_for=text_of(kind[0]), field_error=self._field_error(), **self._choices())
-
-    def _field_error(self) -> FieldError | None:
-        raw = _sized("field_error")
-        if lib.hl_volume_get_field_error(self._handle, raw) != lib.HL_OK:
-            return None
-        known = raw.value == raw.value
-        return FieldError(raw.value if known else None, raw.of_range if known else None, text_of(raw.kind), text_of(raw.source))
-
-    def _range_end(self, end: int, value: float) -> float:
-        """The least or the greatest value: an int where a float rounds a whole number."""
-        text = ffi.new("char[]", lib.HL_NUMBER_TEXT_BYTES)
-        if abs(value) < 2**53 or lib.hl_volume_write_range(self._handle, end, text) != lib.HL_OK:
-            return value
-        digits = text_of(text)
-        return int(digits) if digits.lstrip("-").isdigit() else value
+        return read_info(self._handle, self._file_text(), self._order)
 
     def percentile(self, percent: float) -> float:
         """The data value below which so many percent of the finite voxels lie, as ``numpy.percentile`` says.
@@ -596,42 +388,6 @@ class Volume:
         percents, value = ffi.new("double[1]", [_settings.number("percent", percent)]), ffi.new("double[1]")
         call(lib.hl_volume_percentiles, self._handle, percents, 1, value)
         return float(value[0])
-
-    def _choices(self) -> dict[str, Any]:
-        """What the volume's file holds, and what was read of it."""
-        selection, array, series = (_sized(name) for name in ("selection", "array", "series"))
-        arrays, many = list[FileArray](), list[FileSeries]()
-        for n in range(lib.hl_volume_array_count(self._handle)):
-            if lib.hl_volume_get_array(self._handle, n, array) == lib.HL_OK:
-                kind = text_of(lib.hl_voxel_type_name(array.type)) if array.type else None
-                arrays.append(FileArray(text_of(array.name), kind, array.components, bool(array.of_cells),
-                                        bool(array.chosen)))
-        for n in range(lib.hl_volume_series_count(self._handle)):
-            if lib.hl_volume_get_series(self._handle, n, series) == lib.HL_OK:
-                number = None if series.number != series.number else series.number
-                columns, rows, slices = series.dimensions
-                many.append(FileSeries(text_of(series.uid), number, text_of(series.modality),
-                                       text_of(series.description), (columns, rows, slices), bool(series.chosen)))
-        if lib.hl_volume_get_selection(self._handle, selection) != lib.HL_OK:
-            raise RuntimeError("the volume is not known")
-        segment, segments = _sized("segment"), list[FileSegment]()
-        for n in range(lib.hl_volume_segment_count(self._handle)):
-            if lib.hl_volume_get_segment(self._handle, n, segment) == lib.HL_OK:
-                red, green, blue = segment.srgb
-                color = (red, green, blue) if segment.has_color else None
-                segments.append(FileSegment(segment.value, text_of(segment.name), segment.layer, color))
-        channel, channels = _sized("channel"), list[FileChannel]()
-        for n in range(selection.channels):
-            if lib.hl_volume_get_channel(self._handle, n, channel) == lib.HL_OK:
-                low, high = channel.window
-                red, green, blue = channel.srgb
-                channels.append(FileChannel(text_of(channel.name), (red, green, blue) if channel.has_color else None,
-                                            (low, high) if low == low else None, bool(channel.chosen)))
-        if all(one.name == "" and one.color is None and one.window is None for one in channels):
-            channels = []
-        words = ("times", "time", "channels", "channel", "levels", "level")
-        return {word: getattr(selection, word) for word in words} | {
-            "arrays": tuple(arrays), "series": tuple(many), "segments": tuple(segments), "channel_list": tuple(channels)}
 
     def __repr__(self) -> str:
         size = "x".join(map(str, self.dimensions))
@@ -673,59 +429,7 @@ class Volume:
             options = self._loading[0]
             for word in ("spacing", *_OF_FILES):
                 setattr(struct, word, getattr(options, word))
-        changes = dict(self._changes)
-        if (name := changes.pop("name", None)) is not None:
-            if not isinstance(name, str):
-                raise TypeError(f"{place}name: {name!r} is no text")
-            keep.append(text := ffi.new("char[]", name.encode()))
-            struct.name = text
-        if (given := changes.pop("mask", None)) is not None:
-            mask.fill(struct, given, as_volume, keep, place)
-        if (labels := changes.pop("labels", None)) is not None and labels is not False:
-            mask.fill_labels(struct, labels, self._handle, keep, place)
-        if (look := changes.pop("look", None)) is not None and self._base is not None:
-            self._take_look(struct, look, keep)
-        if (iso := changes.pop("iso", None)) is not None:
-            isosurface.fill(struct, iso, keep, place)
-            changes.setdefault("transfer_function", TransferFunction([(0, 0)]) if struct.iso_count > 0 else None)
-        if (cut := changes.pop("cuts", None)) is not None:
-            cuts.fill(struct, cut, keep, place)
-        if (function := changes.pop("transfer_function", None)) is not None:
-            if not isinstance(function, TransferFunction):
-                raise TypeError(f"{place}transfer_function: {function!r} is no TransferFunction")
-            function._fill(struct.transfer_function, keep)
-        if "clip" in changes:
-            clip = changes.pop("clip")
-            struct.clipped = clip is not None
-            if clip is not None:
-                if len(clip) != 2:
-                    raise ValueError(f"{place}clip: {clip!r} is not ((x, y, z), (x, y, z))")
-                struct.clip_min = _settings.numbers_of(f"{place}clip[0]", clip[0])
-                struct.clip_max = _settings.numbers_of(f"{place}clip[1]", clip[1])
-                if not all(low < high for low, high in zip(struct.clip_min, struct.clip_max, strict=True)):
-                    raise ValueError(f"{place}clip: {clip!r}: the first corner is not below the second")
-        if (scale := changes.pop("scale", None)) is not None:
-            struct.scale = 1.0
-            struct.axis_scale = ([_settings.number(f"{place}scale", scale)] * 3 if np.ndim(scale) == 0
-                                 else _settings.numbers_of(f"{place}scale", scale))
-        material = _settings.taken(changes, _MATERIAL)
-        _settings.fill(place, struct.material, lib.HL_SETTINGS_MATERIAL, material)
-        _settings.fill(place, struct, lib.HL_SETTINGS_VOLUME, changes)
-
-
-    def _take_look(self, struct: Any, look: Any, keep: list[Any]) -> None:
-        """Give an hl_scene_volume the transfer function and shading of a look."""
-        function, shading = ffi.new("hl_transfer_function *"), ffi.new("hl_shading *", struct.shading)
-        call(lib.hl_transfer_function_look, context, str(look).encode(), self._handle, function, shading)
-        keep += [function, ffi.gc(function, lambda made: lib.hl_transfer_function_release(context, made))]
-        struct.transfer_function, struct.shading = function[0], shading[0]
-
-
-def _sized(noun: str) -> Any:
-    """A struct hl_volume_`noun` that knows its size."""
-    struct = ffi.new(f"hl_volume_{noun} *")
-    struct.struct_size = ffi.sizeof(f"hl_volume_{noun}")
-    return struct
+        fill_look(struct, self._changes, self._handle, self._base is not None, as_volume, keep, place)
 
 
 def index_of(word: str, value: Any) -> int:
