@@ -286,10 +286,109 @@ def test_yt(pictures):
     levels = [{"left_edge": [0, 0, 0], "right_edge": [1, 1, 1], "level": 0, "dimensions": [16, 16, 16], ("gas", "density"): (np.ones((16, 16, 16)), "g/cm**3")},
               {"left_edge": [0.25] * 3, "right_edge": [0.5] * 3, "level": 1, "dimensions": [8, 8, 8], ("gas", "density"): (np.full((8, 8, 8), 5.0), "g/cm**3")}]
     refined = yt.load_amr_grids(levels, [16, 16, 16])
-    fine, coarse = (np.asarray(module.volume_of(refined, ("gas", "density"), log=False, **words)) for words in ({}, {"most_voxels": 5000}))
-    assert fine.shape == (32, 32, 32) and coarse.shape == (16, 16, 16) and fine[12, 12, 12] == 5 and fine[2, 2, 2] == 1
+    adaptive = module.volume_of(refined, ("gas", "density"), log=False)
+    box = np.asarray(module.volume_of(refined, ("gas", "density"), log=False, level=1))
+    assert adaptive.dimensions == box.shape == (32, 32, 32) and np.array_equal(adaptive.affine[:3, 3], [1 / 64] * 3)
+    assert abs(np.asarray(adaptive)[[12, 2], [12, 2], [12, 2]] - [5, 1]).max() < 1e-6
+    away = np.ones((32, 32, 32), bool)
+    away[4:20, 4:20, 4:20] = False  # around the patch the field turns from 1 to 5
+    away[11:13, 11:13, 11:13] = True
+    assert abs(np.asarray(adaptive) - box)[away].max() < 1e-6
     if pictures is not None:
         halflight.render(volume, cmap="inferno", shade="none", size=(400, 300)).save(pictures / "yt.png")
+
+
+RAMSES_INFO = """ncpu        = 1
+ndim        = 3
+levelmin    = 4
+levelmax    = 6
+ngridmax    = 100000
+nstep_coarse= 1
+
+boxlen      = 2
+time        = 0
+aexp        = 1
+H0          = 1
+omega_m     = 1
+omega_l     = 0
+omega_k     = 0
+omega_b     = 0
+unit_l      = 1
+unit_d      = 1
+unit_t      = 1
+
+ordering type=hilbert
+ DOMAIN ind_min ind_max
+ 1 0.0 2097152.0
+"""
+
+
+def write_ramses(folder, is_split, density):
+    """An output of RAMSES, of one processor, with the octs of six levels. The octs of level n are 2^-(n-1) wide in the box from 0 to 1, and
+    `is_split` tells which cells of levels 4 and 5 hold octs of the next level. It gives the number of octs of each level."""
+    folder.mkdir()
+    (folder / "info_00001.txt").write_text(RAMSES_INFO)
+    octs = [np.array([[0.5] * 3])]
+    corners = np.array([[n & 1, n >> 1 & 1, n >> 2] for n in range(8)]) - 0.5
+    for level in range(1, 6):
+        cells = (octs[-1][:, None] + corners * 0.5**level).reshape(-1, 3)
+        octs.append(cells if level < 4 else cells[is_split(level, cells)])
+    counts = [len(one) for one in octs]
+
+    def record(file, values, kind):
+        body = np.asarray(values, kind).tobytes()
+        file.write(np.int32(len(body)).tobytes() + body + np.int32(len(body)).tobytes())
+
+    with open(folder / "amr_00001.out00001", "wb") as file:
+        for values, kind in ((1, "i4"), (3, "i4"), ([1] * 3, "i4"), (6, "i4"), (100000, "i4"), (0, "i4"), (sum(counts), "i4"), (2, "f8"), ([1] * 3, "i4"),
+                             (0, "f8"), (1, "f8"), (0, "f8"), ([0] * 6, "f8"), ([0] * 6, "f8"), ([1] * 2, "i4"), ([0] * 3, "f8"), ([0] * 7, "f8"),
+                             ([0] * 5, "f8"), (0, "f8"), ([0] * 6, "i4"), ([0] * 6, "i4"), (counts, "i4"), ([0] * 60, "i4"), ([0] * 5, "i4")):
+            record(file, values, kind)
+        record(file, np.frombuffer(b"hilbert".ljust(128), "S1"), "S1")
+        for values, kind in (([0, 1 << 21], "f8"), (0, "i4"), (0, "i4"), (1, "i4")):  # keys of the domains; son, flag1, cpu_map
+            record(file, values, kind)
+        for places in octs:
+            for kind, columns in (("i4", [np.arange(len(places))] * 3), ("f8", places.T), ("i4", [np.zeros(len(places))] * 31)):
+                for column in columns:
+                    record(file, column, kind)
+    with open(folder / "hydro_00001.out00001", "wb") as file:
+        for values, kind in ((1, "i4"), (5, "i4"), (3, "i4"), (6, "i4"), (0, "i4"), (1.4, "f8")):
+            record(file, values, kind)
+        for level, places in enumerate(octs, 1):
+            record(file, level, "i4")
+            record(file, len(places), "i4")
+            for corner in corners:
+                for variable in range(5):
+                    record(file, density(places + corner * 0.5**level) if variable == 0 else np.zeros(len(places)), "f8")
+    return counts
+
+
+def test_yt_octree(tmp_path):
+    """A linear density on an octree of RAMSES is the same linear field in the volume, across all borders of levels."""
+    yt = pytest.importorskip("yt")
+    yt.set_log_level(50)
+
+    def density(places):
+        return 1 + places @ [1, 2, 3]
+
+    def is_split(level, cells):
+        return np.linalg.norm(cells - [0.5, 0.55, 0.45], axis=1) < (0.3 if level == 4 else 0.17)
+
+    counts = write_ramses(tmp_path / "output_00001", is_split, density)
+    assert counts[3] == 512 and min(counts[4:]) > 100
+    data = yt.load(str(tmp_path / "output_00001"))
+    module = code_of("yt")
+    volume = module.volume_of(data, ("ramses", "Density"), log=False)
+    assert volume.dimensions == (64, 64, 64) and np.allclose(volume.info().spacing, 1 / 64)
+    z, y, x = (np.indices((64, 64, 64)) + 0.5) / 64
+    right = 1 + x + 2 * y + 3 * z
+    within = (slice(16, 48),) * 3  # at the box's faces the values go on as they are
+    assert abs(np.asarray(volume) - right)[within].max() < 2e-6
+    part = module.volume_of(data.sphere([0.5, 0.55, 0.45], (0.25, "code_length")), ("ramses", "Density"), log=False)
+    assert max(part.dimensions) <= 40
+    assert np.array_equal(np.asarray(part.affine)[:3, 3] * 64 % 4, [0.5] * 3)
+    with pytest.raises(ValueError, match="no cell"):
+        module.volume_of(data.box([0.001] * 3, [0.002] * 3), ("ramses", "Density"))
 
 
 def test_pynbody(pictures):
