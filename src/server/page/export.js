@@ -38,14 +38,14 @@ export function download(blob, name) {
 }
 
 // Returns a function that puts a text into the clipboard or, where this is not allowed, into a file.
-export function copier(report, title) {
+export function copier(report, store) {
   return async (text, what) => {
     try {
       await navigator.clipboard.writeText(text);
       report(`${what} is in the clipboard`);
     } catch {
       const extension = { "the scene": "json", "the program": "py" }[what] ?? "sh";
-      download(new Blob([text], { type: "text/plain" }), `${stem(title)}.${extension}`);
+      download(new Blob([text], { type: "text/plain" }), `${stem(store.title)}.${extension}`);
       report(`${what} is saved, as the clipboard is not allowed`);
     }
   };
@@ -53,7 +53,7 @@ export function copier(report, title) {
 
 export function exportPanel({ store, start, channel, report, failed, copy }) {
   const { element, body } = section("Save", false);
-  const name = stem(start.title);
+  const name = () => stem(store.title);
   let format = "png";
   const side = (label) => make("input", { type: "number", min: 16, max: 8192, step: 1, "aria-label": label });
   const width = side("Width in pixels"), height = side("Height in pixels");
@@ -104,8 +104,8 @@ export function exportPanel({ store, start, channel, report, failed, copy }) {
     try {
       const type = format === "exr" ? "exr" : "png";
       const frame = await channel.fetchFrame(scene, { format: type, depth: format === "png16" ? 16 : 8, metadata: !bare.checked, lane: "-save", ...over() });
-      if (frame !== null) download(frame.blob, `${name}.${type}`);
-      report(frame === null ? "cancelled by another save" : `saved ${name}.${type}`);
+      if (frame !== null) download(frame.blob, `${name()}.${type}`);
+      report(frame === null ? "cancelled by another save" : `saved ${name()}.${type}`);
     } catch (error) {
       failed(error);
     }
@@ -114,8 +114,8 @@ export function exportPanel({ store, start, channel, report, failed, copy }) {
 
   const save = button("save picture", savePicture, { class: "primary" });
   const saveScene = () => {
-    download(new Blob([sceneText(store.scene)], { type: "application/json" }), `${name}.json`);
-    report(`saved ${name}.json`);
+    download(new Blob([sceneText(store.scene)], { type: "application/json" }), `${name()}.json`);
+    report(`saved ${name()}.json`);
   };
   body.append(
     row(make("span", { class: "name" }, "Size"), make("span", { class: "pair" }, width, "×", height)), sizes.element, kind.element,
@@ -124,8 +124,8 @@ export function exportPanel({ store, start, channel, report, failed, copy }) {
     row(make("span", { class: "name" }, "Scene"), make("span", { class: "buttons" }, button("save scene", saveScene),
       button("copy scene", () => copy(sceneText(store.scene), "the scene")))),
     row("", make("span", { class: "buttons" },
-      button("copy command", () => copy(commandLine(store.scene, start.title, over()), "the command")),
-      button("copy Python", () => copy(pythonProgram(store.scene, start.title, over()), "the program")))),
+      button("copy command", () => copy(commandLine(store.scene, store.title, over()), "the command")),
+      button("copy Python", () => copy(pythonProgram(store.scene, store.title, over()), "the program")))),
     same);
   function update() {
     for (const [input, key] of [[width, "width"], [height, "height"]])

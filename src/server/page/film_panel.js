@@ -104,7 +104,7 @@ class Film {
 }
 
 // The buttons that make the film, its progress, and a button that ends it.
-function maker(film, { start, channel }) {
+function maker(film, { store, channel }) {
   const bar = make("progress", { max: 1, value: 0, hidden: true, "aria-label": "The film" }), told = make("p", { class: "facts", role: "status" });
   const go = button("make film", run, { class: "primary" }), stop = button("stop", () => channel.stopFilm(), { hidden: true });
 
@@ -117,7 +117,7 @@ function maker(film, { start, channel }) {
   }
 
   async function run() {
-    const began = performance.now(), wanted = film.wanted, name = `${stem(start.title)}.${wanted.format}`;
+    const began = performance.now(), wanted = film.wanted, name = `${stem(store.title)}.${wanted.format}`;
     film.playing = false;
     go.hidden = true;
     stop.hidden = bar.hidden = false;
@@ -138,7 +138,7 @@ function maker(film, { start, channel }) {
 }
 
 export function filmPanel(viewer) {
-  const { store, start, channel, report, copy, find, root } = viewer, film = new Film(viewer);
+  const { store, channel, report, copy, find, root } = viewer, film = new Film(viewer);
   const { element, body } = section("Film", false);
   const number = (label, key, low, high) => make("input", {
     type: "number", min: low, max: high, step: 1, value: film[key], "aria-label": label,
@@ -178,8 +178,8 @@ export function filmPanel(viewer) {
     row(make("span", { class: "name" }, "Keys"), button("key of the camera now", () => addKey(CAMERA, store.scene.camera))),
     names, row("", path), row("", button("key of this number now", addNumber)),
     ...(channel.film ? [kind.element, ...maker(film, viewer)] : []),
-    row("", button("copy animate command", () => copy(animateCommand(film.scene, start.title, film.wanted), "the command"))),
-    make("p", { class: "facts" }, "Choose a frame below the picture, turn the camera or move a slider, and add its key: ◆ beside the slider."));
+    row("", button("copy animate command", () => copy(animateCommand(film.scene, store.title, film.wanted), "the command"))),
+    make("p", { class: "facts" }, "Choose a frame below the picture. Turn the camera, drag a light or move a slider. Then add a key: the button above for the camera, ◆ in the row of the slider or of the light's place."));
   film.changed = () => { strip.update(); turn.update(); };
   kind.update();
   film.changed();

@@ -2,7 +2,7 @@
 
 import { HttpChannel } from "./http_channel.js";
 import { isLink } from "./link.js";
-import { isOfOpen, keepSession, keptSession, restoreFrom } from "./session.js";
+import { followTitle, isOfOpen, keepSession, keptSession, restoreFrom } from "./session.js";
 import { mount } from "./viewer.js";
 
 let channel = null, shown = { source: null, keeping: null };
@@ -18,9 +18,9 @@ function show(start, source = null, kept = null) {
     channel = new HttpChannel(start.opened, source);
   }
   shown = { source, keeping: new AbortController() };
-  document.title = `${start.title} · Halflight`;
   const viewer = mount(document.body, channel, start, { keyboard: document, reopen: show, source, kept, restore: (file) => restoreFrom(file, viewer, channel, reopen), startAfresh: () => show(start, source) });
   globalThis.halflight = viewer; // for the console, and for tests
+  followTitle(viewer.store);
   keepSession(viewer.store, start, source, shown.keeping.signal);
   if (focused) document.getElementById(focused)?.focus();
   followAddress();
@@ -54,7 +54,7 @@ async function begin() {
       const start = await first.open(kept.source);
       if (isOfOpen(kept.scene, start)) return show(start, kept.source, kept);
     } catch (error) {
-      return show(await first.start()).report(`${kept.title} cannot be opened again: ${error.message}`);
+      return show(await first.start()).report(`${kept.whole} cannot be opened again: ${error.message}`);
     }
   }
   const start = await first.start(), goesOn = kept !== null && isOfOpen(kept.scene, start);

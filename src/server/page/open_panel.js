@@ -59,7 +59,7 @@ export function openPanel(viewer) {
     try {
       const opened = await open();
       if (!added) return reopen(opened, path);
-      const both = await channel.add(store.scene, opened, start.title);
+      const both = await channel.add(store.scene, opened, store.title);
       return reopen(both, sourceOfBoth(viewer, path), { scene: both.scene, marks: store.marks, page: store.page, history: store.historyBefore });
     } catch (error) {
       failed(error);

@@ -8,9 +8,10 @@ const KEY = "halflight-session", VERSION = 1;
 const KEEP_AFTER = 300; // milliseconds without a change
 
 // source: the path, or the list of paths, that the viewer's own list has opened; null for the scene that the
-// viewer began with. own: those of them that the scene is of, where the last ones are undone.
-export const sessionOf = (store, { title }, source) =>
-  ({ halflight_session: VERSION, title, source, own: store.source, scene: store.scene, marks: store.marks, page: store.page });
+// viewer began with. own: those of them that the scene is of, where the last ones are undone. title and whole: what the scene's files, and
+// all files that are open, are called.
+export const sessionOf = (store, { title: whole }, source) =>
+  ({ halflight_session: VERSION, title: store.title, whole, source, own: store.source, scene: store.scene, marks: store.marks, page: store.page });
 
 // A path, or a list of paths that are opened together.
 const isSource = (source) => [source].flat().every((path) => typeof path === "string");
@@ -18,9 +19,9 @@ const isSource = (source) => [source].flat().every((path) => typeof path === "st
 // A session; the parts on which the page relies are checked. Null: the object is no session.
 export function readSession(object) {
   if (object === null || typeof object !== "object" || object.halflight_session !== VERSION || typeof object.scene?.camera !== "object") return null;
-  const { source = null, own = null, title = "", scene, page = {} } = object, marks = Array.isArray(object.marks) ? object.marks.filter(isMark) : [];
+  const { source = null, own = null, title = "", whole = title, scene, page = {} } = object, marks = Array.isArray(object.marks) ? object.marks.filter(isMark) : [];
   const known = typeof page === "object" && page !== null && !Array.isArray(page) ? page : {};
-  return { source: isSource(source) ? source : null, own: isSource(own) ? own : null, title: String(title), scene, marks, page: known };
+  return { source: isSource(source) ? source : null, own: isSource(own) ? own : null, title: String(title), whole: String(whole), scene, marks, page: known };
 }
 
 // The names of the files that a scene is made of, as texts: of the volumes, and of the meshes.
@@ -61,13 +62,19 @@ function keep(store, start, source) {
     }
 }
 
+// The window is called as the files of the scene are.
+export function followTitle(store) {
+  const follow = () => { document.title = `${store.title} · Halflight`; };
+  store.listen((_, name) => { if (name === "history") follow(); });
+  follow();
+}
+
 export function keepSession(store, start, source, signal) {
   let timer = 0;
   const now = () => { clearTimeout(timer); keep(store, start, source); };
-  store.listen(() => {
-    clearTimeout(timer);
-    timer = setTimeout(now, KEEP_AFTER);
-  });
+  const soon = () => { clearTimeout(timer); timer = setTimeout(now, KEEP_AFTER); };
+  soon(); // what was opened or added, too
+  store.listen(soon);
   addEventListener("pagehide", now, { signal });
   signal.addEventListener("abort", () => clearTimeout(timer));
 }
@@ -104,6 +111,6 @@ export async function restoreFrom(file, { store, start }, channel, reopen = () =
   if (session === null && object?.halflight === undefined) throw new Error(`${file.name} is neither a session nor a scene`);
   if (isOfOpen(scene, start)) store.replace({ ...session, source: session?.own ?? store.source, scene: await channel.completeScene(scene) });
   else if (session === null) return "other";
-  else if (!(await reopen(session))) throw new Error(`the session is of ${session.title}, and ${start.title} is open: open that first`);
+  else if (!(await reopen(session))) throw new Error(`the session is of ${session.title}, and ${store.title} is open: open that first`);
   return "opened";
 }

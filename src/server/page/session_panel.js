@@ -50,7 +50,7 @@ export function sessionPanel(viewer) {
   const { store, start, source, report, openSession } = viewer, { element, body } = section("Session", false);
   const bookmarks = bookmarkList(viewer);
   const save = () => {
-    const name = `${stem(start.title)}-session.json`;
+    const name = `${stem(store.title)}-session.json`;
     download(new Blob([JSON.stringify(sessionOf(store, start, source ?? null), null, 1)], { type: "application/json" }), name);
     report(`saved ${name}`);
   };

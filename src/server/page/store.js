@@ -7,9 +7,10 @@ import { reshaped } from "./camera.js";
 const MOST_STEPS = 100; // the most steps that can be undone, for each history
 const UNREMEMBERED = ["camera", "size", "time", "page"]; // changes that are no steps of the main history
 
-// What is undone: everything of the scene but the camera and the picture's size, the marks, and what the scene's files were opened by.
-function lasting({ scene: { camera, image: { width, height, ...image }, ...rest }, marks, source }) {
-  return { rest, image, marks, source };
+// What is undone: everything of the scene but the camera and the picture's size, the marks, and what the scene's files are called and
+// were opened by.
+function lasting({ scene: { camera, image: { width, height, ...image }, ...rest }, marks, source, title }) {
+  return { rest, image, marks, source, title };
 }
 
 const isSame = (a, b) => Object.keys({ ...a, ...b }).every((key) => a[key] === b[key]);
@@ -26,12 +27,13 @@ export class Store {
   #lastCamera = -1; // number of the gesture in which the camera was last moved
 
   // marks: a person's measures and texts (marks.js). page: settings that are no part of pictures: layout,
-  // crosshair, bookmarks. source: by which the scene's files are opened (http_channel.js, open()), or null.
-  constructor(scene, { marks = [], page = {}, history = null, source = null } = {}) {
+  // crosshair, bookmarks. source: by which the scene's files are opened (http_channel.js, open()), or null. title: what they are called.
+  constructor(scene, { marks = [], page = {}, history = null, source = null, title = "" } = {}) {
     this.scene = { volumes: [], ...scene }; // a scene may consist of meshes only
     this.marks = marks;
     this.page = page;
     this.source = source;
+    this.title = title;
     if (history !== null) [this.#undo, this.#redo, this.#undoCamera, this.#redoCamera] = history;
   }
 
@@ -94,7 +96,7 @@ export class Store {
   }
 
   // Replaces everything, as one step, by a session or a scene that was opened. The picture keeps its size.
-  replace({ scene, marks = this.marks, page = this.page, source = this.source }) {
+  replace({ scene, marks = this.marks, page = this.page, source = this.source, title = this.title }) {
     const { width, height } = this.scene.image;
     this.beginGesture();
     this.#remember("replace");
@@ -103,6 +105,7 @@ export class Store {
     this.marks = marks;
     this.page = page;
     this.source = source;
+    this.title = title;
     this.endGesture();
     this.#tell("history");
   }
@@ -160,10 +163,11 @@ export class Store {
 
   #step(from, to) {
     if (from.length === 0) return;
-    const now = lasting(this), { rest, image, marks, source } = from.pop();
+    const now = lasting(this), { rest, image, marks, source, title } = from.pop();
     to.push(now);
     this.marks = marks;
     this.source = source ?? null;
+    this.title = title ?? this.title;
     this.#last = { name: "", gesture: -1 };
     // A step of marks only leaves the scene, and so its picture.
     if (!isSame(rest, now.rest) || !isSame(image, now.image)) {

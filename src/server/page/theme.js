@@ -1,4 +1,4 @@
-// Dark or light: the system's choice until the user has one.
+// Dark or light: as the system has it, until the user chooses.
 
 const KEY = "halflight-theme";
 
@@ -10,12 +10,15 @@ function stored() {
   }
 }
 
-// root: the viewer's element, which carries the theme. Returns the function that changes from one to the other.
-export function installTheme(root, changed) {
+// root: the viewer's element, which carries the theme. changed() is called after each change, until the signal. Returns the function
+// that changes from one to the other.
+export function installTheme(root, changed, signal) {
   const apply = (theme) => { root.dataset.theme = theme; };
   const notebook = document.body.dataset.jpThemeLight; // JupyterLab has a theme of its own
-  const light = notebook !== undefined ? notebook === "true" : matchMedia("(prefers-color-scheme: light)").matches;
-  apply(stored() ?? (light ? "light" : "dark"));
+  const system = matchMedia("(prefers-color-scheme: light)"), isLight = () => (notebook !== undefined ? notebook === "true" : system.matches);
+  const follow = () => apply(stored() ?? (isLight() ? "light" : "dark"));
+  follow();
+  system.addEventListener("change", () => { follow(); changed(); }, { signal });
   return () => {
     const theme = root.dataset.theme === "dark" ? "light" : "dark";
     apply(theme);

@@ -129,7 +129,7 @@ async function frameEverything({ store, channel, failed }) {
 const nearestOf = ({ volumes }) => NEAR * Math.max(0, ...volumes.filter(Boolean).map((volume) => length(subtract(worldBox(volume).max, worldBox(volume).min))));
 
 // The functions of keys and buttons that do not move the camera.
-function actionsOf(viewer, find, root, update) {
+function actionsOf(viewer, find, root, update, signal) {
   const { store, overlay } = viewer;
   return {
     reset: viewer.frameEverything,
@@ -148,8 +148,11 @@ function actionsOf(viewer, find, root, update) {
     full: () => (document.fullscreenElement ? document.exitFullscreen() : root.requestFullscreen().catch(() => viewer.report("This browser has no full screen here."))),
     cuts: () => viewer.toggleCuts(),
     compare: () => viewer.comparison.compare("off"),
-    theme: installTheme(root, () => { update(); overlay.draw(); }),
-    help: () => find("help").showModal(),
+    theme: installTheme(root, () => { update(); overlay.draw(); }, signal),
+    help: () => {
+      find("help").showModal();
+      find("help").scrollTop = 0; // the focus lies on the button at the end
+    },
     layout: (layout) => () => { if (viewer.slices.available) store.setPage({ layout }); },
     cancel: () => viewer.marking.cancel(),
     finish: () => viewer.marking.finish(),
@@ -182,7 +185,7 @@ function followFiles(store, whole, source, reopen) {
   store.listen((scene, name) => {
     const same = name !== "history" || isOfSameFiles(scene, before);
     before = scene;
-    if (!same) reopen(whole, source, { scene, marks: store.marks, page: store.page, history: store.history, own: store.source });
+    if (!same) reopen(whole, source, { scene, marks: store.marks, page: store.page, history: store.history, own: store.source, title: store.title });
   });
 }
 
@@ -198,12 +201,11 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
   const root = element.firstElementChild, find = (id) => root.querySelector(`#${id}`);
   const ended = new AbortController();
   const start = startOf(kept?.scene ?? whole.scene, whole);
-  const store = new Store(kept?.scene ?? start.scene, { ...kept, source: kept?.own ?? source }), report = messageBox(find("message"));
-  const viewer = { store, start, channel, smallPicture: smallPictures(channel), report, reopen, root, find, source, startAfresh, choose, copy: copier(report, start.title), current: { volume: 0, light: 0 }, address, atRest: [], frames: () => frames };
+  const store = new Store(kept?.scene ?? start.scene, { ...kept, source: kept?.own ?? source, title: kept?.title ?? whole.title }), report = messageBox(find("message"));
+  const viewer = { store, start, channel, smallPicture: smallPictures(channel), report, reopen, root, find, source, startAfresh, choose, copy: copier(report, store), current: { volume: 0, light: 0 }, address, atRest: [], frames: () => frames };
   const connection = watchConnection(find("view"), channel, report, () => { frames.move(); viewer.slices.update(); });
   viewer.failed = connection.failed;
   if (restore !== null) viewer.openSession = (file) => openSession(file, restore, viewer);
-  find("title").textContent = start.title;
   followSize(store, find("view"), ended.signal);
   followGestures(root, store, ended.signal);
   viewer.overlay = new Overlay(find("overlay"), viewer);
@@ -221,6 +223,7 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
   find("panels").append(...parts.map(([name, made]) => make("section", { class: "part", "aria-label": name }, make("h2", {}, name), ...made.map((panel) => panel.element))));
   const update = () => {
     panels.forEach((panel) => panel.update());
+    find("title").textContent = store.title;
     find("undo").disabled = !store.canUndo;
     find("redo").disabled = !store.canRedo;
   };
@@ -240,7 +243,7 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
     }
   });
   new Pointer(find("view"), store, nearestOf(start));
-  const reveal = revealIn(root), actions = actionsOf(viewer, find, root, update);
+  const reveal = revealIn(root), actions = actionsOf(viewer, find, root, update, ended.signal);
   helpSheet(find("help"), installShortcuts(store, { target: keyboard, signal: ended.signal }, find("view"), actions, nearestOf(start)));
   const buttons = { undo: () => store.undo(), redo: () => store.redo(), "show-help": actions.help, theme: actions.theme, "show-lights": actions.lights, reset: actions.reset, probe: actions.probe, sidebar: actions.sidebar, full: actions.full, open: () => reveal("Open"), save: () => reveal("Save") };
   for (const [id, action] of Object.entries(buttons)) find(id).addEventListener("click", action);

@@ -3,7 +3,7 @@
 
 import { chosenFiles, droppedFiles } from "./dropped.js";
 import { heldFiles, isFolder, part } from "./parts.js";
-import { isOfOpen, keepSession, keptSession, restoreFrom } from "./session.js";
+import { followTitle, isOfOpen, keepSession, keptSession, restoreFrom } from "./session.js";
 import { mount } from "./viewer.js";
 import { WorkerChannel } from "./worker_channel.js";
 
@@ -51,15 +51,15 @@ function show(start, session = null) {
   globalThis.halflight?.end();
   keeping?.abort();
   keeping = new AbortController();
-  document.title = `${start.title} · Halflight`;
   globalThis.halflight = mount(document.body, viewerChannel(), start, { keyboard: document, kept: session, address: location.href.split("#")[0], restore: openSession, startAfresh: () => show(start), reopen: (whole, _, state) => show(whole, state), choose: (files) => take(chosenFiles(files)) });
+  followTitle(globalThis.halflight.store);
   keepSession(globalThis.halflight.store, start, null, keeping.signal);
   if (focused) document.getElementById(focused)?.focus();
 }
 
 // The session of before the page was loaded, once all its files are open again.
 function keptOf(start) {
-  if (kept === null || kept.title !== start.title || !isOfOpen(kept.scene, start)) return null;
+  if (kept === null || kept.whole !== start.title || !isOfOpen(kept.scene, start)) return null;
   const session = kept;
   kept = null;
   return session;
@@ -78,10 +78,10 @@ async function open({ contents, path, title }) {
 
 // Adds files to what is open.
 async function add({ contents, path, title }) {
-  const { store, start } = globalThis.halflight;
+  const { store } = globalThis.halflight;
   say(`opening ${title} …`);
   try {
-    const both = await channel.join(store.scene, contents, path, `${start.title} + ${title}`);
+    const both = await channel.join(store.scene, contents, path, `${store.title} + ${title}`);
     show(both, keptOf(both) ?? { scene: both.scene, marks: store.marks, page: store.page, history: store.historyBefore });
   } catch (error) {
     say(error.message);
@@ -112,4 +112,4 @@ const begun = begin();
 begun.catch((error) => say(`The page cannot begin: ${error.message}`));
 const held = await heldFiles();
 if (HELD_SCENE in held) await open({ contents: held, path: HELD_SCENE, title: document.title });
-else if (kept !== null) say(`Drop ${kept.title} again to go on with what you did.`);
+else if (kept !== null) say(`Drop ${kept.whole} again to go on with what you did.`);
