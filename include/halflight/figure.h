@@ -63,7 +63,9 @@ HL_API void hl_overlay_defaults(hl_overlay *overlay);
 
 /* A picture on the page. */
 typedef struct hl_figure_panel {
-  const hl_image *image; /* borrowed; null: nothing is there but the overlay */
+  const hl_image
+      *image; /* borrowed; null: nothing is there but the overlay. On a transparent page it then has
+               * the colours that it has over the scene's picture, so that it can be laid over that */
   const hl_scene *scene; /* borrowed; the scene of the picture, for its background, exposure, camera and
                           * volumes; null: the overlay may hold annotations in fractions and a letter alone */
   double left, top, width, height; /* on the page, millimetres from its upper left */

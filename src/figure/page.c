@@ -126,7 +126,8 @@ static double luma(const double linear[3]) { /* BT.709 */
 static hl_ink ink_for(cairo_t *cairo, const hl_figure *figure, const hl_figure_panel *panel) {
   const double *ground = figure->background;
   bool paper = figure->background_transparent != 0;
-  if (panel->image != NULL && panel->scene != NULL) {
+  const bool over_picture = panel->image != NULL || paper;
+  if (over_picture && panel->scene != NULL) {
     const hl_scene_description *scene = hl_scene_describe(panel->scene);
     paper = scene->background_transparent && paper;
     if (!scene->background_transparent) ground = scene->background;

@@ -291,6 +291,7 @@ static hl_renderer **quick_renderer_of(server_page *page, const hl_scene *scene)
 static hl_status render(server *s, server_page *page, hl_renderer **renderer, const hl_scene *scene,
                         const frame_request *request, server_answer *answer, hl_error *error) {
   const hl_scene_description *d = hl_scene_describe(scene);
+  if (strcmp(request->format, "overlay") == 0) return write_overlay(s, scene, request, answer, error);
   hl_image *image = NULL;
   hl_render_statistics statistics = {.struct_size = sizeof statistics};
   const bool is_new = *renderer == NULL;

@@ -127,12 +127,13 @@ typedef struct frame_request {
   const char *page;
   unsigned long long number;
   long long opened;      /* number of the open scene whose volumes the request's scene has */
-  const char *format;    /* "jpeg", "png", "exr" or "npy"; "depth": in place of a picture, the depth at the
-                          * picture's middle */
+  const char *format;    /* "jpeg", "png", "exr" or "npy"; in place of a picture, "depth": the depth at the
+                          * picture's middle; "overlay": a PNG of what is drawn over the picture */
   int quality;           /* quality of a JPEG */
   int depth;             /* bits of a PNG's channels: 8 or 16 */
   int metadata;          /* 1: a PNG carries its scene; 0: it does not */
   int scale_bar, legend; /* 1: drawn over a PNG of 8 bits */
+  int axes;              /* an hl_axes, which is drawn so, too */
   const char *unit;      /* unit of lengths, where the scene's files tell none; null: it is not known */
   int moving;     /* 1: a quick frame, of coarser volumes where the sheets are wide; 0: the scene as it is */
   long long base; /* number of the page's frame from whose scene the text gives the difference; 0: the text is
@@ -229,6 +230,9 @@ hl_status render_depth(server_page *page, const hl_scene *scene, server_answer *
 /* Finds out, before the picture is made, whether the overlays that the request wants can be drawn. */
 hl_status check_overlay(const server *s, const hl_scene *scene, const frame_request *request,
                         hl_error *error);
+/* Answers with the overlays alone, as a transparent PNG of the picture's size. */
+hl_status write_overlay(const server *s, const hl_scene *scene, const frame_request *request,
+                        server_answer *answer, hl_error *error);
 /* Answers with the image as a file of the request's format. */
 hl_status write_picture(const server *s, const hl_scene *scene, const hl_image *image,
                         const frame_request *request, server_answer *answer, hl_error *error);

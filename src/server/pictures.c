@@ -25,7 +25,9 @@ static hl_status write_jpeg(const hl_image *image, const hl_image_write_options 
   return status;
 }
 
-static bool has_overlay(const frame_request *request) { return request->scale_bar || request->legend; }
+static bool has_overlay(const frame_request *request) {
+  return request->scale_bar || request->legend || request->axes != HL_AXES_NONE;
+}
 
 /* Makes the page of a figure that the picture fills, with the overlays that the request wants. In a
  * perspective picture the scale bar is right at the depth of the camera's target. */
@@ -38,6 +40,7 @@ static void make_figure(const hl_image *image, const hl_scene *scene, const fram
   panel->overlay.scale_bar = request->scale_bar;
   panel->overlay.scale_bar_depth = HL_DEPTH_OF_TARGET;
   panel->overlay.legend = request->legend;
+  panel->overlay.axes = (hl_axes)request->axes;
   panel->overlay.world_unit = request->unit;
 }
 
@@ -55,6 +58,25 @@ hl_status check_overlay(const server *s, const hl_scene *scene, const frame_requ
     status = hl_figure_check(context, &figure, error);
   }
   hl_image_destroy(trial);
+  return status;
+}
+
+hl_status write_overlay(const server *s, const hl_scene *scene, const frame_request *request,
+                        server_answer *answer, hl_error *error) {
+  const hl_scene_description *d = hl_scene_describe(scene);
+  hl_context *context = s->options.context;
+  hl_image *place = NULL;
+  hl_status status = hl_image_create(context, d->width, d->height, &place, error);
+  if (status == HL_OK) {
+    hl_figure figure;
+    hl_figure_panel panel;
+    make_figure(place, scene, request, &figure, &panel);
+    panel.image = NULL;
+    figure.background_transparent = 1;
+    status = hl_figure_encode(context, &figure, "png", NULL, &answer->bytes, &answer->length, error);
+    answer->type = "image/png";
+  }
+  hl_image_destroy(place);
   return status;
 }
 

@@ -8,6 +8,7 @@
 #include <microhttpd.h>
 
 #include "parts.h"
+#include "queries.h"
 
 /* A request whose body is still arriving. */
 typedef struct request {
@@ -85,10 +86,6 @@ static const char *header(struct MHD_Connection *connection, const char *name) {
   return MHD_lookup_connection_value(connection, MHD_HEADER_KIND, name);
 }
 
-static const char *query(struct MHD_Connection *connection, const char *name) {
-  return MHD_lookup_connection_value(connection, MHD_GET_ARGUMENT_KIND, name);
-}
-
 static enum MHD_Result find_zero(void *found, enum MHD_ValueKind kind, const char *key, size_t key_length,
                                  const char *value, size_t length) {
   (void)kind;
@@ -108,7 +105,7 @@ static bool has_zero(struct MHD_Connection *connection) {
  * the file. */
 static unsigned check_upload(const server *s, struct MHD_Connection *connection, request *r,
                              const char **line) {
-  const char *name = query(connection, "name");
+  const char *name = query_text(connection, "name");
   *line = "this viewer opens no files\n";
   if (s->below == NULL) return 403;
   *line = "this is no file of volumes or scenes that Halflight reads\n";
@@ -181,14 +178,14 @@ static void answer_json(server_answer *answer, char *text) {
 }
 
 static void answer_folder(const server *s, struct MHD_Connection *connection, server_answer *answer) {
-  const char *at = query(connection, "at");
+  const char *at = query_text(connection, "at");
   char *text = s->below != NULL ? describe_folder(s, at != NULL ? at : "") : NULL;
   if (text == NULL) answer_problem(answer, 404, "there is no such folder below the viewer's\n");
   else answer_json(answer, text);
 }
 
 static void answer_film_progress(server *s, struct MHD_Connection *connection, server_answer *answer) {
-  const char *page = query(connection, "page");
+  const char *page = query_text(connection, "page");
   int done = 0, frames = 0;
   char *text = NULL;
   if (page != NULL) film_progress(s, page, &done, &frames);
@@ -197,7 +194,7 @@ static void answer_film_progress(server *s, struct MHD_Connection *connection, s
 }
 
 static void answer_progress(server *s, struct MHD_Connection *connection, server_answer *answer) {
-  const char *page = query(connection, "page");
+  const char *page = query_text(connection, "page");
   char *text = NULL;
   int others, part = page_progress(s, page != NULL ? page : "", &others);
   if (asprintf(&text, "{\"part\":%.3f,\"others\":%d}", part / 1000.0, others) < 0) text = NULL;
@@ -264,65 +261,10 @@ static void answer_get(server *s, struct MHD_Connection *connection, const char 
   else answer_asset(s, path, answer);
 }
 
-/* A whole number from the query, from low to high; `standard` if it is absent, -1 if it is anything else. */
-static long long query_number(struct MHD_Connection *connection, const char *name, long long low,
-                              long long high, long long standard) {
-  const char *text = query(connection, name);
-  if (text == NULL) return standard;
-  size_t digits = strspn(text, "0123456789");
-  if (digits < 1 || digits > 18 || text[digits] != '\0') return -1;
-  long long number = atoll(text);
-  return number >= low && number <= high ? number : -1;
-}
-
-static bool is_page_name(const char *name) {
-  static const char allowed[] = "abcdefghijklmnopqrstuvwxyz0123456789-";
-  size_t length = name != NULL ? strspn(name, allowed) : 0;
-  return length >= 1 && length <= PAGE_NAME_LENGTH && name[length] == '\0';
-}
-
-static bool is_format(const char *format) {
-  return format != NULL && (strcmp(format, "jpeg") == 0 || strcmp(format, "png") == 0 ||
-                            strcmp(format, "exr") == 0 || strcmp(format, "npy") == 0);
-}
-
-static bool is_film_format(const char *format) {
-  return format != NULL && (strcmp(format, "mp4") == 0 || strcmp(format, "webm") == 0 ||
-                            strcmp(format, "gif") == 0 || strcmp(format, "zip") == 0);
-}
-
-static frame_request read_query(struct MHD_Connection *connection, const request *r) {
-  return (frame_request){.page = query(connection, "page"),
-                         .number = (unsigned long long)query_number(connection, "number", 1, MOST_NUMBER, 0),
-                         .opened = query_number(connection, "opened", 0, MOST_NUMBER, 0),
-                         .format = query(connection, "format"),
-                         .quality = (int)query_number(connection, "quality", LEAST_QUALITY, MOST_QUALITY, 85),
-                         .depth = (int)query_number(connection, "depth", 8, 16, 8),
-                         .metadata = (int)query_number(connection, "metadata", 0, 1, 1),
-                         .scale_bar = (int)query_number(connection, "scale_bar", 0, 1, 0),
-                         .legend = (int)query_number(connection, "legend", 0, 1, 0),
-                         .unit = query(connection, "unit"),
-                         .moving = (int)query_number(connection, "moving", 0, 1, 0),
-                         .base = query_number(connection, "base", 1, MOST_NUMBER, 0),
-                         .text = r->body,
-                         .length = r->length};
-}
-
-static bool names_page(const frame_request *wanted) {
-  return is_page_name(wanted->page) && wanted->number > 0 && wanted->number <= MOST_NUMBER;
-}
-
-/* Overlays are drawn with 8 bits per channel. */
-static bool overlay_fits(const frame_request *wanted) {
-  bool plain = wanted->scale_bar == 0 && wanted->legend == 0;
-  return plain || (wanted->scale_bar >= 0 && wanted->legend >= 0 && strcmp(wanted->format, "png") == 0 &&
-                   wanted->depth == 8);
-}
-
 static void post_frame(server *s, struct MHD_Connection *connection, const request *r,
                        server_answer *answer) {
-  frame_request wanted = read_query(connection, r);
-  if (names_page(&wanted) && is_format(wanted.format) && wanted.quality > 0 && wanted.metadata >= 0 &&
+  frame_request wanted = query_frame(connection, r->body, r->length);
+  if (names_page(&wanted) && is_picture_format(wanted.format) && wanted.quality > 0 && wanted.metadata >= 0 &&
       wanted.moving >= 0 && wanted.base >= 0 && (wanted.depth == 8 || wanted.depth == 16) &&
       overlay_fits(&wanted))
     answer_frame(s, &wanted, NULL, answer);
@@ -331,64 +273,34 @@ static void post_frame(server *s, struct MHD_Connection *connection, const reque
                    "a frame needs ?page=NAME&number=N&format=jpeg|png|exr|npy (&quality=10..100, "
                    "&depth=8|16, &metadata=0|1, &moving=0|1, "
                    "&base=N; of a png with 8 bits &scale_bar=0|1, "
-                   "&legend=0|1, &unit=TEXT)\n");
+                   "&legend=0|1, &axes=none|arrows|letters, &unit=TEXT)\n");
 }
 
 /* Answers with the depth of the place that the middle of a small picture of the scene shows. */
 static void post_depth(server *s, struct MHD_Connection *connection, const request *r,
                        server_answer *answer) {
-  frame_request wanted = read_query(connection, r);
+  frame_request wanted = query_frame(connection, r->body, r->length);
   wanted.format = "depth";
   if (names_page(&wanted) && wanted.opened >= 0) answer_frame(s, &wanted, NULL, answer);
   else answer_problem(answer, 400, "a depth needs ?page=NAME&number=N (&opened=N)\n");
 }
 
-/* The index of the query's text in a list that ends with null; `standard` if the text is absent, -1 if the
- * list does not hold it. */
-static int query_choice(struct MHD_Connection *connection, const char *name, const char *const *choices,
-                        int standard) {
-  const char *text = query(connection, name);
-  if (text == NULL) return standard;
-  for (int c = 0; choices[c] != NULL; c++)
-    if (strcmp(text, choices[c]) == 0) return c;
-  return -1;
-}
-
-/* Reads the plane that a query describes. False: the query describes no plane, or a plane that is too
- * large. */
-static bool read_slice(struct MHD_Connection *connection, slice_request *wanted) {
-  static const char *const blends[] = {"maximum", "minimum", "mean", NULL};
-  static const char *const sources[] = {"voxels", "mask", NULL}, *const ways[] = {"nearest", "linear", NULL};
-  hl_reslice_options *plane = &wanted->plane;
-  hl_reslice_options_defaults(plane);
-  wanted->opened = query_number(connection, "opened", 0, MOST_NUMBER, 0);
-  wanted->volume = query_number(connection, "volume", 0, MOST_NUMBER, 0);
-  long long sides[] = {query_number(connection, "width", 1, MOST_SLICE_SIDE, -1),
-                       query_number(connection, "height", 1, MOST_SLICE_SIDE, -1),
-                       query_number(connection, "depth", 1, MOST_SLICE_SIDE, 1)};
-  int blend = query_choice(connection, "blend", blends, 0),
-      source = query_choice(connection, "of", sources, 0);
-  int way = query_choice(connection, "between", ways, 0);
-  bool good = wanted->opened >= 0 && wanted->volume >= 0 && sides[0] > 0 && sides[1] > 0 && sides[2] > 0 &&
-              blend >= 0 && source >= 0 && way >= 0 && sides[0] * sides[1] <= MOST_SLICE_SAMPLES &&
-              sides[0] * sides[1] * sides[2] <= MOST_LAYERED_SAMPLES &&
-              read_triple(query(connection, "origin"), plane->origin) &&
-              read_triple(query(connection, "across"), plane->across) &&
-              read_triple(query(connection, "down"), plane->down) &&
-              read_triple(query(connection, "through"), plane->through);
-  if (!good) return false;
-  plane->width = (size_t)sides[0];
-  plane->height = (size_t)sides[1];
-  plane->depth = (size_t)sides[2];
-  plane->blend = (hl_blend)(HL_BLEND_MAXIMUM + blend);
-  plane->interpolate = way;
-  wanted->of_mask = source == 1;
-  return true;
+/* Answers with the overlays of a picture alone. */
+static void post_overlay(server *s, struct MHD_Connection *connection, const request *r,
+                         server_answer *answer) {
+  frame_request wanted = query_frame(connection, r->body, r->length);
+  wanted.format = "overlay";
+  if (names_page(&wanted) && wanted.opened >= 0 && names_overlay(&wanted))
+    answer_frame(s, &wanted, NULL, answer);
+  else
+    answer_problem(answer, 400,
+                   "an overlay needs ?page=NAME&number=N (&opened=N, &scale_bar=0|1, &legend=0|1, "
+                   "&axes=none|arrows|letters, &unit=TEXT)\n");
 }
 
 static void post_slice(server *s, struct MHD_Connection *connection, server_answer *answer) {
   slice_request wanted = {0};
-  if (read_slice(connection, &wanted)) answer_slice(s, &wanted, answer);
+  if (query_slice(connection, &wanted)) answer_slice(s, &wanted, answer);
   else
     answer_problem(
         answer, 400,
@@ -397,36 +309,13 @@ static void post_slice(server *s, struct MHD_Connection *connection, server_answ
         "along a side and 16 million in all\n");
 }
 
-/* Whether the query has more keys than a film may have. */
-static bool has_too_many_keys(struct MHD_Connection *connection) {
-  char name[16];
-  snprintf(name, sizeof name, "key%d", MOST_FILM_KEYS);
-  return query(connection, name) != NULL;
-}
-
-/* Reads a film's parameters. A number that cannot be read becomes -1, and so do the frames of a film with too
- * many keys. */
-static film_request read_film(struct MHD_Connection *connection, const char *format) {
-  film_request film = {.format = format};
-  for (char name[8]; film.key_count < MOST_FILM_KEYS; film.key_count++) {
-    snprintf(name, sizeof name, "key%zu", film.key_count);
-    if ((film.keys[film.key_count] = query(connection, name)) == NULL) break;
-  }
-  film.turntable = (int)query_number(connection, "turntable", 0, MOST_FILM_FRAMES, 0);
-  film.frames = has_too_many_keys(connection)
-                    ? -1
-                    : (int)query_number(connection, "frames", 0, MOST_FILM_FRAMES, 0);
-  film.frames_per_second = (double)query_number(connection, "fps", 1, 240, 30);
-  return film;
-}
-
 /* Answers with the scene, or with the scene at a frame of its film. */
 static void post_scene(server *s, struct MHD_Connection *connection, const request *r,
                        server_answer *answer) {
-  frame_request wanted = read_query(connection, r);
-  film_request film = read_film(connection, NULL);
-  composed_choices choices = {query(connection, "look"), query(connection, "rig")};
-  bool turns = query(connection, "frame") != NULL;
+  frame_request wanted = query_frame(connection, r->body, r->length);
+  film_request film = query_film(connection, NULL);
+  composed_choices choices = {query_text(connection, "look"), query_text(connection, "rig")};
+  bool turns = query_text(connection, "frame") != NULL;
   int frame = (int)query_number(connection, "frame", 0, MOST_FILM_FRAMES, 0);
   if (frame >= 0 && film.turntable >= 0 && film.frames >= 0)
     answer_scene(s, &wanted, &choices, turns ? &film : NULL, frame, answer);
@@ -436,8 +325,8 @@ static void post_scene(server *s, struct MHD_Connection *connection, const reque
 }
 
 static void post_film(server *s, struct MHD_Connection *connection, const request *r, server_answer *answer) {
-  frame_request wanted = read_query(connection, r);
-  film_request film = read_film(connection, wanted.format);
+  frame_request wanted = query_frame(connection, r->body, r->length);
+  film_request film = query_film(connection, wanted.format);
   if (names_page(&wanted) && is_film_format(film.format) && film.turntable >= 0 && film.frames >= 0 &&
       film.frames_per_second > 0)
     answer_frame(s, &wanted, &film, answer);
@@ -450,7 +339,7 @@ static void post_film(server *s, struct MHD_Connection *connection, const reques
 
 static void post_cancel(server *s, struct MHD_Connection *connection, const request *r,
                         server_answer *answer) {
-  frame_request wanted = read_query(connection, r);
+  frame_request wanted = query_frame(connection, r->body, r->length);
   answer->status = 204;
   if (names_page(&wanted)) cancel_frames(s, wanted.page, wanted.number);
   else answer_problem(answer, 400, "?page=NAME&number=N is missing\n");
@@ -458,7 +347,7 @@ static void post_cancel(server *s, struct MHD_Connection *connection, const requ
 
 /* Ends everything that is open for a page that was closed, or that shows another file now. */
 static void post_leave(server *s, struct MHD_Connection *connection, server_answer *answer) {
-  const char *page = query(connection, "page");
+  const char *page = query_text(connection, "page");
   long long opened = query_number(connection, "opened", 0, MOST_NUMBER, 0);
   answer->status = 204;
   if (is_page_name(page) && opened >= 0) page_is_gone(s, page);
@@ -467,7 +356,7 @@ static void post_leave(server *s, struct MHD_Connection *connection, server_answ
 }
 
 static void post_open(server *s, struct MHD_Connection *connection, server_answer *answer) {
-  const char *name = query(connection, "file");
+  const char *name = query_text(connection, "file");
   char path[PATH_BYTES];
   server_file file;
   if (name != NULL && s->below != NULL && folder_find(s, name, path, &file)) {
@@ -491,15 +380,15 @@ static void open_upload(server *s, const server_upload *upload, const char *name
 static void post_upload(server *s, struct MHD_Connection *connection, request *r, server_answer *answer) {
   if (!upload_finish(&r->upload))
     answer_problem(answer, 500, "the file cannot be stored: is the disk full?\n");
-  else open_upload(s, &r->upload, query(connection, "name"), answer);
+  else open_upload(s, &r->upload, query_text(connection, "name"), answer);
   upload_end(&r->upload);
 }
 
 /* Adds the scene that a page has opened to the page's scene. */
 static void post_join(server *s, struct MHD_Connection *connection, const request *r, server_answer *answer) {
-  frame_request wanted = read_query(connection, r);
+  frame_request wanted = query_frame(connection, r->body, r->length);
   long long with = query_number(connection, "with", 1, MOST_NUMBER, 0);
-  const char *title = query(connection, "title");
+  const char *title = query_text(connection, "title");
   if (wanted.opened >= 0 && with > 0 && title != NULL && with != wanted.opened)
     answer_join(s, &wanted, with, title, answer);
   else answer_problem(answer, 400, "two files are joined by ?opened=N&with=N&title=TITLE\n");
@@ -507,17 +396,19 @@ static void post_join(server *s, struct MHD_Connection *connection, const reques
 
 static void answer_post(server *s, struct MHD_Connection *connection, request *r, server_answer *answer) {
   bool frame = strcmp(r->path, "frame") == 0, film = strcmp(r->path, "film") == 0,
-       depth = strcmp(r->path, "depth") == 0, join = strcmp(r->path, "join") == 0;
+       depth = strcmp(r->path, "depth") == 0, join = strcmp(r->path, "join") == 0,
+       overlay = strcmp(r->path, "overlay") == 0;
   if (r->uploads) post_upload(s, connection, r, answer);
   else if (strcmp(r->path, "open") == 0) post_open(s, connection, answer);
   else if (strcmp(r->path, "leave") == 0) post_leave(s, connection, answer);
   else if (strcmp(r->path, "cancel") == 0) post_cancel(s, connection, r, answer);
   else if (strcmp(r->path, "slice") == 0) post_slice(s, connection, answer);
-  else if (!frame && !film && !depth && !join && strcmp(r->path, "scene") != 0)
+  else if (!frame && !film && !depth && !join && !overlay && strcmp(r->path, "scene") != 0)
     answer_problem(answer, 404, "there is nothing here\n");
   else if (r->body == NULL) answer_problem(answer, 400, "the scene is missing\n");
   else if (frame) post_frame(s, connection, r, answer);
   else if (depth) post_depth(s, connection, r, answer);
+  else if (overlay) post_overlay(s, connection, r, answer);
   else if (join) post_join(s, connection, r, answer);
   else if (film) post_film(s, connection, r, answer);
   else post_scene(s, connection, r, answer);

@@ -203,9 +203,19 @@ def saved_as_seen(browser):
 
 
 def saved_with_bar(browser):
-    """A saved picture has the scale bar and the legend that the copied command draws."""
+    """A saved picture has the scale bar, the legend and the axes that the copied command draws, and the page shows them."""
     browser.run("['scale-bar', 'legend'].forEach((id) => document.getElementById(id).click())")
     check(browser.run("document.getElementById('scale-bar').checked && document.getElementById('no-unit').hidden"), "the file tells its unit")
+    set_control(browser, "Axes", "arrows", "change")
+    figure = "document.querySelector('.figure')"
+    browser.wait(f"!{figure}.hidden")
+    drawn = browser.run(f"{figure}.getContext('2d').getImageData(0, 0, {figure}.width, {figure}.height).data.reduce((sum, x) => sum + x, 0)")
+    check(drawn > 0 and browser.run("getComputedStyle(document.querySelector('.scale')).display") == "none", "they are shown in place of the page's own")
+    check("letters" not in browser.run("[...document.querySelectorAll('aside option')].map((o) => o.value)"), "the file tells no directions of a body")
+    browser.run("import('./camera.js').then((m) => halflight.store.setCamera(m.turn(halflight.store.scene.camera, 0.2, 0)))")
+    check(browser.run(f"{figure}.hidden"), "they are not shown for another view")
+    rest(browser)
+    browser.wait(f"!{figure}.hidden")
     os.remove("saved/rings.png")  # the first one: the map's picture has this name, too
     press(browser, "save picture")
     browser.wait("document.getElementById('message').textContent.includes('saved')")
@@ -213,7 +223,7 @@ def saved_with_bar(browser):
     while not os.path.exists("saved/rings.png"):
         check(time.monotonic() < end, "it is saved")
         time.sleep(0.05)
-    command = browser.run("import('./export.js').then((m) => m.commandLine(halflight.store.scene, 'bar', { scaleBar: true, legend: true }))")
+    command = browser.run("import('./export.js').then((m) => m.commandLine(halflight.store.scene, 'bar', { scaleBar: true, legend: true, axes: 'arrows' }))")
     os.mkdir("bar")
     environment = dict(os.environ, PATH=f"{os.path.dirname(PROGRAM)}:{os.environ['PATH']}")
     subprocess.run(["sh", "-eu", "-c", command], cwd="bar", check=True, env=environment, capture_output=True)
@@ -223,7 +233,16 @@ def saved_with_bar(browser):
         shown = Image.open(io.BytesIO(final_picture(browser)))
         check(drawn.convert("RGB").tobytes() != shown.convert("RGB").tobytes(), "something is drawn over it")
     set_control(browser, "Format", "exr", "change")
-    check(browser.run("document.getElementById('scale-bar').disabled && document.getElementById('legend').disabled"), "EXR holds linear light")
+    check(browser.run("document.getElementById('plain-format').hidden === false"), "EXR holds linear light")
+    browser.wait("JSON.parse(sessionStorage.getItem('halflight-session') ?? '{}').page?.over?.axes === 'arrows'")
+    browser.run("window.old = true; 0")
+    browser.call("Page.reload")
+    browser.wait("window.old === undefined && globalThis.halflight !== undefined")
+    rest(browser)
+    browser.wait(f"!{figure}.hidden && document.getElementById('legend').checked")
+    browser.run("['scale-bar', 'legend'].forEach((id) => document.getElementById(id).click())")
+    set_control(browser, "Axes", "none", "change")
+    check(browser.run(f"{figure}.hidden"), "nothing is drawn any more")
 
 
 def reach(browser):

@@ -74,7 +74,8 @@ def exact_pictures(viewer, scene):
 
 
 def drawn_over(viewer, scene):
-    """A scale bar and a legend are those of `halflight render`, and are refused where the files tell no unit or the format does not hold them."""
+    """A scale bar, a legend and axes are those of `halflight render`, alone or in the picture. They are refused where the files do not tell what
+    they say, or where the format does not hold them."""
     os.mkdir("drawn")
 
     def equals(viewer, scene, words, **asked):
@@ -84,14 +85,16 @@ def drawn_over(viewer, scene):
         subprocess.run([PROGRAM, "render", "drawn.json", *words, "-o", "drawn/picture.png", "--quiet"], check=True)
         with open("drawn/picture.png", "rb") as file:
             check(status == 200 and body == file.read(), f"{words}: {status} {body[:99] if status != 200 else ''}")
+        lies_over(viewer, scene, body, asked)
         return body
 
     plain, legend = frame(viewer, scene)[2], equals(viewer, scene, ["--legend", "auto"], legend=1)
     check(pixels(legend) != pixels(plain), "the legend is seen")
     equals(viewer, scene, ["--unit", "kpc", "--scale-bar", "auto@target"], scale_bar=1, unit="kpc")
-    for asked in ({"scale_bar": 1}, {"legend": 1, "depth": 16}, {"legend": 1, "format": "exr"}, {"legend": 1, "format": "jpeg"}, {"legend": 2}):
+    check(pixels(equals(viewer, scene, ["--axes", "arrows"], axes="arrows")) != pixels(plain), "the axes are seen")
+    for asked in ({"axes": "letters"}, {"axes": "arrow"}, {"scale_bar": 1}, {"legend": 1, "depth": 16}, {"legend": 1, "format": "exr"}, {"legend": 1, "format": "jpeg"}, {"legend": 2}):
         status, _, body = frame(viewer, scene, **asked)
-        check(status == 400 and body.count(b"\n") <= 1 and (b"unit" in body or b"8 bits" in body), f"{asked}: {status} {body}")
+        check(status == 400 and body.count(b"\n") <= 1 and any(word in body for word in (b"unit", b"8 bits", b"directions")), f"{asked}: {status} {body}")
     subprocess.run([PROGRAM, "convert", "torus.nrrd", "torus.mrc", "--quiet"], check=True)
     with Viewer(PROGRAM, "torus.mrc") as measured:
         scene = small(json.loads(request(measured, "GET", "start.json")[2])["scene"], 160)
@@ -100,6 +103,24 @@ def drawn_over(viewer, scene):
         scene["image"]["background_transparent"] = True
         scene["camera"] = {"type": "orthographic", "height": 2, **{key: scene["camera"][key] for key in ("position", "target", "up")}}
         equals(measured, scene, ["--scale-bar", "auto"], scale_bar=1)
+
+
+def levels(png):
+    with Image.open(io.BytesIO(png)) as image:
+        return numpy.asarray(image.convert("RGBA"), dtype=float)
+
+
+def lies_over(viewer, scene, drawn, asked):
+    """The overlay alone, laid over the picture without it, is the picture with it, up to the roundings of both to 8 bits."""
+    query = "".join(f"&{key}={value}" for key, value in asked.items())
+    status, _, body = request(viewer, "POST", f"overlay?page=test-overlay&number={next(numbers)}{query}", json.dumps(scene))
+    check(status == 200, f"the overlay alone: {status}")
+    over, plain, both = levels(body), levels(frame(viewer, scene)[2]), levels(drawn)
+    part = over[..., 3:] / 255
+    behind = plain[..., 3:] / 255 * (1 - part)
+    laid = part * over[..., :3] + behind * plain[..., :3]
+    far = abs(laid - (part + behind) * both[..., :3]).max()
+    check(over.shape == both.shape and over[..., 3].max() > 0 and far <= 2, f"{asked}: {far} levels")
 
 
 def complete_scenes(viewer, scene):

@@ -2,6 +2,7 @@
 
 import { reshaped } from "./camera.js";
 import { button, isActive, make, row, section, select } from "./controls.js";
+import { figureOverlay } from "./figure_overlay.js";
 
 // A title without the endings of a file name: the ending of a packing and the ending of a format.
 export const stem = (title) => title.replace(/(?<=.)\.(gz|bz2|xz|zst)$/i, "").replace(/(?<=.)\.[a-z][a-z0-9]*$/i, "") || "picture";
@@ -16,14 +17,14 @@ export const fileWord = (title, ending) => quoted(`${stem(title)}${ending}`.repl
 export const sceneText = (scene) => JSON.stringify(scene, null, 2) + "\n";
 
 // A command that needs nothing beside it but the scene's volumes: the scene is its standard input.
-// over: { scaleBar, legend, unit }: whether they are drawn over the picture, and the unit of lengths where the files tell none. In a
-// perspective picture the bar holds at the camera's target.
-export const commandLine = (scene, title, { scaleBar = false, legend = false, unit = "" } = {}) =>
-  `halflight render - -o ${fileWord(title, ".png")}${unit ? ` --unit ${quoted(unit)}` : ""}${scaleBar ? ` --scale-bar auto${scene.camera.type === "orthographic" ? "" : "@target"}` : ""}${legend ? " --legend auto" : ""} <<'END'\n${sceneText(scene)}END\n`;
+// over: { scaleBar, legend, axes, unit }: what is drawn over the picture (figure_overlay.js), and the unit of lengths where the files tell
+// none. In a perspective picture the bar holds at the camera's target.
+export const commandLine = (scene, title, { scaleBar = false, legend = false, axes = "none", unit = "" } = {}) =>
+  `halflight render - -o ${fileWord(title, ".png")}${unit ? ` --unit ${quoted(unit)}` : ""}${scaleBar ? ` --scale-bar auto${scene.camera.type === "orthographic" ? "" : "@target"}` : ""}${legend ? " --legend auto" : ""}${axes === "none" ? "" : ` --axes ${axes}`} <<'END'\n${sceneText(scene)}END\n`;
 
 // The same as a Python program.
-const annotated = ({ scaleBar = false, legend = false, unit = "" }) => {
-  const words = [...(scaleBar ? ["scale_bar=True", 'depth="target"'] : []), ...(unit ? [`unit=${JSON.stringify(unit)}`] : []), ...(legend ? ["legend=True"] : [])];
+const annotated = ({ scaleBar = false, legend = false, axes = "none", unit = "" }) => {
+  const words = [...(scaleBar ? ["scale_bar=True", 'depth="target"'] : []), ...(unit ? [`unit=${JSON.stringify(unit)}`] : []), ...(legend ? ["legend=True"] : []), ...(axes === "none" ? [] : [`axes=${JSON.stringify(axes)}`])];
   return words.length > 0 ? `.annotate(${words.join(", ")})` : "";
 };
 
@@ -51,7 +52,8 @@ export function copier(report, store) {
   };
 }
 
-export function exportPanel({ store, start, channel, report, failed, copy }) {
+export function exportPanel(viewer) {
+  const { store, channel, report, failed, copy } = viewer;
   const { element, body } = section("Save", false);
   const name = () => stem(store.title);
   let format = "png";
@@ -73,24 +75,9 @@ export function exportPanel({ store, start, channel, report, failed, copy }) {
   const transparent = make("input", { type: "checkbox", id: "transparent" });
   const bare = make("input", { type: "checkbox", id: "bare", title: "A PNG without the scene, and without the names of its files" });
 
-  const box = (label, id) => {
-    const input = make("input", { type: "checkbox", id, onchange: () => update() });
-    return { input, element: row(make("label", { for: id }, label), input) };
-  };
-  // What the page's lengths are measured in, where no file tells it.
-  const unit = make("input", { type: "text", id: "unit", maxlength: 24, placeholder: "mm, µm, kpc …", oninput: () => store.setPage({ unit: unit.value.trim() }) });
-  const unitRow = row(make("label", { for: "unit", title: "One unit of length of the volume's file" }, "Unit"), unit);
-  const bar = box("Scale bar", "scale-bar"), legend = box("Legend", "legend"), unknown = make("p", { class: "facts", id: "no-unit" });
-  const same = make("p", { class: "facts" });
-  bar.input.setAttribute("aria-describedby", "no-unit");
-  const drawsOver = () => channel.drawsOver === true && format === "png"; // overlays are drawn with 8 bits
-  // Whether the file of a visible volume does not tell the unit of its lengths.
-  const isUnitless = () => start.volumes.some((volume, v) => volume?.unit === null && store.scene.volumes[v]?.visible !== false);
-  const given = () => (isUnitless() ? String(store.page.unit ?? "") : "");
-  const over = () => {
-    const scaleBar = bar.input.checked && !bar.input.disabled;
-    return { scaleBar, legend: legend.input.checked && !legend.input.disabled, ...(scaleBar && given() ? { unit: given() } : {}) };
-  };
+  const figure = figureOverlay(viewer), same = make("p", { class: "facts" }), plain = make("p", { class: "facts", id: "plain-format", hidden: true }, "What is drawn over the picture is saved in PNGs of 8 bits alone.");
+  const drawsOver = () => { const { scaleBar, legend, axes } = figure.over(); return scaleBar || legend || axes !== "none"; };
+  const over = () => (format === "png" && drawsOver() ? figure.over() : {});
 
   async function savePicture() {
     const scene = structuredClone(store.scene), image = scene.image, seen = { width: image.width, height: image.height };
@@ -120,26 +107,20 @@ export function exportPanel({ store, start, channel, report, failed, copy }) {
   body.append(
     row(make("span", { class: "name" }, "Size"), make("span", { class: "pair" }, width, "×", height)), sizes.element, kind.element,
     row(make("label", { for: "transparent" }, "Transparent"), transparent),
-    row(make("label", { for: "bare" }, "No metadata"), bare), unitRow, bar.element, unknown, legend.element, row("", save),
+    row(make("label", { for: "bare" }, "No metadata"), bare), ...figure.elements, plain, row("", save),
     row(make("span", { class: "name" }, "Scene"), make("span", { class: "buttons" }, button("save scene", saveScene),
       button("copy scene", () => copy(sceneText(store.scene), "the scene")))),
     row("", make("span", { class: "buttons" },
-      button("copy command", () => copy(commandLine(store.scene, store.title, over()), "the command")),
-      button("copy Python", () => copy(pythonProgram(store.scene, store.title, over()), "the program")))),
+      button("copy command", () => copy(commandLine(store.scene, store.title, figure.over()), "the command")),
+      button("copy Python", () => copy(pythonProgram(store.scene, store.title, figure.over()), "the program")))),
     same);
   function update() {
     for (const [input, key] of [[width, "width"], [height, "height"]])
       if (!isActive(input) && !input.value) input.placeholder = store.scene.image[key];
     kind.update();
-    const unitless = isUnitless() && given() === "";
-    unitRow.hidden = !channel.drawsOver || !isUnitless();
-    if (!isActive(unit)) unit.value = store.page.unit ?? "";
-    for (const part of [bar, legend]) part.element.hidden = !channel.drawsOver;
-    bar.input.disabled = !drawsOver() || unitless;
-    legend.input.disabled = !drawsOver();
-    unknown.hidden = !channel.drawsOver || (drawsOver() && !unitless);
-    unknown.textContent = drawsOver() ? "The volume's file tells no unit of length. With one, a scale bar can be drawn." : "Scale bar and legend are drawn with 8 bits: choose PNG.";
-    same.textContent = `Each of them makes the same picture, ${over().scaleBar || over().legend ? "pixel for pixel" : "byte for byte"}.`;
+    figure.update();
+    plain.hidden = !drawsOver() || format === "png";
+    same.textContent = `Each of them makes the same picture, ${drawsOver() ? "pixel for pixel" : "byte for byte"}.`;
   }
   update();
   return { element, update, updateView: update, savePicture, saveScene };

@@ -12,6 +12,7 @@
 // - depth(scene): how deep lies what the middle pixel of the scene's picture (at most 64 x 64 pixels) shows:
 //   { depth, opacity, object }. depth: the length along the ray from the eye, or orthographic from the plane through the
 //   camera's position, to where the opacity first reaches 0.01; null: nowhere. object: as in hl_layers. Null: cancelled.
+// - overlay(scene, over): what a figure has over the scene's picture (figure_overlay.js), as the blob of a transparent PNG.
 // - progress(): how far the frame under way is, { part, others }: part from 0 to 1, others: frames of other pages under way.
 
 import { Lost } from "./connection.js";
@@ -44,11 +45,12 @@ function parseTimes(header) {
 
 const numbered = (keys) => Object.fromEntries(keys.map((key, n) => [`key${n}`, key]));
 
+const overlayQuery = ({ scaleBar = false, legend = false, axes = "none", unit = "" }) => ({ scale_bar: +scaleBar, legend: +legend, axes, ...(unit ? { unit } : {}) });
+
 export class HttpChannel {
   #number = 0;
   #opened;
   #held = new HeldScene(() => ++this.#number); // not of the frames in lanes
-  drawsOver = true; // fetchFrame() takes scaleBar and legend
   #page = crypto.getRandomValues(new Uint32Array(2)).reduce((name, n) => name + n.toString(36), "p");
 
   #source;
@@ -113,13 +115,20 @@ export class HttpChannel {
 
   // A picture of the scene: { blob, times }, or null where a newer frame of this page has cancelled it. `lane` sets
   // frames apart that do not cancel each other; `moving` makes a quick picture, of coarser volumes where the sheets are wide.
-  // scaleBar, legend: drawn over a PNG of 8 bits; a bar is refused where neither the scene's files nor `unit` tell a unit of length.
-  async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, metadata = true, moving = false, lane = "", scaleBar = false, legend = false, unit = "" } = {}) {
-    const query = { page: this.#page + lane, opened: 0, format, quality, depth, metadata: +metadata, moving: +moving, scale_bar: +scaleBar, legend: +legend, ...(unit ? { unit } : {}) };
+  // scaleBar, legend, axes: drawn over a PNG of 8 bits; a bar is refused where neither the scene's files nor `unit` tell a unit of length.
+  async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, metadata = true, moving = false, lane = "", ...over } = {}) {
+    const query = { page: this.#page + lane, opened: 0, format, quality, depth, metadata: +metadata, moving: +moving, ...overlayQuery(over) };
     const ask = (number, body, base) => this.#ask("frame", { ...query, number, ...(base === undefined ? {} : { base }) }, { method: "POST", body });
     const response = await (lane === "" ? this.#held.send(scene, moving, ask) : ask(++this.#number, JSON.stringify(scene)));
     if (response.status === 204) return null;
     return { blob: await response.blob(), times: parseTimes(response.headers.get("Server-Timing")) };
+  }
+
+  // What is drawn over the scene's picture, as a transparent PNG of its size; null: it was cancelled.
+  async overlay(scene, over) {
+    const query = { page: `${this.#page}-overlay`, number: ++this.#number, opened: 0, ...overlayQuery(over) };
+    const response = await this.#ask("overlay", query, { method: "POST", body: JSON.stringify(scene) });
+    return response.status === 204 ? null : response.blob();
   }
 
   // What can be opened in a folder below the one that the viewer was started in: { at, entries }.

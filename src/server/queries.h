@@ -1,0 +1,34 @@
+/* server/queries.h - what a request asks for, by the parameters of its address. */
+#ifndef HL_SERVER_QUERIES_H
+#define HL_SERVER_QUERIES_H
+
+#include "parts.h"
+
+struct MHD_Connection;
+
+/* The text of a parameter, which lives as long as the request; null: it is absent. */
+const char *query_text(struct MHD_Connection *connection, const char *name);
+/* A whole number, from low to high; `standard` if it is absent, -1 if it is anything else. */
+long long query_number(struct MHD_Connection *connection, const char *name, long long low, long long high,
+                       long long standard);
+bool is_page_name(const char *name);
+bool is_picture_format(const char *format);
+bool is_film_format(const char *format);
+
+/* Reads the parameters of a frame, of the scene that the body holds. Numbers and choices that cannot be read
+ * become -1; `number` becomes 0 or more than MOST_NUMBER. body: [length]; it is borrowed. */
+frame_request query_frame(struct MHD_Connection *connection, const char *body, size_t length);
+/* Whether a frame's page has a name, and the frame a number. */
+bool names_page(const frame_request *wanted);
+/* Whether the parameters of the overlays could be read. */
+bool names_overlay(const frame_request *wanted);
+/* Whether the frame's format holds its overlays, which are drawn with 8 bits per channel. */
+bool overlay_fits(const frame_request *wanted);
+/* Reads the plane that a query describes. False: the query describes no plane, or a plane that is too
+ * large. */
+bool query_slice(struct MHD_Connection *connection, slice_request *wanted);
+/* Reads a film's parameters. A number that cannot be read becomes -1, and so do the frames of a film with too
+ * many keys. format: borrowed. */
+film_request query_film(struct MHD_Connection *connection, const char *format);
+
+#endif
