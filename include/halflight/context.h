@@ -90,7 +90,7 @@ typedef struct hl_context_options {
   void *(*allocate)(void *user_data, size_t size, size_t alignment);
   void (*release)(void *user_data, void *memory);
   void (*log)(void *user_data, hl_log_level level, const char *message);
-  /* fraction in [0,1] of the named stage ("load", "prepare", "render", "write"). */
+  /* fraction in [0,1] of the named stage: "load", "prepare" (labels are smoothed), "render" or "write". */
   void (*progress)(void *user_data, const char *stage, double fraction);
   /* Asked every few milliseconds. A non-zero answer makes the running call return HL_ERROR_CANCELLED soon:
    * within a tenth of a second, for pictures up to 4096 x 4096 pixels and volumes up to 512^3 voxels. */

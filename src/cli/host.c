@@ -61,7 +61,7 @@ static void on_progress(void *user_data, const char *stage, double fraction) {
   cli_host *host = user_data;
   char text[80];
   snprintf(text, sizeof text, "%s %s", stage, host->subject);
-  if (host->progressed != NULL) host->progressed(fraction);
+  if (host->progressed != NULL) host->progressed(stage, fraction);
   if (!host->own_bar) host_draw_bar(host, fraction, text);
 }
 

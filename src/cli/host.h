@@ -14,14 +14,14 @@ typedef struct cli_host {
   bool bar;     /* stderr is a terminal that can redraw a line */
   bool own_bar; /* the command draws the bar itself: each call of the library is a part of a longer run */
   bool color;
-  bool drawn;                          /* a bar is on the line now */
-  double drawn_at;                     /* seconds; bars are redrawn ten times a second at most */
-  bool (*cancelled)(void);             /* or null */
-  void (*progressed)(double fraction); /* or null */
-  uint64_t memory_limit;               /* bytes; 0: unknown */
-  cli_read_files read;                 /* the files that the context has read */
-  char *const *operands;               /* see cli_host_options */
-  char subject[32];                    /* the input's name beside the bar, cut to keep the line short */
+  bool drawn;              /* a bar is on the line now */
+  double drawn_at;         /* seconds; bars are redrawn ten times a second at most */
+  bool (*cancelled)(void); /* or null */
+  void (*progressed)(const char *stage, double fraction); /* or null */
+  uint64_t memory_limit;                                  /* bytes; 0: unknown */
+  cli_read_files read;                                    /* the files that the context has read */
+  char *const *operands;                                  /* see cli_host_options */
+  char subject[32]; /* the input's name beside the bar, cut to keep the line short */
 } cli_host;
 
 typedef struct cli_host_options {
@@ -34,7 +34,8 @@ typedef struct cli_host_options {
   hl_mpi mpi;              /* launcher_mpi() (ranks.h) where processes may join */
   bool (*cancelled)(void); /* may be null; else it is asked, in addition to signals, on the thread that
                             * renders */
-  void (*progressed)(double fraction); /* told by the thread that calls the library; or null */
+  void (*progressed)(const char *stage,
+                     double fraction); /* told by the thread that calls the library; or null */
   const char *data_folder;             /* null: HALFLIGHT_DATA, or ../shared/data */
   char *const *operands; /* the command line's INPUTs; null-terminated; must stay where it is. Files are
                           * fetched only from those of them that are URLs. May be null */

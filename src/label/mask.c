@@ -260,8 +260,8 @@ hl_status hl_label_mask(hl_context *context, int threads, const hl_mask *mask, h
     status = hl_fail_memory(error, mask->label_count * sizeof *values, "labels");
   for (size_t n = 0; status == HL_OK && n < mask->label_count; n++) values[n] = mask->labels[n].value;
   if (status == HL_OK)
-    status = hl_label_occupancies(context, threads, mask->volume, values, mask->label_count, occupancies,
-                                  error);
+    status = hl_label_occupancies(context, threads, mask->volume, values, mask->label_count, NULL,
+                                  occupancies, error);
   mask_job job = {.mask = mask, .occupancies = occupancies};
   if (status == HL_OK) status = fill(context, threads, &job, made, error);
   if (status == HL_OK && context->whole == mask->volume->context->whole) hl_mask_to_shelf(mask, *made);

@@ -41,9 +41,19 @@ typedef struct occupancy_job {
   label_field smooth;    /* the smoothed field, of the part's size */
   label_levels levels;
   label_enclosed enclosed;
+  hl_label_work *work;
 } occupancy_job;
 
 /* ---- steps ---- */
+
+size_t hl_label_part_voxels(const hl_label_part *part) {
+  return part->size[0] * part->size[1] * part->size[2];
+}
+
+void hl_label_worked(hl_label_work *work, size_t voxels, int steps) {
+  work->done += (double)voxels * steps;
+  hl_progress(work->context, "prepare", work->done / (HL_LABEL_STEPS * work->whole));
+}
 
 /* Marks the voxels of a slice that have one of the labels. Labels come in runs, and each run is looked up
  * once. */
@@ -89,18 +99,28 @@ static void store_slice(void *data, size_t z, int worker) {
   }
 }
 
+/* One of the HL_LABEL_STEPS steps of the part is done. */
+static void step_done(const occupancy_job *job) {
+  hl_label_worked(job->work, hl_label_part_voxels(&job->part), 1);
+}
+
 static void smooth(hl_pool *pool, occupancy_job *job) {
   hl_pool_run(pool, job->part.size[2], mark_slice, job);
   for (int turn = 0; turn < ROUNDS; turn++) {
     hl_label_filter(pool, &job->smooth, &SMOOTHING);
     hl_pool_run(pool, job->part.size[2], mend_slice, job);
+    step_done(job);
   }
   hl_label_filter(pool, &job->smooth, &FINISHING);
+  step_done(job);
   hl_label_level(pool, job->inside, &job->smooth, &job->levels);
+  step_done(job);
   hl_label_filter(pool, &job->smooth, &TO_COEFFICIENTS);
   for (size_t z = 0; z < job->part.size[2]; z++) job->enclosed.wanted += (double)job->inside_counts[z];
   hl_label_enclose(pool, &job->enclosed);
+  step_done(job);
   hl_pool_run(pool, job->part.size[2], store_slice, job);
+  step_done(job);
 }
 
 /* ---- the volume ---- */
@@ -130,7 +150,7 @@ static hl_status adopt(hl_context *context, const occupancy_job *job, unsigned c
 
 /* Allocates the memory of all steps except the result. */
 static bool make_room(hl_context *context, int threads, occupancy_job *job) {
-  const size_t count = job->part.size[0] * job->part.size[1] * job->part.size[2];
+  const size_t count = hl_label_part_voxels(&job->part);
   label_field *field = &job->smooth;
   memcpy(field->size, job->part.size, sizeof field->size);
   field->functions = hl_label_row_functions(context->options.instruction_set);
@@ -150,7 +170,7 @@ static bool make_room(hl_context *context, int threads, occupancy_job *job) {
 
 static hl_status fill(hl_context *context, hl_pool *pool, occupancy_job *job, hl_volume **made,
                       hl_error *error) {
-  const size_t count = job->part.size[0] * job->part.size[1] * job->part.size[2];
+  const size_t count = hl_label_part_voxels(&job->part);
   job->inside = hl_allocate(context, count, 1);
   if (!make_room(context, hl_pool_threads(pool), job) || job->inside == NULL) {
     hl_release(context, job->inside);
@@ -165,10 +185,11 @@ static hl_status fill(hl_context *context, hl_pool *pool, occupancy_job *job, hl
 }
 
 hl_status hl_label_occupancy(hl_context *context, hl_pool *pool, const hl_volume *map, const int64_t *labels,
-                             size_t count, const hl_label_part *part, hl_volume **made, hl_error *error) {
+                             size_t count, const hl_label_part *part, hl_label_work *work, hl_volume **made,
+                             hl_error *error) {
   *made = NULL;
   if (part->size[0] == 0) return HL_OK;
-  occupancy_job job = {.map = map, .labels = labels, .count = count, .part = *part};
+  occupancy_job job = {.map = map, .labels = labels, .count = count, .part = *part, .work = work};
   hl_status status = fill(context, pool, &job, made, error);
   hl_release(context, job.smooth.values);
   hl_release(context, job.smooth.lines);

@@ -24,10 +24,25 @@ hl_label_part hl_label_part_of_all(const hl_label_part *parts, size_t count);
 /* The place of a voxel's label in a rising list; `count` if the list lacks it. */
 size_t hl_label_place(const int64_t *labels, size_t count, const hl_volume *map, hl_number_row row, size_t i);
 
+enum { HL_LABEL_STEPS = 6 }; /* the steps in which the voxels of a label's part are smoothed */
+
+/* The smoothing of labels. */
+typedef struct hl_label_work {
+  const hl_context *context; /* is told the part that is done, as the stage "prepare" */
+  double whole;              /* voxels of all parts */
+  double done;               /* voxels, counted for each step that they have taken */
+} hl_label_work;
+
+size_t hl_label_part_voxels(const hl_label_part *part);
+
+/* Counts voxels that have taken some steps, and tells how far the work has come. */
+void hl_label_worked(hl_label_work *work, size_t voxels, int steps);
+
 /* Makes the occupancy of all labels of a list together, over their common part. labels: [count],
  * rising. *made is null if no voxel has one of the labels. The memory is six and a half bytes for each voxel
- * of the part, of which one byte stays. */
+ * of the part, of which one byte stays. work: is told of the part's voxels. */
 hl_status hl_label_occupancy(hl_context *context, hl_pool *pool, const hl_volume *map, const int64_t *labels,
-                             size_t count, const hl_label_part *part, hl_volume **made, hl_error *error);
+                             size_t count, const hl_label_part *part, hl_label_work *work, hl_volume **made,
+                             hl_error *error);
 
 #endif

@@ -94,15 +94,18 @@ static void release_missing(hl_context *context, missing_labels *missing) {
 }
 
 static hl_status make_missing(hl_context *context, int threads, hl_volume *map, missing_labels *missing,
-                              hl_volume **made, hl_error *error) {
+                              hl_label_work *work, hl_volume **made, hl_error *error) {
+  hl_label_work own_work = {.context = context};
   hl_pool *pool = NULL;
   hl_status status = hl_pool_create(context, threads, &pool, error);
   if (status != HL_OK) return status;
   status = hl_label_parts(context, pool, map, missing->labels, missing->count, missing->parts, error);
+  for (size_t n = 0; n < missing->count && status == HL_OK; n++)
+    own_work.whole += (double)hl_label_part_voxels(&missing->parts[n]);
   for (size_t n = 0; n < missing->count && status == HL_OK; n++) {
     hl_volume **own = &made[missing->places[n]];
-    status = hl_label_occupancy(map->context, pool, map, &missing->labels[n], 1, &missing->parts[n], own,
-                                error);
+    status = hl_label_occupancy(map->context, pool, map, &missing->labels[n], 1, &missing->parts[n],
+                                work != NULL ? work : &own_work, own, error);
     if (status == HL_OK) keep(map, missing->labels[n], *own);
   }
   hl_pool_destroy(pool);
@@ -110,7 +113,7 @@ static hl_status make_missing(hl_context *context, int threads, hl_volume *map, 
 }
 
 hl_status hl_label_occupancies(hl_context *context, int threads, hl_volume *map, const int64_t *labels,
-                               size_t count, hl_volume **made, hl_error *error) {
+                               size_t count, hl_label_work *work, hl_volume **made, hl_error *error) {
   missing_labels missing = {hl_allocate(context, count, sizeof *missing.labels),
                             hl_allocate(context, count, sizeof *missing.places),
                             hl_allocate(context, count, sizeof *missing.parts), 0};
@@ -119,11 +122,15 @@ hl_status hl_label_occupancies(hl_context *context, int threads, hl_volume *map,
   if (missing.labels == NULL || missing.places == NULL || missing.parts == NULL)
     status = hl_fail_memory(error, count * sizeof *missing.parts, "labels");
   for (size_t n = 0; n < count && status == HL_OK; n++) {
-    if (find(map, labels[n], &made[n])) continue;
+    if (find(map, labels[n], &made[n])) {
+      if (work != NULL && made[n] != NULL)
+        hl_label_worked(work, hl_volume_voxel_count(made[n]), HL_LABEL_STEPS);
+      continue;
+    }
     missing.labels[missing.count] = labels[n];
     missing.places[missing.count++] = n;
   }
-  if (missing.count > 0) status = make_missing(context, threads, map, &missing, made, error);
+  if (missing.count > 0) status = make_missing(context, threads, map, &missing, work, made, error);
   for (size_t n = 0; n < count && status != HL_OK; n++) {
     hl_volume_release(made[n]);
     made[n] = NULL;

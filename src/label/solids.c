@@ -12,11 +12,12 @@
 #include "volume/colors.h"
 
 typedef struct solids_job {
-  const hl_volume *map;
+  hl_volume *map;
   const hl_label *labels; /* [count] */
   size_t count;
-  hl_volume *const *occupancies; /* [count]; an element is null if no voxel has the label */
-  hl_label_part part;            /* the common part of all labels */
+  hl_volume *
+      *occupancies;   /* [count]; null: no colours are made; an element is null if no voxel has the label */
+  hl_label_part part; /* the common part of all labels */
   hl_srgb_encoder encoder;
   unsigned char *colors; /* [size z][y][x][HL_COLOR_BYTES] */
   float *sums;           /* [threads][slice floats] */
@@ -100,12 +101,20 @@ static hl_status add_colors(hl_context *context, hl_pool *pool, solids_job *job,
 }
 
 /* Makes the volume. values: [count]; the values of the labels. parts: working space for as many parts. */
-static hl_status make(hl_context *context, hl_pool *pool, solids_job *job, const int64_t *values,
+static hl_status make(hl_context *context, hl_pool *pool, int threads, solids_job *job, const int64_t *values,
                       hl_label_part *parts, hl_volume **made, hl_error *error) {
   hl_status status = hl_label_parts(context, pool, job->map, values, job->count, parts, error);
   if (status != HL_OK) return status;
   job->part = hl_label_part_of_all(parts, job->count);
-  status = hl_label_occupancy(job->map->context, pool, job->map, values, job->count, &job->part, made, error);
+  hl_label_work work = {.context = context, .whole = (double)hl_label_part_voxels(&job->part)};
+  for (size_t n = 0; n < job->count && job->occupancies != NULL; n++)
+    work.whole += (double)hl_label_part_voxels(&parts[n]);
+  if (job->occupancies != NULL)
+    status = hl_label_occupancies(context, threads, job->map, values, job->count, &work, job->occupancies,
+                                  error);
+  if (status == HL_OK)
+    status = hl_label_occupancy(job->map->context, pool, job->map, values, job->count, &job->part, &work,
+                                made, error);
   if (status == HL_OK && *made != NULL && job->occupancies != NULL)
     status = add_colors(context, pool, job, *made, error);
   if (status != HL_OK) {
@@ -128,13 +137,11 @@ hl_status hl_label_solids(hl_context *context, int threads, hl_volume *map, cons
   if (values == NULL || parts == NULL || occupancies == NULL)
     status = hl_fail_memory(error, count * sizeof *parts, "labels");
   for (size_t n = 0; status == HL_OK && n < count; n++) values[n] = labels[n].value;
-  if (status == HL_OK && colored)
-    status = hl_label_occupancies(context, threads, map, values, count, occupancies, error);
   if (status == HL_OK) status = hl_pool_create(context, threads, &pool, error);
   if (status == HL_OK) {
     solids_job job = {
         .map = map, .labels = labels, .count = count, .occupancies = colored ? occupancies : NULL};
-    status = make(context, pool, &job, values, parts, made, error);
+    status = make(context, pool, threads, &job, values, parts, made, error);
     hl_pool_destroy(pool);
   }
   if (status == HL_OK && *made != NULL) hl_solids_to_shelf(map, labels, count, *made);

@@ -48,10 +48,13 @@ bool server_is_outdated(void) {
   return current.page != NULL && atomic_load(&current.page->newest) > current.number;
 }
 
-void server_progress(double fraction) {
+void server_progress(const char *stage, double fraction) {
   if (current.server == NULL || !(fraction >= 0 && fraction <= 1)) return;
   if (current.opening) atomic_store(&current.server->opening_part, (int)(1000 * fraction));
-  else if (current.page != NULL) atomic_store(&current.page->frame_part, (int)(1000 * fraction));
+  else if (current.page != NULL) {
+    atomic_store(&current.page->prepares, strcmp(stage, "prepare") == 0);
+    atomic_store(&current.page->frame_part, (int)(1000 * fraction));
+  }
 }
 
 bool pages_begin(server *s) {
@@ -175,14 +178,19 @@ pages_state pages_count(server *s) {
   return state;
 }
 
-int page_progress(server *s, const char *name, int *others) {
+int page_progress(server *s, const char *name, bool *prepares, int *others) {
   int part = 0;
   *others = 0;
+  *prepares = false;
   pthread_mutex_lock(&s->pages_lock);
   for (int p = 0; p < MOST_PAGES; p++) {
     if (s->pages[p].users == 0) continue;
-    if (strcmp(s->pages[p].name, name) == 0) part = atomic_load(&s->pages[p].frame_part);
-    else *others += 1;
+    if (strcmp(s->pages[p].name, name) == 0) {
+      part = atomic_load(&s->pages[p].frame_part);
+      *prepares = atomic_load(&s->pages[p].prepares);
+    } else {
+      *others += 1;
+    }
   }
   pthread_mutex_unlock(&s->pages_lock);
   return part;
@@ -357,6 +365,7 @@ static void answer_page(server *s, server_page *page, const frame_request *reque
   current.page = page;
   current.number = request->number;
   atomic_store(&page->frame_part, 0);
+  atomic_store(&page->prepares, false);
   hl_status status = make_frame(s, page, request, film, answer, &error);
   /* The frame is tried once more after the memory of idle pages, and what this page held before, was
    * released. */

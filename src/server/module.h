@@ -13,7 +13,7 @@
 
 typedef struct server_module {
   bool (*run)(const server_options *options, char *problem, size_t problem_size); /* server_run() */
-  void (*progress)(double fraction);                                              /* server_progress() */
+  void (*progress)(const char *stage, double fraction);                           /* server_progress() */
   bool (*is_outdated)(void);                                                      /* server_is_outdated() */
 } server_module;
 

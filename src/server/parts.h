@@ -60,7 +60,8 @@ typedef struct server_page {
   hl_renderer *renderer;                 /* owned; guarded by `rendering`; null: not made yet */
   quick_renderer quick[QUICK_RENDERERS]; /* guarded by `rendering` */
   atomic_ullong newest;                  /* the highest number of a requested frame */
-  atomic_int frame_part;                 /* finished thousandths of the frame that is being rendered */
+  atomic_int frame_part;                 /* finished thousandths of the stage of the frame that is rendered */
+  atomic_bool prepares;                  /* this stage makes what the frame's picture needs: smooth labels */
   atomic_int film_done, film_frames;     /* numbers of frames of the film that the page renders, finished
                                           * and in all; 0 frames in all: there is no film */
   int users;                             /* number of requests that hold the page; guarded by
@@ -187,9 +188,10 @@ typedef struct pages_state {
 } pages_state;
 
 pages_state pages_count(server *s);
-/* The progress of the page's frame, in thousandths of its step. *others: the number of other pages, and of
+/* The progress of the page's frame, in thousandths of its stage. *prepares: it is the stage before the
+ * picture, which smooths labels. *others: the number of other pages, and of
  * lanes of this page, that have frames under way. */
-int page_progress(server *s, const char *name, int *others);
+int page_progress(server *s, const char *name, bool *prepares, int *others);
 /* Answers with a frame. film: null for a picture. */
 void answer_frame(server *s, const frame_request *request, const film_request *film, server_answer *answer);
 /* Answers with the scene, its defaults and the page's choices. film: the scene is as it is at this frame of

@@ -67,9 +67,9 @@ typedef struct server_options {
  * line. */
 bool server_run(const server_options *options, char *problem, size_t problem_size);
 
-/* The function for the context's `progress` callback. fraction: how much has been read of the file that
- * this thread opens. */
-void server_progress(double fraction);
+/* The function for the context's `progress` callback. fraction: how much is done of the file that this thread
+ * opens, or of the stage of the frame that it renders. */
+void server_progress(const char *stage, double fraction);
 
 /* The function for the context's `cancelled` callback: whether the frame that this thread renders is no
  * longer wanted. */

@@ -77,7 +77,10 @@ static hl_volume *occupancy_of(depth_function *depth, const void *shape, double 
   const int64_t labels[] = {3, 7};
   hl_label_part parts[2];
   assert_int_equal(hl_label_parts(context, pool, map, labels, 2, parts, NULL), HL_OK);
-  assert_int_equal(hl_label_occupancy(context, pool, map, &labels[1], 1, &parts[1], &made, NULL), HL_OK);
+  hl_label_work work = {.context = context, .whole = (double)hl_label_part_voxels(&parts[1])};
+  assert_int_equal(hl_label_occupancy(context, pool, map, &labels[1], 1, &parts[1], &work, &made, NULL),
+                   HL_OK);
+  assert_true(work.done == HL_LABEL_STEPS * work.whole);
   assert_non_null(made);
   hl_volume_release(map);
   return made;

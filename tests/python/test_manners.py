@@ -67,6 +67,18 @@ def test_progress_calls_and_may_stop(slow, small):
         Renderer().render(slow, progress=stop)
 
 
+def test_progress_of_labels_that_are_smoothed():
+    labels = np.zeros((24, 24, 24), np.uint8)
+    labels[4:12, 4:20, 4:20], labels[12:20, 4:20, 4:20] = 1, 2
+    scene = Scene(halflight.Volume(labels, labels={1: "red", 2: "lime"}), size=(32, 32))
+    told = []
+    Renderer().render(scene, progress=lambda stage, fraction: told.append(fraction) if stage == "prepare" else None)
+    assert told == sorted(told) and 0 < told[0] < 1 and told[-1] == 1
+    again = []
+    Renderer().render(scene, progress=lambda stage, _: again.append(stage))
+    assert again and "prepare" not in again  # they are kept
+
+
 def test_progress_on_stderr(small, capfd, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "tqdm.auto", None)
     Renderer().render(small, progress=True)

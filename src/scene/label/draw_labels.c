@@ -157,7 +157,8 @@ static hl_status draw_skins(hl_context *context, hl_scene_description *placed, c
   for (size_t n = 0; status == HL_OK && n < map->label_count; n++)
     if (is_skin(&map->labels[n])) values[count++] = map->labels[n].value;
   if (status == HL_OK)
-    status = hl_label_occupancies(context, placed->render.threads, map->volume, values, count, made, error);
+    status = hl_label_occupancies(context, placed->render.threads, map->volume, values, count, NULL, made,
+                                  error);
   count = 0;
   for (size_t n = 0; status == HL_OK && n < map->label_count; n++)
     if (is_skin(&map->labels[n])) add_drawn(placed, map, &map->labels[n], made[count++], points);

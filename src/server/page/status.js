@@ -14,9 +14,10 @@ export function statusLine(find, channel) {
 
   // Shows the progress as long as the picture is under way.
   async function ask(mine) {
-    const { part, others } = await channel.progress().catch(() => ({ part: 0, others: 0 }));
+    const { part, prepares, others } = await channel.progress().catch(() => ({ part: 0, others: 0 }));
     if (mine !== number) return;
-    progress.textContent = (part > 0 ? `${Math.round(100 * part)} %` : "") + (others > 0 ? ` · with ${others} other ${others === 1 ? "picture" : "pictures"} under way` : "");
+    const isDone = prepares && part >= 1; // the picture has not begun
+    progress.textContent = (part > 0 && !isDone ? `${prepares ? "smoothing labels, " : ""}${Math.round(100 * part)} %` : "") + (others > 0 ? ` · with ${others} other ${others === 1 ? "picture" : "pictures"} under way` : "");
     timer = setTimeout(() => ask(mine), ASK_EVERY);
   }
 
