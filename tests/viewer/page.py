@@ -294,6 +294,8 @@ with tempfile.TemporaryDirectory() as folder:
             browser.open(map_viewer.url)
             rest(browser)
             check(re.fullmatch(r"[\d.]+ Å", browser.run(bar)), f"a scale in Angstroms: {browser.run(bar)}")
+            facts = browser.run("[...document.querySelectorAll('details')].find((d) => d.querySelector('summary').textContent === 'Volume').querySelector('.facts').textContent")
+            check(re.match(r"\d+ × \d+ × \d+ voxels of ([\d.]+) × \1 × \1 Å, ", facts), f"the size of voxels: {facts}")
             saved_with_bar(browser)
         check(browser.problems == [], f"the console has errors: {browser.problems}")
         print(f"{checks.count} checks passed; frames: {counts}")
