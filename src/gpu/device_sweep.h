@@ -33,6 +33,21 @@ typedef struct plan_box {
   int sphere;
 } plan_box;
 
+/* A cut of the volume, as the eye or a light sees it. */
+typedef struct plan_cut {
+  int shape; /* CUT_BOX and so on, as hl_cut_type */
+  int keep_inside;
+  float rows[3][4];     /* frame space to the shape's own space (scene/geometry/cut.h) */
+  float in_index[3][4]; /* index space to the shape's own space */
+  float scale[3];       /* voxels per unit of each axis of the shape's own space */
+  float margin[3];      /* of a light: as `margin` of plan_light, along the axes of the shape's own space */
+  plan_box rays;        /* rays in the shape */
+} plan_cut;
+
+#define CUT_PLANE  0
+#define CUT_BOX    1
+#define CUT_SPHERE 2
+
 /* A light, and the shadow buffer of a light that casts shadows. */
 typedef struct plan_light {
   int parallel, shadowed, inverse_square, nearest, cubic;
@@ -60,6 +75,7 @@ typedef struct plan_light {
   plan_box box, content;
   float margin[3]; /* in voxels: if a sample is farther than this from the box's faces, no light passes
                     * beside the faces to the pixels around it */
+  int first_cut, cut_count; /* the cuts that count for the light, among the sweep's cuts */
 } plan_light;
 
 typedef struct plan_volume {
@@ -78,8 +94,10 @@ typedef struct plan_volume {
   int bends; /* there is a table of bent colours */
   int several_surfaces;
   float only_beginning;
-  /* surfaces at the box's faces (shade_volume in render/slab.h) */
-  int any_face, cut_shading;
+  /* surfaces at the faces of the box and of cuts (shade_volume in render/slab.h) */
+  int any_face;   /* the eye sees faces that are no part of the data */
+  int faces_take; /* light enters surfaces through such faces */
+  int cut_shading, cut_count;
   int face_cuts[6]; /* [axis][low, high] */
   /* the material (shade_volume in render/slab.h) */
   float ambient, diffuse, specular, shininess, emission;
@@ -113,7 +131,8 @@ typedef struct plan_variant {
   int eye_perspective;
   int phong, lit, shadowed;
   int outside; /* the lights' buffers keep the light at the outside of surfaces, too */
-  int boxed;   /* the volume's box cuts visible matter */
+  int boxed;   /* the volume's box or a cut cuts visible matter */
+  int cuts;    /* the volume has cuts */
   int back_to_front;
   int channels; /* number of channels of light attenuation: 1 or 3 */
 } plan_variant;

@@ -25,7 +25,7 @@ static const char *const kernel_names[KERNELS] = {"fill_floats",      "try_arith
                                                   "run_light",        "find_samples",   "shade_samples",
                                                   "composite_samples"};
 
-enum { MOST_VARIANTS = 64, VARIANT_DEFINES = 10, SAMPLE_COUNTERS = 256 };
+enum { MOST_VARIANTS = 64, VARIANT_DEFINES = 11, SAMPLE_COUNTERS = 256 };
 
 /* The buffers of a device. */
 enum buffer_use {
@@ -45,6 +45,7 @@ enum buffer_use {
   BUFFER_SLOTS,
   BUFFER_LIST,
   BUFFER_MASKS,
+  BUFFER_CUTS,
   BUFFERS
 };
 
@@ -278,10 +279,10 @@ static void define_variant(const plan_variant *v, char defines[VARIANT_DEFINES][
     const char *name;
     int value;
   } all[VARIANT_DEFINES] = {
-      {"STORAGE", v->storage},  {"BSPLINE", v->bspline}, {"EYE_PERSPECTIVE", v->eye_perspective},
-      {"PHONG", v->phong},      {"LIT", v->lit},         {"SHADOWED", v->shadowed},
-      {"OUTSIDE", v->outside},  {"BOXED", v->boxed},     {"BACK_TO_FRONT", v->back_to_front},
-      {"CHANNELS", v->channels}};
+      {"STORAGE", v->storage},   {"BSPLINE", v->bspline}, {"EYE_PERSPECTIVE", v->eye_perspective},
+      {"PHONG", v->phong},       {"LIT", v->lit},         {"SHADOWED", v->shadowed},
+      {"OUTSIDE", v->outside},   {"BOXED", v->boxed},     {"BACK_TO_FRONT", v->back_to_front},
+      {"CHANNELS", v->channels}, {"CUTS", v->cuts}};
   for (int i = 0; i < VARIANT_DEFINES; i++)
     snprintf(defines[i], sizeof defines[i], "%s=%d", all[i].name, all[i].value);
 }
@@ -396,9 +397,12 @@ static bool make_room(hl_gpu *gpu, const gpu_sweep *sweep) {
               reserve(gpu, BUFFER_COUNTS, counters_of(sweep) * sizeof(uint32_t)) &&
               reserve(gpu, BUFFER_SLOTS, slots * 4 * sizeof(float)) &&
               reserve(gpu, BUFFER_LIST, slots * sizeof(uint32_t)) &&
-              reserve(gpu, BUFFER_MASKS, 2 * tiles * 256 * sizeof(uint32_t));
+              reserve(gpu, BUFFER_MASKS, 2 * tiles * 256 * sizeof(uint32_t)) &&
+              reserve(gpu, BUFFER_CUTS, sweep->cut_count * sizeof *sweep->cuts);
   if (done && sweep->shown_from != NULL)
     done = upload(gpu, BUFFER_SHOWN_FROM, 0, sweep->shown_from, tiles * 16 * sizeof(int32_t));
+  if (done && sweep->cut_count > 0)
+    done = upload(gpu, BUFFER_CUTS, 0, sweep->cuts, sweep->cut_count * sizeof *sweep->cuts);
   return done;
 }
 
@@ -444,6 +448,7 @@ static bool launch_kernel(hl_gpu *gpu, const gpu_program *program, int kernel, s
                                     memory(gpu, BUFFER_SLOTS),
                                     memory(gpu, BUFFER_LIST),
                                     memory(gpu, BUFFER_MASKS),
+                                    memory(gpu, BUFFER_CUTS),
                                     number(run.first),
                                     number(run.end),
                                     number(run.number)};

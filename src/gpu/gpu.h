@@ -58,7 +58,9 @@ bool hl_gpu_try(hl_gpu *gpu, const float *numbers, uint32_t count, float *result
 typedef struct gpu_sweep {
   const device_sweep *plan;
   plan_variant variant;
-  const plan_rays *rays;     /* [2 + 2 lights][sheets] (gpu/kernels/sweep.h) */
+  const plan_rays *rays; /* [2 + 2 lights][sheets] (gpu/kernels/sweep.h) */
+  const plan_cut *cuts;  /* [cut_count]; the cuts of all views, the eye's first; null: none */
+  size_t cut_count;
   const int32_t *shown_from; /* [tiles][16]; from back to front: the first visible slab; null: slab 1 */
   size_t plane_floats;       /* floats of the planes of all lights together */
   int slabs;                 /* number of slabs of a run */

@@ -7,10 +7,14 @@
 #include <string.h>
 
 #include "grid/relevant.h"
+#include "render/view_sheets.h"
 
 _Static_assert(PLAN_LIGHTS >= MAXIMUM_SWEEP_LIGHTS && PLAN_SECTORS == LIGHT_SECTORS &&
                    PLAN_ENTRIES == CLASSIFIER_ENTRIES && PLAN_KERNEL_POWERS == HL_KERNEL_DEGREE + 1,
                "plans hold what sweeps hold");
+_Static_assert(CUT_PLANE == (int)HL_CUT_PLANE && CUT_BOX == (int)HL_CUT_BOX &&
+                   CUT_SPHERE == (int)HL_CUT_SPHERE,
+               "cuts of plans are cuts of scenes");
 _Static_assert(offsetof(plan_rays, height) == sizeof(sheet_rays) && sizeof(plan_box) == sizeof(box_rays),
                "rays of plans are rays of views");
 
@@ -40,7 +44,6 @@ static bool has_colors(const frame_plan *plan) { return volume_of(plan)->volume-
 static bool is_weighed(const frame_plan *plan) {
   return hl_classifier_is_weighed(plan->volumes.list[0].classifier);
 }
-static bool has_cuts(const frame_plan *plan) { return volume_of(plan)->is_cut; }
 static bool is_soft(const frame_plan *plan) {
   for (int i = 0; i < plan->frame.light_count; i++)
     if (plan->frame.lights[i].shadows == HL_SHADOWS_SOFT) return true;
@@ -76,7 +79,6 @@ static const struct {
     {is_thin, "a volume less than four voxels thick"},
     {has_colors, "voxels with colours"},
     {is_weighed, "gradient opacity, a mask, or a function of two numbers"},
-    {has_cuts, "cuts"},
     {is_soft, "soft shadows"},
     {has_images, "lights with images"},
     {has_phase_tables, "wide lights in media that scatter unevenly"},
@@ -146,7 +148,11 @@ static void plan_matter(const shade_volume *shade, plan_volume *volume) {
   volume->bends = classifier->bent != NULL;
   volume->several_surfaces = classifier->several_surfaces;
   volume->only_beginning = classifier->only_beginning;
-  volume->any_face = shade->any_face;
+  volume->cut_count = shade->cut_count;
+  volume->any_face = shade->any_face ||
+                     (shade->cut_count > 0 && shade->cut_shading != HL_CUT_SHADING_GRADIENT);
+  volume->faces_take = shade->cut_shading == HL_CUT_SHADING_FACE &&
+                       (shade->any_face || shade->light_cut_count > 0);
   volume->cut_shading = shade->cut_shading;
   for (int face = 0; face < 6; face++) volume->face_cuts[face] = shade->face_cuts[face / 2][face % 2];
 }
@@ -228,28 +234,79 @@ static void plan_content(const view *view, const sweep_task *task, plan_box *box
   memcpy(box, &rays, sizeof *box);
 }
 
-/* Finds the margin beside the box's faces within which samples count as near a face. Derived: on the sheet,
- * one pixel of a parallel light's buffer along u is (grad v x h) / (grad u . (grad v x h)), where h is the
- * sheets' normal; the step along v has the same form. The pixels around a sample are at most one such step
- * away. A face counts where it is up to twice as far away. The light's way through the slab is as long as
- * its path. The margin is a little larger because of rounding. The pixels of a near light grow with
- * distance; for such a light all samples count as near a face. */
-static void plan_margin(const sweep_task *task, int index, plan_light *light) {
+/* Finds the margin beside faces within which samples count as near a face. row: the gradient of the number
+ * whose margin is found, in frame space. Derived: on the sheet, one pixel of a parallel light's buffer along
+ * u is (grad v x h) / (grad u . (grad v x h)), where h is the sheets' normal; the step along v has the same
+ * form. The pixels around a sample are at most one such step away. A face counts where it is up to twice as
+ * far away. The light's way through the slab is as long as its path. The margin is a little larger because of
+ * rounding. The pixels of a near light grow with distance; for such a light all samples count as near a face.
+ */
+static float margin_along(const sweep_task *task, int index, double way, vec3 row) {
   const sheet_stack *sheets = &task->plan->geometry->sheets;
   const light_source *source = task->plan->lights[index].source;
-  const mat3 *to_index = &task->frame_plan->volumes.grids[0].frame_to_index.linear;
   double rows[3][4];
   hl_view_homogeneous(&task->plan->lights[index].shadow.plan.view, affine3_identity(), rows);
   const vec3 u = {rows[1][0], rows[1][1], rows[1][2]}, v = {rows[2][0], rows[2][1], rows[2][2]};
   vec3 along_u = vec3_cross(v, sheets->normal), along_v = vec3_cross(sheets->normal, u);
-  double rise = vec3_dot(u, along_u);
-  for (int axis = 0; axis < 3; axis++) {
-    double pixels = fabs(vec3_dot(to_index->row[axis], along_u)) +
-                    fabs(vec3_dot(to_index->row[axis], along_v)),
-           way = fabs(vec3_dot(to_index->row[axis], source->direction)) * (double)light->path;
-    bool known = source->parallel && fabs(rise) > 1e-9 * (vec3_length(along_u) + vec3_length(along_v));
-    light->margin[axis] = known ? (float)(2.05 * pixels / fabs(rise) + 1.05 * way + 0.01) : 1e30f;
+  double rise = vec3_dot(u, along_u), pixels = fabs(vec3_dot(row, along_u)) + fabs(vec3_dot(row, along_v));
+  double least = 0.01 * hl_smallest_edge(&task->frame_plan->volumes.grids[0]) * vec3_length(row);
+  if (!source->parallel || !(fabs(rise) > 1e-9 * (vec3_length(along_u) + vec3_length(along_v)))) return 1e30f;
+  return (float)(2.05 * pixels / fabs(rise) + 1.05 * fabs(vec3_dot(row, source->direction)) * way + least);
+}
+
+static void plan_margin(const sweep_task *task, int index, plan_light *light) {
+  const mat3 *to_index = &task->frame_plan->volumes.grids[0].frame_to_index.linear;
+  for (int axis = 0; axis < 3; axis++)
+    light->margin[axis] = margin_along(task, index, (double)light->path, to_index->row[axis]);
+}
+
+/* ---- the cuts ---- */
+
+/* Describes the volume's cuts for one view. light: the light to which the view belongs; -1: the eye's view.
+ */
+static void plan_cuts_of_view(const sweep_task *task, const view *view, int light, plan_cut *cuts) {
+  const grid *grid = &task->frame_plan->volumes.grids[0];
+  const shade_volume *shade = &task->constants->volumes[0];
+  for (int i = 0; i < shade->cut_count; i++) {
+    const affine3 to_shape = affine3_multiply(grid->cuts[i].to_shape, grid->frame_to_index);
+    plan_cut *cut = &cuts[i];
+    run_cut in_view;
+    box_rays rays;
+    hl_view_cut(view, &task->plan->geometry->sheets, grid, &grid->cuts[i], &in_view, &rays);
+    cut->shape = shade->cuts[i].type;
+    cut->keep_inside = shade->cuts[i].keep_inside;
+    memcpy(cut->rows, shade->cuts[i].rows, sizeof cut->rows);
+    memcpy(cut->in_index, in_view.rows, sizeof cut->in_index);
+    memcpy(&cut->rays, &rays, sizeof cut->rays);
+    for (int axis = 0; axis < 3; axis++) {
+      cut->scale[axis] = 1.0f / (in_view.size[axis] * shade->voxel);
+      if (light < 0) continue;
+      cut->margin[axis] = margin_along(task, light, (double)task->constants->lights[light].path,
+                                       to_shape.linear.row[axis]);
+    }
   }
+}
+
+static hl_status plan_cuts(hl_context *context, const sweep_task *task, planned_sweep *planned,
+                           hl_error *error) {
+  const shade_volume *shade = &task->constants->volumes[0];
+  const int lights = task->plan->geometry->light_count, own = shade->cut_count;
+  const size_t count = (1 + (size_t)lights) * (size_t)own;
+  if (own == 0) return HL_OK;
+  planned->cuts = hl_allocate_zeroed(context, count, sizeof *planned->cuts);
+  if (planned->cuts == NULL) return hl_fail_memory(error, count * sizeof *planned->cuts, "the cuts");
+  plan_cuts_of_view(task, &task->frame_plan->frame.eye, -1, planned->cuts);
+  for (int i = 0; i < lights; i++) {
+    const light_shadow *shadow = &task->plan->lights[i].shadow;
+    plan_light *light = &planned->plan.lights[i];
+    light->first_cut = (1 + i) * own;
+    light->cut_count = shade->light_cut_count;
+    if (shadow->method != NULL)
+      plan_cuts_of_view(task, &shadow->plan.view, i, planned->cuts + light->first_cut);
+  }
+  planned->sweep.cuts = planned->cuts;
+  planned->sweep.cut_count = count;
+  return HL_OK;
 }
 
 /* The number of planes of one sheet: one per channel for the transmittance, and as many for the light at the
@@ -370,6 +427,7 @@ static plan_variant variant_of(const sweep_task *task, const device_sweep *plan)
                         .shadowed = plan->light_tiles > 0,
                         .outside = keeps_outside(task),
                         .boxed = grid->cut,
+                        .cuts = shade->cut_count > 0,
                         .back_to_front = task->plan->geometry->back_to_front,
                         .channels = task->frame_plan->channels};
 }
@@ -421,18 +479,21 @@ hl_status hl_plan_sweep(hl_context *context, const frame_plan *frame_plan, const
     if (task->plan->lights[i].shadow.method != NULL)
       plan_buffer(task, i, plan->ring, &floats, &plan->light_tiles, &plan->lights[i]);
   }
-  status = plan_all_rays(context, task, planned, error);
   planned->sweep = (gpu_sweep){.plan = plan,
                                .variant = variant_of(task, plan),
-                               .rays = planned->rays,
                                .shown_from = shown_from,
                                .plane_floats = floats,
                                .slabs = slabs};
-  return status;
+  status = plan_all_rays(context, task, planned, error);
+  planned->sweep.rays = planned->rays;
+  return status == HL_OK ? plan_cuts(context, task, planned, error) : status;
 }
 
 void hl_plan_release(hl_context *context, planned_sweep *planned) {
   hl_release(context, planned->memory);
   hl_release(context, planned->rays);
-  planned->memory = planned->rays = NULL;
+  hl_release(context, planned->cuts);
+  planned->memory = NULL;
+  planned->rays = NULL;
+  planned->cuts = NULL;
 }

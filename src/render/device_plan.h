@@ -21,6 +21,7 @@ typedef struct planned_sweep {
   device_sweep plan;
   gpu_sweep sweep;
   plan_rays *rays; /* owned */
+  plan_cut *cuts;  /* owned; null where the volume has no cuts */
 } planned_sweep;
 
 /* Brings a sweep of a plan to the numbers that a device reads. shown_from: the first visible slabs, as in a

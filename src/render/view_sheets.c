@@ -40,17 +40,16 @@ static size_t most_removed(const view_sheets *sheets) {
   return most;
 }
 
-static void set_up_cut(const view_sheets *sheets, const grid *grid, const cut_shape *shape, size_t at) {
+void hl_view_cut(const view *view, const sheet_stack *stack, const grid *grid, const cut_shape *shape,
+                 run_cut *cut, box_rays *rays) {
   /* a plane's inside is a box without other faces */
   const double edge = 1e15, plane_low[3] = {0, -edge, -edge}, plane_high[3] = {edge, edge, edge};
   const double box_low[3] = {-1, -1, -1}, box_high[3] = {1, 1, 1};
-  const sheet_stack *stack = sheets->content->sheets;
   bool plane = shape->type == HL_CUT_PLANE;
   affine3 from_frame = affine3_multiply(shape->to_shape, grid->frame_to_index);
-  hl_box_rays(sheets->view, stack->normal, stack->first, from_frame, plane ? plane_low : box_low,
-              plane ? plane_high : box_high, &sheets->cut_rays[at]);
-  sheets->cut_rays[at].sphere = shape->type == HL_CUT_SPHERE;
-  run_cut *cut = &sheets->cuts[at];
+  hl_box_rays(view, stack->normal, stack->first, from_frame, plane ? plane_low : box_low,
+              plane ? plane_high : box_high, rays);
+  rays->sphere = shape->type == HL_CUT_SPHERE;
   cut->shape = shape;
   affine3_store(cut->rows, &shape->to_shape);
   for (int r = 0; r < 3; r++) cut->size[r] = (float)vec3_length(from_frame.linear.row[r]);
@@ -58,9 +57,12 @@ static void set_up_cut(const view_sheets *sheets, const grid *grid, const cut_sh
 
 static void set_up_cuts(view_sheets *sheets) {
   size_t at = 0;
-  for (int g = 0; g < sheets->content->volume_count && sheets->cuts != NULL; g++)
-    for (size_t i = 0; i < cuts_of(sheets, g); i++)
-      set_up_cut(sheets, &sheets->content->grids[g], &sheets->content->grids[g].cuts[i], at++);
+  for (int g = 0; g < sheets->content->volume_count && sheets->cuts != NULL; g++) {
+    const grid *grid = &sheets->content->grids[g];
+    for (size_t i = 0; i < cuts_of(sheets, g); i++, at++)
+      hl_view_cut(sheets->view, sheets->content->sheets, grid, &grid->cuts[i], &sheets->cuts[at],
+                  &sheets->cut_rays[at]);
+  }
 }
 
 /* Fills the part of a row of entries that belongs to cuts: shortens the box's sections to the insides that

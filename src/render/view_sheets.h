@@ -91,6 +91,10 @@ void hl_view_sheets_end(view_sheets *sheets);
  * is known only when they are made. */
 void hl_view_sheets_count(const sheet_content *content, const view *view, double spare, hl_layout *layout);
 
+/* Sets up a cut of a grid for a view: its shape in the view's units, and the view's rays in it. */
+void hl_view_cut(const view *view, const sheet_stack *stack, const grid *grid, const cut_shape *shape,
+                 run_cut *cut, box_rays *rays);
+
 /* Call for each slab of a stretch before its patches are asked for; sheets rise from 1. */
 void hl_view_sheets_reach(view_sheets *sheets, int sheet);
 

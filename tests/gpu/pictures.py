@@ -7,6 +7,7 @@ usage: pictures.py PROGRAM
 import json
 import os
 import pathlib
+import random
 import subprocess
 import sys
 import tempfile
@@ -38,7 +39,13 @@ def scene(opacity=OPACITY, shadows="hard", shading="none", direction=(0.4, -0.7,
             "render": {"sheet_spacing": 1, "shadows": shadows, **(render or {})}}
 
 
+def plane(*normal):
+    return {"type": "plane", "point": [1, 1, -1], "normal": list(normal)}
+
+
 CLIP = {"min": [5, 3, 4], "max": [24, 20, 15]}
+BALL = {"type": "sphere", "center": [4, 2, -6], "radius": 9}
+BLOCK = {"type": "box", "min": [-9, -5, -13], "max": [7, 9, 3]}
 FLAT = {"type": "orthographic", "position": [50, 32, -88], "target": [0, 0, 0], "up": [0, 1, 0], "height": 50}
 MADE = {
     "medium": scene(),
@@ -55,6 +62,18 @@ MADE = {
                                                    light={"type": "point", "position": [40, 50, -50]}),
     "several surfaces, flat view, runs of 3": scene(opacity=LAYERS, shading="phong", camera=FLAT,
                                                     render={"slabs_at_once": 3, "shadow_lookup": "bilinear"}),
+    "a cut plane": scene(volume={"cuts": [plane(1, 0.4, -0.2)]}),
+    "cuts, surfaces": scene(opacity=AROUND, shading="phong",
+                            volume={"cuts": [plane(1, 0.3, 0.2), BALL, {**BLOCK, "keep": "inside"}]}),
+    "cuts in one another, runs of 3": scene(volume={"cuts": [BLOCK, BALL]}, render={"slabs_at_once": 3}),
+    "a ball is left, near light": scene(opacity=LAYERS, shading="phong", volume={"cuts": [{**BALL, "keep": "inside"}]},
+                                        light={"type": "point", "position": [40, 50, -50]}),
+    "cuts with shadows, light from behind": scene(opacity=DENSE, shading="phong", direction=(0.2, -0.3, -0.9),
+                                                  volume={"cuts": [plane(0, 0, 1)], "cut_casts_shadow": True}),
+    "faces of cuts as media, flat view": scene(opacity=AROUND, shading="phong", camera=FLAT,
+                                               volume={"cuts": [plane(0.2, 1, 0), BLOCK], "cut_shading": "none"}),
+    "a cut surface by its gradient": scene(opacity=DENSE, shading="phong",
+                                           volume={"cuts": [plane(0.2, 1, 0)], "cut_shading": "gradient"}),
     "near light, colours, flat view": scene(light={"type": "point", "position": [40, 50, -50]}, camera=FLAT,
                                             volume={"attenuation_color": [1, 0.5, 0.2]}),
 }
@@ -62,8 +81,24 @@ LEFT = {
     "soft shadows": scene(shadows="soft", light={"type": "directional", "direction": [0.4, -0.7, 0.5],
                                                  "angular_diameter_deg": 7}),
     "splatting in place of gathering": scene(render={"reconstruction": "splat"}),
-    "cuts": scene(volume={"cuts": [{"type": "plane", "point": [0, 0, 0], "normal": [1, 0, 0]}]}),
 }
+
+
+def drawn(seed):
+    """A scene with cuts of all kinds, drawn by a seed."""
+    draw = random.Random(seed)
+    cuts = []
+    for _ in range(draw.randint(1, 3)):
+        at = [draw.uniform(-8, 8) for _ in range(3)]
+        kept = {"keep": draw.choice(("inside", "outside"))}
+        cuts.append(draw.choice(({**plane(*(draw.uniform(-1, 1) for _ in range(3))), "point": at},
+                                 {"type": "sphere", "center": at, "radius": draw.uniform(5, 14), **kept},
+                                 {"type": "box", "min": [a - draw.uniform(2, 12) for a in at],
+                                  "max": [a + draw.uniform(2, 12) for a in at], **kept})))
+    return scene(opacity=draw.choice((AROUND, LAYERS, DENSE)), shading="phong",
+                 direction=[draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(0.1, 1)],
+                 volume={"cuts": cuts, "cut_casts_shadow": draw.random() < 0.3, "cut_shading": draw.choice(("face", "none"))},
+                 render={"slabs_at_once": draw.choice((0, 4, 9))})
 
 
 def picture(folder, name, device):
@@ -101,6 +136,8 @@ def main():
         for name, description in MADE.items():
             report = hold(folder, name, description)
             assert report["device"] != "cpu" and report["samples_shaded"] > 1000, f"{name}: {report}"
+        for seed in range(6):
+            hold(folder, f"drawn-{seed}", drawn(seed))
         for reason, description in LEFT.items():
             report = hold(folder, reason, description)
             assert report["device"] == "cpu" and report["device_reason"] == reason, f"{reason}: {report}"

@@ -141,10 +141,11 @@ typedef struct light_ways {
   float first, last;
 } light_ways;
 
-/* Lengths of the light's way within the volume's box, to where the slab's covered part begins and ends. path:
- * the lengths without a box. */
-DEVICE light_ways ways_in_box(GLOBAL const plan_volume *volume, vector start, vector way, vector towards,
-                              light_ways path) {
+/* Lengths of the light's way within what the volume's box and cuts leave, to where the slab's covered part
+ * begins and ends. path: the lengths without a box. */
+DEVICE light_ways ways_in_box(const volume_data *data, GLOBAL const plan_light *light, vector start,
+                              vector way, vector towards, light_ways path) {
+  GLOBAL const plan_volume *volume = data->plan;
   float leave_first = 1e30f, leave_last = 1e30f, enter_first = 0.0f, enter_last = 0.0f;
   for (int axis = 0; axis < 3; axis++) {
     GLOBAL const float *row = volume->to_index[axis];
@@ -160,8 +161,25 @@ DEVICE light_ways ways_in_box(GLOBAL const plan_volume *volume, vector start, ve
     enter_last = greater(enter_last, fused(-along, slowness, behind));
   }
   light_ways ways;
-  ways.first = greater(lesser(path.first, leave_first) - enter_first, 0.0f);
-  ways.last = greater(lesser(path.last, leave_last) - enter_last, 0.0f);
+  leave_first = lesser(path.first, leave_first);
+  leave_last = lesser(path.last, leave_last);
+#if CUTS
+  if (light->cut_count > 0) {
+    GLOBAL const plan_cut *cuts = data->cuts + light->first_cut;
+    way_left first, last;
+    first.enter = enter_first;
+    first.leave = leave_first;
+    last.enter = enter_last;
+    last.leave = leave_last;
+    ways.first = length_left(cuts, light->cut_count, start, towards, first);
+    ways.last = length_left(cuts, light->cut_count, add(start, way), towards, last);
+    return ways;
+  }
+#else
+  (void)light;
+#endif
+  ways.first = greater(leave_first - enter_first, 0.0f);
+  ways.last = greater(leave_last - enter_last, 0.0f);
   return ways;
 }
 
@@ -223,8 +241,25 @@ typedef struct faces_of_axis {
   float ahead, behind, u, v, along;
 } faces_of_axis;
 
-DEVICE float find_faces(GLOBAL const plan_volume *volume, const slab_sample *s, vector towards,
-                        const near_pixels *close_pixels, faces_of_axis faces[3]) {
+/* As find_faces() for a cut: the face ahead is a plane where the light's ray meets the cut. */
+DEVICE float face_of_cut(GLOBAL const plan_cut *cut, vector position, vector towards,
+                         const near_pixels *close_pixels, float through) {
+  const ray_section way = cross_cut(cut, position, towards);
+  float ahead = cut->keep_inside ? way.last : way.first;
+  if (!(way.first < way.last && way.last > 0.0f && ahead < 1e20f)) return 0.0f;
+  ahead = greater(ahead, 0.0f);
+  const vector gradient = gradient_over_cut(cut, add_scaled(position, towards, ahead));
+  const float slowness = divided(1.0f, some_speed(dot3(gradient, towards)));
+  const float reach = (magnitude(dot3(gradient, close_pixels->along_u)) +
+                       magnitude(dot3(gradient, close_pixels->along_v))) *
+                      magnitude(slowness);
+  const float close = limited(2.0f - divided(ahead, greater(reach, 1e-30f)), 0.0f, 1.0f);
+  return close * limited(2.0f - divided(reach, through), 0.0f, 1.0f);
+}
+
+DEVICE float find_faces(const volume_data *data, GLOBAL const plan_light *light, const slab_sample *s,
+                        vector towards, const near_pixels *close_pixels, faces_of_axis faces[3]) {
+  GLOBAL const plan_volume *volume = data->plan;
   float close[3], reach[3], longest = 1e30f, likely = 0.0f;
   for (int axis = 0; axis < 3; axis++) {
     GLOBAL const float *row = volume->to_index[axis];
@@ -244,28 +279,55 @@ DEVICE float find_faces(GLOBAL const plan_volume *volume, const slab_sample *s, 
     longest = lesser(longest, (volume->high[axis] - volume->low[axis]) * magnitude(slowness));
   }
   float through = longest * ALONG_FACE;
-  if (!(likely > 0.0f)) return likely;
-  likely = 0.0f;
-  for (int axis = 0; axis < 3; axis++)
-    likely = greater(likely, close[axis] * limited(2.0f - divided(reach[axis], through), 0.0f, 1.0f));
+  if (likely > 0.0f) {
+    likely = 0.0f;
+    for (int axis = 0; axis < 3; axis++)
+      likely = greater(likely, close[axis] * limited(2.0f - divided(reach[axis], through), 0.0f, 1.0f));
+  }
+#if CUTS
+  for (int i = 0; i < light->cut_count; i++)
+    likely = greater(
+        likely, face_of_cut(&data->cuts[light->first_cut + i], s->position, towards, close_pixels, through));
+#else
+  (void)light;
+#endif
   return likely;
 }
 
-/* The light's way within the box before the slab, at a point that lies steps u, v and along away. within: the
- * light's way from the slab's first sheet to the point. */
-DEVICE float way_before(const faces_of_axis faces[3], float u, float v, float along, float within) {
-  float leave = 1e30f, enter = within;
+/* A light's ways before the slab, to points around a sample. */
+typedef struct ways_around {
+  faces_of_axis faces[3];
+  GLOBAL const plan_cut *cuts; /* [cut_count] */
+  int cut_count;
+  vector towards;
+  const slab_sample *sample;
+  const near_pixels *close_pixels;
+} ways_around;
+
+/* The light's way within what the box and cuts leave before the slab, at a point that lies steps u, v and
+ * along away. within: the light's way from the slab's first sheet to the point. */
+DEVICE float way_before(const ways_around *around, float u, float v, float along, float within) {
+  way_left left;
+  left.leave = 1e30f;
+  left.enter = within;
   for (int axis = 0; axis < 3; axis++) {
-    float less = fused(faces[axis].u, u, fused(faces[axis].v, v, faces[axis].along * along));
-    leave = lesser(leave, faces[axis].ahead - less);
-    enter = greater(enter, faces[axis].behind - less);
+    const faces_of_axis *f = &around->faces[axis];
+    float less = fused(f->u, u, fused(f->v, v, f->along * along));
+    left.leave = lesser(left.leave, f->ahead - less);
+    left.enter = greater(left.enter, f->behind - less);
   }
-  return greater(leave - enter, 0.0f);
+#if CUTS
+  vector at = add_scaled(around->sample->position, around->close_pixels->along_u, u);
+  at = add_scaled(add_scaled(at, around->close_pixels->along_v, v), around->sample->step_sheet, along);
+  shorten_way(around->cuts, around->cut_count, at, around->towards, &left);
+#endif
+  return greater(left.leave - left.enter, 0.0f);
 }
 
-/* Whether a sample is so far from the box's faces that no face changes the light's ways to it and to the
- * pixels around it. */
-DEVICE int is_deep(GLOBAL const plan_volume *volume, GLOBAL const plan_light *light, const slab_sample *s) {
+/* Whether a sample is so far from the faces of the box and of cuts that no face changes the light's ways to
+ * it and to the pixels around it. */
+DEVICE int is_deep(const volume_data *data, GLOBAL const plan_light *light, const slab_sample *s) {
+  GLOBAL const plan_volume *volume = data->plan;
   int deep = 1;
   for (int axis = 0; axis < 3; axis++) {
     GLOBAL const float *row = volume->to_index[axis];
@@ -273,18 +335,28 @@ DEVICE int is_deep(GLOBAL const plan_volume *volume, GLOBAL const plan_light *li
           reach = light->margin[axis] + magnitude(row_of_vector(row, s->step_sheet));
     deep = deep && at - volume->low[axis] > reach && volume->high[axis] - at > reach;
   }
+#if CUTS
+  deep = deep &&
+         is_far_from_cuts(data->cuts + light->first_cut, light->cut_count, s->position, s->step_sheet);
+#endif
   return deep;
 }
 
 /* Adds the depth of the volume's matter between the face and the slab. */
-DEVICE void add_face(GLOBAL const plan_volume *volume, const slab_sample *s, vector towards, float path,
-                     const near_pixels *close_pixels, light_depths *depths) {
-  faces_of_axis faces[3];
-  float likely = find_faces(volume, s, towards, close_pixels, faces);
+DEVICE void add_face(const volume_data *data, GLOBAL const plan_light *light, const slab_sample *s,
+                     vector towards, float path, const near_pixels *close_pixels, light_depths *depths) {
+  GLOBAL const plan_volume *volume = data->plan;
+  ways_around around;
+  around.cuts = data->cuts + light->first_cut;
+  around.cut_count = light->cut_count;
+  around.towards = towards;
+  around.sample = s;
+  around.close_pixels = close_pixels;
+  float likely = find_faces(data, light, s, towards, close_pixels, around.faces);
   if (!(likely > 0.0f && s->sums.extinction > 0.0f)) return;
   float begin = s->part.begin, end = begin + s->part.length, before[CHANNELS][NEAR_PIXELS];
-  float first = way_before(faces, 0.0f, 0.0f, begin - s->place, begin * path);
-  float last = way_before(faces, 0.0f, 0.0f, end - s->place, end * path);
+  float first = way_before(&around, 0.0f, 0.0f, begin - s->place, begin * path);
+  float last = way_before(&around, 0.0f, 0.0f, end - s->place, end * path);
   depths->face = 1;
   depths->beside = greater(depths->beside, likely);
   float filled = lesser(divided(s->part.length, greater(s->part.length, 1e-6f)), 1.0f);
@@ -297,7 +369,7 @@ DEVICE void add_face(GLOBAL const plan_volume *volume, const slab_sample *s, vec
     depths->before_more[c] = at_leave - at_enter;
     float least = 0.0f, most = 0.0f;
     for (int i = 0; i < NEAR_PIXELS; i++) {
-      float way = way_before(faces, close_pixels->u[i], close_pixels->v[i], 0.0f, s->place * path);
+      float way = way_before(&around, close_pixels->u[i], close_pixels->v[i], 0.0f, s->place * path);
       before[c][i] = lesser(cast * way, DEEPEST);
       least = i == 0 ? before[c][i] : lesser(least, before[c][i]);
       most = i == 0 ? before[c][i] : greater(most, before[c][i]);
@@ -358,9 +430,9 @@ DEVICE void passing_light(const volume_data *volume, vector normal, GLOBAL const
   ways.first = s->part.begin * path;
   ways.last = (s->part.begin + s->part.length) * path;
 #if BOXED
-  const int deep = is_deep(volume->plan, light, s);
+  const int deep = is_deep(volume, light, s);
   if (!deep)
-    ways = ways_in_box(volume->plan, add_scaled(s->start, s->step_sheet, s->part.begin),
+    ways = ways_in_box(volume, light, add_scaled(s->start, s->step_sheet, s->part.begin),
                        scaled(s->step_sheet, s->part.length), towards, ways);
   depths.face = 0;
   depths.beside = 0.0f;
@@ -376,7 +448,7 @@ DEVICE void passing_light(const volume_data *volume, vector normal, GLOBAL const
 #if BOXED
   if (!light->nearest && !deep) {
     near_pixels close_pixels = pixels_around(light, &taps, normal, s->position);
-    add_face(volume->plan, s, towards, path, &close_pixels, &depths);
+    add_face(volume, light, s, towards, path, &close_pixels, &depths);
   }
 #endif
   for (int c = 0; c < CHANNELS; c++) {

@@ -69,6 +69,7 @@ DEVICE vector vector_of(float x, float y, float z) {
 DEVICE vector vector_at(GLOBAL const float *v) { return vector_of(v[0], v[1], v[2]); }
 DEVICE float dot3(vector a, vector b) { return fused(a.x, b.x, fused(a.y, b.y, a.z * b.z)); }
 DEVICE vector scaled(vector a, float s) { return vector_of(a.x * s, a.y * s, a.z * s); }
+DEVICE vector add(vector a, vector b) { return vector_of(a.x + b.x, a.y + b.y, a.z + b.z); }
 /* a + b s */
 DEVICE vector add_scaled(vector a, vector b, float s) {
   return vector_of(fused(b.x, s, a.x), fused(b.y, s, a.y), fused(b.z, s, a.z));

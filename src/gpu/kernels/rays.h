@@ -33,28 +33,59 @@ DEVICE float path_through_sheet(GLOBAL const plan_rays *rays, int perspective, f
   return is_ahead(rays, climb, 0.0f) ? way : 0.0f;
 }
 
-/* The heights at which the ray enters the box and leaves it. */
-typedef struct heights_in_box {
-  float enter, leave;
-} heights_in_box;
+/* The section of a ray from `first` to `last`, in units of the ray's own direction vector. */
+typedef struct ray_section {
+  float first, last;
+} ray_section;
 
-DEVICE heights_in_box heights_of(GLOBAL const plan_box *box, float u, float v) {
-  float first = box->least, last = 1e30f;
+DEVICE ray_section section_in_box(GLOBAL const plan_box *box, float u, float v) {
+  ray_section section;
+  section.first = box->least;
+  section.last = 1e30f;
   for (int axis = 0; axis < 3; axis++) {
     float start = linear_in_view(box->start[axis], box->start_u[axis], box->start_v[axis], u, v);
     float direction = linear_in_view(box->direction[axis], box->direction_u[axis], box->direction_v[axis], u,
                                      v);
     if (magnitude(direction) < 1e-12f) direction = 1e-12f;
     float a = divided(box->low[axis] - start, direction), b = divided(box->high[axis] - start, direction);
-    first = greater(first, lesser(a, b));
-    last = lesser(last, greater(a, b));
+    section.first = greater(section.first, lesser(a, b));
+    section.last = lesser(section.last, greater(a, b));
   }
+  return section;
+}
+
+/* The roots s of |start + s direction| = 1. */
+DEVICE ray_section roots_of_sphere(vector start, vector direction) {
+  float squared = dot3(direction, direction), along = dot3(start, direction);
+  float rest = fused(along, along, squared * (1.0f - dot3(start, start))), size = root(greater(rest, 0.0f));
+  ray_section section;
+  section.first = rest > 0.0f ? divided(-along - size, squared) : 1e30f;
+  section.last = rest > 0.0f ? divided(size - along, squared) : -1e30f;
+  return section;
+}
+
+DEVICE ray_section section_in_sphere(GLOBAL const plan_box *box, float u, float v) {
+  ray_section section = roots_of_sphere(
+      linear_vector(box->start, box->start_u, box->start_v, u, v),
+      linear_vector(box->direction, box->direction_u, box->direction_v, u, v));
+  section.first = greater(section.first, box->least);
+  return section;
+}
+
+/* The heights at which the ray enters the box and leaves it. */
+typedef struct heights_in_box {
+  float enter, leave;
+} heights_in_box;
+
+DEVICE heights_in_box heights_of(GLOBAL const plan_box *box, float u, float v) {
+  const ray_section section = CUTS && box->sphere ? section_in_sphere(box, u, v) : section_in_box(box, u, v);
   float base = linear_in_view(box->start_height, box->start_height_u, box->start_height_v, u, v);
   float climb = linear_in_view(box->climb, box->climb_u, box->climb_v, u, v);
-  float a = fused(first, climb, base), b = fused(last, climb, base);
+  float a = fused(section.first, climb, base), b = fused(section.last, climb, base);
+  const int missed = section.first > section.last;
   heights_in_box heights;
-  heights.enter = first > last ? 1e30f : lesser(a, b);
-  heights.leave = first > last ? -1e30f : greater(a, b);
+  heights.enter = missed ? 1e30f : lesser(a, b);
+  heights.leave = missed ? -1e30f : greater(a, b);
   return heights;
 }
 

@@ -4,7 +4,7 @@
 #ifndef HL_GPU_SAMPLE_H
 #define HL_GPU_SAMPLE_H
 
-#include "gpu/kernels/rays.h"
+#include "gpu/kernels/cuts.h"
 #include "gpu/kernels/taps.h"
 
 #define GRID_MARGIN    4
@@ -19,6 +19,7 @@ typedef struct volume_data {
                                  * FARTHEST_BRICK */
   GLOBAL const wide *cell_bits; /* [bricks z][y][x]; read only where plan->has_cell_bits */
   GLOBAL const float *tables;
+  GLOBAL const plan_cut *cuts; /* [views][cut_count]; the eye's view comes first */
 } volume_data;
 
 /* A point's place in the grid; index space, clamped to [-1, n). */

@@ -11,7 +11,6 @@
 
 /* ---- the faces of the box ---- */
 
-#define FACE_VOXELS      2.0f
 #define CUT_SHADING_FACE 0 /* as HL_CUT_SHADING_FACE */
 #define FACES_OF_AXIS    2
 
@@ -22,10 +21,6 @@ DEVICE_CALL float density_on_face(const volume_data volume, vector crossing) {
   for (int a = 0; a < 3; a++)
     at[a] = limited(row_of_point(plan->to_index[a], crossing), -0.5f, (float)plan->dimension[a] - 0.5f);
   return density_at(volume, at[0], at[1], at[2]);
-}
-
-DEVICE float row_size(GLOBAL const float *row) {
-  return root(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
 }
 
 /* Whether a point is so near to a face of the box that shows matter that it may belong to it. */
@@ -42,13 +37,35 @@ DEVICE int is_near_face(GLOBAL const plan_volume *volume, vector point) {
   return close;
 }
 
+/* The last face through which the eye's ray comes before it meets a sample. */
+typedef struct cut_face {
+  float way;      /* from the sample back to the face; frame units */
+  vector outward; /* the face's unit normal */
+  int cuts;       /* the face cuts matter */
+} cut_face;
+
+/* Takes the face of a cut where it is nearer. */
+DEVICE void find_cut(GLOBAL const plan_cut *cut, const slab_sample *s, float least, cut_face *nearest) {
+  const ray_section section = cross_cut(cut, s->position, s->towards_eye);
+  float way = cut->keep_inside ? section.last : section.first;
+  const int met = section.first < section.last && way > -least && way < 1e20f;
+  way = greater(met ? way : 1e30f, 0.0f);
+  if (!(way < nearest->way)) return;
+  const vector gradient = gradient_over_cut(cut, add_scaled(s->position, s->towards_eye, met ? way : 0.0f));
+  nearest->way = way;
+  nearest->outward = scaled(gradient,
+                            divided(cut->keep_inside ? 1.0f : -1.0f, root(dot3(gradient, gradient))));
+  nearest->cuts = 1;
+}
+
 /* How much a sample belongs to the face that the eye's ray comes through last before it. */
 DEVICE float find_skin(const volume_data *volume, const slab_sample *s, vector *outward) {
   GLOBAL const plan_volume *plan = volume->plan;
-  float nearest = 1e30f;
-  int cuts = 0;
-  *outward = vector_of(0.0f, 0.0f, 0.0f);
-  if (!is_near_face(plan, s->position)) return 0.0f;
+  cut_face nearest;
+  nearest.way = 1e30f;
+  nearest.cuts = 0;
+  nearest.outward = *outward = vector_of(0.0f, 0.0f, 0.0f);
+  if (!CUTS && !is_near_face(plan, s->position)) return 0.0f;
   for (int axis = 0; axis < 3; axis++) {
     GLOBAL const float *row = plan->to_index[axis];
     float speed = row_of_vector(row, s->towards_eye);
@@ -56,14 +73,18 @@ DEVICE float find_skin(const volume_data *volume, const slab_sample *s, vector *
     int rising = speed > 0.0f;
     float face = rising ? plan->high[axis] : plan->low[axis];
     float way = greater(divided(face - row_of_point(row, s->position), speed), 0.0f);
-    if (!(way < nearest)) continue;
-    nearest = way;
-    *outward = scaled(vector_at(row), divided(rising ? 1.0f : -1.0f, row_size(row)));
-    cuts = plan->face_cuts[FACES_OF_AXIS * axis + rising];
+    if (!(way < nearest.way)) continue;
+    nearest.way = way;
+    nearest.outward = scaled(vector_at(row), divided(rising ? 1.0f : -1.0f, row_size(row)));
+    nearest.cuts = plan->face_cuts[FACES_OF_AXIS * axis + rising];
   }
-  float depth = nearest * dot3(*outward, s->towards_eye);
-  if (!(cuts && depth < FACE_VOXELS * plan->voxel)) return 0.0f;
-  vector crossing = add_scaled(s->position, s->towards_eye, lesser(nearest, 1e20f));
+#if CUTS
+  for (int i = 0; i < plan->cut_count; i++) find_cut(&volume->cuts[i], s, 0.5f * plan->voxel, &nearest);
+#endif
+  *outward = nearest.outward;
+  float depth = nearest.way * dot3(nearest.outward, s->towards_eye);
+  if (!(nearest.cuts && depth < FACE_VOXELS * plan->voxel)) return 0.0f;
+  vector crossing = add_scaled(s->position, s->towards_eye, lesser(nearest.way, 1e20f));
   table_coordinate there = coordinate_of_density(plan, density_on_face(*volume, crossing));
   if (!may_be_visible(plan, there, there)) return 0.0f;
   return limited(FACE_VOXELS - depth * divided(1.0f, plan->voxel), 0.0f, 1.0f);
@@ -153,29 +174,23 @@ DEVICE kept_light kept_of_several(const volume_data *volume, table_coordinate a,
   return kept;
 }
 
-/* The skin of two opposite faces, as in fill/face_skin_lanes.h. */
-DEVICE float skin_of_axis(float from, float to, float low, float high, float scale) {
-  const float before[2] = {(from - low) * scale, (high - from) * scale},
-              depth[2] = {(to - low) * scale, (high - to) * scale};
-  float skin = 0.0f;
-  for (int side = 0; side < 2; side++)
-    if (depth[side] > before[side]) {
-      const float middle = (greater(before[side], 0.0f) + depth[side]) * 0.5f;
-      skin = greater(skin, limited(FACE_VOXELS - middle, 0.0f, 1.0f));
-    }
-  return skin;
-}
-
-/* How much the matter on a light's ray belongs to a face of the box in a slab. in_index: the rays in index
- * space at the sheet before the slab; the rays at the next sheet follow. */
-DEVICE float skin_of_faces(GLOBAL const plan_volume *volume, GLOBAL const plan_rays *in_index,
-                           int perspective, float u, float v) {
+/* How much the matter on a light's ray belongs to a face of the box or of a cut in a slab. in_index: the rays
+ * in index space at the sheet before the slab; the rays at the next sheet follow. */
+DEVICE float skin_of_faces(const volume_data *data, GLOBAL const plan_light *light,
+                           GLOBAL const plan_rays *in_index, float u, float v) {
+  GLOBAL const plan_volume *volume = data->plan;
+  const int perspective = !light->parallel;
   const vector from = position_on(in_index, perspective, u, v),
                to = position_on(in_index + 1, perspective, u, v);
   float x = skin_of_axis(from.x, to.x, volume->face_low[0], volume->face_high[0], volume->steps[0]);
   float y = skin_of_axis(from.y, to.y, volume->face_low[1], volume->face_high[1], volume->steps[1]);
   float z = skin_of_axis(from.z, to.z, volume->face_low[2], volume->face_high[2], volume->steps[2]);
-  return greater(greater(x, y), z);
+  float skin = greater(greater(x, y), z);
+#if CUTS
+  for (int i = 0; i < light->cut_count; i++)
+    skin = greater(skin, skin_of_cut(&data->cuts[light->first_cut + i], from, to));
+#endif
+  return skin;
 }
 
 /* Finds how much of the light that a surface has taken still counts after a slab (k and k'). sums:

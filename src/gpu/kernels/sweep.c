@@ -54,7 +54,8 @@ spread_distances(GLOBAL const byte *from, GLOBAL byte *to, unsigned x, unsigned 
       GLOBAL const wide *APART cell_bits, GLOBAL const float *APART tables, GLOBAL float *APART pixels, \
       GLOBAL float *APART planes, GLOBAL float *APART light_state, GLOBAL int *APART changed,           \
       GLOBAL const int *APART shown_from, GLOBAL unsigned *APART counts, GLOBAL float *APART slots,     \
-      GLOBAL unsigned *APART list, GLOBAL unsigned *APART masks, int first, int end, int run
+      GLOBAL unsigned *APART list, GLOBAL unsigned *APART masks, GLOBAL const plan_cut *APART cuts,     \
+      int first, int end, int run
 
 DEVICE sweep_data sweep_of(SWEEP_ARGUMENTS) {
   sweep_data sweep;
@@ -65,6 +66,7 @@ DEVICE sweep_data sweep_of(SWEEP_ARGUMENTS) {
   sweep.volume.distances = distances;
   sweep.volume.cell_bits = cell_bits;
   sweep.volume.tables = tables;
+  sweep.volume.cuts = cuts;
   sweep.pixels = pixels;
   sweep.planes = planes;
   sweep.light = light_state;
@@ -82,7 +84,7 @@ DEVICE sweep_data sweep_of(SWEEP_ARGUMENTS) {
 
 #define SWEEP_OF_ARGUMENTS                                                                         \
   sweep_of(plan, rays, voxels, distances, cell_bits, tables, pixels, planes, light_state, changed, \
-           shown_from, counts, slots, list, masks, first, end, run)
+           shown_from, counts, slots, list, masks, cuts, first, end, run)
 
 /* Lists the samples that the picture's pixels may see in slabs first to end - 1. */
 KERNEL(16) find_samples(SWEEP_ARGUMENTS) {
@@ -122,11 +124,7 @@ KERNEL(12) run_light(SWEEP_ARGUMENTS) {
   light_pixel own;
   for (int c = 0; c < PLANES_OF_SHEET; c++) own.passing[c] = state[c * 256];
   int changed_at = changed[(wide)tile * 256 + member];
-  heights_in_box in_box;
-  in_box.enter = in_box.leave = 0.0f;
-#if BOXED
-  in_box = heights_of(&light->box, u, v);
-#endif
+  const ray_left ray = left_of_ray(&light->box, cuts + light->first_cut, light->cut_count, u, v);
   int lit = block_any(votes, is_lit(&own));
   const slab_range slabs = slabs_with_content(&light->content, u, v, plan->spacing, first, end);
   const int own_first = slabs.first > light->first_slab ? slabs.first : light->first_slab;
@@ -139,8 +137,8 @@ KERNEL(12) run_light(SWEEP_ARGUMENTS) {
       step = fill_way(&sweep.volume, in_index + sheet, perspective, u, v, speed, sheet == own_first - 1,
                       &way);
       if ((way.before_shows || way.after_shows) && sheet >= own_first)
-        takes = attenuate_slab(&sweep, light, in_index + sheet, in_frame + sheet, u, v, way.before, way.after,
-                               &in_box, &own);
+        takes = attenuate_slab(&sweep, light, in_index + sheet, in_frame + sheet, &ray, way.before, way.after,
+                               &own);
     } else {
       step = !lit || sheet >= slabs.end ? end - sheet : own_first - 1 - sheet;
       way.after_known = way.after_shows = 0;

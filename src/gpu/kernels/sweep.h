@@ -117,12 +117,39 @@ typedef struct sweep_data {
 DEVICE int column_of(int member) { return (member >> 4 & 3) * 4 + (member & 3); }
 DEVICE int row_of(int member) { return (member >> 6) * 4 + (member >> 2 & 3); }
 
-/* The part of the slab below a sheet that lies in the volume's box. */
-DEVICE covered_span part_of_slab(const heights_in_box *in_box, float height, float spacing) {
+/* A pixel's ray as the volume's box and cuts leave it. */
+typedef struct ray_left {
+  float u, v;
+  GLOBAL const plan_cut *cuts; /* [cut_count]; the cuts of the pixel's view */
+  int cut_count;
+  heights_in_box in_box; /* of heights_left() */
+} ray_left;
+
+DEVICE ray_left left_of_ray(GLOBAL const plan_box *box, GLOBAL const plan_cut *cuts, int cut_count, float u,
+                            float v) {
+  ray_left ray;
+  ray.u = u;
+  ray.v = v;
+  ray.cuts = cuts;
+  ray.cut_count = cut_count;
 #if BOXED
-  return covered(*in_box, height, spacing);
+  ray.in_box = heights_left(box, cuts, CUTS ? cut_count : 0, u, v);
 #else
-  (void)in_box;
+  (void)box;
+  ray.in_box.enter = ray.in_box.leave = 0.0f;
+#endif
+  return ray;
+}
+
+/* The part of the slab below a sheet that the volume's box and cuts leave. */
+DEVICE covered_span part_of_slab(const ray_left *ray, float height, float spacing) {
+#if CUTS
+  return covered(heights_in_slab(ray->in_box, ray->cuts, ray->cut_count, ray->u, ray->v, height, spacing),
+                 height, spacing);
+#elif BOXED
+  return covered(ray->in_box, height, spacing);
+#else
+  (void)ray;
   (void)height;
   (void)spacing;
   return whole_slab();
@@ -202,13 +229,9 @@ DEVICE void shade_slot(const sweep_data *sweep, unsigned slot, int run_first) {
   const float before = at[0], after = at[1];
   table_coordinate a = coordinate_of_density(volume->plan, before),
                    b = coordinate_of_density(volume->plan, after);
-  heights_in_box in_box;
-  in_box.enter = in_box.leave = 0.0f;
-#if BOXED
-  in_box = heights_of(&plan->box, pixel.u, pixel.v);
-#endif
+  const ray_left ray = left_of_ray(&plan->box, volume->cuts, volume->plan->cut_count, pixel.u, pixel.v);
   slab_sample s;
-  s.part = part_of_slab(&in_box, rays->height, plan->spacing);
+  s.part = part_of_slab(&ray, rays->height, plan->spacing);
 #if BOXED
   cut_way(s.part, &a, &b);
 #endif
@@ -261,24 +284,23 @@ typedef struct light_pixel {
 
 /* Multiplies the light by the transmittance of a slab. Returns whether the slab takes any light. */
 DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *light,
-                          GLOBAL const plan_rays *in_index, GLOBAL const plan_rays *in_frame, float u,
-                          float v, float before, float after, const heights_in_box *in_box,
-                          light_pixel *pixel) {
+                          GLOBAL const plan_rays *in_index, GLOBAL const plan_rays *in_frame,
+                          const ray_left *ray, float before, float after, light_pixel *pixel) {
   GLOBAL const device_sweep *plan = sweep->plan;
   GLOBAL const plan_volume *volume = sweep->volume.plan;
   table_coordinate a = coordinate_of_density(volume, before), b = coordinate_of_density(volume, after);
   if (!may_be_visible(volume, a, b)) return 0;
-  covered_span part = part_of_slab(in_box, in_frame->height, plan->spacing);
+  covered_span part = part_of_slab(ray, in_frame->height, plan->spacing);
 #if BOXED
   cut_way(part, &a, &b);
 #endif
   const way_sums sums = sums_of_way(sweep->volume.tables, a, b);
   float extinction = sums.extinction * part.length, all = 0.0f;
   if (!(extinction > 0.0f)) return 0;
-  float path = path_through_sheet(in_frame, !light->parallel, light->slab_path, u, v);
+  float path = path_through_sheet(in_frame, !light->parallel, light->slab_path, ray->u, ray->v);
 #if OUTSIDE
-  const float skin = BOXED && volume->any_face && volume->cut_shading == CUT_SHADING_FACE
-                         ? skin_of_faces(volume, in_index - 1, !light->parallel, u, v)
+  const float skin = BOXED && volume->faces_take
+                         ? skin_of_faces(&sweep->volume, light, in_index - 1, ray->u, ray->v)
                          : 0.0f;
   const kept_light kept = kept_in_slab(&sweep->volume, a, b, &sums, part, path, extinction, skin,
                                        pixel->passing[0], pixel->passing[CHANNELS]);
