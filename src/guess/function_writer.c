@@ -12,10 +12,10 @@
 #include "scene/function/transfer_function.h"
 #include "scene/scene.h"
 
-#define FLOW_DEPTH   2.0 /* optical depth of a flow in which all values are shown */
-#define MEDIUM_DEPTH 5.0 /* optical depth of smoke across its own size */
-#define SHELL        0.2 /* optical depth of a field's shell, for a line that crosses it */
-#define FINE         96  /* voxel edges across an object; the opacities of solid matter are chosen for it */
+#define FLOW_DEPTH   2.0  /* optical depth of a flow in which all values are shown */
+#define MEDIUM_DEPTH 10.0 /* optical depth of smoke across its own size */
+#define SHELL        0.2  /* optical depth of a field's shell, for a line that crosses it */
+#define FINE         96   /* voxel edges across an object; the opacities of solid matter are chosen for it */
 
 /* The colours of a function at four distances from the background: faint, solid, dense and top. Linear RGB.
  */
@@ -81,9 +81,10 @@ void hl_write_brain(hl_function_writer *w) {
   write_solid(w, &brain);
 }
 
-/* Writes a field as a clear shell around a core that is opaque, within thin matter: reflections on the shell
- * tell its shape, and the core is seen through it. */
-void hl_write_field(hl_function_writer *w) {
+/* Adds the opacities of a field on one side of its background (+1: above; -1: below): a clear shell around a
+ * core that is opaque, within thin matter. Reflections on the shell tell its shape, and the core is seen
+ * through it. */
+static void add_shell_and_core(hl_function_writer *w, int side) {
   const hl_data_analysis *a = w->analysis;
   const double ramp = a->solid - a->faint, top = fmax(a->top, a->solid * 1.001), way = top - a->solid;
   const double shell = a->faint + 0.35 * ramp, core = a->solid + 0.35 * way,
@@ -93,13 +94,24 @@ void hl_write_field(hl_function_writer *w) {
    * object, the values of the shell, which are 2 half apart, take half / top of the object. The mean of a
    * tent is half its peak. */
   const double peak = SHELL * 2 * top / half;
-  hl_add_opacity(w, a->faint, 0);
-  hl_add_opacity(w, shell - half, hl_opacity_for(a, thin));
-  hl_add_opacity(w, shell, hl_opacity_for(a, thin + peak));
-  hl_add_opacity(w, shell + half, hl_opacity_for(a, thin));
-  hl_add_opacity(w, core - half, hl_opacity_for(a, 1.5));
-  hl_add_opacity(w, core, hl_opacity_for(a, 80));
-  hl_add_opacity(w, top, hl_opacity_for(a, 80));
+  const double rows[][2] = {{a->faint, 0},
+                            {shell - half, thin},
+                            {shell, thin + peak},
+                            {shell + half, thin},
+                            {core - half, 1.5},
+                            {core, 80},
+                            {top, 80}};
+  enum { ROWS = sizeof rows / sizeof *rows };
+  for (int n = 0; n < ROWS; n++) {
+    const double *row = rows[side > 0 ? n : ROWS - 1 - n];
+    hl_add_opacity(w, side * row[0], hl_opacity_for(a, row[1]));
+  }
+}
+
+void hl_write_field(hl_function_writer *w) {
+  const hl_data_analysis *a = w->analysis;
+  const double way = fmax(a->top, a->solid * 1.001) - a->solid;
+  add_shell_and_core(w, 1);
   hl_add_colormap(w, "plasma", a->faint, a->solid + 0.6 * way, 0.3, 0.92);
 }
 
@@ -198,19 +210,17 @@ void hl_write_medium(hl_function_writer *w) {
   hl_add_color(w, 0, white);
 }
 
+/* Writes a field on each side of the background, in blue and in orange. */
 void hl_write_signed(hl_function_writer *w) {
   const hl_data_analysis *a = w->analysis;
   static const double cold[3][3] = {{0.10, 0.30, 0.75}, {0.06, 0.18, 0.62}, {0.02, 0.06, 0.35}};
   static const double warm[3][3] = {{0.95, 0.52, 0.20}, {0.85, 0.28, 0.08}, {0.60, 0.08, 0.03}};
   w->direction = 1; /* the function is for both sides at once */
-  double ramp = a->solid - a->faint, top = fmax(a->top, a->solid * 1.001);
-  double at[5] = {a->faint, a->faint + 0.5 * ramp, a->solid, a->solid + 0.5 * (top - a->solid), top};
-  double opacity[5] = {0, hl_opacity_for(a, 2), hl_opacity_for(a, 15), hl_opacity_for(a, 60),
-                       hl_opacity_for(a, 100)};
-  for (int p = 4; p >= 0; p--) hl_add_opacity(w, -at[p], opacity[p]);
-  for (int p = 0; p < 5; p++) hl_add_opacity(w, at[p], opacity[p]);
-  for (int p = 2; p >= 0; p--) hl_add_color(w, -at[2 * p], cold[p]);
-  for (int p = 0; p < 3; p++) hl_add_color(w, at[2 * p], warm[p]);
+  const double top = fmax(a->top, a->solid * 1.001), at[3] = {a->faint, a->solid, top};
+  add_shell_and_core(w, -1);
+  add_shell_and_core(w, 1);
+  for (int p = 2; p >= 0; p--) hl_add_color(w, -at[p], cold[p]);
+  for (int p = 0; p < 3; p++) hl_add_color(w, at[p], warm[p]);
 }
 
 void hl_write_constant(hl_function_writer *w) {

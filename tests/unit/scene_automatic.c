@@ -120,6 +120,13 @@ static void signed_fields_show_both_lobes(void **state) {
     assert_true(hl_transfer_function_opacity(&f, offset) == 0);
     assert_true(hl_transfer_function_opacity(&f, offset + 0.7) > 0.2 &&
                 hl_transfer_function_opacity(&f, offset - 0.7) > 0.2);
+    /* a clear shell on each side: more opaque than the matter outside it, and than the matter within */
+    const double shell = a.faint + 0.35 * (a.solid - a.faint);
+    for (int side = -1; side <= 1; side += 2) {
+      const double at = hl_transfer_function_opacity(&f, offset + side * shell);
+      assert_true(at > 2 * hl_transfer_function_opacity(&f, offset + side * 0.5 * (a.faint + shell)));
+      assert_true(at > 2 * hl_transfer_function_opacity(&f, offset + side * 0.5 * (shell + a.solid)));
+    }
     double positive[3], negative[3];
     hl_transfer_function_color(&f, offset + 0.7, positive);
     hl_transfer_function_color(&f, offset - 0.7, negative);
