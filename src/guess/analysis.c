@@ -78,6 +78,13 @@ static double exact_share(const hl_sample *sample, double background) {
   return (double)equal / (double)sample->count;
 }
 
+/* The fraction of distances that are greater than one. */
+static double share_beyond(const distances *d, double distance) {
+  size_t beyond = 0;
+  while (beyond < d->count && (double)d->values[d->count - 1 - beyond] > distance) beyond++;
+  return d->count > 0 ? (double)beyond / (double)d->count : 0;
+}
+
 /* True if the sample has more different values than a byte has. */
 static bool is_continuous(const hl_sample *sample) {
   size_t levels = 1;
@@ -175,13 +182,16 @@ static bool is_flow(const hl_volume *volume, const hl_sample *sample, const spre
   return roughness < NOISY && one_peak && falls(&d, 0.02, fmax(s->high - mode, 0.03), PEAK);
 }
 
-/* True if more than three tenths of the objects' voxels have the greatest value: they are the inside of a
- * solid shape. */
-static bool is_filled_up(const distances *d, const hl_data_analysis *a) {
+/* True if many of the objects' voxels have the greatest value: they are the inside of a solid shape. In
+ * bytes, the summits of a field may be clipped, and in smooth data of more levels nothing else has so many.
+ */
+static bool is_filled_up(const hl_sample *sample, const distances *d, const hl_data_analysis *a,
+                         double roughness) {
+  const double least = roughness < SMOOTH && is_continuous(sample) ? 0.1 : 0.3;
   size_t things = 0, greatest = 0;
   for (size_t n = d->count; n > 0 && (double)d->values[n - 1] > a->solid; n--, things++)
     greatest += (double)d->values[n - 1] > 0.999 * (double)d->values[d->count - 1];
-  return (double)greatest > 0.3 * (double)things;
+  return (double)greatest > least * (double)things;
 }
 
 /* True if the objects are a smooth quantity that falls off. Where the histogram does not tell this, noise
@@ -201,7 +211,7 @@ static hl_status falls_off(const hl_volume *volume, const hl_sample *sample, con
 static hl_data_kind kind_of(const hl_volume *volume, const hl_sample *sample, const distances *d,
                             bool falling, const hl_data_analysis *a) {
   double roughness = hl_roughness(volume, sample, a->background, a->faint);
-  if (roughness < ROUGH && is_filled_up(d, a)) return HL_DATA_SURFACES;
+  if (roughness < ROUGH && is_filled_up(sample, d, a, roughness)) return HL_DATA_SURFACES;
   bool fog = a->zeroed > 0.4 && is_continuous(sample); /* the air around the matter is exactly empty */
   if (roughness < ROUGH && roughness > FOG && fog && falling) return HL_DATA_MEDIUM;
   if (roughness < ROUGH) return falling || roughness < SMOOTH ? HL_DATA_FIELD : HL_DATA_SURFACES;
@@ -284,7 +294,8 @@ static hl_status analyse_values(const hl_volume *volume, const hl_sample *sample
     a->zeroed = exact_share(sample, a->background);
     measure(sample->values, sample->count, a->background, a->direction, d.values);
     measure(sample->border, sample->border_count, a->background, a->direction, memory + d.count);
-    double noise = border_noise(memory + d.count, sample->border_count);
+    const distances border = {memory + d.count, sample->border_count};
+    const double noise = border_noise(border.values, border.count);
     find_thresholds(&d, noise, a);
     bool falling = false;
     status = falls_off(volume, sample, &d, a, &falling, error);
@@ -293,6 +304,9 @@ static hl_status analyse_values(const hl_volume *volume, const hl_sample *sample
       a->vessels = hl_data_find_vessels(volume, sample, d.values, a);
     if (a->kind == HL_DATA_SURFACES && a->vessels == 0 && hl_data_find_rim(volume, sample, noise, a))
       measure_objects(&d, a);
+    a->cut_off = share_beyond(&border, a->solid);
+    if (a->kind == HL_DATA_SURFACES && status == HL_OK)
+      status = hl_data_find_boundary(volume, sample, a, error);
   }
   if (flow && !s.signs) a->kind = HL_DATA_FLOW;
   if (logarithms) a->kind = HL_DATA_PARTICLES;
@@ -339,7 +353,7 @@ static hl_status analyse(const hl_volume *volume, hl_data_analysis *analysis, hl
 }
 
 /* Keeps a copy with the volume. A volume is constant for its readers; findings about it may be added. */
-static hl_status keep(const hl_volume *volume, const hl_data_analysis *analysis, hl_error *error) {
+hl_status hl_data_keep(const hl_volume *volume, const hl_data_analysis *analysis, hl_error *error) {
   hl_data_analysis *kept = hl_allocate(volume->context, 1, sizeof *kept), *before = NULL;
   if (kept == NULL) return hl_fail_memory(error, sizeof *kept, "the analysis of a volume");
   *kept = *analysis;
@@ -355,7 +369,7 @@ hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, h
     return HL_OK;
   }
   hl_status status = analyse(volume, analysis, error);
-  return status == HL_OK ? keep(volume, analysis, error) : status;
+  return status == HL_OK ? hl_data_keep(volume, analysis, error) : status;
 }
 
 /* ---- label maps: few whole numbers, each in blocks, or whole numbers that the file says are labels.

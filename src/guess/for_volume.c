@@ -243,8 +243,9 @@ static hl_status make_scene(hl_context *context, hl_volume *volume, const char *
   double sigma = 0;
   hl_volume *smoothed = NULL;
   hl_status status = hl_data_analyse(volume, &analysis, error);
-  if (status == HL_OK) status = hl_smoothing_for(volume, file, &analysis, &sigma, error);
+  if (status == HL_OK) sigma = hl_smoothing_for(volume, file, &analysis);
   if (status == HL_OK && sigma > 0) status = hl_volume_smooth(volume, sigma, &smoothed, error);
+  if (status == HL_ERROR_MEMORY) status = HL_OK; /* it is shown as it is where there is no room */
   if (status == HL_OK)
     status = make_scene_of(context, smoothed != NULL ? smoothed : volume, file, style, scene, error);
   hl_volume_release(smoothed);

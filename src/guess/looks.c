@@ -88,7 +88,7 @@ const hl_look *hl_look_for(const hl_volume *volume, const char *file, const hl_d
     case HL_DATA_SURFACES:
       if (analysis->vessels > 0) return hl_style_find("vessels");
       if (hl_is_body(volume, file, analysis))
-        is = analysis->zeroed > 0.4 ? BRAIN : BODY; /* zeros all around mean that the skull was removed */
+        is = analysis->cliffs >= HL_CUT_OUT && !hl_data_is_cut_off(analysis) ? BRAIN : BODY;
       break;
     case HL_DATA_FIELD: is = FIELD; break;
     case HL_DATA_SIGNED: is = SIGNED; break;

@@ -5,7 +5,6 @@
 #include "guess/analysis.h"
 
 /* The standard deviation, in voxels, by which a bare volume of a file is smoothed; 0: it is not smoothed. */
-hl_status hl_smoothing_for(const hl_volume *volume, const char *file, const hl_data_analysis *analysis,
-                           double *sigma, hl_error *error);
+double hl_smoothing_for(const hl_volume *volume, const char *file, const hl_data_analysis *analysis);
 
 #endif

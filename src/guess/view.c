@@ -10,6 +10,7 @@
 #include "core/door.h"
 #include "core/error.h"
 #include "core/memory.h"
+#include "guess/looks.h"
 #include "guess/sample.h"
 #include "guess/seen_cells.h"
 #include "scene/scene.h"
@@ -19,6 +20,9 @@
 #define BODY_AT_LEAST 0.4
 /* The side turned to the eye must have this many times the relief of the opposite side. */
 #define CLEARLY 1.1
+/* The elevation, in degrees, from which bodies are seen that the grid cuts off: about the height of their
+ * eyes, as in a portrait. From above, the forehead of a head hides its face. */
+#define PORTRAIT_ELEVATION 5
 
 /* The objects on a coarse lattice. */
 typedef struct shape {
@@ -297,17 +301,21 @@ static bool first_decides(const hl_scene_description *description) {
 hl_status hl_view_automatic(const hl_scene_description *description, hl_outline *outline, hl_view *view,
                             hl_error *error) {
   hl_view_about(description, (vec3){0, 0, 1}, view);
-  /* Programs write left-posterior-superior for any data, so this says little unless the file is DICOM. */
-  if (description->volume_count == 0 || hl_scene_is_anatomical(description) || !first_decides(description))
-    return HL_OK;
+  if (description->volume_count == 0) return HL_OK;
   const hl_scene_volume *first = &description->volumes[0];
   hl_data_analysis analysis;
   hl_status status = hl_data_analyse(first->volume, &analysis, error);
+  if (status != HL_OK) return status;
+  const bool portrait = hl_is_body(first->volume, first->file, &analysis) && hl_data_is_cut_off(&analysis);
+  if (portrait) view->elevation_deg = PORTRAIT_ELEVATION;
+  /* Programs write left-posterior-superior for any data, so this says little unless the file is DICOM. */
+  if (hl_scene_is_anatomical(description) || !first_decides(description)) return HL_OK;
   hl_upright upright;
-  if (status == HL_OK) status = hl_scene_upright(first, &analysis, &upright, error);
+  status = hl_scene_upright(first, &analysis, &upright, error);
   if (status != HL_OK) return status;
   hl_view_about(description, upright.up, view);
   view->azimuth_deg = upright.azimuth_deg;
+  if (portrait) view->elevation_deg = PORTRAIT_ELEVATION;
   return analysis.kind == HL_DATA_SURFACES ? HL_OK : hl_view_widen(description, outline, view, error);
 }
 

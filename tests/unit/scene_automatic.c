@@ -412,6 +412,40 @@ static double up_of_head(hl_context *context, bool over) {
   return up.z;
 }
 
+/* The elevation, in degrees, from which a NIfTI file's ball in noisy air is seen; middle: the height of its
+ * middle, voxels. */
+static double elevation_of_body(hl_context *context, double middle) {
+  static float values[N * N * N];
+  unsigned state = 7;
+  for (int k = 0, v = 0; k < N; k++)
+    for (int j = 0; j < N; j++)
+      for (int i = 0; i < N; i++, v++) {
+        const double r = hypot(hypot(i - 20, j - 20), k - middle);
+        values[v] = (float)(1 / (1 + exp((r - 16) / 0.7))) + 0.05f * noise(&state);
+      }
+  hl_volume_description d = describe_voxels(N, N, N, HL_VOXEL_F32, values);
+  d.space = HL_SPACE_RAS;
+  hl_volume *volume = create_volume(context, &d);
+  hl_scene *scene = NULL;
+  assert_int_equal(hl_scene_for_volume(context, volume, "body.nii", &scene, NULL), HL_OK);
+  const hl_camera *camera = &hl_scene_describe(scene)->camera;
+  const vec3 eye = vec3_subtract(vec3_of(camera->position), vec3_of(camera->target));
+  const double elevation = asin(eye.z / vec3_length(eye)) * 180 / HL_PI;
+  hl_scene_release(scene);
+  hl_volume_release(volume);
+  return elevation;
+}
+
+/* A body that the grid cuts off, as a head at the neck, is seen from the height of its eyes. */
+static void bodies_that_are_cut_off_are_seen_from_lower(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  assert_true(fabs(elevation_of_body(context, 20) - 20) < 1e-3);
+  assert_true(fabs(elevation_of_body(context, 9) - 5) < 1e-3);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 static void heads_do_not_hang(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -552,6 +586,7 @@ int main(void) {
       cmocka_unit_test(names_and_statistics),
       cmocka_unit_test(things_stand_upright),
       cmocka_unit_test(heads_do_not_hang),
+      cmocka_unit_test(bodies_that_are_cut_off_are_seen_from_lower),
       cmocka_unit_test(fields_are_seen_from_their_wide_side),
       cmocka_unit_test(ids_of_any_size_are_labels),
       cmocka_unit_test(repeated_voxels_are_no_labels),

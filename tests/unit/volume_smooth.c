@@ -92,14 +92,15 @@ static double noise(int i, int j, int k) { /* 0..1 */
   return (double)((state ^ (state >> 13)) & 0xffff) / 65536;
 }
 
-/* Matter of about 150 in air: cut out of it, or with the rim that a scanner gives; noise in the air, or none.
- */
-static void fill(bool cut_out, double air) {
+/* Matter of 130 to 130 + grain in air: cut out of it, or with the rim that a scanner gives; noise in the air,
+ * or none. */
+static void fill(bool cut_out, double air, double grain) {
   for (int k = 0; k < N; k++)
     for (int j = 0; j < N; j++)
       for (int i = 0; i < N; i++) {
         double r = sqrt((i - 15.3) * (i - 15.3) + (j - 15.8) * (j - 15.8) + (k - 16.2) * (k - 16.2));
-        double matter = 130 + 40 * noise(i, j, k), share = cut_out ? r < 12 : 1 / (1 + exp((r - 12) / 0.8));
+        double matter = 130 + grain * noise(i, j, k),
+               share = cut_out ? r < 12 : 1 / (1 + exp((r - 12) / 0.8));
         values[at(i, j, k)] = (float)floor(matter * share + (cut_out ? 0 : air * noise(k, i, j)));
       }
 }
@@ -107,28 +108,46 @@ static void fill(bool cut_out, double air) {
 static double smoothed_by(double thick) {
   hl_volume *volume = make(thick);
   hl_data_analysis analysis;
-  double sigma = -1;
   assert_int_equal(hl_data_analyse(volume, &analysis, NULL), HL_OK);
   assert_int_equal(analysis.kind, HL_DATA_SURFACES);
-  assert_int_equal(hl_smoothing_for(volume, "head.nii", &analysis, &sigma, NULL), HL_OK);
+  const double sigma = hl_smoothing_for(volume, "head.nii", &analysis);
   hl_volume_release(volume);
   return sigma;
 }
 
 static void cliffs_and_terraces_are_smoothed(void **state) {
   (void)state;
-  fill(true, 0);
+  fill(true, 0, 40);
   assert_true(smoothed_by(1) == 0.8);
-  fill(false, 12);
+  fill(false, 4, 4);
   assert_true(smoothed_by(1) == 0);
   assert_true(smoothed_by(1.25) == 0);
   assert_true(smoothed_by(1.5) == 0.8);
 }
 
+/* Noise moves a surface by its standard deviation over the slope. Uniform noise of width w has w / sqrt(12),
+ * and the rim m / (1 + exp(r / .8)) in air has the slope s (1 - s / m) / .8 where its value is s. */
+static void grain_is_smoothed_and_objects_stay_what_they_are(void **state) {
+  (void)state;
+  fill(false, 16, 0);
+  hl_volume *volume = make(1), *smoothed = NULL;
+  hl_data_analysis before, after;
+  assert_int_equal(hl_data_analyse(volume, &before, NULL), HL_OK);
+  const double slope = before.solid * (1 - before.solid / 130) / 0.8, grain = 16 / sqrt(12) / slope;
+  assert_true(fabs(before.grain - grain) < 0.05 * grain);
+  assert_true(hl_smoothing_for(volume, NULL, &before) == 0.8);
+  assert_int_equal(hl_volume_smooth(volume, 2, &smoothed, NULL), HL_OK);
+  assert_int_equal(hl_data_analyse(smoothed, &after, NULL), HL_OK);
+  assert_true(before.kind == HL_DATA_SURFACES && after.kind == HL_DATA_SURFACES);
+  assert_true(after.solid == before.solid && after.faint == before.faint);
+  hl_volume_release(smoothed);
+  hl_volume_release(volume);
+}
+
 /* A bare scene is smoothed, and is not where 0 was asked for. */
 static void bare_scenes_are_smoothed(void **state) {
   (void)state;
-  fill(true, 0);
+  fill(true, 0, 40);
   hl_volume *volume = make(1), *same = NULL;
   hl_scene *scene = NULL;
   assert_int_equal(hl_scene_for_volume(context, volume, "head.nii", &scene, NULL), HL_OK);
@@ -167,7 +186,7 @@ static void what_has_no_mean_is_refused(void **state) {
   assert_int_equal(hl_volume_smooth(labels, 1, &smoothed, &error), HL_ERROR_ARGUMENT);
   assert_non_null(strstr(error.message, "label map"));
   hl_volume_release(labels);
-  fill(false, 12);
+  fill(false, 12, 40);
   hl_volume *scan = make(1);
   static const double wrong[] = {-1, 16.5, NAN};
   for (int n = 0; n < 3; n++) {
@@ -197,6 +216,7 @@ int main(void) {
       cmocka_unit_test(a_step_becomes_a_ramp),
       cmocka_unit_test(holes_stay),
       cmocka_unit_test(cliffs_and_terraces_are_smoothed),
+      cmocka_unit_test(grain_is_smoothed_and_objects_stay_what_they_are),
       cmocka_unit_test(bare_scenes_are_smoothed),
       cmocka_unit_test(what_has_no_mean_is_refused),
   };

@@ -157,8 +157,8 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_ELEVATION] = {.name = "elevation",
                           .kind = OPTION_NUMBERS,
                           .argument = "DEG",
-                          .help =
-                              "height of the eye; 90 looks straight down (default 20,\nfor flat fields 40)",
+                          .help = "height of the eye; 90 looks straight down (default 20,\nfor flat fields "
+                                  "40, for heads and torsos 5)",
                           .count = 1,
                           .low = -90,
                           .high = 90},
@@ -195,14 +195,15 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                             "number of the channel to show, from 0 (default: 0);\nseveral channels, or all, "
                             "share a picture, each in its\ncolour from the file, or in green, magenta, ..."},
     [RENDER_SPACING] = INPUT_OPTION_SPACING,
-    [RENDER_SMOOTH] = {.name = "smooth",
-                       .kind = OPTION_NUMBERS,
-                       .argument = "SIGMA",
-                       .help = "smooth the voxels by a Gaussian of SIGMA voxels along\neach axis; 0: do not "
-                               "smooth (default: 0.8 where bare\nbrains or thick slices make stairs)",
-                       .count = 1,
-                       .low = 0,
-                       .high = 16},
+    [RENDER_SMOOTH] =
+        {.name = "smooth",
+         .kind = OPTION_NUMBERS,
+         .argument = "SIGMA",
+         .help = "smooth the voxels by a Gaussian of SIGMA voxels along\neach axis; 0: do not "
+                 "smooth (default: 0.8 where bare\nbrains or thick slices make stairs, or noise makes grain)",
+         .count = 1,
+         .low = 0,
+         .high = 16},
 
     [RENDER_LOOK] =
         {.name = "look",

@@ -1,0 +1,81 @@
+/* guess/boundary.c - what the surface of scanned objects is like: cut out voxel by voxel, or grainy by noise.
+ *
+ * A brain without its skull was cut out: around it all voxels have exactly one value, and the first voxel
+ * inside is almost as bright as the matter within. A scanned object with a natural rim has voxels with values
+ * between. There, noise moves the place at which the values pass a threshold. */
+#include <math.h>
+
+#include "guess/analysis.h"
+
+/* The least fraction of voxels that have exactly the background's value. */
+#define LEAST_ZEROED 0.2
+/* A cliff is a step higher than this part of the way from the background to matter. */
+#define CLIFF 0.5
+
+typedef struct step_count {
+  size_t steps, cliffs;
+} step_count;
+
+/* Counts the steps from the background to a place along an axis, from both sides. A step is a cliff only if
+ * the voxel behind it is no background: smoothing would remove matter of one voxel. */
+static void count_steps(const hl_volume *volume, const size_t at[3], int axis, const hl_data_analysis *a,
+                        double background, double high, step_count *count) {
+  const double here = hl_volume_value_within(volume, at[0], at[1], at[2]);
+  if (!isfinite(here) || here == background) return;
+  for (int side = -1; side <= 1; side += 2) {
+    size_t before[3] = {at[0], at[1], at[2]}, behind[3] = {at[0], at[1], at[2]};
+    before[axis] = (size_t)((ptrdiff_t)at[axis] - side);
+    behind[axis] = (size_t)((ptrdiff_t)at[axis] + side);
+    if (hl_volume_value_within(volume, before[0], before[1], before[2]) != background) continue;
+    count->steps++;
+    count->cliffs += a->direction * (here - background) > high &&
+                     hl_volume_value_within(volume, behind[0], behind[1], behind[2]) != background;
+  }
+}
+
+static double share_of_cliffs(const hl_volume *volume, const hl_sample *sample, const hl_data_analysis *a) {
+  if (a->zeroed < LEAST_ZEROED) return 0;
+  const size_t *n = volume->dimension;
+  const double background = sample->low + sample->range * a->background,
+               high = CLIFF * a->solid * sample->range;
+  step_count count = {0, 0};
+  for (size_t k = 1; k + 1 < n[2]; k += sample->step)
+    for (size_t j = 1; j + 1 < n[1]; j += sample->step)
+      for (size_t i = 1; i + 1 < n[0]; i += sample->step)
+        for (int axis = 0; axis < 3; axis++)
+          count_steps(volume, (size_t[3]){i, j, k}, axis, a, background, high, &count);
+  return count.steps > 0 ? (double)count.cliffs / (double)count.steps : 0;
+}
+
+/* How much values change per voxel edge where they pass a level, in the mean; 0: they pass it nowhere.
+ * Derived: a slope g in any direction is a difference g cos(t) along an axis, and a pair of neighbours lies
+ * on both sides of the level with a probability in proportion to |cos(t)|. So the mean difference of such
+ * pairs is g <cos^2> / <|cos|> = g (1/3) / (1/2) over all directions. */
+static double slope_at(const hl_volume *volume, const hl_sample *sample, double level) {
+  const size_t *n = volume->dimension;
+  double sum = 0, pairs = 0;
+  for (size_t k = 0; k + 1 < n[2]; k += sample->step)
+    for (size_t j = 0; j + 1 < n[1]; j += sample->step)
+      for (size_t i = 0; i + 1 < n[0]; i += sample->step) {
+        const double here = hl_volume_value_within(volume, i, j, k);
+        for (int axis = 0; axis < 3; axis++) {
+          const double next = hl_volume_value_within(volume, i + (axis == 0), j + (axis == 1),
+                                                     k + (axis == 2));
+          if (!isfinite(here) || !isfinite(next) || (here > level) == (next > level)) continue;
+          sum += fabs(next - here);
+          pairs++;
+        }
+      }
+  return pairs > 0 ? 1.5 * sum / pairs : 0;
+}
+
+hl_status hl_data_find_boundary(const hl_volume *volume, const hl_sample *sample, hl_data_analysis *a,
+                                hl_error *error) {
+  const double level = a->background + a->direction * a->solid,
+               slope = slope_at(volume, sample, sample->low + sample->range * level) / sample->range;
+  double noise = 0;
+  a->cliffs = share_of_cliffs(volume, sample, a);
+  hl_status status = hl_noise(volume, sample, level, a->direction, &noise, error);
+  a->grain = slope > 0 && isfinite(noise) ? noise / slope : 0;
+  return status;
+}
