@@ -15,6 +15,7 @@ extern const cli_command animate_command; /* animate.c */
 extern const cli_command looks_command;   /* looks.c */
 extern const cli_command export_command;  /* export.c */
 extern const cli_command figure_command;  /* figure.c */
+extern const cli_command figures_command; /* figures.c */
 extern const cli_command devices_command; /* devices.c */
 
 #endif

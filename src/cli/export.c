@@ -46,28 +46,16 @@ static const cli_option export_options[EXPORT_OPTION_COUNT] = {
 
 static const char *const page_extensions[] = {".html", NULL};
 
-/* Finds the page that is installed with the program: in share/halflight beside bin, or in the Python package.
- */
-static bool find_installed_page(char path[PATH_MAX]) {
-  static const char *const places[] = {"/../share/halflight/halflight.html", "/../page/halflight.html"};
-  enum { LONGEST = 64 };
-  ssize_t length = readlink("/proc/self/exe", path, PATH_MAX - LONGEST);
-  if (length < 0) return false;
-  path[length] = '\0';
-  char *slash = strrchr(path, '/');
-  for (size_t n = 0; slash != NULL && n < sizeof places / sizeof *places; n++) {
-    snprintf(slash, LONGEST, "%s", places[n]);
-    if (access(path, R_OK) == 0) return true;
-  }
-  return false;
-}
+/* The page that is installed with the program: in share/halflight beside bin, or in the Python package. */
+static const char *const installed_pages[] = {"/../share/halflight/halflight.html", "/../page/halflight.html",
+                                              NULL};
 
 /* The page without a scene; null: there is none. */
 static const char *viewer_page(const cli_value *values, char path[PATH_MAX]) {
   if (values[EXPORT_PAGE].given) return values[EXPORT_PAGE].text;
   const char *named = getenv("HALFLIGHT_PAGE");
   if (named != NULL && *named != '\0') return named;
-  return find_installed_page(path) ? path : NULL;
+  return find_installed(installed_pages, path) ? path : NULL;
 }
 
 /* The input's name without its ending; owned by the caller (free). */

@@ -263,3 +263,16 @@ bool is_mesh_file(hl_context *context, const char *path) {
 int compare_by_number(const void *a, const void *b) {
   return strverscmp(*(char *const *)a, *(char *const *)b);
 }
+
+bool find_installed(const char *const *places, char path[PATH_MAX]) {
+  enum { LONGEST = 64 };
+  ssize_t length = readlink("/proc/self/exe", path, PATH_MAX - LONGEST);
+  if (length < 0) return false;
+  path[length] = '\0';
+  char *slash = strrchr(path, '/');
+  for (size_t n = 0; slash != NULL && places[n] != NULL; n++) {
+    snprintf(slash, LONGEST, "%s", places[n]);
+    if (access(path, R_OK) == 0) return true;
+  }
+  return false;
+}

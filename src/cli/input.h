@@ -7,6 +7,7 @@
 #ifndef HL_CLI_INPUT_H
 #define HL_CLI_INPUT_H
 
+#include <limits.h>
 #include <math.h>
 #include <stdbool.h>
 
@@ -110,5 +111,10 @@ bool is_mesh_file(hl_context *context, const char *path);
 
 /* Orders names (char **) by the numbers in them, for qsort(). */
 int compare_by_number(const void *a, const void *b);
+
+/* Finds a file or a folder that is installed with the program. places: paths from the program's folder on,
+ * each less than 64 bytes and with a slash before it; null ends them. Returns whether one of them is
+ * readable; path is the first that is. */
+bool find_installed(const char *const *places, char path[PATH_MAX]);
 
 #endif

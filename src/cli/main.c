@@ -14,8 +14,9 @@
 #include "text/edit_distance.h"
 
 static const cli_command *const commands[] = {
-    &render_command, &info_command,    &make_command,  &convert_command, &diff_command,   &bench_command,
-    &view_command,   &animate_command, &looks_command, &figure_command,  &export_command, &devices_command};
+    &render_command,  &info_command,   &make_command,    &convert_command, &diff_command,
+    &bench_command,   &view_command,   &animate_command, &looks_command,   &figure_command,
+    &figures_command, &export_command, &devices_command};
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
 static const char *command_name(const void *data, size_t index) {

@@ -1,0 +1,51 @@
+/* cli/figures.c - `halflight figures`: the figures of Zhang and Crawfis's paper, from the scenes that are
+ * installed with the program. */
+#define _GNU_SOURCE
+#include <limits.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/render/render.h"
+#include "commands.h"
+#include "input.h"
+#include "message.h"
+
+/* Folders of the scenes: installed beside the program, and beside the folder of a build. */
+static const char *const places[] = {"/../share/halflight/examples", "/../../../examples", NULL};
+
+/* The options of render that suit pictures of many scenes. */
+static bool has_render_option(size_t row) {
+  return row == RENDER_OUTPUT || row == RENDER_SIZE || row == RENDER_DATA || row == RENDER_THREADS ||
+         row == RENDER_DEVICE || row == RENDER_MAX_MEMORY || row == RENDER_QUIET;
+}
+
+static int run_figures(const cli_value *values, char **operands) {
+  enum { NAME_BYTES = 100 };
+  char pattern[PATH_MAX + NAME_BYTES];
+  if (!find_installed(places, pattern))
+    return fail(EXIT_CODE_INPUT,
+                "the scenes of the figures are not installed beside the program: halflight render "
+                "'FOLDER/fig*.json' makes the pictures of scenes in a folder");
+  const size_t length = strlen(pattern);
+  const char *only = operands[0] != NULL ? operands[0] : "";
+  if (strlen(only) >= NAME_BYTES - sizeof "/fig**.json" || strchr(only, '/') != NULL)
+    return fail(EXIT_CODE_USAGE, "'%.80s' is no part of a figure's name", only);
+  snprintf(pattern + length, NAME_BYTES, "/fig*%s*.json", only);
+  return render_command.run(values, (char *[]){pattern, NULL});
+}
+
+const cli_command figures_command = {
+    .name = "figures",
+    .operands = "[TEXT]",
+    .operand_most = 1,
+    .summary = "the figures of the paper, from the scenes that come with this",
+    .description =
+        "Makes a picture of each figure of the paper (Zhang and Crawfis 2003), or of those whose names\n"
+        "contain TEXT, as 12 or rings. For data that are not found, a scene shows\n"
+        "shapes that stand in for them.",
+    .shared = render_options,
+    .shared_count = RENDER_OPTION_COUNT,
+    .has_shared = has_render_option,
+    .run = run_figures,
+};
