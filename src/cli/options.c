@@ -192,13 +192,21 @@ static bool is_number(const char *text) {
 }
 
 /* The row of the option with this name; the count of rows: there is none. */
+static bool is_word(const char *word, const char *name, size_t length) {
+  return word != NULL && strlen(word) == length && strncmp(word, name, length) == 0;
+}
+
+/* The row of an option, by its name or by another word for it; the number of rows: there is none. A name
+ * counts before another option's other word. */
 static size_t find_option(const cli_command *command, const char *name, size_t length) {
-  size_t row = 0;
+  size_t row = 0, also = row_count(command);
   for (; row < row_count(command); row++) {
     const cli_option *option = option_in(command, row);
-    if (option != NULL && strlen(option->name) == length && strncmp(option->name, name, length) == 0) break;
+    if (option == NULL) continue;
+    if (is_word(option->name, name, length)) return row;
+    if (is_word(option->also, name, length)) also = row;
   }
-  return row;
+  return also;
 }
 
 static size_t find_letter(const cli_command *command, char letter) {
@@ -341,17 +349,18 @@ static void option_heading(const cli_option *option, char *text, size_t size) {
   snprintf(text + used, size - used, " %s", option->argument != NULL ? option->argument : choices);
 }
 
+enum { HELP_COLUMN = 38 };
+
 static void print_option(const char *heading, const char *help) {
-  enum { COLUMN = 38 };
   printf("  %s", heading);
   size_t at = 2 + strlen(heading);
-  if (at >= COLUMN) {
+  if (at >= HELP_COLUMN) {
     putchar('\n');
     at = 0;
   }
   for (const char *line = help; *line != '\0';) {
     int length = (int)strcspn(line, "\n");
-    printf("%*s%.*s\n", (int)(COLUMN - at), "", length, line);
+    printf("%*s%.*s\n", (int)(HELP_COLUMN - at), "", length, line);
     line += line[length] == '\n' ? length + 1 : length;
     at = 0;
   }
@@ -378,6 +387,8 @@ void options_print_help(const cli_command *command) {
     if (listed == NULL || listed->reserved) continue;
     if (!shared) group = listed->group;
     print_row(listed, group);
+    if (listed->also != NULL && find_option(command, listed->also, strlen(listed->also)) == row)
+      printf("%*salso --%s\n", HELP_COLUMN, "", listed->also);
     group = NULL;
   }
   print_option("-h, --help", "this text");

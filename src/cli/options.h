@@ -31,6 +31,7 @@ typedef hl_setting_choice cli_choice; /* a null name ends the list */
 
 typedef struct cli_option {
   const char *name; /* without the dashes */
+  const char *also; /* another word for it, as other programs call it; null: none */
   char letter;      /* the letter of the short form; 0: none */
   cli_option_kind kind;
   const char *argument; /* the value as help shows it; null for a switch, or to list the choices */

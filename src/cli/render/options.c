@@ -189,6 +189,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
 
     INPUT_OPTIONS(RENDER_ARRAY, "Volume files"),
     [RENDER_CHANNEL] = {.name = "channel",
+                        .also = "channels",
                         .kind = OPTION_TEXT,
                         .argument = "N|N,N|all",
                         .help =
@@ -213,6 +214,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                  "mip: the greatest\nvalue along each ray (default auto: chosen from the\ndata)"},
     [RENDER_TF] =
         {.name = "tf",
+         .also = "preset",
          .kind = OPTION_TEXT,
          .argument = "[NAME=]FILE|PRESET",
          .help =
@@ -255,6 +257,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                           .high = INFINITY},
     [RENDER_ISO] =
         {.name = "iso",
+         .also = "isosurface",
          .kind = OPTION_TEXT,
          .argument = "[NAME=]VALUE[:COLOR[:OPACITY]]",
          .help =
@@ -354,6 +357,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                         .setting = "ambient"},
     [RENDER_SKY] =
         {.name = "sky",
+         .also = "environment",
          .kind = OPTION_TEXT,
          .argument = "SKY",
          .help = "light from all directions, which folds and\nhollows get less of: a colour, a "
