@@ -116,10 +116,15 @@ typedef struct sky_slice {
   const float *depth;         /* [rows][3][stride] */
   const unsigned char *flags; /* [rows][stride / FIELD_LANES] */
   int32_t stride, columns;
-  const float *old; /* [direction_count] planes: the light that leaves the slice before */
-  float *left;      /* [direction_count] planes: the light that leaves this slice */
-  int32_t plane_stride;
-  size_t plane;        /* floats from plane to plane */
+  /* [rows + 2][FIELD_DIRECTIONS][light_stride]: the light that leaves the slice before. Rows of all
+   * directions lie beside each other, because a row's cells read them one after the other. */
+  const float *old;
+  float *left; /* the light that leaves this slice, laid out as `old` */
+  /* [rows + 2][light_stride / FIELD_LANES]: the directions that have light in a block, one bit each. Where a
+   * bit is 0, the block's light is 0. */
+  const uint64_t *old_lit;
+  uint64_t *left_lit;
+  int32_t light_stride;
   float *field;        /* the slice's first cell */
   size_t across, down; /* numbers of floats from a cell to the next cell in its row, and to the cell in the
                         * next row */
@@ -128,12 +133,12 @@ typedef struct sky_slice {
   const unsigned char *cut; /* [rows][stride / FIELD_LANES]; null: there are no surfaces */
   unsigned char cut_here;   /* LINKS_BEFORE or LINKS_AFTER: the side from which the light comes through
                              * links */
-  const unsigned char *taken[FIELD_LINKS]; /* [rows + 2][plane_stride], laid out as the planes of light; the
-                                            * part of a link's light that surfaces take, in 255ths */
+  const unsigned char *taken[FIELD_LINKS]; /* [rows + 2][light_stride]; the part of a link's light that
+                                            * surfaces take, in 255ths */
 } sky_slice;
 
 /* Moves the light of all directions to the next slice, in one row, and adds it to those cells near which
- * something is visible. */
+ * something is visible. Light below SKY_FAINT in all cells of a block is nothing, and is not moved on. */
 typedef void sky_row_function(const sky_slice *slice, int32_t row);
 
 typedef struct field_functions {

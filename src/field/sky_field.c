@@ -78,10 +78,10 @@ static void integrate_square(const hl_sky *sky, const field_slices *s, int sign,
 }
 
 /* Sets the four cells from which a direction's light comes. Derived: a ray to a cell's middle has crossed
- * the slice before at the distance (u, v) from the middle. */
-static void set_taps(double u, double v, int32_t plane_stride, sky_direction *direction) {
+ * the slice before at the distance (u, v) from the middle. light_stride: as in sky_slice. */
+static void set_taps(double u, double v, int32_t light_stride, sky_direction *direction) {
   double column = floor(u), row = floor(v), fu = u - column, fv = v - row;
-  direction->offset = (int32_t)row * plane_stride + (int32_t)column;
+  direction->offset = (int32_t)row * FIELD_DIRECTIONS * light_stride + (int32_t)column;
   direction->link = 3 * (1 + (int)row) + 1 + (int)column;
   direction->weight[0] = (float)((1 - fu) * (1 - fv));
   direction->weight[1] = (float)(fu * (1 - fv));
@@ -100,7 +100,7 @@ static int find_slope(const sky_end *end) {
 
 /* first: the channel of the field's first harmonics. */
 static void set_up_end(const sky_content *content, int end_index, int first, int channels,
-                       int32_t plane_stride, sky_end *end) {
+                       int32_t light_stride, sky_end *end) {
   field_slices s = hl_field_slices(&content->lattice, end_index / 2);
   int sign = end_index % 2 ? -1 : 1;
   end->count = 0;
@@ -119,7 +119,7 @@ static void set_up_end(const sky_content *content, int end_index, int first, int
     *direction = (sky_direction){.basis = basis};
     (void)direction_of(&s, sign, -1 + (2 * (square % SIDE) + 1.0) / SIDE,
                        -1 + (2 * (square / SIDE) + 1.0) / SIDE, slope);
-    set_taps(slope[0], slope[1], plane_stride, direction);
+    set_taps(slope[0], slope[1], light_stride, direction);
     direction->slope = find_slope(end);
   }
 }
@@ -141,14 +141,38 @@ static void move_row(void *data, size_t row, int worker) {
  * nothing hides. */
 static size_t light_of_slice(const field_slices *s) { return FIELD_DIRECTIONS * hl_field_planes(s).plane; }
 
-/* The number of floats of two slices' planes, along the axis with the largest slices. */
+/* The number of floats of the light of one slice, along the axis with the largest slices. */
 static size_t most_light(const sky_content *content) {
   size_t most = 0;
   for (int a = 0; a < 3; a++) {
     field_slices s = hl_field_slices(&content->lattice, a);
     most = light_of_slice(&s) > most ? light_of_slice(&s) : most;
   }
-  return 2 * most;
+  return most;
+}
+
+/* The light of two slices that follow each other, as in sky_slice. */
+typedef struct moving_light {
+  float *light[2];
+  uint64_t *lit[2];
+} moving_light;
+
+static void lay_out_light(const sky_content *content, moving_light *moving, hl_layout *layout) {
+  const size_t floats = most_light(content), blocks = floats / (FIELD_DIRECTIONS * FIELD_LANES);
+  for (int i = 0; i < 2; i++) {
+    moving->light[i] = hl_layout_take(layout, floats, sizeof(float));
+    moving->lit[i] = hl_layout_take(layout, blocks, sizeof(uint64_t));
+  }
+}
+
+/* Makes a number of directions shine everywhere. */
+static void open_light(const moving_light *moving, const field_slices *s, int directions, hl_pool *pool) {
+  const size_t floats = light_of_slice(s);
+  for (int i = 0; i < 2; i++) {
+    hl_pool_fill(pool, moving->light[i], floats, 1);
+    for (size_t b = 0; b < floats / (FIELD_DIRECTIONS * FIELD_LANES); b++)
+      moving->lit[i][b] = (1ull << directions) - 1;
+  }
 }
 
 /* Where the field's light is added: the cells, and the harmonics that are kept of each cell. */
@@ -172,19 +196,18 @@ static void set_links(const surface_links *links, const field_slices *s, size_t 
   }
 }
 
-/* Sweeps the light of one end of an axis through all slices. light: [2][directions][plane]. links: the
- * links along the end's axis; null: there are no surfaces. */
+/* Sweeps the light of one end of an axis through all slices. moving: memory for it. links: the links along
+ * the end's axis; null: there are no surfaces. */
 static void sweep_end(const sky_content *content, const opacity_field *opacity, const surface_links *links,
-                      float *light, const sky_target *target, int end_index, int first, int channels,
-                      const field_functions *functions, hl_pool *pool) {
+                      const moving_light *moving, const sky_target *target, int end_index, int first,
+                      int channels, const field_functions *functions, hl_pool *pool) {
   field_slices s = hl_field_slices(&content->lattice, end_index / 2);
   const field_planes planes = hl_field_planes(&s);
-  const size_t half = light_of_slice(&s);
   sky_end end;
   set_up_end(content, end_index, first, channels, planes.stride, &end);
   const bool adds_passing = end_index % 2 == 0 && first == 0;
   if (end.count == 0 && !adds_passing) return;
-  hl_pool_fill(pool, light, 2 * half, 1);
+  open_light(moving, &s, end.count, pool);
   for (int32_t i = 0; i < s.slices && !hl_pool_cancelled(pool); i++) {
     size_t slice = (size_t)(end_index % 2 ? i : s.slices - 1 - i),
            at = slice * (size_t)s.rows * (size_t)s.stride;
@@ -196,10 +219,11 @@ static void sweep_end(const sky_content *content, const opacity_field *opacity, 
                         .flags = opacity->flags[s.axis] + at / FIELD_LANES,
                         .stride = s.stride,
                         .columns = s.columns,
-                        .old = light + (i % 2 ? half : 0),
-                        .left = light + (i % 2 ? 0 : half),
-                        .plane_stride = planes.stride,
-                        .plane = planes.plane,
+                        .old = moving->light[i % 2],
+                        .left = moving->light[1 - i % 2],
+                        .old_lit = moving->lit[i % 2],
+                        .left_lit = moving->lit[1 - i % 2],
+                        .light_stride = planes.stride,
                         .field = target->field + slice * target->step[s.axis],
                         .across = target->step[s.across],
                         .down = target->step[s.down],
@@ -235,7 +259,7 @@ static size_t field_bytes(const sky_content *content) { return field_floats(cont
 
 typedef struct passing_arrays {
   opacity_field opacity;
-  float *light; /* memory for sweep_end() */
+  moving_light moving;
   opacity_scratch scratch;
   surface_links links; /* links along one axis, for content with surfaces */
   field_matter *matter;
@@ -246,7 +270,7 @@ static void lay_out(const sky_content *content, passing_arrays *arrays, hl_layou
   arrays->opacity.lattice = content->lattice;
   hl_opacity_lay_out(&arrays->opacity, &arrays->scratch, layout);
   if (content->content.surfaces != NULL) hl_surface_links_lay_out(&content->lattice, &arrays->links, layout);
-  arrays->light = hl_layout_take(layout, most_light(content), sizeof(float));
+  lay_out_light(content, &arrays->moving, layout);
   arrays->matter = hl_layout_take(layout, (size_t)content->content.count, sizeof *arrays->matter);
   hl_field_share_lay_out(content->exchange, (size_t)content->lattice.count[2], &arrays->share, layout);
 }
@@ -297,7 +321,7 @@ static void make(const sky_content *content, passing_arrays *arrays, const field
     target.field = field + pass * FIELD_HARMONICS;
     for (int end = 0; end < ENDS; end++) {
       if (end % 2 == 0) links = find_links(content, &arrays->links, &target, field, end / 2, pool);
-      sweep_end(content, &arrays->opacity, links, arrays->light, &target, end, pass,
+      sweep_end(content, &arrays->opacity, links, &arrays->moving, &target, end, pass,
                 colored ? 1 : content->channels, functions, pool);
     }
   }

@@ -3,26 +3,38 @@
  * Light of one direction that reaches a cell's middle left four cells of the slice before: it is
  * interpolated between them. What the cell itself absorbs is subtracted from the light that goes to the
  * next slice. Surfaces take their part of the light from each of the four cells. Beyond the lattice nothing
- * hides the light. */
+ * hides the light. Behind matter and within it most blocks of cells are dark for most directions; these
+ * directions are left out there. */
 #ifndef HL_FIELD_SKY_LANES_H
 #define HL_FIELD_SKY_LANES_H
 
 #include "field/field.h"
 #include "simd/lanes.h"
 
+/* Light that is less than this part of a direction's open light in all sixteen cells is nothing. Samples look
+ * up sums over the directions, in steps of 1 / SKY_MOST (sky_field.h) of the open light or more. */
+static const float SKY_FAINT = 1.0f / 65536;
+
+/* The light of the directions that reach sixteen cells. */
+typedef struct sky_reaching {
+  lanes light[FIELD_DIRECTIONS]; /* [count] */
+  const float *basis[FIELD_DIRECTIONS];
+  int count;
+} sky_reaching;
+
 /* Adds each direction's light to the harmonics of sixteen cells, multiplied by the direction's integrals.
  * Three sums at a time stay in registers while the directions go by; FIELD_HARMONICS is a multiple of
  * three. */
-LANES_INLINE void add_harmonics(const sky_slice *slice, const lanes *reaching, int32_t column, float *cells,
-                                int count) {
+LANES_INLINE void add_harmonics(const sky_slice *slice, const sky_reaching *reaching, int32_t column,
+                                float *cells, int count) {
   float sums[3 * FIELD_HARMONICS][FIELD_LANES];
   for (int k = 0; k < count; k += 3) {
     lanes first = lanes_set(0), second = lanes_set(0), third = lanes_set(0);
-    for (int d = 0; d < slice->direction_count; d++) {
-      const float *basis = slice->directions[d].basis + k;
-      first = lanes_fma(reaching[d], lanes_set(basis[0]), first);
-      second = lanes_fma(reaching[d], lanes_set(basis[1]), second);
-      third = lanes_fma(reaching[d], lanes_set(basis[2]), third);
+    for (int i = 0; i < reaching->count; i++) {
+      const float *basis = reaching->basis[i] + k;
+      first = lanes_fma(reaching->light[i], lanes_set(basis[0]), first);
+      second = lanes_fma(reaching->light[i], lanes_set(basis[1]), second);
+      third = lanes_fma(reaching->light[i], lanes_set(basis[2]), third);
     }
     lanes_store(sums[k], first);
     lanes_store(sums[k + 1], second);
@@ -81,50 +93,86 @@ LANES_INLINE lanes light_past_surfaces(const float *from, int32_t stride, const 
   return lanes_add_scaled(light, lanes_load(from + stride + 1) * link[4], direction->weight[3]);
 }
 
-/* Moves the light of all directions to sixteen cells. at: the cells' place in a plane. squared: null where no
- * matter lies in the cells. open: null where no surface cuts their links. */
-LANES_INLINE void move_light(const sky_slice *slice, size_t at, const lanes *squared, const lanes *open,
-                             lanes reaching[FIELD_DIRECTIONS]) {
-  lanes passing[FIELD_DIRECTIONS];
-  for (int d = 0; d < slice->direction_count; d++) {
-    const sky_direction *direction = &slice->directions[d];
-    const float *from = slice->old + (size_t)d * slice->plane + at + direction->offset;
-    lanes light = open == NULL ? light_from(from, slice->plane_stride, direction)
-                               : light_past_surfaces(from, slice->plane_stride, direction, open);
-    reaching[d] = light;
-    if (squared != NULL) {
-      if (direction->slope == d) passing[d] = passing_cells(squared, direction);
-      light = light * passing[direction->slope];
-    }
-    lanes_store(slice->left + (size_t)d * slice->plane + at, light);
+LANES_INLINE bool is_lit(lanes light) { return lanes_bits(light >= SKY_FAINT) != 0; }
+
+/* The directions that have light in a block or in one of the blocks around it, from which its light comes. */
+LANES_INLINE uint64_t lit_around(const sky_slice *slice, size_t block) {
+  const size_t row = (size_t)(slice->light_stride / FIELD_LANES);
+  uint64_t lit = 0;
+  for (size_t r = 0; r < 3; r++) {
+    const uint64_t *at = slice->old_lit + block + r * row - row;
+    lit |= at[-1] | at[0] | at[1];
   }
+  return lit;
+}
+
+/* Makes a block dark for some directions. at: the place of the first direction's light. */
+LANES_INLINE void darken(const sky_slice *slice, size_t at, uint64_t directions) {
+  for (; directions != 0; directions &= directions - 1)
+    lanes_store(slice->left + at + (size_t)(__builtin_ctzll(directions) * slice->light_stride), lanes_set(0));
+}
+
+/* Moves the light of all directions to sixteen cells. block: the cells' place among the blocks. at: the place
+ * of the first direction's light. squared: null where no matter lies in the cells. open: null where no
+ * surface cuts their links. */
+LANES_INLINE void move_light(const sky_slice *slice, size_t block, size_t at, const lanes *squared,
+                             const lanes *open, sky_reaching *reaching) {
+  const int32_t row = FIELD_DIRECTIONS * slice->light_stride;
+  lanes passing[FIELD_DIRECTIONS];
+  uint64_t known = 0, leaving = 0; /* known: slopes whose transmittance has been found */
+  reaching->count = 0;
+  for (uint64_t left = lit_around(slice, block); left != 0; left &= left - 1) {
+    const int d = __builtin_ctzll(left);
+    const sky_direction *direction = &slice->directions[d];
+    const size_t here = at + (size_t)(d * slice->light_stride);
+    const float *from = slice->old + here + direction->offset;
+    /* the next row reads this; beyond the last row nothing does */
+    __builtin_prefetch(slice->old + here + 2 * row);
+    lanes light = open == NULL ? light_from(from, row, direction)
+                               : light_past_surfaces(from, row, direction, open);
+    if (!is_lit(light)) continue;
+    reaching->light[reaching->count] = light;
+    reaching->basis[reaching->count++] = direction->basis;
+    if (squared != NULL) {
+      const int slope = direction->slope;
+      if (!(known >> slope & 1)) passing[slope] = passing_cells(squared, direction), known |= 1ull << slope;
+      light = light * passing[slope];
+      if (!is_lit(light)) continue;
+    }
+    lanes_store(slice->left + here, light);
+    leaving |= 1ull << d;
+  }
+  darken(slice, at, slice->left_lit[block] & ~leaving);
+  slice->left_lit[block] = leaving;
 }
 
 static void sky_row(const sky_slice *slice, int32_t row) {
-  const int32_t stride = slice->plane_stride;
-  const size_t at_row = (size_t)(row + 1) * (size_t)stride + FIELD_LANES;
+  const size_t at_row = (size_t)(row + 1) * (size_t)slice->light_stride + FIELD_LANES;
   for (int32_t column = 0; column < slice->columns; column += FIELD_LANES) {
-    size_t at = at_row + (size_t)column;
+    const size_t link = at_row + (size_t)column, lit = link / FIELD_LANES;
+    const size_t at = link + (size_t)((row + 1) * (FIELD_DIRECTIONS - 1) * slice->light_stride);
     const size_t block = ((size_t)row * (size_t)slice->stride + (size_t)column) / FIELD_LANES;
     unsigned char flags = slice->flags[block];
     const float *depth = slice->depth + (size_t)row * 3 * (size_t)slice->stride + (size_t)column;
-    lanes reaching[FIELD_DIRECTIONS], squared[3], open[FIELD_LINKS];
+    lanes squared[3], open[FIELD_LINKS];
+    sky_reaching reaching;
     for (int a = 0; a < 3; a++) {
       lanes along = lanes_load(depth + a * slice->stride);
       squared[a] = along * along;
     }
     const lanes *matter = flags & FIELD_MATTER ? squared : NULL;
     if (slice->cut != NULL && (slice->cut[block] & slice->cut_here)) {
-      find_open_links(slice, at, open);
-      move_light(slice, at, matter, open, reaching);
+      find_open_links(slice, link, open);
+      move_light(slice, lit, at, matter, open, &reaching);
     } else {
-      move_light(slice, at, matter, NULL, reaching);
+      move_light(slice, lit, at, matter, NULL, &reaching);
     }
     if (!(flags & FIELD_RECEIVES)) continue;
     float *cells = slice->field + (size_t)row * slice->down + (size_t)column * slice->across;
     if (slice->passing > 0) add_passing(slice, lanes_load(depth), column, cells);
-    if (slice->channels == 1) add_harmonics(slice, reaching, column, cells, FIELD_HARMONICS);
-    else add_harmonics(slice, reaching, column, cells, 3 * FIELD_HARMONICS);
+    if (reaching.count == 0) continue;
+    if (slice->channels == 1) add_harmonics(slice, &reaching, column, cells, FIELD_HARMONICS);
+    else add_harmonics(slice, &reaching, column, cells, 3 * FIELD_HARMONICS);
   }
 }
 
