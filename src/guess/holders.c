@@ -126,20 +126,19 @@ static double reach(const body_cells *ends, const side *along, double *width) {
   double low = INFINITY, high = -INFINITY;
   for (size_t n = 0; n < ends->count; n++) {
     double at = vec3_dot(ends->point[n], along->direction);
-    low = fmin(low, at);
-    high = fmax(high, at);
+    low = at < low ? at : low;
+    high = at > high ? at : high;
   }
   *width = high - low + along->cell_width;
   return high;
 }
 
-/* Measures the object along a direction. */
-static side side_along(const search *s, vec3 direction) {
+/* Measures the object along a direction. *width: the object's width. */
+static side side_along(const search *s, vec3 direction, double *width) {
   side along = {.direction = direction};
-  double width;
   for (int a = 0; a < 3; a++)
     along.cell_width += fabs(vec3_dot(mat3_column(s->cell_to_world.linear, a), direction));
-  along.hull = reach(&s->object, &along, &width);
+  along.hull = reach(&s->object, &along, width);
   return along;
 }
 
@@ -202,8 +201,7 @@ static hl_status measure_object(search *s, hl_error *error) {
   s->object_length = 0;
   for (int d = 0; status == HL_OK && d < DIRECTIONS; d++) {
     double width;
-    s->sides[d] = side_along(s, hl_even_direction(d, DIRECTIONS));
-    reach(&s->object, &s->sides[d], &width);
+    s->sides[d] = side_along(s, hl_even_direction(d, DIRECTIONS), &width);
     s->object_length = fmax(s->object_length, width);
   }
   return status;
@@ -235,7 +233,8 @@ static side tilt(const search *s, const body_cells *cells, side plane, size_t *m
     const vec3 from = plane.direction, across = vec3_perpendicular(from), along = vec3_cross(from, across);
     for (int way = 0; way < 9; way++) { /* eight ways, and none */
       const vec3 to = vec3_add(vec3_scale(across, way % 3 - 1), vec3_scale(along, way / 3 - 1));
-      const side tilted = side_along(s, vec3_normalise(vec3_add(from, vec3_scale(to, angle))));
+      double width;
+      const side tilted = side_along(s, vec3_normalise(vec3_add(from, vec3_scale(to, angle))), &width);
       const size_t beyond = count_beyond(cells, &tilted);
       if (beyond > *most) *most = beyond, plane = tilted;
     }

@@ -317,8 +317,10 @@ hl_status hl_outline_find(const hl_scene_description *description, hl_outline *o
 double hl_outline_reach(const hl_outline *outline, vec3 along, vec3 forward, double tangent) {
   vec3 normal = vec3_subtract(along, vec3_scale(forward, tangent));
   double length = vec3_length(normal), greatest = -INFINITY;
-  for (size_t n = 0; n < outline->count; n++)
-    greatest = fmax(greatest, vec3_dot(outline->point[n], normal) + length * outline->radius[n]);
+  for (size_t n = 0; n < outline->count; n++) {
+    const double here = vec3_dot(outline->point[n], normal) + length * outline->radius[n];
+    greatest = here > greatest ? here : greatest;
+  }
   return greatest;
 }
 

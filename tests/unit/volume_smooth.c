@@ -73,6 +73,27 @@ static void a_step_becomes_a_ramp(void **state) {
   hl_volume_release(smoothed);
 }
 
+/* Whole numbers become numbers of 16 bits, at most half a step from the smoothed floats. */
+static void whole_numbers_keep_16_bits(void **state) {
+  (void)state;
+  static uint8_t bytes[COUNT];
+  for (int v = 0; v < COUNT; v++) values[v] = bytes[v] = (uint8_t)(v * 7919 % 251 > 200 ? 255 : v % 31);
+  hl_volume_description d = describe_voxels(N, N, N, HL_VOXEL_U8, bytes);
+  hl_volume *whole = create_volume(context, &d), *smoothed = NULL, *floats = smooth(1, 0.8);
+  assert_int_equal(hl_volume_smooth(whole, 0.8, &smoothed, NULL), HL_OK);
+  assert_int_equal(smoothed->storage, HL_STORAGE_U16);
+  const double step = (floats->maximum - floats->minimum) / UINT16_MAX;
+  for (size_t v = 0; v < COUNT; v++) {
+    double is = hl_volume_value(smoothed, v % N, v / N % N, v / N / N),
+           want = hl_volume_value(floats, v % N, v / N % N, v / N / N);
+    assert_true(fabs(is - want) <= 0.501 * step);
+  }
+  assert_true(smoothed->minimum == floats->minimum && fabs(smoothed->maximum - floats->maximum) < 1e-4);
+  hl_volume_release(floats);
+  hl_volume_release(smoothed);
+  hl_volume_release(whole);
+}
+
 /* A hole stays, and takes nothing from its neighbours: the same value everywhere stays the same. */
 static void holes_stay(void **state) {
   (void)state;
@@ -214,6 +235,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(an_impulse_becomes_a_gaussian),
       cmocka_unit_test(a_step_becomes_a_ramp),
+      cmocka_unit_test(whole_numbers_keep_16_bits),
       cmocka_unit_test(holes_stay),
       cmocka_unit_test(cliffs_and_terraces_are_smoothed),
       cmocka_unit_test(grain_is_smoothed_and_objects_stay_what_they_are),
