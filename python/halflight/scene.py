@@ -538,8 +538,11 @@ def _build(base: Any, volumes: Sequence[Volume], settings: Mapping[str, Any], ch
         volume._fill(array[n], keep, f"volumes[{n}]: " if len(volumes) > 1 else "")
     struct.volumes, struct.volume_count = array, len(volumes)
     if chosen and len(volumes) > 1:
+        edges = [one._smallest_edge() * array[n].scale for n, one in enumerate(volumes)]
         spacings = [lib.hl_scene_describe(one._base_scene()[0]).render.sheet_spacing for one in volumes]
-        struct.render.sheet_spacing = min(spacings)
+        distance = min(edge * spacing for edge, spacing in zip(edges, spacings, strict=True))
+        if min(edges) > 0:  # else the library refuses the scale
+            struct.render.sheet_spacing = round(distance / min(edges), 6)  # as hl_scene_join() does
     if (meshes := settings.get("meshes")) is not None:
         _set_meshes(struct, meshes, keep)
     if (cut := settings.get("cuts")) is not None:

@@ -11,7 +11,7 @@ from . import _settings, arrays, cuts, grids, isosurface, mask, neighbours, piec
 from ._library import call, context, ffi, lib, made, text_of
 from ._words import check_keywords, choice
 from .transfer import function_from
-from .volume_info import FileArray, FileChannel, FileSegment, FileSeries, Info, read_info
+from .volume_info import FileArray, FileChannel, FileSegment, FileSeries, Info, raw_info, read_info
 from .volume_look import Look, fill_look
 
 __all__ = ["FileArray", "FileChannel", "FileSegment", "FileSeries", "Info", "Look", "Volume", "info"]
@@ -85,16 +85,19 @@ class Volume:
         self._colored: Any = None  # the array, where its voxels are colours
         self._shapes: str | None = None  # the text that the voxels were made from
         self._changes: dict[str, Any] = dict(look)
+        place = {"spacing": spacing, "origin": origin, "direction": direction, "affine": affine}
+        chosen = {"array": array, "component": component, "series": series, "time": time, "channel": channel,
+                  "level": level}
         if isinstance(source, Volume):
+            for word, value in {**place, **chosen, "axes": axes, "copy": copy or None}.items():
+                if value is not None:
+                    raise TypeError(f"{word} is for arrays and files: a Volume has been read already")
             self._share(source)
             if smooth is not None:
                 self._smooth(smooth)
             return
         if axes is not None:
             arrays.check_axes(axes)
-        place = {"spacing": spacing, "origin": origin, "direction": direction, "affine": affine}
-        chosen = {"array": array, "component": component, "series": series, "time": time, "channel": channel,
-                  "level": level}
         self._read(source, axes, place, {word: value for word, value in chosen.items() if value is not None}, copy)
         if smooth is not None:
             self._smooth(smooth)
@@ -376,6 +379,9 @@ class Volume:
     def info(self) -> Info:
         """Size, type, place and statistics."""
         return read_info(self._handle, self._file_text(), self._order)
+
+    def _smallest_edge(self) -> float:
+        return float(min(raw_info(self._handle).spacing))
 
     def percentile(self, percent: float) -> float:
         """The data value below which so many percent of the finite voxels lie, as ``numpy.percentile`` says.

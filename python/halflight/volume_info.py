@@ -8,7 +8,7 @@ import numpy as np
 
 from ._library import call, ffi, lib, text_of
 
-__all__ = ["FieldError", "FileArray", "FileChannel", "FileSegment", "FileSeries", "Info", "read_info"]
+__all__ = ["FieldError", "FileArray", "FileChannel", "FileSegment", "FileSeries", "Info", "raw_info", "read_info"]
 
 
 @dataclass(frozen=True)
@@ -144,6 +144,14 @@ class Info:
     field_error: FieldError | None = None
 
 
+def raw_info(handle: Any) -> Any:
+    """The hl_volume_info of an hl_volume."""
+    raw = _sized("info")
+    if lib.hl_volume_get_info(handle, raw) != lib.HL_OK:
+        raise RuntimeError("the volume is not known")
+    return raw
+
+
 def read_info(handle: Any, file: Any, order: Any) -> Info:
     """Size, type, place and statistics of an hl_volume.
 
@@ -155,9 +163,7 @@ def read_info(handle: Any, file: Any, order: Any) -> Info:
     order : 3 int or None
         The voxels along x, y, z, where the library was told other axes than the array's.
     """
-    raw = _sized("info")
-    if lib.hl_volume_get_info(handle, raw) != lib.HL_OK:
-        raise RuntimeError("the volume is not known")
+    raw = raw_info(handle)
     kind = ffi.new("const char **")
     call(lib.hl_volume_guess, handle, file, kind)
     dimensions = order or tuple(raw.dimensions)

@@ -9,7 +9,8 @@
 #include "core/memory.h"
 #include "scene/scene.h"
 
-enum { NAME_BYTES = 256 };
+/* MANY_SHEETS: more sheets than a volume of 2048 voxels along each side has. */
+enum { NAME_BYTES = 256, MANY_SHEETS = 4096 };
 
 /* ---- one scene of several ---- */
 
@@ -46,12 +47,52 @@ static void name_volume(joined_volumes *joined, size_t index) {
   joined->volumes[index].name = name;
 }
 
+/* The distance of a scene's sheets in the world. */
+static double sheet_distance(const hl_scene_description *description) {
+  return description->render.sheet_spacing * hl_scene_smallest_edge(description);
+}
+
+/* The length of the diagonal of the box around all volumes. */
+static double diagonal_of(const hl_scene_description *description) {
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (size_t v = 0; v < description->volume_count; v++) {
+    const affine3 placement = hl_scene_volume_index_to_world(&description->volumes[v]);
+    double box[2][3];
+    hl_scene_volume_box(&description->volumes[v], box[0], box[1]);
+    for (int c = 0; c < 8; c++) {
+      const vec3 corner = {box[c & 1][0], box[c >> 1 & 1][1], box[c >> 2][2]};
+      vec3_bound_ball(affine3_apply(placement, corner), 0, low, high);
+    }
+  }
+  return vec3_length((vec3){high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+}
+
+/* Says how many sheets small voxels of one volume lay across a much larger one. A frame's time grows with the
+ * number of its sheets. */
+static void tell_of_sheets(hl_scene *const *scenes, size_t count, const hl_scene_description *joined) {
+  const double edge = hl_scene_smallest_edge(joined), sheets = diagonal_of(joined) / sheet_distance(joined);
+  double most = 0, greatest = 0;
+  for (size_t n = 0; n < count; n++) {
+    const hl_scene_description *own = &scenes[n]->description;
+    most = fmax(most, diagonal_of(own) / sheet_distance(own));
+    greatest = fmax(greatest, hl_scene_smallest_edge(own));
+  }
+  if (sheets > MANY_SHEETS && sheets > 2 * most)
+    hl_log(
+        scenes[0]->description.volumes[0].volume->context, HL_LOG_WARNING,
+        "about %.0f sheets, since the smallest voxel edges of the volumes are %.3g and %.3g: "
+        "--sheet-spacing 1 makes about %.0f; where a file tells a wrong unit, write \"spacing\" beside the "
+        "\"file\" in a scene",
+        sheets, edge, greatest, diagonal_of(joined) / edge);
+}
+
 static hl_status describe_joined(hl_scene *const *scenes, size_t count, joined_volumes *joined,
                                  hl_scene_description *description, hl_error *error) {
   hl_view view;
+  double distance = INFINITY;
   for (size_t n = 0; n < count; n++) {
     const hl_scene_description *own = &scenes[n]->description;
-    description->render.sheet_spacing = fmin(description->render.sheet_spacing, own->render.sheet_spacing);
+    distance = fmin(distance, sheet_distance(own));
     for (size_t v = 0; v < own->volume_count; v++) {
       joined->volumes[joined->count] = own->volumes[v];
       name_volume(joined, joined->count++);
@@ -59,6 +100,8 @@ static hl_status describe_joined(hl_scene *const *scenes, size_t count, joined_v
   }
   description->volumes = joined->volumes;
   description->volume_count = joined->count;
+  description->render.sheet_spacing = round(1e6 * distance / hl_scene_smallest_edge(description)) / 1e6;
+  tell_of_sheets(scenes, count, description);
   hl_status status = hl_view_choose(description, HL_SIDE_AUTOMATIC, NULL, &view, error);
   return status == HL_OK ? hl_camera_frame_view(description, &view, 1, &description->camera, error) : status;
 }

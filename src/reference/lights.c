@@ -179,9 +179,9 @@ static bool has_extent(const hl_light *light) {
     case HL_LIGHT_POLYGON: return true;
     case HL_LIGHT_POINT:
     case HL_LIGHT_DISK:
-    case HL_LIGHT_SPOT: break;
+    case HL_LIGHT_SPOT:
+    default: return light->radius > 0;
   }
-  return light->radius > 0;
 }
 
 /* The offset of a light's point from the light's centre; for a directional light, at distance 1. */

@@ -153,6 +153,16 @@ def test_several_volumes_are_framed_together(blob):
     assert 30 < target[0] < 60
 
 
+def test_sheets_of_several_volumes_are_as_close_as_the_closest():
+    array = np.zeros((16, 16, 16), np.uint8)
+    array[4:12, 4:12, 4:12] = 200
+    fine, coarse = Volume(np.kron(array, np.ones((4, 4, 4), np.uint8)), spacing=0.5), Volume(array, spacing=2)
+    alone = [Scene(one).settings["sheet_spacing"] for one in (fine, coarse)]
+    together = Scene([coarse, fine]).settings["sheet_spacing"]
+    assert alone[0] != alone[1]
+    assert together == pytest.approx(min(alone[0] * 0.5, alone[1] * 2) / 0.5, abs=1e-6)
+
+
 def test_images(tmp_path, small):
     image = Renderer().render(small)
     array = np.asarray(image)

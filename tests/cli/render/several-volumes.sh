@@ -24,3 +24,17 @@ for inputs in "scene.json c.nrrd" "c.nrrd scene.json" "c.nrrd absent.nrrd"; do
   halflight render $inputs 2>message || code=$?
   echo $code $(cat message)
 done
+# Sheets are as close as the closest of both alone, in the world. Volumes of very different scale make many sheets, and a line says so.
+ball() { # size, edge of a voxel
+  tool ball $1 ball.raw
+  printf "NRRD0004\ntype: uint8\ndimension: 3\nsizes: $1 $1 $1\nspacings: $2 $2 $2\nencoding: raw\n\n"
+  cat ball.raw
+}
+ball 64 0.5 >fine.nrrd
+ball 16 2 >coarse.nrrd
+ball 16 0.01 >tiny.nrrd
+for inputs in fine.nrrd coarse.nrrd "fine.nrrd coarse.nrrd" "coarse.nrrd tiny.nrrd"; do
+  halflight render $inputs --print-scene 2>message >sheets.json
+  tool json sheets.json "d['render']['sheet_spacing']"
+  grep -c ' sheets, since the smallest voxel edges' message || true
+done
