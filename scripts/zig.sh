@@ -2,11 +2,12 @@
 # Sourced by the scripts that build for other systems: ziglang's compilers, and libraries from Debian's sources.
 #
 # The caller sets `out`, the folder of its build, `library_target`, zig's name of the system, `library_flags`, more flags of the compiler, and
-# `archive_format`, as `zig ar` calls it. The compilers lie in out/tools, unless it sets `tools` to another folder.
+# `archive_format`, as `zig ar` calls it. The compilers and the sources lie in build-zig/, where all of these scripts share them.
+shared_folder=$PWD/build-zig
 
 install_zig() {
-  root=$out/root tools=${tools-$out/tools}
-  mkdir -p "$out"
+  root=$out/root sources=$shared_folder/sources tools=$shared_folder/tools
+  mkdir -p "$root"
   [ -x "$tools/bin/meson" ] || { python3 -m venv "$tools" && "$tools/bin/pip" install -q meson==1.12.1 ziglang==0.17.1; }
   zig=$("$tools/bin/python" -c 'import os, ziglang; print(os.path.dirname(ziglang.__file__))')
 }
@@ -14,36 +15,43 @@ install_zig() {
 # list_sources [ADDRESS SUITE COMPONENT]: makes the lists that apt_get uses, in a folder of this build, of the sources of this system's release or of
 # another one. The machine's own lists may have no sources.
 list_sources() {
-  mkdir -p "$root/apt/lists/partial" "$root/apt/archives/partial" "$root/sources"
+  lists=$shared_folder/apt
+  mkdir -p "$lists/lists/partial" "$lists/archives/partial" "$sources"
   if [ $# -gt 0 ]; then
-    echo "deb-src $*" >"$root/apt/sources.list"
+    echo "deb-src $*" >"$lists/sources.list"
   else
-    cat /etc/apt/sources.list /etc/apt/sources.list.d/debian.sources 2>/dev/null | sed 's/^deb /deb-src /; s/^Types: .*/Types: deb-src/' >"$root/apt/sources.sources"
-    grep -q '^deb-src' "$root/apt/sources.sources" && mv "$root/apt/sources.sources" "$root/apt/sources.list"
+    cat /etc/apt/sources.list /etc/apt/sources.list.d/debian.sources 2>/dev/null | sed 's/^deb /deb-src /; s/^Types: .*/Types: deb-src/' >"$lists/sources.sources"
+    grep -q '^deb-src' "$lists/sources.sources" && mv "$lists/sources.sources" "$lists/sources.list"
   fi
   apt_get update
 }
 
 apt_get() {
-  apt-get -q -o Dir::Etc::sourcelist="$(ls "$root"/apt/sources.*)" -o Dir::Etc::sourceparts=/dev/null -o Dir::State="$root/apt" \
-    -o Dir::Cache="$root/apt" -o Debug::NoLocking=true -o APT::Sandbox::User=root "$@"
+  apt-get -q -o Dir::Etc::sourcelist="$(ls "$root"/apt/sources.*)" -o Dir::Etc::sourceparts=/dev/null -o Dir::State="$lists" \
+    -o Dir::Cache="$lists" -o Debug::NoLocking=true -o APT::Sandbox::User=root "$@"
 }
 
-# fetch_sources PACKAGE ...: the sources of Debian packages. Where the security updates that are listed are gone, the release's own sources serve.
+# fetch_sources PACKAGE ...: the sources of Debian packages, as far as they are not there. Where the security updates that are listed are gone, the
+# release's own sources serve.
 fetch_sources() {
-  list_sources
+  lists=
   release=$(. /etc/os-release && echo "$VERSION_CODENAME")
   for package in "$@"; do
-    (cd "$root/sources" && { apt_get source --only-source "$package" || apt_get source --only-source "$package/$release"; })
+    [ ! -f "$sources/$package.fetched" ] || continue
+    [ -n "$lists" ] || list_sources
+    (cd "$sources" && { apt_get source --only-source "$package" || apt_get source --only-source "$package/$release"; })
+    touch "$sources/$package.fetched"
   done
-  rm -rf "$root/apt"
+  rm -rf "$shared_folder/apt"
 }
 
 # fetch_original SUITE PACKAGE: a package's sources as their authors published them, of another release of Debian.
 fetch_original() {
+  [ ! -f "$sources/$2.fetched" ] || return 0
   list_sources http://deb.debian.org/debian "$1" main
-  (cd "$root/sources" && apt_get source --only-source --tar-only "$2" && tar -xf "$2"_*.orig.tar.*)
-  rm -rf "$root/apt"
+  (cd "$sources" && apt_get source --only-source --tar-only "$2" && tar -xf "$2"_*.orig.tar.*)
+  touch "$sources/$2.fetched"
+  rm -rf "$shared_folder/apt"
 }
 
 # library NAME FOLDER FILE ...: compiles files of a folder to root/lib/libNAME.a.
@@ -71,7 +79,7 @@ package() {
 # zlib, libpng and jansson. EXTRA ...: more files of libpng's folder.
 build_base_libraries() {
   mkdir -p "$root/include"
-  z=$(echo "$root"/sources/zlib-*/) png=$(echo "$root"/sources/libpng*-*/) jansson=$(echo "$root"/sources/jansson-*/)
+  z=$(echo "$sources"/zlib-*/) png=$(echo "$sources"/libpng*-*/) jansson=$(echo "$sources"/jansson-*/)
   cp "$z"zlib.h "$z"zconf.h "$png"png.h "$png"pngconf.h "$jansson"src/jansson.h "$jansson"android/jansson_config.h "$root/include"
   cp "$png"scripts/pnglibconf.h.prebuilt "$root/include/pnglibconf.h"
   : >"$root/include/jansson_private_config.h"
@@ -85,7 +93,7 @@ build_base_libraries() {
 
 # bzip2, LZ4 and Zstandard.
 build_codec_libraries() {
-  bzip2=$(echo "$root"/sources/bzip2-*/) lz4=$(echo "$root"/sources/lz4-*/)lib/ zstd=$(echo "$root"/sources/libzstd-*/)lib/
+  bzip2=$(echo "$sources"/bzip2-*/) lz4=$(echo "$sources"/lz4-*/)lib/ zstd=$(echo "$sources"/libzstd-*/)lib/
   cp "$bzip2"bzlib.h "$lz4"lz4.h "$lz4"lz4hc.h "$zstd"zstd.h "$zstd"zstd_errors.h "$root/include"
   library bz2 "$bzip2" blocksort bzlib compress crctable decompress huffman randtable
   library lz4 "$lz4" lz4 lz4hc
@@ -100,7 +108,7 @@ build_codec_libraries() {
 
 # musl's functions of <math.h>: the last bits of the systems' own differ, and with them pictures would. The web build's C library is musl.
 build_math_library() {
-  math=$(echo "$root"/sources/musl-*/)src
+  math=$(echo "$sources"/musl-*/)src
   mkdir -p "$root/math"
   : >"$root/math/fp_arch.h"
   printf '#define __LITTLE_ENDIAN 1234\n#define __BYTE_ORDER 1234\n' >"$root/math/endian.h"

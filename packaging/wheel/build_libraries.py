@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Compiles the libraries of libraries.toml that have builds of their own: those by CMake, and those by a configure script.
 
-usage: build_libraries.py ROOT PROCESSOR JOBS     remove ROOT to compile all of them anew
-ROOT has sources/, and in bin/ the compilers cc and c++ and the tools ar and ranlib. What is built goes to ROOT/lib and ROOT/include.
+usage: build_libraries.py SOURCES ROOT PROCESSOR JOBS     remove ROOT to compile all of them anew
+SOURCES has the unpacked sources; ROOT has in bin/ the compilers cc and c++ and the tools ar and ranlib. What is built goes to ROOT/lib and ROOT/include.
 """
 import pathlib
 import re
@@ -26,11 +26,11 @@ set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
 """
 
 
-def sources_of(root, source):
+def sources_of(sources, source):
     """The folder of a package's sources, and their version."""
-    found = [folder for folder in (root / "sources").glob(f"{source}-*") if folder.is_dir()]
+    found = [folder for folder in sources.glob(f"{source}-*") if folder.is_dir()]
     if len(found) != 1:
-        sys.exit(f"{root / 'sources'}: {len(found)} folders are named {source}-*: remove it, and fetch the sources again")
+        sys.exit(f"{sources}: {len(found)} folders are named {source}-*: remove it, and fetch the sources again")
     return found[0], found[0].name[len(source) + 1:]
 
 
@@ -54,31 +54,31 @@ def copy_target(root, sources, build, library, version):
         f"Libs: -L{root}/lib {library['links']}\nCflags: -I{root}/include -I{root}/include/{library['package']}\n")
 
 
-def by_cmake(root, name, library, jobs):
-    sources, version = sources_of(root, library["source"])
+def by_cmake(sources, root, name, library, jobs):
+    folder, version = sources_of(sources, library["source"])
     build = root / "cmake" / name
-    run("cmake", "-G", "Ninja", "-S", sources, "-B", build, f"-DCMAKE_TOOLCHAIN_FILE={root}/toolchain.cmake", "-DCMAKE_BUILD_TYPE=Release",
+    run("cmake", "-G", "Ninja", "-S", folder, "-B", build, f"-DCMAKE_TOOLCHAIN_FILE={root}/toolchain.cmake", "-DCMAKE_BUILD_TYPE=Release",
         f"-DCMAKE_INSTALL_PREFIX={root}", "-DCMAKE_INSTALL_LIBDIR=lib", "-DBUILD_SHARED_LIBS=OFF", "-DCMAKE_POSITION_INDEPENDENT_CODE=ON",
         *library["cmake"])
     if "targets" in library:
         run("cmake", "--build", build, "-j", jobs, "--target", *library["targets"])
-        copy_target(root, sources, build, library, version)
+        copy_target(root, folder, build, library, version)
     else:
         run("cmake", "--build", build, "-j", jobs)
         run("cmake", "--install", build)
 
 
-def by_configure(root, name, library, processor, jobs):
-    sources, _ = sources_of(root, library["source"])
+def by_configure(sources, root, name, library, processor, jobs):
+    folder, _ = sources_of(sources, library["source"])
     build = root / "configured" / name
     build.mkdir(parents=True, exist_ok=True)
-    run(sources / "configure", f"--host={processor}-linux-gnu", f"--prefix={root}", f"CC={root}/bin/cc", f"AR={root}/bin/ar",
+    run(folder / "configure", f"--host={processor}-linux-gnu", f"--prefix={root}", f"CC={root}/bin/cc", f"AR={root}/bin/ar",
         f"RANLIB={root}/bin/ranlib", "LDFLAGS=-s", *library["configure"], cwd=build)
     run("make", "-s", f"-j{jobs}", "install", cwd=build)
 
 
 def main():
-    root, processor, jobs = pathlib.Path(sys.argv[1]), sys.argv[2], sys.argv[3]
+    sources, root, processor, jobs = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3], sys.argv[4]
     (root / "toolchain.cmake").write_text(TOOLCHAIN.format(root=root, processor=processor))
     (root / "lib/pkgconfig").mkdir(parents=True, exist_ok=True)
     libraries = tomllib.loads((pathlib.Path(__file__).parent / "libraries.toml").read_text())
@@ -86,9 +86,9 @@ def main():
         if (root / "made" / name).exists():
             continue
         if "cmake" in library:
-            by_cmake(root, name, library, jobs)
+            by_cmake(sources, root, name, library, jobs)
         elif "configure" in library:
-            by_configure(root, name, library, processor, jobs)
+            by_configure(sources, root, name, library, processor, jobs)
         (root / "made").mkdir(exist_ok=True)
         (root / "made" / name).touch()
 

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Puts the licences and notices of the libraries that a wheel holds into it, and refuses a wheel with a library that it may not hold.
 
-usage: notices.py WHEEL ROOT ZIG
-ROOT is the folder of build_libraries.py, ZIG that of ziglang. The wheel is changed in its place. Fails where a licence is none of ALLOWED, as a GPL is not,
-where a library's notice is missing, and where a file in the wheel needs a library, or the build has one, that libraries.toml does not list.
+usage: notices.py WHEEL ROOT SOURCES ZIG
+ROOT and SOURCES are the folders of build_libraries.py, ZIG is the folder of ziglang. The wheel is changed in its place. Fails where a licence is none of
+ALLOWED, as a GPL is not, where a library's notice is missing, and where a file in the wheel needs a library, or the build has one, that libraries.toml does
+not list.
 """
 import base64
 import email
@@ -31,16 +32,16 @@ def terms(expression):
     return expression.split(" AND ")
 
 
-def sources_of(root, source):
-    found = [folder for folder in (root / "sources").glob(f"{source}-*") if folder.is_dir()]
+def sources_of(sources, source):
+    found = [folder for folder in sources.glob(f"{source}-*") if folder.is_dir()]
     if len(found) != 1:
-        fail(f"{root / 'sources'}: {len(found)} folders are named {source}-*: remove it, and fetch the sources again")
+        fail(f"{sources}: {len(found)} folders are named {source}-*: remove it, and fetch the sources again")
     return found[0]
 
 
-def notices_of(name, library, root, zig):
+def notices_of(name, library, sources, zig):
     """The texts of a library's notices, by their names in the wheel."""
-    folder = sources_of(root, library["source"]) if "source" in library else pathlib.Path("/")
+    folder = sources_of(sources, library["source"]) if "source" in library else pathlib.Path("/")
     texts = {}
     for pattern in library["notices"]:
         base, pattern = (zig, pattern.removeprefix("ZIG/")) if pattern.startswith("ZIG/") else (folder, pattern.lstrip("/"))
@@ -88,10 +89,10 @@ def check_needed(libraries, files):
                 fail(f"{name} needs {library}, which is not in the wheel")
 
 
-def table(libraries, root):
+def table(libraries, sources):
     lines = ["Libraries that are linked into Halflight, or lie beside it, in this wheel. Their licences and notices are in the folders here.", ""]
     for name, library in libraries.items():
-        version = sources_of(root, library["source"]).name[len(library["source"]) + 1:] if "source" in library else ""
+        version = sources_of(sources, library["source"]).name[len(library["source"]) + 1:] if "source" in library else ""
         place = "a file of its own, which may be replaced" if any(".so" in file for file in library["archives"]) else "linked in"
         lines.append(f"{name:15} {version:16} {library['licence']:34} {place}")
     return "\n".join(lines) + "\n\nSources: Debian's source packages of these names and versions, and what packaging/wheel of Halflight's sources does with them.\n"
@@ -115,7 +116,7 @@ def rewrite(wheel, files, libraries, notices):
 
 
 def main():
-    wheel, root, zig = (pathlib.Path(word) for word in sys.argv[1:4])
+    wheel, root, sources, zig = (pathlib.Path(word) for word in sys.argv[1:5])
     libraries = tomllib.loads((pathlib.Path(__file__).parent / "libraries.toml").read_text())
     with zipfile.ZipFile(wheel) as archive:
         members = [member for member in archive.infolist() if not member.is_dir()]
@@ -124,15 +125,15 @@ def main():
     check_licences(libraries)
     check_archives(libraries, root)
     check_needed(libraries, files)
-    notices = {name: text for library, of in libraries.items() for name, text in notices_of(library, of, root, zig).items()}
-    notices["LIBRARIES.txt"] = table(libraries, root).encode()
+    notices = {name: text for library, of in libraries.items() for name, text in notices_of(library, of, sources, zig).items()}
+    notices["LIBRARIES.txt"] = table(libraries, sources).encode()
     rewrite(wheel, files, libraries, notices)
     with zipfile.ZipFile(wheel, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
         for name, content in files.items():
             member = zipfile.ZipInfo(name, (2020, 1, 1, 0, 0, 0))
             member.compress_type, member.external_attr = zipfile.ZIP_DEFLATED, modes.get(name, 0o100644 << 16)
             archive.writestr(member, content)
-    print(table(libraries, root))
+    print(table(libraries, sources))
 
 
 if __name__ == "__main__":
