@@ -30,26 +30,151 @@ static void place_taps(const hl_bricks *bricks, int level, int64_t block, int64_
 
 /* The weights of the coefficients of a level in the coefficient of level 0 of one point. From level to level
  * an even coefficient 2 j is (d[j-1] + 6 d[j] + d[j+1]) / 8, and an odd one 2 j + 1 is (d[j] + d[j+1]) / 2
- * (E. Catmull, J. Clark, Recursively generated B-spline surfaces, 1978). Four taps suffice at any level: half
- * of four neighbouring points, with one more on either side, are at most four points (derived). */
+ * (E. Catmull, J. Clark, Recursively generated B-spline surfaces, 1978). That is the mask (1 + z)^4 / 8. The
+ * masks of all levels have the product ((1 - z^n) / (1 - z))^4 / n^3, where n = 2^level, and the coefficient
+ * of z^m in it is the sum over j of (-1)^j C(4, j) C(m - j n + 3, 3) / n^3. A point r of n behind a
+ * coefficient has m = r - 2, r + n - 2, and the same two for s = n - r on the other side, so four taps
+ * suffice (derived). The numerators are whole numbers, so the weights are exact. */
 static void weigh_subdivided(int level, int64_t point, double weight[TAPS]) {
-  double fine[TAPS] = {0, 1, 0, 0};
-  for (int step = 0; step < level; step++) {
-    int64_t first = (point >> step) - 1, first_coarse = (point >> (step + 1)) - 1;
-    double coarse[TAPS + 2] = {0}; /* begins at coefficient first_coarse - 1 */
-    for (int tap = 0; tap < TAPS; tap++) {
-      int64_t at = first + tap, j = (at >> 1) - first_coarse + 1;
-      if (fine[tap] == 0) continue;
-      if (at & 1) {
-        coarse[j] += fine[tap] / 2, coarse[j + 1] += fine[tap] / 2;
-      } else {
-        coarse[j - 1] += fine[tap] / 8, coarse[j] += fine[tap] * 6 / 8, coarse[j + 1] += fine[tap] / 8;
+  const int64_t n = (int64_t)1 << level, r = point & (n - 1), s = n - r;
+  const double scale = ldexp(1, -3 * level);
+  const int64_t far_r = (r + 1) * r * (r - 1) / 6, near_r = (r + n + 1) * (r + n) * (r + n - 1) / 6,
+                far_s = (s + 1) * s * (s - 1) / 6, near_s = (s + n + 1) * (s + n) * (s + n - 1) / 6;
+  weight[0] = (double)far_s * scale;
+  weight[1] = (double)(near_s - 4 * far_s) * scale;
+  weight[2] = (double)(near_r - 4 * far_r) * scale;
+  weight[3] = (double)far_r * scale;
+}
+
+/* ---- coefficients of level 0 ---- */
+
+/* RUN: the most points along an axis that are done at once. SPAN: the number of coefficients along an axis on
+ * which RUN points depend, at most (at level 1). */
+enum { RUN = 8, SPAN = RUN / 2 + TAPS };
+
+/* A box of points of level 0 whose coefficients come from one brick. */
+typedef struct piece {
+  int64_t first[3], count[3]; /* count: 1 .. RUN */
+  double *values;             /* of the first point */
+  int64_t row, slice;         /* distances in `values` from row to row, and from slice to slice */
+} piece;
+
+static int64_t clamp_point(const hl_bricks *bricks, int axis, int64_t at) {
+  return clamp_whole(at, -1, hl_bricks_cells(bricks, axis) + 1);
+}
+
+/* The number of points along an axis, of `left` points from `at` on, that have the same block. */
+static int64_t run_length(const hl_bricks *bricks, int axis, int64_t at, int64_t left) {
+  const int64_t block = block_of(bricks, axis, at), end = (block + 1) << bricks->shift;
+  if (left > RUN) left = RUN;
+  return end < hl_bricks_cells(bricks, axis) && end - at < left ? end - at : left;
+}
+
+static void fill_constant(const piece *piece, double value) {
+  for (int64_t k = 0; k < piece->count[2]; k++)
+    for (int64_t j = 0; j < piece->count[1]; j++)
+      for (int64_t i = 0; i < piece->count[0]; i++)
+        piece->values[k * piece->slice + j * piece->row + i] = value;
+}
+
+/* Copies coefficients from a brick of level 0. */
+static void copy_piece(const hl_bricks *bricks, const float *brick, const int64_t block[3],
+                       const piece *piece) {
+  size_t width = hl_brick_width(bricks), place[3][RUN];
+  for (int axis = 0; axis < 3; axis++)
+    for (int64_t n = 0; n < piece->count[axis]; n++)
+      place[axis][n] = (size_t)(clamp_point(bricks, axis, piece->first[axis] + n) -
+                                (block[axis] << bricks->shift) + 1);
+  for (int64_t k = 0; k < piece->count[2]; k++)
+    for (int64_t j = 0; j < piece->count[1]; j++) {
+      const float *row = brick + (place[2][k] * width + place[1][j]) * width;
+      for (int64_t i = 0; i < piece->count[0]; i++)
+        piece->values[k * piece->slice + j * piece->row + i] = (double)row[place[0][i]];
+    }
+}
+
+/* The sums along x that a piece's points need: of each row of the brick from low[1] and low[2] on, for each
+ * point along x. */
+static void sum_rows(const hl_bricks *bricks, const float *brick, const piece *piece, taps at[3][RUN],
+                     const int64_t low[3], const int64_t high[3], double sums[SPAN][SPAN][RUN]) {
+  size_t width = hl_brick_width(bricks);
+  for (int64_t k = low[2]; k <= high[2]; k++)
+    for (int64_t j = low[1]; j <= high[1]; j++) {
+      const float *row = brick + ((size_t)k * width + (size_t)j) * width;
+      for (int64_t n = 0; n < piece->count[0]; n++) {
+        double along = 0;
+        for (int i = 0; i < TAPS; i++)
+          if (at[0][n].weight[i] != 0) along += at[0][n].weight[i] * (double)row[at[0][n].index[i]];
+        sums[k - low[2]][j - low[1]][n] = along;
       }
     }
-    for (int tap = 0; tap < TAPS; tap++) fine[tap] = coarse[tap + 1];
-  }
-  for (int tap = 0; tap < TAPS; tap++) weight[tap] = fine[tap];
 }
+
+/* Subdivides coefficients of a brick of a coarser level. Points that are neighbours share the sums of rows.
+ * The numbers are those of single points, rounded to floats as a brick of level 0 holds them. */
+static void subdivide_piece(const hl_bricks *bricks, const hl_brick_entry *entry, const int64_t block[3],
+                            const piece *piece) {
+  double sums[SPAN][SPAN][RUN];
+  int64_t low[3], high[3];
+  taps at[3][RUN];
+  for (int axis = 0; axis < 3; axis++) {
+    for (int64_t n = 0; n < piece->count[axis]; n++) {
+      const int64_t point = clamp_point(bricks, axis, piece->first[axis] + n);
+      weigh_subdivided(entry->level, point, at[axis][n].weight);
+      place_taps(bricks, entry->level, block[axis], point >> entry->level, &at[axis][n]);
+    }
+    low[axis] = at[axis][0].index[0];
+    high[axis] = at[axis][piece->count[axis] - 1].index[TAPS - 1];
+  }
+  sum_rows(bricks, hl_brick_pool(bricks, entry->slot), piece, at, low, high, sums);
+  for (int64_t z = 0; z < piece->count[2]; z++)
+    for (int64_t y = 0; y < piece->count[1]; y++) {
+      double *values = piece->values + z * piece->slice + y * piece->row, total[RUN] = {0};
+      for (int n = 0; n < TAPS * TAPS; n++) {
+        const int k = n / TAPS, j = n % TAPS;
+        const double weight = at[2][z].weight[k] * at[1][y].weight[j];
+        const double *sum = sums[at[2][z].index[k] - low[2]][at[1][y].index[j] - low[1]];
+        for (int64_t x = 0; x < piece->count[0] && weight != 0; x++) total[x] += weight * sum[x];
+      }
+      for (int64_t x = 0; x < piece->count[0]; x++) values[x] = (double)(float)total[x];
+    }
+}
+
+static void fill_piece(const hl_bricks *bricks, const piece *piece) {
+  int64_t block[3];
+  for (int axis = 0; axis < 3; axis++) block[axis] = block_of(bricks, axis, piece->first[axis]);
+  const hl_brick_entry *entry = hl_bricks_entry(bricks, block);
+  if (entry->slot < 0) fill_constant(piece, (double)entry->constant);
+  else if (entry->level == 0) copy_piece(bricks, hl_brick_pool(bricks, entry->slot), block, piece);
+  else subdivide_piece(bricks, entry, block, piece);
+}
+
+void hl_bricks_window(const hl_bricks *bricks, const int64_t first[3], const int64_t count[3],
+                      double *values) {
+  piece p = {.row = count[0], .slice = count[0] * count[1]};
+  for (int64_t z = 0; z < count[2]; z += p.count[2]) {
+    p.first[2] = first[2] + z;
+    p.count[2] = run_length(bricks, 2, p.first[2], count[2] - z);
+    for (int64_t y = 0; y < count[1]; y += p.count[1]) {
+      p.first[1] = first[1] + y;
+      p.count[1] = run_length(bricks, 1, p.first[1], count[1] - y);
+      for (int64_t x = 0; x < count[0]; x += p.count[0]) {
+        p.first[0] = first[0] + x;
+        p.count[0] = run_length(bricks, 0, p.first[0], count[0] - x);
+        p.values = values + z * p.slice + y * p.row + x;
+        fill_piece(bricks, &p);
+      }
+    }
+  }
+}
+
+float hl_bricks_coefficient(const hl_bricks *bricks, const int64_t point[3]) {
+  double value;
+  hl_bricks_window(bricks, point, (const int64_t[3]){1, 1, 1}, &value);
+  return (float)value;
+}
+
+/* ---- values ---- */
 
 /* Taps without a weight are left out, because their coefficients may be NaN. */
 static double sum_taps(const hl_bricks *bricks, const float *brick, const taps at[3]) {
@@ -65,29 +190,6 @@ static double sum_taps(const hl_bricks *bricks, const float *brick, const taps a
       sum += at[2].weight[k] * at[1].weight[j] * along;
     }
   return sum;
-}
-
-float hl_bricks_coefficient(const hl_bricks *bricks, const int64_t point[3]) {
-  int64_t block[3], at[3];
-  for (int axis = 0; axis < 3; axis++) {
-    at[axis] = clamp_whole(point[axis], -1, hl_bricks_cells(bricks, axis) + 1);
-    block[axis] = block_of(bricks, axis, at[axis]);
-  }
-  const hl_brick_entry *entry = hl_bricks_entry(bricks, block);
-  if (entry->slot < 0) return entry->constant;
-  const float *brick = hl_brick_pool(bricks, entry->slot);
-  if (entry->level == 0) {
-    size_t width = hl_brick_width(bricks), place = 0;
-    for (int axis = 2; axis >= 0; axis--)
-      place = place * width + (size_t)(at[axis] - (block[axis] << bricks->shift) + 1);
-    return brick[place];
-  }
-  taps found[3];
-  for (int axis = 0; axis < 3; axis++) {
-    weigh_subdivided(entry->level, at[axis], found[axis].weight);
-    place_taps(bricks, entry->level, block[axis], at[axis] >> entry->level, &found[axis]);
-  }
-  return (float)sum_taps(bricks, brick, found);
 }
 
 double hl_bricks_value(const hl_bricks *bricks, const double point[3]) {

@@ -7,6 +7,7 @@
 #define HL_FIELD_OPACITY_LANES_H
 
 #include "field/field.h"
+#include "grid/field.h"
 #include "simd/lanes.h"
 
 /* A volume's extinction at a density, per frame unit: a linear look-up in the classifier's table. */
@@ -24,9 +25,57 @@ LANES_INLINE float stored_number(const unsigned char *row, hl_storage storage, i
   return ((const float *)(const void *)row)[x];
 }
 
+/* A box of voxels that a cell's samples share. */
+enum { WINDOW_VOXELS = 512 };
+typedef struct voxel_window {
+  int32_t first[3], size[3];    /* size: 0 if the samples look their voxels up one by one */
+  double voxels[WINDOW_VOXELS]; /* [size[2]][size[1]][size[0]] */
+} voxel_window;
+
+/* Fills the window between two corners of index space. before: the number of voxels below a position that its
+ * value depends on; as many lie above it, with one more. It stays empty where samples that look up their own
+ * voxels read no more of them. */
+LANES_INLINE void fill_window(const grid *grid, const float low[3], const float high[3], int32_t before,
+                              int samples, voxel_window *window) {
+  const int64_t side = 2 * before + 2;
+  int64_t count = 1;
+  for (int a = 0; a < 3; a++) {
+    window->first[a] = (int32_t)__builtin_floorf(low[a]) - before;
+    window->size[a] = (int32_t)__builtin_floorf(high[a]) + before + 2 - window->first[a];
+    count *= window->size[a];
+  }
+  if (count <= WINDOW_VOXELS && count < samples * side * side * side)
+    hl_field_window(grid, window->first, window->size, window->voxels);
+  else window->size[0] = 0;
+}
+
+/* Copies a cube of voxels, `side` long. */
+LANES_INLINE void copy_voxels(const field_matter *matter, const voxel_window *window, const int32_t first[3],
+                              int32_t side, float *voxels) {
+  double own[FIELD_TAPS * FIELD_TAPS * FIELD_TAPS];
+  int32_t at[3], row = side, slice = side * side;
+  int within = 1;
+  for (int a = 0; a < 3; a++) {
+    at[a] = first[a] - window->first[a];
+    within = within && window->size[0] > 0 && at[a] >= 0 && at[a] + side <= window->size[a];
+  }
+  const double *from = own;
+  if (within) {
+    row = window->size[0], slice = window->size[0] * window->size[1];
+    from = window->voxels + at[2] * slice + at[1] * row + at[0];
+  } else {
+    hl_field_window(matter->grid, first, (const int32_t[3]){side, side, side}, own);
+  }
+  for (int z = 0; z < side; z++)
+    for (int y = 0; y < side; y++)
+      for (int x = 0; x < side; x++) *voxels++ = (float)from[z * slice + y * row + x];
+}
+
 /* The value at a position of index space, linear between the voxels around it. Beyond the grid's faces the
  * values at the border continue. */
-LANES_INLINE float linear_value(const grid *grid, hl_storage storage, const float at[3]) {
+LANES_INLINE float linear_value(const field_matter *matter, hl_storage storage, const voxel_window *window,
+                                const float at[3]) {
+  const grid *grid = matter->grid;
   int32_t first[3], next[3];
   float fraction[3];
   for (int a = 0; a < 3; a++) {
@@ -35,58 +84,60 @@ LANES_INLINE float linear_value(const grid *grid, hl_storage storage, const floa
     next[a] = first[a] + 1 < grid->dimension[a] ? first[a] + 1 : first[a];
     fraction[a] = within - (float)first[a];
   }
+  float corner[2][2][2]; /* [z][y][x] */
+  if (grid->voxels != NULL) {
+    for (int n = 0; n < 4; n++) {
+      const unsigned char *row = hl_grid_row(grid, n & 1 ? next[1] : first[1], n >> 1 ? next[2] : first[2]);
+      corner[n >> 1][n & 1][0] = stored_number(row, storage, first[0]);
+      corner[n >> 1][n & 1][1] = stored_number(row, storage, next[0]);
+    }
+  } else {
+    copy_voxels(matter, window, first, 2, &corner[0][0][0]);
+  }
   float along[2];
   for (int z = 0; z < 2; z++) {
     float value[2];
-    for (int y = 0; y < 2; y++) {
-      int32_t j = y ? next[1] : first[1], k = z ? next[2] : first[2];
-      float a, b;
-      if (grid->voxels != NULL) {
-        const unsigned char *row = hl_grid_row(grid, j, k);
-        a = stored_number(row, storage, first[0]), b = stored_number(row, storage, next[0]);
-      } else {
-        a = hl_stored_value(grid, first[0], j, k), b = hl_stored_value(grid, next[0], j, k);
-      }
-      value[y] = a + (b - a) * fraction[0];
-    }
+    for (int y = 0; y < 2; y++)
+      value[y] = corner[z][y][0] + (corner[z][y][1] - corner[z][y][0]) * fraction[0];
     along[z] = value[0] + (value[1] - value[0]) * fraction[1];
   }
   return along[0] + (along[1] - along[0]) * fraction[2];
 }
 
 /* The value of a cubic B-spline over coefficients. */
-LANES_INLINE float smooth_value(const grid *grid, const float at[3]) {
-  float weight[3][4], sum = 0;
-  int64_t first[3];
+LANES_INLINE float smooth_value(const field_matter *matter, const voxel_window *window, const float at[3]) {
+  float weight[3][FIELD_TAPS], voxels[FIELD_TAPS * FIELD_TAPS * FIELD_TAPS], sum = 0;
+  int32_t first[3];
   for (int a = 0; a < 3; a++) {
     float base = __builtin_floorf(at[a]), t = at[a] - base, s = 1 - t;
-    first[a] = (int64_t)base - 1;
+    first[a] = (int32_t)base - 1;
     weight[a][0] = s * s * s / 6;
     weight[a][1] = (4 - 6 * t * t + 3 * t * t * t) / 6;
     weight[a][2] = (4 - 6 * s * s + 3 * s * s * s) / 6;
     weight[a][3] = t * t * t / 6;
   }
-  for (int z = 0; z < 4; z++)
-    for (int y = 0; y < 4; y++)
-      for (int x = 0; x < 4; x++)
-        sum += weight[0][x] * weight[1][y] * weight[2][z] *
-               hl_stored_value(grid, first[0] + x, first[1] + y, first[2] + z);
+  copy_voxels(matter, window, first, FIELD_TAPS, voxels);
+  for (int n = 0; n < FIELD_TAPS * FIELD_TAPS * FIELD_TAPS; n++)
+    sum += weight[0][n % FIELD_TAPS] * weight[1][n / FIELD_TAPS % FIELD_TAPS] *
+           weight[2][n / (FIELD_TAPS * FIELD_TAPS)] * voxels[n];
   return sum;
 }
 
-LANES_INLINE float value_at(const field_matter *matter, hl_storage storage, const float at[3]) {
-  return matter->smooth ? smooth_value(matter->grid, at) : linear_value(matter->grid, storage, at);
+LANES_INLINE float value_at(const field_matter *matter, hl_storage storage, const voxel_window *window,
+                            const float at[3]) {
+  return matter->smooth ? smooth_value(matter, window, at) : linear_value(matter, storage, window, at);
 }
 
 /* The gradient's length at a position of index space, in stored units per frame unit. Differences are taken
  * over the distance of a voxel. */
-LANES_INLINE float gradient_at_position(const field_matter *matter, hl_storage storage, const float at[3]) {
+LANES_INLINE float gradient_at_position(const field_matter *matter, hl_storage storage,
+                                        const voxel_window *window, const float at[3]) {
   float gradient[3] = {0, 0, 0};
   for (int a = 0; a < 3; a++) {
     float before[3] = {at[0], at[1], at[2]}, after[3] = {at[0], at[1], at[2]};
     before[a] -= 0.5f;
     after[a] += 0.5f;
-    float slope = value_at(matter, storage, after) - value_at(matter, storage, before);
+    float slope = value_at(matter, storage, window, after) - value_at(matter, storage, window, before);
     for (int b = 0; b < 3; b++) gradient[b] += matter->to_index[a][b] * slope;
   }
   return __builtin_sqrtf(gradient[0] * gradient[0] + gradient[1] * gradient[1] + gradient[2] * gradient[2]);
@@ -121,16 +172,17 @@ LANES_INLINE int cuts_leave_position(const grid *grid, const float at[3]) {
 }
 
 /* point: the position in frame space. */
-LANES_INLINE float extinction_at_position(const field_matter *matter, hl_storage storage, const float at[3],
+LANES_INLINE float extinction_at_position(const field_matter *matter, hl_storage storage,
+                                          const voxel_window *window, const float at[3],
                                           const float point[3]) {
   for (int a = 0; a < 3; a++)
     if (!(at[a] >= matter->low[a] && at[a] <= matter->high[a])) return 0;
   if (!cell_shows(matter->grid, at) || !cuts_leave_position(matter->grid, at)) return 0;
-  float value = value_at(matter, storage, at);
+  float value = value_at(matter, storage, window, at);
   const classifier *classifier = matter->classifier;
   float density = value - matter->grid->empty, extinction = field_extinction(classifier, density), length = 0;
   if (!(extinction > 0)) return 0;
-  if (hl_classifier_needs_gradient(classifier)) length = gradient_at_position(matter, storage, at);
+  if (hl_classifier_needs_gradient(classifier)) length = gradient_at_position(matter, storage, window, at);
   if (classifier->plane.sums != NULL) {
     float second = classifier->plane.second != NULL ? hl_plane_second_at(&classifier->plane, point) : length;
     extinction = hl_plane_table_at(&classifier->plane, density * classifier->scale + classifier->offset,
@@ -150,11 +202,21 @@ LANES_INLINE int sample_cell(const field_block *block, const field_matter *matte
   float step = block->cell / (float)n;
   const float corner[3] = {block->corner[0] + block->cell * (float)lane + step * 0.5f,
                            block->corner[1] + step * 0.5f, block->corner[2] + step * 0.5f};
-  float start[3];
+  float start[3], least[3], greatest[3];
   for (int a = 0; a < 3; a++) {
     const float *row = matter->to_index[a];
     start[a] = row[0] * corner[0] + row[1] * corner[1] + row[2] * corner[2] + row[3];
+    least[a] = greatest[a] = start[a];
+    for (int b = 0; b < 3; b++) {
+      float reach = step * (float)(n - 1) * row[b];
+      if (reach < 0) least[a] += reach;
+      else greatest[a] += reach;
+    }
   }
+  voxel_window window;
+  window.size[0] = 0;
+  if (matter->grid->voxels == NULL || matter->smooth)
+    fill_window(matter->grid, least, greatest, matter->smooth ? 1 : 0, n * n * n, &window);
   for (int k = 0; k < n; k++)
     for (int j = 0; j < n; j++)
       for (int i = 0; i < n; i++) {
@@ -165,7 +227,7 @@ LANES_INLINE int sample_cell(const field_block *block, const field_matter *matte
         }
         const float point[3] = {corner[0] + step * (float)i, corner[1] + step * (float)j,
                                 corner[2] + step * (float)k};
-        float extinction = extinction_at_position(matter, storage, at, point);
+        float extinction = extinction_at_position(matter, storage, &window, at, point);
         samples[(k * n + j) * n + i][lane] += extinction;
         any |= extinction > 0;
       }

@@ -23,17 +23,16 @@ typedef struct face_job {
 
 /* The field at a point of the face. */
 static float value_at(const face_job *job, const field_taps *column, const field_taps *row) {
+  static const int step[3] = {1, FIELD_TAPS, FIELD_TAPS * FIELD_TAPS};
   const int u = row_axis(job->axis), v = column_axis(job->axis);
-  double sum = 0;
+  int32_t first[3];
+  double voxels[FIELD_TAPS * FIELD_TAPS * FIELD_TAPS], sum = 0;
+  first[job->axis] = job->across.first, first[v] = column->first, first[u] = row->first;
+  hl_field_window(job->grid, first, (const int32_t[3]){FIELD_TAPS, FIELD_TAPS, FIELD_TAPS}, voxels);
   for (int n = 0; n < FIELD_TAPS * FIELD_TAPS * FIELD_TAPS; n++) {
     const int a = n / (FIELD_TAPS * FIELD_TAPS), b = n / FIELD_TAPS % FIELD_TAPS, c = n % FIELD_TAPS;
-    const double weight = job->across.weight[a] * column->weight[b] * row->weight[c];
-    if (weight == 0) continue;
-    int64_t at[3];
-    at[job->axis] = job->across.first + a;
-    at[v] = column->first + b;
-    at[u] = row->first + c;
-    sum += weight * (double)hl_stored_value(job->grid, at[0], at[1], at[2]);
+    sum += job->across.weight[a] * column->weight[b] * row->weight[c] *
+           voxels[a * step[job->axis] + b * step[v] + c * step[u]];
   }
   return (float)sum;
 }

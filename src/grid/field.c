@@ -63,6 +63,11 @@ static size_t voxel_bytes(const grid *grid) {
 }
 
 void hl_field_window(const grid *grid, const int32_t first[3], const int32_t size[3], double *values) {
+  if (grid->bricks != NULL) {
+    const int64_t point[3] = {(int64_t)first[0] + 1, (int64_t)first[1] + 1, (int64_t)first[2] + 1};
+    hl_bricks_window(grid->bricks, point, (const int64_t[3]){size[0], size[1], size[2]}, values);
+    return;
+  }
   bool within = grid->voxels != NULL;
   for (int axis = 0; axis < 3; axis++)
     within = within && first[axis] >= 0 && first[axis] + size[axis] <= grid->dimension[axis];

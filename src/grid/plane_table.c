@@ -8,6 +8,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "grid/field.h"
 #include "scene/geometry/placement.h"
 
 void hl_plane_table_lay_out(const hl_transfer_function *function, plane_table *table, hl_layout *layout) {
@@ -224,22 +225,22 @@ plane_point hl_plane_table_at(const plane_table *table, float coordinate, float 
 
 float hl_plane_second_at(const plane_table *table, const float point[3]) {
   const grid *grid = table->second;
-  int64_t first[3];
+  int32_t first[3];
+  double voxels[8];
   float part[3], sum = 0;
   for (int a = 0; a < 3; a++) {
     const float *row = table->to_second[a];
     float at = row[0] * point[0] + row[1] * point[1] + row[2] * point[2] + row[3];
     float last = (float)(grid->dimension[a] - 1);
     at = at > 0 ? at < last ? at : last : 0;
-    first[a] = (int64_t)at;
+    first[a] = (int32_t)at;
     part[a] = at - (float)first[a];
   }
+  hl_field_window(grid, first, (const int32_t[3]){2, 2, 2}, voxels);
   for (int corner = 0; corner < 8; corner++) {
     float weight = 1;
     for (int a = 0; a < 3; a++) weight *= corner >> a & 1 ? part[a] : 1 - part[a];
-    if (weight > 0)
-      sum += weight * hl_stored_value(grid, first[0] + (corner & 1), first[1] + (corner >> 1 & 1),
-                                      first[2] + (corner >> 2 & 1));
+    if (weight > 0) sum += weight * (float)voxels[corner];
   }
   return sum - grid->empty;
 }

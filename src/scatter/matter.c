@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "grid/field.h"
+
 /* The greatest number of samples along an edge of a node's box. */
 enum { MOST_SAMPLES = 4 };
 
@@ -27,17 +29,17 @@ static bool is_relevant(const grid *grid, const double p[3]) {
 
 /* The value between the voxels around a point, linear along each axis. */
 static float value_between(const grid *grid, const double p[3]) {
+  const int32_t first[3] = {(int32_t)floor(p[0]), (int32_t)floor(p[1]), (int32_t)floor(p[2])};
+  double voxels[8];
   float value = 0;
+  hl_field_window(grid, first, (const int32_t[3]){2, 2, 2}, voxels);
   for (int corner = 0; corner < 8; corner++) {
     float weight = 1;
-    int64_t at[3];
     for (int a = 0; a < 3; a++) {
-      double floored = floor(p[a]);
-      int far = corner >> a & 1;
-      at[a] = (int64_t)floored + far;
-      weight *= (float)(far ? p[a] - floored : 1 - (p[a] - floored));
+      const double part = p[a] - first[a];
+      weight *= (float)(corner >> a & 1 ? part : 1 - part);
     }
-    if (weight > 0) value += weight * hl_stored_value(grid, at[0], at[1], at[2]);
+    if (weight > 0) value += weight * (float)voxels[corner];
   }
   return value;
 }

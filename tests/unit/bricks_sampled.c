@@ -64,6 +64,34 @@ static void test_coefficients(void **state) {
   }
 }
 
+/* The numbers of a window are those of its points, also where it crosses borders of bricks and leaves the
+ * lattice. */
+static void test_windows(void **state) {
+  (void)state;
+  enum { WINDOWS = 300, LONGEST = 21 };
+  static double values[LONGEST * LONGEST * LONGEST];
+  for (int shift = 2; shift <= 4; shift++) {
+    field_bench bench;
+    open_bench(&bench, 11 + (uint64_t)shift, octree_random_value, shift);
+    for (uint64_t n = 0; n < WINDOWS; n++) {
+      int64_t first[3], count[3];
+      for (uint64_t axis = 0; axis < 3; axis++) {
+        first[axis] = (int64_t)(octree_random(n, axis) * (SIDE + 16)) - 8;
+        count[axis] = 1 + (int64_t)(octree_random(n, axis + 3) * LONGEST);
+      }
+      hl_bricks_window(&bench.bricks, first, count, values);
+      const double *value = values;
+      for (int64_t k = 0; k < count[2]; k++)
+        for (int64_t j = 0; j < count[1]; j++)
+          for (int64_t i = 0; i < count[0]; i++, value++) {
+            const int64_t point[3] = {first[0] + i, first[1] + j, first[2] + k};
+            assert_true(*value == (double)hl_bricks_coefficient(&bench.bricks, point));
+          }
+    }
+    close_bench(&bench);
+  }
+}
+
 /* ---- sampling ---- */
 
 /* A sheet of parallel rays, and the grid, as a frame has them. */
@@ -180,7 +208,8 @@ static void test_coarser(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_coefficients), cmocka_unit_test(test_coarser),
-                                     cmocka_unit_test(test_gathered), cmocka_unit_test(test_ranges)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_coefficients), cmocka_unit_test(test_windows),
+                                     cmocka_unit_test(test_coarser), cmocka_unit_test(test_gathered),
+                                     cmocka_unit_test(test_ranges)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
