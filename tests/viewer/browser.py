@@ -172,6 +172,12 @@ class Browser:
         self.call("Input.dispatchKeyEvent", type="keyDown", key=key, text=text or (key if len(key) == 1 else ""))
         self.call("Input.dispatchKeyEvent", type="keyUp", key=key)
 
+    def choose(self, selector, files):
+        """Chooses files in an input of the page."""
+        document = self.call("DOM.getDocument")["root"]["nodeId"]
+        chooser = self.call("DOM.querySelector", nodeId=document, selector=selector)["nodeId"]
+        self.call("DOM.setFileInputFiles", nodeId=chooser, files=[str(file) for file in files])
+
     def screenshot(self, path):
         with open(path, "wb") as file:
             file.write(base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"]))

@@ -186,6 +186,11 @@ class Firefox:
     def type(self, text):
         self._perform({"type": "key", "id": "keys", "actions": [{"type": kind, "value": letter} for letter in text for kind in ("keyDown", "keyUp")]})
 
+    def choose(self, selector, files):
+        """Chooses files in an input of the page."""
+        found = self.call("browsingContext.locateNodes", context=self._context, locator={"type": "css", "value": selector})["nodes"][0]
+        self.call("input.setFiles", context=self._context, element={"sharedId": found["sharedId"]}, files=[str(file) for file in files])
+
     def screenshot(self, path):
         with open(path, "wb") as file:
             file.write(base64.b64decode(self.call("browsingContext.captureScreenshot", context=self._context)["data"]))

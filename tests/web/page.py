@@ -47,9 +47,17 @@ def skip(what, why):
 
 
 def choose_files(browser, files):
-    document = browser.call("DOM.getDocument")["root"]["nodeId"]
-    chooser = browser.call("DOM.querySelector", nodeId=document, selector="input[type=file]")["nodeId"]
-    browser.call("DOM.setFileInputFiles", nodeId=chooser, files=[str(file) for file in files])
+    browser.choose("input[type=file]", files)
+
+
+def try_chosen(browser, url, what, program, folder):
+    """The page shows a volume that is chosen."""
+    browser.open(url)
+    browser.wait("document.querySelector('.tab-welcome') !== null")
+    choose_files(browser, [folder / "labels.nrrd"])
+    browser.wait("globalThis.halflight?.frames.statistics.finals > 0")
+    saved_scene(browser, folder, "saved.json")
+    check(same_pixels(program, folder, final_picture(browser), "saved.json"), f"{what}: the final picture is the program's")
 
 
 def saved_scene(browser, folder, name):
@@ -118,6 +126,7 @@ def try_added(browser, program, folder, what):
     browser.wait(finals)
     saved_scene(browser, folder, "undone.json")
     check(same_pixels(program, folder, final_picture(browser), "undone.json") and browser.run("(halflight.store.scene.meshes ?? []).length") == 0, f"{what}: and undone")
+    check(browser.run("document.title") == "labels.nrrd · Halflight", f"{what}: with its name")
 
 
 def try_reload(browser, folder, what):
@@ -134,12 +143,7 @@ def try_reload(browser, folder, what):
 
 def try_chromium(url, what, program, folder):
     with Browser(size=(900, 500)) as browser:
-        browser.open(url)
-        browser.wait("document.querySelector('.tab-welcome') !== null")
-        choose_files(browser, [folder / "labels.nrrd"])
-        browser.wait("globalThis.halflight?.frames.statistics.finals > 0")
-        saved_scene(browser, folder, "saved.json")
-        check(same_pixels(program, folder, final_picture(browser), "saved.json"), f"{what}: the final picture is the program's")
+        try_chosen(browser, url, what, program, folder)
         browser.run("halflight.store.changeRender('sheet_spacing', 0.05)")  # a final picture that takes long
         browser.wait("halflight.frames.statistics.stage === 'refining' && document.querySelector('#stage').textContent === 'refining'")
         before = json.loads(browser.run("JSON.stringify(halflight.frames.statistics)"))
@@ -156,6 +160,13 @@ def try_chromium(url, what, program, folder):
         browser.run("halflight.store.changeRender('sheet_spacing', 1)")
         try_slices(browser, what)
         try_reload(browser, folder, what)
+        try_added(browser, program, folder, what)
+        check(browser.problems == [], f"{what}: no problem in the console: {browser.problems}")
+
+
+def try_firefox(firefox, url, what, program, folder):
+    with Firefox(firefox, size=(900, 500)) as browser:
+        try_chosen(browser, url, what, program, folder)
         try_added(browser, program, folder, what)
         check(browser.problems == [], f"{what}: no problem in the console: {browser.problems}")
 
@@ -301,6 +312,9 @@ def main():
             skip("Chromium", "it is not installed")
         firefox = shutil.which("firefox-esr") or shutil.which("firefox")
         if firefox:
+            try_firefox(firefox, (web / "halflight.html").as_uri(), "Firefox, one file", program, folder)
+            with serve(web / "page", IsolatingHandler) as (_, url):
+                try_firefox(firefox, url, "Firefox, an isolated folder", program, folder)
             try_held_scene(functools.partial(Firefox, firefox), "Firefox", web / "halflight.html", program, folder)
             compare_hashes(lambda profile: [firefox, "--headless", "--no-remote", "--profile", profile], "Firefox", folder / "page", expected)
         else:
