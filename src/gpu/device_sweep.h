@@ -78,11 +78,21 @@ typedef struct plan_light {
   int first_cut, cut_count; /* the cuts that count for the light, among the sweep's cuts */
 } plan_light;
 
+/* The brick of a field that covers a block of cells of level 0: the members of hl_brick_entry
+ * (bricks/bricks.h). */
+typedef struct plan_brick {
+  int slot; /* index of the brick's coefficients; -1: all are `value` */
+  int level;
+  float value;
+} plan_brick;
+
 typedef struct plan_volume {
   int dimension[3], brick_count[3];
-  unsigned row_bytes, slice_rows; /* for the device's voxels: bytes from row to row, and number of rows of
-                                   * a slice */
-  float empty;                    /* stored units */
+  /* For the device's voxels, or the coefficients of bricks: bytes from row to row, and number of rows of a
+   * slice. A brick has as many slices. */
+  unsigned row_bytes, slice_rows;
+  int brick_shift, directory_size[3]; /* of a field in bricks (hl_bricks) */
+  float empty;                        /* stored units */
   int has_cell_bits;
   float inner[PLAN_KERNEL_POWERS], outer[PLAN_KERNEL_POWERS]; /* the kernel's polynomials */
   float to_index[3][4];
@@ -127,6 +137,7 @@ typedef struct device_sweep {
  * capitals. */
 typedef struct plan_variant {
   int storage; /* 0: u8, 1: u16, 2: f32 */
+  int bricks;  /* the volume is a field in bricks, of f32 */
   int bspline; /* 1: the kernel is the cubic B-spline; else it is any polynomial of degree 5 */
   int eye_perspective;
   int phong, lit, shadowed;
@@ -138,7 +149,7 @@ typedef struct plan_variant {
 } plan_variant;
 
 /* Number of entries of each table. The tables follow each other: sums, color and shown with four numbers for
- * each entry, outside and bent with one. */
+ * each entry; outside and bent with one. */
 #define PLAN_ENTRIES      4096
 #define PLAN_TABLE_ROWS   (PLAN_ENTRIES + 2)
 #define PLAN_TABLE_FLOATS (PLAN_TABLE_ROWS * 14)

@@ -25,7 +25,7 @@ static const char *const kernel_names[KERNELS] = {"fill_floats",      "try_arith
                                                   "run_light",        "find_samples",   "shade_samples",
                                                   "composite_samples"};
 
-enum { MOST_VARIANTS = 64, VARIANT_DEFINES = 11, SAMPLE_COUNTERS = 256 };
+enum { MOST_VARIANTS = 64, VARIANT_DEFINES = 12, SAMPLE_COUNTERS = 256 };
 
 /* The buffers of a device. */
 enum buffer_use {
@@ -46,6 +46,7 @@ enum buffer_use {
   BUFFER_LIST,
   BUFFER_MASKS,
   BUFFER_CUTS,
+  BUFFER_DIRECTORY,
   BUFFERS
 };
 
@@ -209,6 +210,7 @@ static size_t storage_bytes(int storage) { return storage == 0 ? 1 : storage == 
  * otherwise neighbouring rows of a volume with rows of 256 or 2048 bytes would share a cache's banks and
  * sets. */
 size_t hl_gpu_row_bytes(const gpu_volume *volume) {
+  if (volume->directory != NULL) return volume->brick_width * sizeof(float);
   return ((size_t)volume->dimension[0] * storage_bytes(volume->storage) + 15) / 16 * 16 | 16;
 }
 
@@ -236,6 +238,17 @@ static bool upload_voxels(hl_gpu *gpu, const gpu_volume *volume) {
   return done;
 }
 
+/* The coefficients of a field in bricks, and the directory. */
+static bool upload_bricks(hl_gpu *gpu, const gpu_volume *volume) {
+  const size_t width = hl_gpu_row_bytes(volume) / sizeof(float),
+               bytes = volume->slots * width * width * width * sizeof(float);
+  size_t entries = 1;
+  for (int axis = 0; axis < 3; axis++) entries *= volume->directory_size[axis];
+  return reserve(gpu, BUFFER_VOXELS, bytes) &&
+         (bytes == 0 || upload(gpu, BUFFER_VOXELS, 0, volume->voxels, bytes)) &&
+         reserve_and_upload(gpu, BUFFER_DIRECTORY, volume->directory, entries * sizeof *volume->directory);
+}
+
 static bool upload_tables(hl_gpu *gpu, const gpu_volume *volume) {
   size_t bricks = (size_t)volume->brick_count[0] * (size_t)volume->brick_count[1] *
                   (size_t)volume->brick_count[2];
@@ -253,13 +266,13 @@ static bool upload_tables(hl_gpu *gpu, const gpu_volume *volume) {
   gpu->has_distances = false;
   if (done && volume->cell_bits != NULL)
     done = reserve_and_upload(gpu, BUFFER_CELL_BITS, volume->cell_bits, bricks * sizeof *volume->cell_bits);
-  return done && reserve(gpu, BUFFER_CELL_BITS, 64);
+  return done && reserve(gpu, BUFFER_CELL_BITS, 64) && reserve(gpu, BUFFER_DIRECTORY, 64);
 }
 
 bool hl_gpu_prepare(hl_gpu *gpu, const gpu_volume *volume) {
   if (gpu->version != volume->version) {
     gpu->version = gpu->tables_version = 0;
-    if (!upload_voxels(gpu, volume)) return false;
+    if (!(volume->directory != NULL ? upload_bricks(gpu, volume) : upload_voxels(gpu, volume))) return false;
     gpu->version = volume->version;
   }
   if (gpu->tables_version != volume->tables_version) {
@@ -282,7 +295,7 @@ static void define_variant(const plan_variant *v, char defines[VARIANT_DEFINES][
       {"STORAGE", v->storage},   {"BSPLINE", v->bspline}, {"EYE_PERSPECTIVE", v->eye_perspective},
       {"PHONG", v->phong},       {"LIT", v->lit},         {"SHADOWED", v->shadowed},
       {"OUTSIDE", v->outside},   {"BOXED", v->boxed},     {"BACK_TO_FRONT", v->back_to_front},
-      {"CHANNELS", v->channels}, {"CUTS", v->cuts}};
+      {"CHANNELS", v->channels}, {"CUTS", v->cuts},       {"BRICKS", v->bricks}};
   for (int i = 0; i < VARIANT_DEFINES; i++)
     snprintf(defines[i], sizeof defines[i], "%s=%d", all[i].name, all[i].value);
 }
@@ -449,6 +462,7 @@ static bool launch_kernel(hl_gpu *gpu, const gpu_program *program, int kernel, s
                                     memory(gpu, BUFFER_LIST),
                                     memory(gpu, BUFFER_MASKS),
                                     memory(gpu, BUFFER_CUTS),
+                                    memory(gpu, BUFFER_DIRECTORY),
                                     number(run.first),
                                     number(run.end),
                                     number(run.number)};

@@ -34,7 +34,11 @@ const char *hl_gpu_problem(const hl_gpu *gpu);
 typedef struct gpu_volume {
   uint64_t version, tables_version; /* versions of the voxels, and of everything that follows from the
                                      * transfer function */
-  const void *voxels;               /* [z][y][x], rows packed */
+  const void *voxels;               /* [z][y][x], rows packed; or, for a field in bricks, the coefficients
+                                     * [slots][z][y][x] */
+  const plan_brick *directory;      /* [z][y][x]; null: the volume is no field in bricks */
+  const size_t *directory_size;     /* number of entries along x, y, z */
+  size_t slots, brick_width;        /* number of bricks, and of their coefficients along an axis */
   int storage;                      /* as in plan_variant */
   const int32_t *dimension, *brick_count;
   const unsigned char *relevant;     /* [bricks] */

@@ -12,6 +12,10 @@
 _Static_assert(PLAN_LIGHTS >= MAXIMUM_SWEEP_LIGHTS && PLAN_SECTORS == LIGHT_SECTORS &&
                    PLAN_ENTRIES == CLASSIFIER_ENTRIES && PLAN_KERNEL_POWERS == HL_KERNEL_DEGREE + 1,
                "plans hold what sweeps hold");
+_Static_assert(sizeof(plan_brick) == sizeof(hl_brick_entry) &&
+                   offsetof(plan_brick, level) == offsetof(hl_brick_entry, level) &&
+                   offsetof(plan_brick, value) == offsetof(hl_brick_entry, constant),
+               "bricks of plans are bricks of fields");
 _Static_assert(CUT_PLANE == (int)HL_CUT_PLANE && CUT_BOX == (int)HL_CUT_BOX &&
                    CUT_SPHERE == (int)HL_CUT_SPHERE,
                "cuts of plans are cuts of scenes");
@@ -35,9 +39,9 @@ static bool has_sky(const frame_plan *plan) { return plan->fields.sky != NULL; }
 static bool scatters(const frame_plan *plan) { return plan->fields.scatters; }
 static bool splats(const frame_plan *plan) { return plan->volumes.splat; }
 static bool has_pages(const frame_plan *plan) { return plan->volumes.grids[0].pages != NULL; }
-static bool has_bricks(const frame_plan *plan) { return plan->volumes.grids[0].bricks != NULL; }
 static bool is_thin(const frame_plan *plan) {
   const int32_t *dimension = plan->volumes.grids[0].dimension;
+  if (plan->volumes.grids[0].bricks != NULL) return false;
   return dimension[0] < 4 || dimension[1] < 4 || dimension[2] < 4;
 }
 static bool has_colors(const frame_plan *plan) { return volume_of(plan)->volume->colors != NULL; }
@@ -49,6 +53,7 @@ static bool is_soft(const frame_plan *plan) {
     if (plan->frame.lights[i].shadows == HL_SHADOWS_SOFT) return true;
   return false;
 }
+
 static bool has_images(const frame_plan *plan) {
   for (int i = 0; i < plan->light_count; i++)
     if (plan->lights[i].has_image) return true;
@@ -75,7 +80,6 @@ static const struct {
     {scatters, "multiple scattering"},
     {splats, "splatting in place of gathering"},
     {has_pages, "voxels outside of memory"},
-    {has_bricks, "a field in bricks"},
     {is_thin, "a volume less than four voxels thick"},
     {has_colors, "voxels with colours"},
     {is_weighed, "gradient opacity, a mask, or a function of two numbers"},
@@ -93,6 +97,7 @@ const char *hl_reason_for_processors(const frame_plan *plan) {
 /* ---- the volume ---- */
 
 static int storage_of(const grid *grid) {
+  if (grid->bricks != NULL) return 2;
   return grid->storage == HL_STORAGE_U8 ? 0 : grid->storage == HL_STORAGE_U16 ? 1 : 2;
 }
 
@@ -106,19 +111,27 @@ gpu_volume hl_volume_for_device(const frame_plan *plan) {
   const frame_volume *volume = &plan->volumes.list[0];
   const grid *grid = &plan->volumes.grids[0];
   const classifier *classifier = volume->classifier;
-  return (gpu_volume){.version = volume->version,
-                      .tables_version = volume->tables_version,
-                      .voxels = grid->voxels,
-                      .storage = storage_of(grid),
-                      .dimension = grid->dimension,
-                      .brick_count = grid->brick_count,
-                      .relevant = grid->relevant,
-                      .cell_bits = bits_of_cells(grid),
-                      .sums = &classifier->sums[0][0],
-                      .color = &classifier->color[0][0],
-                      .shown = &classifier->shown[0][0],
-                      .outside = classifier->outside,
-                      .bent = classifier->bent};
+  gpu_volume made = {.version = volume->version,
+                     .tables_version = volume->tables_version,
+                     .voxels = grid->voxels,
+                     .storage = storage_of(grid),
+                     .dimension = grid->dimension,
+                     .brick_count = grid->brick_count,
+                     .relevant = grid->relevant,
+                     .cell_bits = bits_of_cells(grid),
+                     .sums = &classifier->sums[0][0],
+                     .color = &classifier->color[0][0],
+                     .shown = &classifier->shown[0][0],
+                     .outside = classifier->outside,
+                     .bent = classifier->bent};
+  if (grid->bricks != NULL) {
+    made.voxels = grid->bricks->pool;
+    made.directory = (const plan_brick *)(const void *)grid->bricks->directory;
+    made.directory_size = grid->bricks->directory_size;
+    made.slots = grid->bricks->slots;
+    made.brick_width = ((size_t)1 << grid->bricks->shift) + BRICK_MARGIN;
+  }
+  return made;
 }
 
 static void plan_matter(const shade_volume *shade, plan_volume *volume) {
@@ -128,6 +141,12 @@ static void plan_matter(const shade_volume *shade, plan_volume *volume) {
   memcpy(volume->dimension, grid->dimension, sizeof volume->dimension);
   memcpy(volume->brick_count, grid->brick_count, sizeof volume->brick_count);
   volume->slice_rows = (unsigned)grid->dimension[1];
+  if (grid->bricks != NULL) {
+    volume->brick_shift = grid->bricks->shift;
+    volume->slice_rows = (1u << grid->bricks->shift) + BRICK_MARGIN;
+    for (int axis = 0; axis < 3; axis++)
+      volume->directory_size[axis] = (int)grid->bricks->directory_size[axis];
+  }
   volume->empty = grid->empty;
   volume->has_cell_bits = bits_of_cells(grid) != NULL;
   memcpy(volume->inner, kernel->inner, sizeof volume->inner);
@@ -420,6 +439,7 @@ static plan_variant variant_of(const sweep_task *task, const device_sweep *plan)
   const shade_volume *shade = &task->constants->volumes[0];
   const grid *grid = &task->frame_plan->volumes.grids[0];
   return (plan_variant){.storage = storage_of(grid),
+                        .bricks = grid->bricks != NULL,
                         .bspline = task->frame_plan->volumes.kernel->degree == HL_BSPLINE_DEGREE,
                         .eye_perspective = task->frame_plan->frame.eye.perspective,
                         .phong = shade->phong,

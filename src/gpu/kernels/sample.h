@@ -13,11 +13,12 @@
 /* A volume on the device. */
 typedef struct volume_data {
   GLOBAL const plan_volume *plan;
-  GLOBAL const byte *voxels;
-  GLOBAL const byte *distances; /* [bricks z][y][x]; number of bricks to the nearest brick that may show
-                                 * anything, counted along the axis where it is farthest; at most
-                                 * FARTHEST_BRICK */
-  GLOBAL const wide *cell_bits; /* [bricks z][y][x]; read only where plan->has_cell_bits */
+  GLOBAL const byte *voxels;          /* or the coefficients of bricks, one brick after the other */
+  GLOBAL const plan_brick *directory; /* [z][y][x] blocks of cells; read only where the volume is in bricks */
+  GLOBAL const byte *distances;       /* [bricks z][y][x]; number of bricks to the nearest brick that may show
+                                       * anything, counted along the axis where it is farthest; at most
+                                       * FARTHEST_BRICK */
+  GLOBAL const wide *cell_bits;       /* [bricks z][y][x]; read only where plan->has_cell_bits */
   GLOBAL const float *tables;
   GLOBAL const plan_cut *cuts; /* [views][cut_count]; the eye's view comes first */
 } volume_data;
@@ -61,6 +62,54 @@ DEVICE int cell_may_show(const volume_data *volume, const grid_point *point, flo
   return (int)(volume->cell_bits[brick] >> ((x & 3) | (y & 3) << 2 | (z & 3) << 4) & 1);
 }
 
+/* The taps around a point: the cell before which they begin, the place in it, and the length of the voxels'
+ * edge in cells of the taps. even: the field has one value everywhere around the point. */
+typedef struct tap_place {
+  int cell[3];
+  float part[3], step, value;
+  int even;
+} tap_place;
+
+/* Finds the taps around a point of index space; as lanes_in_brick() in fill/gather_lanes.h for a field in
+ * bricks. The third cell counts from the first slice of all bricks. */
+DEVICE tap_place place_of_taps(const volume_data *volume, const float at[3]) {
+  tap_place place;
+  place.even = 0;
+  place.step = 1.0f;
+  place.value = 0.0f;
+  for (int a = 0; a < 3; a++) {
+    place.cell[a] = whole_below(at[a]);
+    place.part[a] = at[a] - (float)place.cell[a];
+  }
+#if BRICKS
+  GLOBAL const plan_volume *plan = volume->plan;
+  wide block = 0;
+  for (int a = 2; a >= 0; a--) {
+    const int last = plan->directory_size[a] - 1, own = (place.cell[a] + 1) >> plan->brick_shift;
+    block = block * (unsigned)(last + 1) + (unsigned)(own < 0 ? 0 : own > last ? last : own);
+  }
+  const plan_brick brick = volume->directory[block];
+  const int level = brick.level, shift = plan->brick_shift + level, below = (1 << level) - 1;
+  place.even = brick.slot < 0;
+  place.value = brick.value;
+  place.step = divided(1.0f, (float)(1 << level));
+  for (int a = 0; a < 3; a++) {
+    const int cell = place.cell[a] + 1;
+    place.cell[a] = ((cell & ((1 << shift) - 1)) >> level) + 1;
+    place.part[a] = ((float)(cell & below) + place.part[a]) * place.step;
+  }
+  place.cell[2] += brick.slot * (int)plan->slice_rows;
+#else
+  (void)volume;
+#endif
+  return place;
+}
+
+/* Whether taps around a cell lie outside the grid along an axis. Bricks hold all taps of their cells. */
+DEVICE int taps_leave(GLOBAL const plan_volume *volume, int cell, int axis) {
+  return !BRICKS && !taps_inside(cell, volume->dimension[axis]);
+}
+
 DEVICE GLOBAL const byte *first_row(const volume_data *volume, const int cell[3]) {
   GLOBAL const plan_volume *plan = volume->plan;
   wide row = (wide)(unsigned)(cell[2] - 1) * plan->slice_rows + (unsigned)(cell[1] - 1);
@@ -79,15 +128,14 @@ DEVICE GLOBAL const byte *first_row(const volume_data *volume, const int cell[3]
  * of pairs along x come first, then sums along y, then along z. */
 DEVICE float density_at(const volume_data volume, float x, float y, float z) {
   GLOBAL const plan_volume *plan = volume.plan;
-  float weight[3][4], at[3];
-  int cell[3], outside = 0;
-  at[0] = x;
-  at[1] = y;
-  at[2] = z;
+  const float at[3] = {x, y, z};
+  tap_place place = place_of_taps(&volume, at);
+  float weight[3][4];
+  int outside = 0;
+  if (place.even) return place.value - plan->empty;
   for (int a = 0; a < 3; a++) {
-    cell[a] = whole_below(at[a]);
-    tap_weights(plan, at[a] - (float)cell[a], weight[a]);
-    outside = outside || !taps_inside(cell[a], plan->dimension[a]);
+    tap_weights(plan, place.part[a], weight[a]);
+    outside = outside || taps_leave(plan, place.cell[a], a);
   }
   if (outside) {
 #if STORAGE != STORED_F32
@@ -95,10 +143,10 @@ DEVICE float density_at(const volume_data volume, float x, float y, float z) {
     round_weights(weight[0], WEIGHT_UNITS, 1, rounded);
     for (int tap = 0; tap < 4; tap++) weight[0][tap] = (float)rounded[tap] * (1.0f / WEIGHT_UNITS);
 #endif
-    for (int a = 0; a < 3; a++) cell[a] = fold_border(cell[a], plan->dimension[a], weight[a]);
+    for (int a = 0; a < 3; a++) place.cell[a] = fold_border(place.cell[a], plan->dimension[a], weight[a]);
   }
   row_weights along = weights_of_row(weight[0]);
-  GLOBAL const byte *slice = first_row(&volume, cell);
+  GLOBAL const byte *slice = first_row(&volume, place.cell);
   const unsigned shift = shift_of_row(slice);
   slice -= shift >> 3; /* all rows have the same alignment */
   const wide row_bytes = plan->row_bytes, slice_bytes = plan->slice_rows * row_bytes;
@@ -116,23 +164,26 @@ DEVICE float density_at(const volume_data volume, float x, float y, float z) {
 /* The gradient at a point of frame space; stored units per frame unit. */
 DEVICE_CALL vector gradient_at(const volume_data volume, vector point) {
   GLOBAL const plan_volume *plan = volume.plan;
-  float weight[3][4], slope[3][4];
-  int cell[3], outside = 0;
+  float weight[3][4], slope[3][4], at[3];
+  int outside = 0;
+  for (int a = 0; a < 3; a++)
+    at[a] = limited(row_of_point(plan->to_index[a], point), -1.0f, (float)plan->dimension[a] * (1 - 1e-6f));
+  tap_place place = place_of_taps(&volume, at);
+  if (place.even) return vector_of(0.0f, 0.0f, 0.0f);
   for (int a = 0; a < 3; a++) {
-    float at = limited(row_of_point(plan->to_index[a], point), -1.0f,
-                       (float)plan->dimension[a] * (1 - 1e-6f));
-    cell[a] = whole_below(at);
-    tap_weights(plan, at - (float)cell[a], weight[a]);
-    tap_slopes(plan, at - (float)cell[a], slope[a]);
-    outside = outside || !taps_inside(cell[a], plan->dimension[a]);
+    tap_weights(plan, place.part[a], weight[a]);
+    tap_slopes(plan, place.part[a], slope[a]);
+    if (BRICKS)
+      for (int tap = 0; tap < 4; tap++) slope[a][tap] = slope[a][tap] * place.step;
+    outside = outside || taps_leave(plan, place.cell[a], a);
   }
   if (outside)
     for (int a = 0; a < 3; a++) {
-      fold_border(cell[a], plan->dimension[a], slope[a]);
-      cell[a] = fold_border(cell[a], plan->dimension[a], weight[a]);
+      fold_border(place.cell[a], plan->dimension[a], slope[a]);
+      place.cell[a] = fold_border(place.cell[a], plan->dimension[a], weight[a]);
     }
   row_weights weights = weights_of_row(weight[0]), slopes = slopes_of_row(slope[0]);
-  GLOBAL const byte *slice = first_row(&volume, cell);
+  GLOBAL const byte *slice = first_row(&volume, place.cell);
   const unsigned shift = shift_of_row(slice);
   slice -= shift >> 3; /* all rows have the same alignment */
   const wide row_bytes = plan->row_bytes, slice_bytes = plan->slice_rows * row_bytes;
