@@ -57,6 +57,7 @@ typedef struct plan_light {
   float of_sky;      /* fraction of the light that a medium takes, where the light is a sun of the sky;
                       * else 0 */
   float path;        /* as in shade_light (render/slab.h) */
+  float through[3];  /* as in attenuate_job (shadow/attenuate.h) */
   float cone_axis[3], cone_outer, cone_scale;
   int sector_count, sector;
   float sector_axis[PLAN_SECTORS][3], sector_least;
@@ -101,7 +102,8 @@ typedef struct plan_volume {
   float steps[3]; /* the distances between voxels along the axes, in units of the smallest edge */
   /* the transfer function's tables (grid/classifier.h) */
   float scale, offset, first_visible, last_visible, normal_edge;
-  int bends; /* there is a table of bent colours */
+  float steepness_scale; /* of gradient opacity */
+  int bends;             /* there is a table of bent colours */
   int several_surfaces;
   float only_beginning;
   /* surfaces at the faces of the box and of cuts (shade_volume in render/slab.h) */
@@ -144,14 +146,15 @@ typedef struct plan_variant {
   int outside; /* the lights' buffers keep the light at the outside of surfaces, too */
   int boxed;   /* the volume's box or a cut cuts visible matter */
   int cuts;    /* the volume has cuts */
+  int steep;   /* the volume has gradient opacity */
   int back_to_front;
   int channels; /* number of channels of light attenuation: 1 or 3 */
 } plan_variant;
 
 /* Number of entries of each table. The tables follow each other: sums, color and shown with four numbers for
- * each entry; outside and bent with one. */
+ * each entry; outside, bent and steepness with one. */
 #define PLAN_ENTRIES      4096
 #define PLAN_TABLE_ROWS   (PLAN_ENTRIES + 2)
-#define PLAN_TABLE_FLOATS (PLAN_TABLE_ROWS * 14)
+#define PLAN_TABLE_FLOATS (PLAN_TABLE_ROWS * 15)
 
 #endif

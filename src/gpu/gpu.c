@@ -25,7 +25,7 @@ static const char *const kernel_names[KERNELS] = {"fill_floats",      "try_arith
                                                   "run_light",        "find_samples",   "shade_samples",
                                                   "composite_samples"};
 
-enum { MOST_VARIANTS = 64, VARIANT_DEFINES = 12, SAMPLE_COUNTERS = 256 };
+enum { MOST_VARIANTS = 64, VARIANT_DEFINES = 13, SAMPLE_COUNTERS = 256 };
 
 /* The buffers of a device. */
 enum buffer_use {
@@ -259,6 +259,8 @@ static bool upload_tables(hl_gpu *gpu, const gpu_volume *volume) {
               upload(gpu, BUFFER_TABLES, 8 * column, volume->shown, 4 * column);
   done = done && upload(gpu, BUFFER_TABLES, 12 * column, volume->outside, column);
   if (done && volume->bent != NULL) done = upload(gpu, BUFFER_TABLES, 13 * column, volume->bent, column);
+  if (done && volume->steepness != NULL)
+    done = upload(gpu, BUFFER_TABLES, 14 * column, volume->steepness, column);
   if (done)
     done = reserve_and_upload(gpu, BUFFER_DISTANCES, volume->relevant, bricks) &&
            reserve(gpu, BUFFER_DISTANCES_MADE, bricks);
@@ -295,7 +297,8 @@ static void define_variant(const plan_variant *v, char defines[VARIANT_DEFINES][
       {"STORAGE", v->storage},   {"BSPLINE", v->bspline}, {"EYE_PERSPECTIVE", v->eye_perspective},
       {"PHONG", v->phong},       {"LIT", v->lit},         {"SHADOWED", v->shadowed},
       {"OUTSIDE", v->outside},   {"BOXED", v->boxed},     {"BACK_TO_FRONT", v->back_to_front},
-      {"CHANNELS", v->channels}, {"CUTS", v->cuts},       {"BRICKS", v->bricks}};
+      {"CHANNELS", v->channels}, {"CUTS", v->cuts},       {"BRICKS", v->bricks},
+      {"STEEP", v->steep}};
   for (int i = 0; i < VARIANT_DEFINES; i++)
     snprintf(defines[i], sizeof defines[i], "%s=%d", all[i].name, all[i].value);
 }

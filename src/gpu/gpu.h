@@ -41,10 +41,11 @@ typedef struct gpu_volume {
   size_t slots, brick_width;        /* number of bricks, and of their coefficients along an axis */
   int storage;                      /* as in plan_variant */
   const int32_t *dimension, *brick_count;
-  const unsigned char *relevant;     /* [bricks] */
-  const uint64_t *cell_bits;         /* [bricks]; null: there are no bits */
-  const float *sums, *color, *shown; /* [PLAN_TABLE_ROWS][4] */
-  const float *outside, *bent;       /* [PLAN_TABLE_ROWS]; bent may be null: there is no such table */
+  const unsigned char *relevant;           /* [bricks] */
+  const uint64_t *cell_bits;               /* [bricks]; null: there are no bits */
+  const float *sums, *color, *shown;       /* [PLAN_TABLE_ROWS][4] */
+  const float *outside, *bent, *steepness; /* [PLAN_TABLE_ROWS]; bent and steepness may be null: there is no
+                                            * such table */
 } gpu_volume;
 
 /* The number of bytes of a row of the device's voxels. */

@@ -10,7 +10,8 @@
 #include "render/view_sheets.h"
 
 _Static_assert(PLAN_LIGHTS >= MAXIMUM_SWEEP_LIGHTS && PLAN_SECTORS == LIGHT_SECTORS &&
-                   PLAN_ENTRIES == CLASSIFIER_ENTRIES && PLAN_KERNEL_POWERS == HL_KERNEL_DEGREE + 1,
+                   PLAN_ENTRIES == CLASSIFIER_ENTRIES && PLAN_ENTRIES == STEEPNESS_ENTRIES &&
+                   PLAN_KERNEL_POWERS == HL_KERNEL_DEGREE + 1,
                "plans hold what sweeps hold");
 _Static_assert(sizeof(plan_brick) == sizeof(hl_brick_entry) &&
                    offsetof(plan_brick, level) == offsetof(hl_brick_entry, level) &&
@@ -45,13 +46,24 @@ static bool is_thin(const frame_plan *plan) {
   return dimension[0] < 4 || dimension[1] < 4 || dimension[2] < 4;
 }
 static bool has_colors(const frame_plan *plan) { return volume_of(plan)->volume->colors != NULL; }
-static bool is_weighed(const frame_plan *plan) {
-  return hl_classifier_is_weighed(plan->volumes.list[0].classifier);
+static bool is_masked(const frame_plan *plan) { return volume_of(plan)->classifier->mask.factors != NULL; }
+static bool has_two_numbers(const frame_plan *plan) {
+  return volume_of(plan)->classifier->plane.sums != NULL;
 }
 static bool is_soft(const frame_plan *plan) {
   for (int i = 0; i < plan->frame.light_count; i++)
     if (plan->frame.lights[i].shadows == HL_SHADOWS_SOFT) return true;
   return false;
+}
+
+/* Matter that gradient opacity hides ends surfaces for all pixels of a block (shadow/attenuate_lanes.h).
+ * Behind a cut, the processors leave out whole blocks, of which a pixel of a device knows nothing. */
+static bool hides_cut_surfaces(const frame_plan *plan) {
+  bool shadows = false;
+  for (int i = 0; i < plan->frame.light_count; i++)
+    shadows = shadows || plan->frame.lights[i].shadows != HL_SHADOWS_OFF;
+  return shadows && volume_of(plan)->classifier->steepness != NULL && plan->volumes.grids[0].cut &&
+         volume_of(plan)->look.shading == HL_SHADING_PHONG;
 }
 
 static bool has_images(const frame_plan *plan) {
@@ -82,7 +94,9 @@ static const struct {
     {has_pages, "voxels outside of memory"},
     {is_thin, "a volume less than four voxels thick"},
     {has_colors, "voxels with colours"},
-    {is_weighed, "gradient opacity, a mask, or a function of two numbers"},
+    {is_masked, "a mask"},
+    {has_two_numbers, "a function of two numbers"},
+    {hides_cut_surfaces, "gradient opacity of cut surfaces that cast shadows"},
     {is_soft, "soft shadows"},
     {has_images, "lights with images"},
     {has_phase_tables, "wide lights in media that scatter unevenly"},
@@ -123,7 +137,8 @@ gpu_volume hl_volume_for_device(const frame_plan *plan) {
                      .color = &classifier->color[0][0],
                      .shown = &classifier->shown[0][0],
                      .outside = classifier->outside,
-                     .bent = classifier->bent};
+                     .bent = classifier->bent,
+                     .steepness = classifier->steepness};
   if (grid->bricks != NULL) {
     made.voxels = grid->bricks->pool;
     made.directory = (const plan_brick *)(const void *)grid->bricks->directory;
@@ -165,6 +180,7 @@ static void plan_matter(const shade_volume *shade, plan_volume *volume) {
   volume->last_visible = classifier->last_visible;
   volume->normal_edge = classifier->normal_edge;
   volume->bends = classifier->bent != NULL;
+  volume->steepness_scale = classifier->steepness_scale;
   volume->several_surfaces = classifier->several_surfaces;
   volume->only_beginning = classifier->only_beginning;
   volume->cut_count = shade->cut_count;
@@ -354,6 +370,7 @@ static void plan_buffer(const sweep_task *task, int index, int ring, size_t *flo
   light->planes = (unsigned)(*floats / 16);
   memcpy(light->map, map.rows, sizeof light->map);
   light->slab_path = task->constants->attenuate[index].path;
+  memcpy(light->through, task->constants->attenuate[index].through, sizeof light->through);
   plan_box_rays(view, task, &light->box);
   plan_content(view, task, &light->content);
   plan_margin(task, index, light);
@@ -448,6 +465,7 @@ static plan_variant variant_of(const sweep_task *task, const device_sweep *plan)
                         .outside = keeps_outside(task),
                         .boxed = grid->cut,
                         .cuts = shade->cut_count > 0,
+                        .steep = shade->classifier->steepness != NULL,
                         .back_to_front = task->plan->geometry->back_to_front,
                         .channels = task->frame_plan->channels};
 }

@@ -27,14 +27,15 @@ def run(folder, *arguments):
 
 
 def scene(opacity=OPACITY, shadows="hard", shading="none", direction=(0.4, -0.7, 0.5), volume=None, light=None, camera=None,
-          render=None):
+          render=None, function=None):
     view = {"type": "perspective", "position": [50, 32, -88], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 30}
     return {"halflight": 1, "image": {"width": SIZE, "height": SIZE}, "camera": camera or view, "ambient": [0.1, 0.1, 0.1],
             "lights": [{"color": [1, 0.9, 0.8], "intensity": 1.2, "shadows": shadows,
                         **(light or {"type": "directional", "direction": list(direction)})}],
             "volumes": [{"file": "cloud.nrrd", "shading": shading,
                          "transfer_function": {"unit_distance": 1, "opacity": opacity,
-                                               "color": [[0, 0.5, 0.6, 0.3], [0.5, 0.6, 0.4, 0.2], [1, 1, 1, 1]]},
+                                               "color": [[0, 0.5, 0.6, 0.3], [0.5, 0.6, 0.4, 0.2], [1, 1, 1, 1]],
+                                               **(function or {})},
                          **(volume or {})}],
             "render": {"sheet_spacing": 1, "shadows": shadows, **(render or {})}}
 
@@ -46,6 +47,7 @@ def plane(*normal):
 CLIP = {"min": [5, 3, 4], "max": [24, 20, 15]}
 BALL = {"type": "sphere", "center": [4, 2, -6], "radius": 9}
 BLOCK = {"type": "box", "min": [-9, -5, -13], "max": [7, 9, 3]}
+STEEP = {"gradient_opacity": [[0.02, 0], [0.12, 1]]}
 GRAINS = {"file": "grains.csv", "array": "density"}
 THIN = [[0.001, 0], [0.05, 0.2], [1, 0.6]]
 FAR = {"type": "perspective", "position": [70, 50, -120], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 30}
@@ -80,12 +82,18 @@ MADE = {
     "a field at levels": scene(opacity=THIN, volume=GRAINS, camera=FAR),
     "a field at levels, surfaces": scene(opacity=[[0.02, 0], [0.06, 0.6]], shading="phong", camera=FAR,
                                          volume={**GRAINS, "cuts": [plane(1, 0.3, 0.2)]}),
+    "gradient opacity": scene(opacity=DENSE, function=STEEP, light={"type": "point", "position": [40, 50, -50]}),
+    "gradient opacity, surfaces": scene(opacity=LAYERS, shading="phong", function=STEEP),
+    "gradient opacity, cuts, light from behind": scene(function=STEEP, direction=(0.2, -0.3, -0.9),
+                                                       volume={"cuts": [BALL, plane(1, 0.4, -0.2)]}),
     "near light, colours, flat view": scene(light={"type": "point", "position": [40, 50, -50]}, camera=FLAT,
                                             volume={"attenuation_color": [1, 0.5, 0.2]}),
 }
 LEFT = {
     "soft shadows": scene(shadows="soft", light={"type": "directional", "direction": [0.4, -0.7, 0.5],
                                                  "angular_diameter_deg": 7}),
+    "gradient opacity of cut surfaces that cast shadows": scene(opacity=DENSE, shading="phong", function=STEEP,
+                                                                volume={"cuts": [BALL]}),
     "splatting in place of gathering": scene(render={"reconstruction": "splat"}),
 }
 

@@ -30,6 +30,7 @@ typedef struct slab_sample {
                        * way through the slab's covered part */
   int sloped;
   vector slope, normal;
+  float factor; /* of gradient opacity, by which extinction and the sums were multiplied */
   float surface;
   float skin; /* how much the matter belongs to a face that cuts it: 1 at the face, 0 two voxels behind it */
 } slab_sample;
@@ -192,6 +193,9 @@ DEVICE float extinction_towards(const volume_data *volume, const slab_sample *s,
   float start = fused(dot3(s->slope, towards), way * volume->plan->scale, seen);
   way_sums sums = sums_of_way(volume->tables, split_coordinate(limited(start, 0.0f, PLAN_ENTRIES)),
                               split_coordinate(seen));
+#if STEEP
+  late = late * s->factor;
+#endif
   return late * sums.extinction;
 }
 

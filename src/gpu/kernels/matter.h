@@ -37,6 +37,10 @@ DEVICE float beginning_at(GLOBAL const float *tables, int entry) { return sums_t
 DEVICE GLOBAL const float *outside_table(GLOBAL const float *tables) { return tables + PLAN_TABLE_ROWS * 12; }
 DEVICE GLOBAL const float *bent_table(GLOBAL const float *tables) { return tables + PLAN_TABLE_ROWS * 13; }
 
+DEVICE GLOBAL const float *steepness_table(GLOBAL const float *tables) {
+  return tables + PLAN_TABLE_ROWS * 14;
+}
+
 /* The values of a table's first columns at a coordinate. */
 DEVICE void table_values(GLOBAL const float *table, table_coordinate at, int columns, float values[4]) {
   GLOBAL const float *row = table + at.entry * 4;
@@ -81,6 +85,15 @@ DEVICE way_means means_of_way(float a, float b, const way_sums *sums) {
   means.from_a = magnitude(mean - a);
   means.from_b = magnitude(mean - b);
   return means;
+}
+
+/* The factor by which gradient opacity multiplies extinction, as factor_of_slope() in
+ * fill/steepness_lanes.h. slope: the gradient; stored units per frame unit. */
+DEVICE float factor_of_slope(const volume_data *volume, vector slope) {
+  const vector steps = scaled(slope, volume->plan->steepness_scale);
+  const table_coordinate at = split_coordinate(limited(root(dot3(steps, steps)), 0.0f, PLAN_ENTRIES));
+  GLOBAL const float *factor = steepness_table(volume->tables) + at.entry;
+  return fused(factor[1] - factor[0], at.fraction, factor[0]);
 }
 
 /* Moves a and b, on the slab's two sheets, to the ends of its covered part. */

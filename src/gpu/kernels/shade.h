@@ -59,15 +59,32 @@ DEVICE void place_slab(GLOBAL const device_sweep *plan, GLOBAL const plan_rays *
   s->position = add_scaled(s->start, s->step_sheet, s->place);
 }
 
+/* Gradient opacity, after place_slab(): multiplies the extinction by the factor where the matter would be
+ * seen without it, and places the slab again, as weigh_slab() in render/slab_lanes.h. */
+DEVICE void weigh_slab(GLOBAL const device_sweep *plan, GLOBAL const plan_rays *rays, float u, float v,
+                       const volume_data *volume, slab_sample *s) {
+  s->slope = gradient_at(*volume, s->position);
+  s->factor = factor_of_slope(volume, s->slope);
+  if (s->factor == 1.0f) return;
+  s->extinction = s->extinction * s->factor;
+  s->sums.extinction = s->sums.extinction * s->factor;
+  s->sums.integral = s->sums.integral * s->factor;
+  s->sums.moment = s->sums.moment * s->factor;
+  place_slab(plan, rays, u, v, s);
+}
+
 DEVICE void find_normal(const volume_data *volume, float density, slab_sample *s) {
   s->sloped = s->sums.extinction > 0.0f;
-  s->slope = s->normal = vector_of(0.0f, 0.0f, 0.0f);
+  s->normal = vector_of(0.0f, 0.0f, 0.0f);
   s->surface = s->skin = 0.0f;
+#if !STEEP
+  s->slope = s->normal;
 #if !PHONG
   s->sloped = s->sloped && s->sums.extinction * s->part.length * s->path > THIN_DEPTH;
 #endif
   if (!(PHONG || (LIT && SHADOWED))) s->sloped = 0;
   if (s->sloped) s->slope = gradient_at(*volume, s->position);
+#endif
 #if PHONG
   vector slope = scaled(s->slope, magnitude(volume->plan->scale));
   float outward = density < 0.0f ? 1.0f : -1.0f, steepness = root(dot3(slope, slope));

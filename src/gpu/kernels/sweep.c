@@ -132,21 +132,21 @@ KERNEL(12) run_light(SWEEP_ARGUMENTS) {
   const float speed = speed_of_ray(in_index + first - 1, perspective, u, v);
   sheet_way way = no_sheets();
   for (int sheet = first - 1, step; sheet < end; sheet += step) {
-    int takes = 0;
+    int does = 0;
     step = 1;
     if (lit && sheet >= own_first - 1 && sheet < slabs.end) {
       step = fill_way(&sweep.volume, in_index + sheet, perspective, u, v, speed, sheet == own_first - 1,
                       &way);
       if ((way.before_shows || way.after_shows) && sheet >= own_first)
-        takes = attenuate_slab(&sweep, light, in_index + sheet, in_frame + sheet, &ray, way.before, way.after,
-                               &own);
+        does = attenuate_slab(&sweep, light, in_index + sheet, in_frame + sheet, &ray, way.before, way.after,
+                              &own);
     } else {
       step = !lit || sheet >= slabs.end ? end - sheet : own_first - 1 - sheet;
       way.after_known = way.after_shows = 0;
     }
-    if (takes) changed_at = sheet;
+    if (does == SLAB_TAKES) changed_at = sheet;
 #if OUTSIDE
-    if (block_any(votes, takes) && !takes) {
+    if (block_any(votes, does != 0) && does != SLAB_TAKES) {
       leave_surface(&own);
       changed_at = sheet;
     }

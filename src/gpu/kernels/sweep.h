@@ -242,6 +242,10 @@ DEVICE void shade_slot(const sweep_data *sweep, unsigned slot, int run_first) {
   at[3] = -1.0f;
   if (!(s.extinction > 0.0f)) return;
   place_slab(plan, rays, pixel.u, pixel.v, &s);
+#if STEEP
+  weigh_slab(plan, rays, pixel.u, pixel.v, volume, &s);
+  if (!(s.extinction > 0.0f)) return;
+#endif
   find_normal(volume, before + after, &s);
   vector lit = color_of_slab(plan, volume, sweep->planes, (sheet - 1) % plan->ring, &s);
   at[0] = lit.x;
@@ -282,7 +286,28 @@ typedef struct light_pixel {
   float passing[PLANES_OF_SHEET];
 } light_pixel;
 
-/* Multiplies the light by the transmittance of a slab. Returns whether the slab takes any light. */
+/* The factor by which gradient opacity multiplies a slab's extinction. It is found at the centre of gravity
+ * of the slab's matter. */
+DEVICE float factor_in_slab(const sweep_data *sweep, GLOBAL const plan_light *light,
+                            GLOBAL const plan_rays *in_frame, const ray_left *ray, covered_span part, float a,
+                            float b, const way_sums *sums) {
+  const way_means means = means_of_way(a, b, sums);
+  const float centre = fused(part.length, divided(means.from_a, means.from_a + means.from_b), part.begin);
+  const vector end = position_on(in_frame, !light->parallel, ray->u, ray->v);
+  const vector step = light->parallel
+                          ? vector_at(light->through)
+                          : scaled(direction_of(in_frame, ray->u, ray->v),
+                                   divided(sweep->plan->spacing, climb_of(in_frame, ray->u, ray->v)));
+  const vector point = add_scaled(end, step, centre - 1.0f);
+  return factor_of_slope(&sweep->volume, gradient_at(sweep->volume, point));
+}
+
+/* What a slab does to the light of a pixel. SLAB_HIDES: it takes no light, but matter that gradient opacity
+ * may hide ends the surfaces in the block. */
+#define SLAB_TAKES 1
+#define SLAB_HIDES (2 * STEEP)
+
+/* Multiplies the light by the transmittance of a slab. Returns 0, SLAB_TAKES or SLAB_HIDES. */
 DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *light,
                           GLOBAL const plan_rays *in_index, GLOBAL const plan_rays *in_frame,
                           const ray_left *ray, float before, float after, light_pixel *pixel) {
@@ -296,7 +321,11 @@ DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *ligh
 #endif
   const way_sums sums = sums_of_way(sweep->volume.tables, a, b);
   float extinction = sums.extinction * part.length, all = 0.0f;
-  if (!(extinction > 0.0f)) return 0;
+  if (!(extinction > 0.0f)) return SLAB_HIDES;
+#if STEEP
+  extinction = extinction * factor_in_slab(sweep, light, in_frame, ray, part, a.x, b.x, &sums);
+  if (!(extinction > 0.0f)) return SLAB_HIDES;
+#endif
   float path = path_through_sheet(in_frame, !light->parallel, light->slab_path, ray->u, ray->v);
 #if OUTSIDE
   const float skin = BOXED && volume->faces_take
@@ -314,7 +343,7 @@ DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *ligh
                                                 kept);
 #endif
   }
-  return all > 0.0f;
+  return all > 0.0f ? SLAB_TAKES : 0;
 }
 
 /* Ends surfaces in a pixel whose slab takes no light, where the slab takes light in other pixels of the
