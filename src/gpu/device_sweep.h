@@ -10,6 +10,7 @@
 #define PLAN_LIGHTS        16
 #define PLAN_KERNEL_POWERS 6
 #define PLAN_SECTORS       6
+#define PLAN_CODES         256
 
 /* The rays of pixels at one sheet: the members of sheet_rays (view/view.h), and the sheet's height above the
  * first one. */
@@ -103,7 +104,10 @@ typedef struct plan_volume {
   /* the transfer function's tables (grid/classifier.h) */
   float scale, offset, first_visible, last_visible, normal_edge;
   float steepness_scale; /* of gradient opacity */
-  int bends;             /* there is a table of bent colours */
+  /* the voxels' colours (voxel_colors in render/slab.h) */
+  int color_last[3];
+  float color_decode[PLAN_CODES];
+  int bends; /* there is a table of bent colours */
   int several_surfaces;
   float only_beginning;
   /* surfaces at the faces of the box and of cuts (shade_volume in render/slab.h) */
@@ -147,6 +151,7 @@ typedef struct plan_variant {
   int boxed;   /* the volume's box or a cut cuts visible matter */
   int cuts;    /* the volume has cuts */
   int steep;   /* the volume has gradient opacity */
+  int colored; /* the voxels have colours of their own */
   int back_to_front;
   int channels; /* number of channels of light attenuation: 1 or 3 */
 } plan_variant;

@@ -25,7 +25,7 @@ static const char *const kernel_names[KERNELS] = {"fill_floats",      "try_arith
                                                   "run_light",        "find_samples",   "shade_samples",
                                                   "composite_samples"};
 
-enum { MOST_VARIANTS = 64, VARIANT_DEFINES = 13, SAMPLE_COUNTERS = 256 };
+enum { MOST_VARIANTS = 64, VARIANT_DEFINES = 14, SAMPLE_COUNTERS = 256 };
 
 /* The buffers of a device. */
 enum buffer_use {
@@ -47,6 +47,7 @@ enum buffer_use {
   BUFFER_MASKS,
   BUFFER_CUTS,
   BUFFER_DIRECTORY,
+  BUFFER_COLORS,
   BUFFERS
 };
 
@@ -249,6 +250,11 @@ static bool upload_bricks(hl_gpu *gpu, const gpu_volume *volume) {
          reserve_and_upload(gpu, BUFFER_DIRECTORY, volume->directory, entries * sizeof *volume->directory);
 }
 
+static bool upload_colors(hl_gpu *gpu, const gpu_volume *volume) {
+  if (volume->colors == NULL) return reserve(gpu, BUFFER_COLORS, 0);
+  return reserve_and_upload(gpu, BUFFER_COLORS, volume->colors, volume->color_bytes);
+}
+
 static bool upload_tables(hl_gpu *gpu, const gpu_volume *volume) {
   size_t bricks = (size_t)volume->brick_count[0] * (size_t)volume->brick_count[1] *
                   (size_t)volume->brick_count[2];
@@ -274,7 +280,9 @@ static bool upload_tables(hl_gpu *gpu, const gpu_volume *volume) {
 bool hl_gpu_prepare(hl_gpu *gpu, const gpu_volume *volume) {
   if (gpu->version != volume->version) {
     gpu->version = gpu->tables_version = 0;
-    if (!(volume->directory != NULL ? upload_bricks(gpu, volume) : upload_voxels(gpu, volume))) return false;
+    if (!(volume->directory != NULL ? upload_bricks(gpu, volume) : upload_voxels(gpu, volume)) ||
+        !upload_colors(gpu, volume))
+      return false;
     gpu->version = volume->version;
   }
   if (gpu->tables_version != volume->tables_version) {
@@ -298,7 +306,7 @@ static void define_variant(const plan_variant *v, char defines[VARIANT_DEFINES][
       {"PHONG", v->phong},       {"LIT", v->lit},         {"SHADOWED", v->shadowed},
       {"OUTSIDE", v->outside},   {"BOXED", v->boxed},     {"BACK_TO_FRONT", v->back_to_front},
       {"CHANNELS", v->channels}, {"CUTS", v->cuts},       {"BRICKS", v->bricks},
-      {"STEEP", v->steep}};
+      {"STEEP", v->steep},       {"COLORED", v->colored}};
   for (int i = 0; i < VARIANT_DEFINES; i++)
     snprintf(defines[i], sizeof defines[i], "%s=%d", all[i].name, all[i].value);
 }
@@ -466,6 +474,7 @@ static bool launch_kernel(hl_gpu *gpu, const gpu_program *program, int kernel, s
                                     memory(gpu, BUFFER_MASKS),
                                     memory(gpu, BUFFER_CUTS),
                                     memory(gpu, BUFFER_DIRECTORY),
+                                    memory(gpu, BUFFER_COLORS),
                                     number(run.first),
                                     number(run.end),
                                     number(run.number)};

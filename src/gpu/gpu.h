@@ -38,8 +38,10 @@ typedef struct gpu_volume {
                                      * [slots][z][y][x] */
   const plan_brick *directory;      /* [z][y][x]; null: the volume is no field in bricks */
   const size_t *directory_size;     /* number of entries along x, y, z */
-  size_t slots, brick_width;        /* number of bricks, and of their coefficients along an axis */
-  int storage;                      /* as in plan_variant */
+  const unsigned char *colors;      /* [z][y][x][4]; null: the voxels have no colours */
+  size_t color_bytes;
+  size_t slots, brick_width; /* number of bricks, and of their coefficients along an axis */
+  int storage;               /* as in plan_variant */
   const int32_t *dimension, *brick_count;
   const unsigned char *relevant;           /* [bricks] */
   const uint64_t *cell_bits;               /* [bricks]; null: there are no bits */

@@ -8,6 +8,7 @@
 
 #include "grid/relevant.h"
 #include "render/view_sheets.h"
+#include "volume/colors.h"
 
 _Static_assert(PLAN_LIGHTS >= MAXIMUM_SWEEP_LIGHTS && PLAN_SECTORS == LIGHT_SECTORS &&
                    PLAN_ENTRIES == CLASSIFIER_ENTRIES && PLAN_ENTRIES == STEEPNESS_ENTRIES &&
@@ -45,7 +46,6 @@ static bool is_thin(const frame_plan *plan) {
   if (plan->volumes.grids[0].bricks != NULL) return false;
   return dimension[0] < 4 || dimension[1] < 4 || dimension[2] < 4;
 }
-static bool has_colors(const frame_plan *plan) { return volume_of(plan)->volume->colors != NULL; }
 static bool is_masked(const frame_plan *plan) { return volume_of(plan)->classifier->mask.factors != NULL; }
 static bool has_two_numbers(const frame_plan *plan) {
   return volume_of(plan)->classifier->plane.sums != NULL;
@@ -93,7 +93,6 @@ static const struct {
     {splats, "splatting in place of gathering"},
     {has_pages, "voxels outside of memory"},
     {is_thin, "a volume less than four voxels thick"},
-    {has_colors, "voxels with colours"},
     {is_masked, "a mask"},
     {has_two_numbers, "a function of two numbers"},
     {hides_cut_surfaces, "gradient opacity of cut surfaces that cast shadows"},
@@ -139,6 +138,11 @@ gpu_volume hl_volume_for_device(const frame_plan *plan) {
                      .outside = classifier->outside,
                      .bent = classifier->bent,
                      .steepness = classifier->steepness};
+  if (volume->volume->colors != NULL) {
+    made.colors = volume->volume->colors;
+    made.color_bytes = HL_COLOR_BYTES;
+    for (int axis = 0; axis < 3; axis++) made.color_bytes *= volume->volume->dimension[axis];
+  }
   if (grid->bricks != NULL) {
     made.voxels = grid->bricks->pool;
     made.directory = (const plan_brick *)(const void *)grid->bricks->directory;
@@ -190,6 +194,12 @@ static void plan_matter(const shade_volume *shade, plan_volume *volume) {
                        (shade->any_face || shade->light_cut_count > 0);
   volume->cut_shading = shade->cut_shading;
   for (int face = 0; face < 6; face++) volume->face_cuts[face] = shade->face_cuts[face / 2][face % 2];
+}
+
+static void plan_colors(const shade_volume *shade, plan_volume *volume) {
+  if (shade->colors.voxels == NULL) return;
+  memcpy(volume->color_last, shade->colors.last, sizeof volume->color_last);
+  memcpy(volume->color_decode, shade->colors.decode, sizeof volume->color_decode);
 }
 
 static void plan_material(const shade_volume *shade, const frame_volume *of, plan_volume *volume) {
@@ -465,6 +475,7 @@ static plan_variant variant_of(const sweep_task *task, const device_sweep *plan)
                         .outside = keeps_outside(task),
                         .boxed = grid->cut,
                         .cuts = shade->cut_count > 0,
+                        .colored = shade->colors.voxels != NULL,
                         .steep = shade->classifier->steepness != NULL,
                         .back_to_front = task->plan->geometry->back_to_front,
                         .channels = task->frame_plan->channels};
@@ -506,6 +517,7 @@ hl_status hl_plan_sweep(hl_context *context, const frame_plan *frame_plan, const
   memcpy(plan->ambient, job->ambient, sizeof plan->ambient);
   plan->emission = job->emission;
   plan_matter(shade, &plan->volume);
+  plan_colors(shade, &plan->volume);
   plan_material(shade, &frame_plan->volumes.list[0], &plan->volume);
   const gpu_volume volume = hl_volume_for_device(frame_plan);
   plan->volume.row_bytes = (unsigned)hl_gpu_row_bytes(&volume);

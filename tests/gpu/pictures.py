@@ -4,6 +4,7 @@ not make.
 
 usage: pictures.py PROGRAM
 """
+import itertools
 import json
 import os
 import pathlib
@@ -86,6 +87,7 @@ MADE = {
     "gradient opacity, surfaces": scene(opacity=LAYERS, shading="phong", function=STEEP),
     "gradient opacity, cuts, light from behind": scene(function=STEEP, direction=(0.2, -0.3, -0.9),
                                                        volume={"cuts": [BALL, plane(1, 0.4, -0.2)]}),
+    "coloured voxels": scene(opacity=[[20, 0], [200, 0.3]], volume={"file": "colors.nrrd"}),
     "near light, colours, flat view": scene(light={"type": "point", "position": [40, 50, -50]}, camera=FLAT,
                                             volume={"attenuation_color": [1, 0.5, 0.2]}),
 }
@@ -127,6 +129,18 @@ def write_grains(path):
     path.write_text("\n".join(rows) + "\n")
 
 
+def write_colors(path):
+    """Bytes of red, green, blue and opacity, drawn voxel by voxel and smooth in places."""
+    draw, size = random.Random(6), (20, 18, 16)
+    voxels = bytearray()
+    for z, y, x in itertools.product(range(size[2]), range(size[1]), range(size[0])):
+        inside = max(0, 90 - (x - 9) ** 2 - (y - 9) ** 2 - (z - 8) ** 2) * 2
+        voxels += bytes((12 * x, 13 * y, draw.randrange(256), inside + draw.randrange(40) if inside else 0))
+    header = ("NRRD0004\ntype: uint8\ndimension: 4\nsizes: 4 %d %d %d\nkinds: RGBA-color space space space\n"
+              "encoding: raw\n\n" % size)
+    path.write_bytes(header.encode() + voxels)
+
+
 def picture(folder, name, device):
     done = run(folder, "render", f"{name}.json", "--device", device, "-o", f"{device}.npy", "--json")
     assert done.returncode == 0, f"{name}: {done.stderr}"
@@ -151,6 +165,7 @@ def main():
         done = run(folder, "make", "cloud", "--size", 32, "-o", "cloud.nrrd", "--quiet")
         assert done.returncode == 0, done.stderr
         write_grains(folder / "grains.csv")
+        write_colors(folder / "colors.nrrd")
         nowhere = folder / "nowhere.json"
         nowhere.write_text(json.dumps(scene()))
         done = run(folder, "render", nowhere, "--device", "no such device", "-o", "n.npy", "--json")

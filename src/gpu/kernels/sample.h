@@ -20,6 +20,7 @@ typedef struct volume_data {
                                        * FARTHEST_BRICK */
   GLOBAL const wide *cell_bits;       /* [bricks z][y][x]; read only where plan->has_cell_bits */
   GLOBAL const float *tables;
+  GLOBAL const byte *colors;   /* [z][y][x][4]; read only where the voxels have colours */
   GLOBAL const plan_cut *cuts; /* [views][cut_count]; the eye's view comes first */
 } volume_data;
 

@@ -127,6 +127,37 @@ DEVICE vector color_of_way(const volume_data *volume, const slab_sample *s) {
                    greater((at_to[2] - at_from[2]) * inverse, 0.0f));
 }
 
+/* The mean colour of the eight voxels around a position, as voxel_color_at() in render/voxel_color_lanes.h.
+ */
+DEVICE vector voxel_color_at(const volume_data *volume, vector position) {
+  GLOBAL const plan_volume *plan = volume->plan;
+  int first[3], next[3];
+  float part[3], sum[3] = {0.0f, 0.0f, 0.0f}, all = 0.0f;
+  for (int a = 0; a < 3; a++) {
+    const float at = limited(row_of_point(plan->to_index[a], position), 0.0f, (float)plan->color_last[a]);
+    first[a] = (int)at;
+    next[a] = first[a] + 1 > plan->color_last[a] ? plan->color_last[a] : first[a] + 1;
+    part[a] = at - (float)first[a];
+  }
+  for (int corner = 0; corner < 8; corner++) {
+    int at[3];
+    float share = 1.0f;
+    for (int a = 0; a < 3; a++) {
+      const int is_far = corner >> a & 1;
+      at[a] = is_far ? next[a] : first[a];
+      share = share * (is_far ? part[a] : 1.0f - part[a]);
+    }
+    const wide row = (wide)(unsigned)at[2] * (unsigned)(plan->color_last[1] + 1) + (unsigned)at[1];
+    GLOBAL const byte *codes = volume->colors +
+                               (row * (unsigned)(plan->color_last[0] + 1) + (unsigned)at[0]) * 4;
+    const float weight = share * (float)codes[3];
+    all = all + weight;
+    for (int c = 0; c < 3; c++) sum[c] = fused(weight, plan->color_decode[codes[c]], sum[c]);
+  }
+  all = greater(all, 1e-6f);
+  return vector_of(divided(sum[0], all), divided(sum[1], all), divided(sum[2], all));
+}
+
 /* ---- lights ---- */
 
 /* Henyey and Greenstein's phase function times 4 pi. turn: minus the cosine of the angle between the light's
@@ -254,6 +285,10 @@ DEVICE vector color_of_slab(GLOBAL const device_sweep *plan, const volume_data *
                             GLOBAL const float *planes, int slot, const slab_sample *s) {
   GLOBAL const plan_volume *matter = volume->plan;
   vector color = color_of_way(volume, s);
+#if COLORED
+  const vector of_voxels = voxel_color_at(volume, s->position);
+  color = vector_of(color.x * of_voxels.x, color.y * of_voxels.y, color.z * of_voxels.z);
+#endif
   float own = matter->emission * plan->emission;
   vector lit = vector_of(color.x * (matter->ambient * plan->ambient[0] + own),
                          color.y * (matter->ambient * plan->ambient[1] + own),

@@ -55,7 +55,7 @@ spread_distances(GLOBAL const byte *from, GLOBAL byte *to, unsigned x, unsigned 
       GLOBAL float *APART planes, GLOBAL float *APART light_state, GLOBAL int *APART changed,           \
       GLOBAL const int *APART shown_from, GLOBAL unsigned *APART counts, GLOBAL float *APART slots,     \
       GLOBAL unsigned *APART list, GLOBAL unsigned *APART masks, GLOBAL const plan_cut *APART cuts,     \
-      GLOBAL const plan_brick *APART directory, int first, int end, int run
+      GLOBAL const plan_brick *APART directory, GLOBAL const byte *APART colors, int first, int end, int run
 
 DEVICE sweep_data sweep_of(SWEEP_ARGUMENTS) {
   sweep_data sweep;
@@ -68,6 +68,7 @@ DEVICE sweep_data sweep_of(SWEEP_ARGUMENTS) {
   sweep.volume.tables = tables;
   sweep.volume.cuts = cuts;
   sweep.volume.directory = directory;
+  sweep.volume.colors = colors;
   sweep.pixels = pixels;
   sweep.planes = planes;
   sweep.light = light_state;
@@ -85,7 +86,7 @@ DEVICE sweep_data sweep_of(SWEEP_ARGUMENTS) {
 
 #define SWEEP_OF_ARGUMENTS                                                                         \
   sweep_of(plan, rays, voxels, distances, cell_bits, tables, pixels, planes, light_state, changed, \
-           shown_from, counts, slots, list, masks, cuts, directory, first, end, run)
+           shown_from, counts, slots, list, masks, cuts, directory, colors, first, end, run)
 
 /* Lists the samples that the picture's pixels may see in slabs first to end - 1. */
 KERNEL(16) find_samples(SWEEP_ARGUMENTS) {
