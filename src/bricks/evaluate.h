@@ -31,7 +31,8 @@ static inline const float *hl_brick_pool(const hl_bricks *bricks, int32_t slot) 
 
 /* The coefficients of level 0 of the lattice points first .. first + count - 1: values,
  * [count[2]][count[1]][count[0]], each of them a number of 32 bits. */
-void hl_bricks_window(const hl_bricks *bricks, const int64_t first[3], const int64_t count[3], double *values);
+void hl_bricks_window(const hl_bricks *bricks, const int64_t first[3], const int64_t count[3],
+                      double *values);
 
 /* The coefficient of level 0 of one lattice point. */
 float hl_bricks_coefficient(const hl_bricks *bricks, const int64_t point[3]);
