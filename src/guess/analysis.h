@@ -43,8 +43,8 @@ typedef struct hl_data_analysis {
   double cliffs;      /* fraction of the steps between the background's exact value and other values that are
                        * cliffs: at least half as high as matter */
   double cut_off; /* fraction of the grid's border that lies beyond solid: matter that the grid cuts off */
-  double grain;   /* how far noise moves the surface of scanned objects to and fro: standard deviation,
-                   * voxel edges */
+  double grain;   /* how far noise moves the surface of scanned objects to and fro: standard deviation, voxel
+                   * edges; 0 in data that are noise throughout, where no surface is */
   double filled;  /* fraction of the voxels beyond solid */
   double middle;  /* the commonest data value */
   double lower, upper; /* how far values lie below and above the middle at most, apart from a few voxels */

@@ -37,8 +37,8 @@ double hl_smoothing_for(const hl_volume *volume, const char *file, const hl_data
   if (volume->voxels == NULL || volume->colors != NULL || hl_data_is_label_map(volume, analysis) ||
       atomic_load(&volume->smoothing_chosen))
     return 0;
-  const bool terraces = hl_is_body(volume, file, analysis) && slice_thickness(volume) >= THICK_SLICES;
-  return terraces || analysis->cliffs >= HL_CUT_OUT || analysis->grain >= GRAINY ? SIGMA : 0;
+  const bool stairs = analysis->cliffs >= HL_CUT_OUT || slice_thickness(volume) >= THICK_SLICES;
+  return (stairs && hl_is_body(volume, file, analysis)) || analysis->grain >= GRAINY ? SIGMA : 0;
 }
 
 double hl_volume_smoothing(const hl_volume *volume) {
