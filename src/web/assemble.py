@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Makes the page without a server of its scripts and of the library as WebAssembly.
 
-usage: assemble.py SIMD.wasm RELAXED.wasm THREADS.wasm FOLDER
-Writes FOLDER/page/, static files for any web server, and FOLDER/halflight.html, all of it in one file, which opens from a disk.
+usage: assemble.py LIBRARIES FOLDER
+LIBRARIES is the folder with the WebAssembly files. Writes FOLDER/page/, static files for any web server, and FOLDER/halflight.html, all of it in one file, which opens from a disk.
 """
 import base64
 import gzip
@@ -50,13 +50,13 @@ def element(name, content):
     return f'<script type="text/plain" data-part="{name}">{packed}</script>'
 
 
-simd, relaxed, threads, folder = (pathlib.Path(one) for one in sys.argv[1:])
-parts = {"worker.js": joined("worker").encode(), "halflight.wasm": simd.read_bytes(), "halflight-relaxed.wasm": relaxed.read_bytes()}
+libraries, folder = (pathlib.Path(one) for one in sys.argv[1:])
+parts = {"worker.js": joined("worker").encode(), **{name: (libraries / name).read_bytes() for name in ("halflight.wasm", "halflight-relaxed.wasm")}}
 style, script = read("style.css") + read("tab.css"), joined("tab")
 icon = "data:image/svg+xml," + urllib.parse.quote(read("icon.svg"))
 page = folder / "page"
 page.mkdir(parents=True, exist_ok=True)
-for name, content in {**parts, "halflight-threads.wasm": threads.read_bytes(), "style.css": style.encode(), "tab.js": script.encode()}.items():
+for name, content in {**parts, "halflight-threads.wasm": (libraries / "halflight-threads.wasm").read_bytes(), "style.css": style.encode(), "tab.js": script.encode()}.items():
     (page / name).write_bytes(content)
 (page / "index.html").write_text(PAGE.format(icon=icon, style='<link rel="stylesheet" href="style.css">', script='<script type="module" src="tab.js"></script>'))
 single = PAGE.format(icon=icon, style=f"<style>{style}</style>",
