@@ -1,0 +1,27 @@
+"""Files of volumes that the tests of devices make: particles, and voxels with colours."""
+import itertools
+import random
+
+
+def write_grains(path):
+    """Particles of two sizes with empty places between them: a field at two levels or more."""
+    draw = random.Random(4)
+    rows = ["x,y,z,mass,h"]
+    for _ in range(260):
+        rows.append(",".join(f"{x:.4f}" for x in (draw.gauss(-9, 3), draw.gauss(-6, 3), draw.gauss(-7, 3), 1, draw.uniform(1, 1.6))))
+    for _ in range(30):
+        place = draw.uniform(-20, 40), draw.uniform(-20, 30), draw.uniform(-20, 30)
+        rows.append(",".join(f"{x:.4f}" for x in (*place, 6, draw.uniform(3.5, 7))))
+    path.write_text("\n".join(rows) + "\n")
+
+
+def write_colors(path):
+    """Bytes of red, green, blue and opacity: a ball with blue noise in it."""
+    draw, size = random.Random(6), (20, 18, 16)
+    voxels = bytearray()
+    for z, y, x in itertools.product(range(size[2]), range(size[1]), range(size[0])):
+        inside = max(0, 90 - (x - 9) ** 2 - (y - 9) ** 2 - (z - 8) ** 2) * 2
+        voxels += bytes((12 * x, 13 * y, draw.randrange(256), inside + draw.randrange(40) if inside else 0))
+    header = ("NRRD0004\ntype: uint8\ndimension: 4\nsizes: 4 %d %d %d\nkinds: RGBA-color space space space\n"
+              "encoding: raw\n\n" % size)
+    path.write_bytes(header.encode() + voxels)
