@@ -216,14 +216,22 @@ size_t hl_gpu_row_bytes(const gpu_volume *volume) {
 }
 
 /* The bytes that kernels may read behind the last voxel. */
-enum { READ_BEHIND = 16, STAGE_BYTES = 16 << 20 };
+enum { READ_BEHIND = 16, STAGE_BYTES = 1 << 20 };
+
+/* Copies a row of the volume's voxels. number: counted through all slices. */
+static void load_row(const gpu_volume *volume, size_t number, size_t packed, unsigned char *row) {
+  const size_t rows = (size_t)volume->dimension[1];
+  if (volume->load_row != NULL) volume->load_row(volume->pages, number % rows, number / rows, row);
+  else memcpy(row, (const unsigned char *)volume->voxels + number * packed, packed);
+}
 
 static bool upload_voxels(hl_gpu *gpu, const gpu_volume *volume) {
   const size_t packed = (size_t)volume->dimension[0] * storage_bytes(volume->storage),
                row = hl_gpu_row_bytes(volume),
                rows = (size_t)volume->dimension[1] * (size_t)volume->dimension[2];
   if (!reserve(gpu, BUFFER_VOXELS, rows * row + READ_BEHIND)) return false;
-  if (packed == row) return upload(gpu, BUFFER_VOXELS, 0, volume->voxels, rows * row);
+  if (packed == row && volume->load_row == NULL)
+    return upload(gpu, BUFFER_VOXELS, 0, volume->voxels, rows * row);
   const size_t at_once = STAGE_BYTES / row + 1;
   unsigned char *stage = hl_allocate_zeroed(gpu->context, at_once, row);
   if (stage == NULL)
@@ -231,8 +239,7 @@ static bool upload_voxels(hl_gpu *gpu, const gpu_volume *volume) {
   bool done = true;
   for (size_t first = 0; first < rows && done; first += at_once) {
     size_t count = rows - first < at_once ? rows - first : at_once;
-    for (size_t i = 0; i < count; i++)
-      memcpy(stage + i * row, (const unsigned char *)volume->voxels + (first + i) * packed, packed);
+    for (size_t i = 0; i < count; i++) load_row(volume, first + i, packed, stage + i * row);
     done = upload(gpu, BUFFER_VOXELS, first * row, stage, count * row);
   }
   hl_release(gpu->context, stage);

@@ -36,9 +36,12 @@ typedef struct gpu_volume {
                                      * transfer function */
   const void *voxels;               /* [z][y][x], rows packed; or, for a field in bricks, the coefficients
                                      * [slots][z][y][x] */
-  const plan_brick *directory;      /* [z][y][x]; null: the volume is no field in bricks */
-  const size_t *directory_size;     /* number of entries along x, y, z */
-  const unsigned char *colors;      /* [z][y][x][4]; null: the voxels have no colours */
+  /* For a volume whose voxels are not in memory: copies a row of `pages`; else null. */
+  void (*load_row)(const void *pages, size_t y, size_t z, void *row);
+  const void *pages;
+  const plan_brick *directory;  /* [z][y][x]; null: the volume is no field in bricks */
+  const size_t *directory_size; /* number of entries along x, y, z */
+  const unsigned char *colors;  /* [z][y][x][4]; null: the voxels have no colours */
   size_t color_bytes;
   size_t slots, brick_width; /* number of bricks, and of their coefficients along an axis */
   int storage;               /* as in plan_variant */

@@ -40,7 +40,9 @@ static bool has_surfaces(const frame_plan *plan) { return plan->frame.surfaces !
 static bool has_sky(const frame_plan *plan) { return plan->fields.sky != NULL; }
 static bool scatters(const frame_plan *plan) { return plan->fields.scatters; }
 static bool splats(const frame_plan *plan) { return plan->volumes.splat; }
-static bool has_pages(const frame_plan *plan) { return plan->volumes.grids[0].pages != NULL; }
+static bool is_over_ranks(const frame_plan *plan) {
+  return plan->volumes.grids[0].pages != NULL && plan->volumes.grids[0].pages->blocks != NULL;
+}
 static bool is_thin(const frame_plan *plan) {
   const int32_t *dimension = plan->volumes.grids[0].dimension;
   if (plan->volumes.grids[0].bricks != NULL) return false;
@@ -91,7 +93,7 @@ static const struct {
     {has_sky, "the light of a sky"},
     {scatters, "multiple scattering"},
     {splats, "splatting in place of gathering"},
-    {has_pages, "voxels outside of memory"},
+    {is_over_ranks, "voxels of several processes"},
     {is_thin, "a volume less than four voxels thick"},
     {is_masked, "a mask"},
     {has_two_numbers, "a function of two numbers"},
@@ -120,6 +122,10 @@ static const uint64_t *bits_of_cells(const grid *grid) {
   return grid->cell_bits_tell ? grid->cell_bits : NULL;
 }
 
+static void load_row(const void *pages, size_t y, size_t z, void *row) {
+  hl_pages_load_row(pages, y, z, row);
+}
+
 gpu_volume hl_volume_for_device(const frame_plan *plan) {
   const frame_volume *volume = &plan->volumes.list[0];
   const grid *grid = &plan->volumes.grids[0];
@@ -138,6 +144,10 @@ gpu_volume hl_volume_for_device(const frame_plan *plan) {
                      .outside = classifier->outside,
                      .bent = classifier->bent,
                      .steepness = classifier->steepness};
+  if (grid->pages != NULL) {
+    made.pages = grid->pages;
+    made.load_row = load_row;
+  }
   if (volume->volume->colors != NULL) {
     made.colors = volume->volume->colors;
     made.color_bytes = HL_COLOR_BYTES;

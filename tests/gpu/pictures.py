@@ -92,6 +92,8 @@ MADE = {
     "near light, colours, flat view": scene(light={"type": "point", "position": [40, 50, -50]}, camera=FLAT,
                                             volume={"attenuation_color": [1, 0.5, 0.2]}),
 }
+LARGE = scene(volume={"file": "large.nrrd"}, render={"sheet_spacing": 4},
+              camera={"type": "perspective", "position": [380, 250, -680], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 30})
 LEFT = {
     "soft shadows": scene(shadows="soft", light={"type": "directional", "direction": [0.4, -0.7, 0.5],
                                                  "angular_diameter_deg": 7}),
@@ -118,16 +120,16 @@ def drawn(seed):
                  render={"slabs_at_once": draw.choice((0, 4, 9))})
 
 
-def picture(folder, name, device):
-    done = run(folder, "render", f"{name}.json", "--device", device, "-o", f"{device}.npy", "--json")
+def picture(folder, name, device, *options):
+    done = run(folder, "render", f"{name}.json", "--device", device, "-o", f"{device}.npy", "--json", *options)
     assert done.returncode == 0, f"{name}: {done.stderr}"
     return (folder / f"{device}.npy").read_bytes(), json.loads(done.stdout)
 
 
-def hold(folder, name, description):
+def hold(folder, name, description, *options):
     (folder / f"{name}.json").write_text(json.dumps(description))
     own, _ = picture(folder, name, "cpu")
-    other, report = picture(folder, name, "opencl")
+    other, report = picture(folder, name, "opencl", *options)
     assert own == other, f"{name}: the device makes another picture than the processors"
     return report
 
@@ -155,6 +157,10 @@ def main():
         for name, description in MADE.items():
             report = hold(folder, name, description)
             assert report["device"] != "cpu" and report["samples_shaded"] > 1000, f"{name}: {report}"
+        done = run(folder, "make", "cloud", "--size", 400, "-o", "large.nrrd", "--quiet")
+        assert done.returncode == 0, done.stderr
+        report = hold(folder, "larger than memory", LARGE, "--max-memory", "85M", "--threads", 2)
+        assert report["device"] != "cpu", report
         for seed in range(4):
             hold(folder, f"drawn-{seed}", drawn(seed))
         for reason, description in LEFT.items():
