@@ -1,4 +1,4 @@
-"""Files of volumes that the tests of devices make: particles, and voxels with colours."""
+"""Files of volumes that the tests of devices make: particles, voxels with colours, labels."""
 import itertools
 import random
 
@@ -24,4 +24,14 @@ def write_colors(path):
         voxels += bytes((12 * x, 13 * y, draw.randrange(256), inside + draw.randrange(40) if inside else 0))
     header = ("NRRD0004\ntype: uint8\ndimension: 4\nsizes: 4 %d %d %d\nkinds: RGBA-color space space space\n"
               "encoding: raw\n\n" % size)
+    path.write_bytes(header.encode() + voxels)
+
+
+def write_labels(path):
+    """Two balls that touch, with the numbers 1 and 2."""
+    size = 24
+    voxels = bytes(1 if (x - 8) ** 2 + (y - 12) ** 2 + (z - 12) ** 2 < 30 else
+                   2 if (x - 16) ** 2 + (y - 12) ** 2 + (z - 11) ** 2 < 25 else 0
+                   for z, y, x in itertools.product(range(size), repeat=3))
+    header = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: %d %d %d\nencoding: raw\n\n" % (size, size, size)
     path.write_bytes(header.encode() + voxels)

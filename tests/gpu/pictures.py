@@ -92,6 +92,9 @@ MADE = {
     "near light, colours, flat view": scene(light={"type": "point", "position": [40, 50, -50]}, camera=FLAT,
                                             volume={"attenuation_color": [1, 0.5, 0.2]}),
 }
+LABELS = scene(shading="phong")
+LABELS["volumes"] = [{"file": "labels.nrrd", "labels": [{"value": 1, "color": [0.8, 0.2, 0.1]}, {"value": 2, "color": [0.1, 0.4, 0.8]}]}]
+MADE["labels"] = LABELS
 LARGE = scene(volume={"file": "large.nrrd"}, render={"sheet_spacing": 4},
               camera={"type": "perspective", "position": [380, 250, -680], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 30})
 LEFT = {
@@ -145,6 +148,7 @@ def main():
         assert done.returncode == 0, done.stderr
         made_volumes.write_grains(folder / "grains.csv")
         made_volumes.write_colors(folder / "colors.nrrd")
+        made_volumes.write_labels(folder / "labels.nrrd")
         nowhere = folder / "nowhere.json"
         nowhere.write_text(json.dumps(scene()))
         done = run(folder, "render", nowhere, "--device", "no such device", "-o", "n.npy", "--json")
