@@ -1,12 +1,12 @@
 /* bricks/cells.h - meshes of cells with a volume (tetrahedra, hexahedra, and wedges and pyramids as collapsed
- * hexahedra), as a field at levels.
+ * hexahedra), sampled to bricks of coefficients at several spacings.
  *
  * Within a cell, values are interpolated between its corners: linearly in tetrahedra, trilinearly in other
  * cells. The field's coefficients are these values at lattice points, whose spacing is about half of a cell's
  * edge, so that small cells get finer bricks. Outside of all cells the field is NaN.
  *
  * In:  points, their values, and cells by their corners (readers of files, arrays of callers). Out:
- * hl_bricks, the place of their lattice in the world, and the greatest difference between the field and the
+ * hl_bricks, the map from their lattice to the world, and the greatest difference between the field and the
  * mesh's values. */
 #ifndef HL_BRICKS_CELLS_H
 #define HL_BRICKS_CELLS_H

@@ -62,7 +62,8 @@ static hl_bricks_choice choose(void *data, int level, const size_t brick[3]) {
   return outside ? HL_BRICKS_NOTHING : finer ? HL_BRICKS_SPLIT : HL_BRICKS_LEAF;
 }
 
-/* The first constant of the directory. Where there is one, it is the number around the field. */
+/* The field's value outside of its bricks: the constant of the first entry of the directory that has no
+ * brick; 0 if all entries have bricks. */
 static float number_outside(const hl_bricks *bricks) {
   const size_t *n = bricks->directory_size;
   for (size_t at = 0; at < n[0] * n[1] * n[2]; at++)

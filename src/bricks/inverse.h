@@ -29,8 +29,8 @@ typedef struct hl_cell_affine {
                        * middle */
 } hl_cell_affine;
 
-/* Finds the affine functions of a shape that hl_cell_shape_ready() has completed. values: the values at the
- * shape's corners. */
+/* Fits the affine functions of hl_cell_affine to a cell. The shape must have been completed by
+ * hl_cell_shape_ready(). values: the values at the cell's corners. */
 void hl_cell_affine_of(const hl_cell_shape *shape, const double values[8], hl_cell_affine *affine);
 
 /* The volume of a cell. For a hexahedron it is estimated by the determinant of the map's derivative in its

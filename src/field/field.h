@@ -133,8 +133,8 @@ typedef struct sky_slice {
   const unsigned char *cut; /* [rows][stride / FIELD_LANES]; null: there are no surfaces */
   unsigned char cut_here;   /* LINKS_BEFORE or LINKS_AFTER: the side from which the light comes through
                              * links */
-  const unsigned char *taken[FIELD_LINKS]; /* [rows + 2][light_stride]; the part of a link's light that
-                                            * surfaces take, in 255ths */
+  const unsigned char *taken[FIELD_LINKS]; /* [rows + 2][light_stride]; the part, in 255ths, that surfaces
+                                            * absorb of the light that goes along a link between cells */
 } sky_slice;
 
 /* Moves the light of all directions to the next slice, in one row, and adds it to those cells near which

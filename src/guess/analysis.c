@@ -353,7 +353,8 @@ static hl_status analyse(const hl_volume *volume, hl_data_analysis *analysis, hl
   return may_be_labels ? hl_data_find_labels(volume, analysis, error) : status;
 }
 
-/* Keeps a copy with the volume. A volume is constant for its readers; findings about it may be added. */
+/* Keeps a copy of the analysis with the volume. The volume is constant for its readers, but its analysis may
+ * be added once. */
 hl_status hl_data_keep(const hl_volume *volume, const hl_data_analysis *analysis, hl_error *error) {
   hl_data_analysis *kept = hl_allocate(volume->context, 1, sizeof *kept), *before = NULL;
   if (kept == NULL) return hl_fail_memory(error, sizeof *kept, "the analysis of a volume");

@@ -15,10 +15,10 @@
 #define OBJECT_DEPTH 0.95 /* least fraction of the visible cells' optical depth that must belong to it */
 /* Least number of cells of a body, as a fraction of the object's cells; smaller bodies are specks. */
 #define LEAST         0.005
-#define LONG          0.5   /* least length of a holder, as a fraction of the object's length */
+#define LONG          0.5 /* least length of a holder (a table, a head rest), as a fraction of the object's length */
 #define THIN          0.25  /* greatest thickness of a holder, as a fraction of its length */
 #define DENSEST       0.9   /* quantile of the object's matter that counts as dense */
-#define DENSE_AT_MOST 0.005 /* greatest fraction of a holder that is as dense */
+#define DENSE_AT_MOST 0.005 /* greatest fraction of a holder that is as dense as DENSEST */
 #define RIM           1.0   /* cells from the centres of the object's outermost cells to a plane */
 /* The least number of cells from a plane to the centres of a holder's cells, which then lie wholly beyond
  * the plane. */

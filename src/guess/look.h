@@ -11,8 +11,8 @@ typedef struct hl_look {
   hl_kernel kernel;
   double key, fill, sky; /* intensities of the light with shadows, of the light without shadows, and of the
                           * sky */
-  double left;           /* fraction of the light of lights with shadows that reaches surfaces, for
-                          * hl_scene_exposure(); 0: lights are not scaled by an exposure */
+  double left;           /* the part of the light of shadow-casting lights that reaches surfaces, for
+                          * hl_scene_exposure(); 0: exposure leaves the lights as they are */
   bool on_black;         /* the background of a bare volume is black */
   const char *next;      /* the style that is next best for such data */
 } hl_look;

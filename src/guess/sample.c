@@ -186,8 +186,9 @@ static double mixed_difference(const hl_volume *volume, size_t i, size_t j, size
 
 hl_status hl_noise(const hl_volume *volume, const hl_sample *sample, double from, double direction,
                    double *noise, hl_error *error) {
-  /* In white noise of standard deviation 1, the difference has the standard deviation sqrt((1 + 4 + 1)^3),
-   * and its absolute value has the median 0.6745 times this. */
+  /* Derived: in white noise of standard deviation 1, the second difference along all three axes has weights
+   * 1, -2, 1 along each of them, and so the standard deviation sqrt((1 + 4 + 1)^3). The median of its
+   * absolute value is 0.6745 times this deviation. */
   static const double scale = 14.6969 * 0.6745, places = 20000;
   const size_t *n = volume->dimension, step = hl_lattice_step(n, places);
   size_t count = 0, capacity = steps_in(n[0], step) * steps_in(n[1], step) * steps_in(n[2], step);

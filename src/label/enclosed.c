@@ -42,8 +42,8 @@ static void find_window(const label_field *field, size_t x, size_t y, size_t z,
     }
 }
 
-/* Marks the voxels of a row that the surface may cross. room: space for a row and two values. Returns how
- * many of the unmarked voxels are above the level. */
+/* Marks the voxels of a row that the surface may cross. Returns how many of the voxels that stay unmarked are
+ * above the level. room: scratch memory, [voxels of the row + 2]. */
 static int32_t find_crossed(const label_enclosed *enclosed, size_t y, size_t z, float *room, float *crossed) {
   const label_field *field = enclosed->field;
   const size_t nx = field->size[0], ny = field->size[1], nz = field->size[2], slice = nx * ny;

@@ -31,15 +31,17 @@ static double s_of(double g, double cosine) {
 
 static double cosine_of(double g, double s) { return fmin(fmax((1 + g * g - s * s) / (2 * g), -1), 1); }
 
-/* The mean of p over a cap of least cosine c (below 1). T is the angle between the cap's middle and the
- * direction in which light goes straight on, and `towards` is the cosine of T.
+/* The mean of the phase function p over a cap of directions, which are within acos(c) of the cap's middle (c
+ * is below 1). T is the angle between the cap's middle and the direction in which light goes straight on, and
+ * `towards` is the cosine of T.
  *
  * Derived: all directions at one angle t from straight on form a ring, on which p has one value. The cap
  * holds a fraction f(t) of the ring: all, nothing, or acos((c - cos t cos T) / (sin t sin T)) / pi.
- * With x = 1 / s, p sin t dt = (1 - g^2) / g dx.
+ * With s^2 = 1 + g^2 - 2 g cos t
+ * and x = 1 / s, p sin t dt = -(1 - g^2) / g dx.
  *
- * The mean is therefore the integral of f dx times (1 - g^2) / (g (1 - c)). Where f is not constant, x = m +
- * h cos(u) removes the square roots at both ends. */
+ * The mean is therefore the integral of f dx times (1 - g^2) / (g (1 - c)). Where f is not constant, x
+ * goes from m - h to m + h, and x = m + h cos(u) removes the square roots at both ends. */
 static double mean_over_cap(double g, double c, double towards, const ring_places *rings) {
   double turn = acos(towards), half = acos(c), sine = sin(turn);
   double nearest = fabs(turn - half), farthest = fmin(turn + half, 2 * HL_PI - turn - half);

@@ -9,9 +9,9 @@
 enum {
   BINS_OF_OCTAVE = 8,
   OCTAVES = 320, /* floats have exponents from -149 to 128 */
-  /* The least number of cells of the coarsest level along the longest axis. So the box, which is at least a
-   * quarter as long along each axis that is not periodic (see PART_OF_EXTENT), has at least four of them
-   * there, and kernels find points within their margin (levels.h). */
+  /* The least number of cells of the coarsest level along the longest axis. The box is at least a quarter as
+   * long along every axis that is not periodic (see PART_OF_EXTENT). So it has at least four cells along
+   * these axes, which kernels need for their margin (levels.h). */
   LEAST_CELLS = 16,
   /* the lattice extends beyond the outermost places by the reach of a kernel of middling size, and at most
    * by the longest extent divided by this number */

@@ -1,5 +1,5 @@
-/* reference/cuts.c - whether points of a volume or a mesh are left by cuts. A cut is given in the world of
- * the volume's file, or in the scene's world, and points are tested there.
+/* reference/cuts.c - whether a point of a volume or a mesh remains after the cuts. A cut is given in the
+ * world of the volume's file, or in the scene's world. A point is brought to the cut's world for the test.
  *
  * A point's height over a cut's face, in that world's units, is above 0 outside of the cut's shape. */
 #include "reference/reference.h"

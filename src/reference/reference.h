@@ -85,7 +85,7 @@ typedef struct reference_light {
   const hl_light_texture *texture;   /* null if absent */
   const hl_light_emission *emission; /* emission image; null if absent */
   double mean[3];                    /* mean of the emission image over the light's surface */
-  vec3 *points;                      /* owned; null where the light casts no shadows; not set for spheres */
+  vec3 *points;                      /* owned; null for lights without shadows and for spheres */
   size_t point_count;
   vec3 *extent; /* owned; [EXTENT_POINTS], positions in the world; null for parallel light or a point */
   double cap;   /* for a parallel light: cosine of half its angular diameter */

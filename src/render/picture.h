@@ -12,7 +12,7 @@ typedef struct picture {
   const float *tiles; /* [sweeps][tiles_of_sweep][16][4][16]; R G B A, premultiplied, linear */
   int sweeps;
   size_t tiles_x, tiles_of_sweep;
-  int oversampling;  /* number of the frame's pixels along a side of a pixel of the picture */
+  int oversampling;  /* a pixel of the picture is the mean of this number of frame pixels, squared */
   float *pixels;     /* the caller's; [height][row_stride]; R G B A */
   size_t row_stride; /* counted in floats */
   int width, height; /* size of the picture */

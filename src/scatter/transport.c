@@ -123,7 +123,7 @@ static void begin_line(void *data, size_t line, int worker) {
   }
 }
 
-/* The light that enters a line at its first node, and at its last. */
+/* The light that enters a line of the grid's nodes at its first node, and at its last node. */
 static float entering(const lines_job *job, int line) {
   return job->inflow != NULL ? job->inflow->along[line] : 0;
 }

@@ -171,7 +171,8 @@ static void blur_piece(void *data, size_t index, int worker) {
   }
 }
 
-/* Fills the blur's box for each column or row of tiles; returns the greatest reach in tiles. */
+/* Finds the width of the blur's box for each column or row of tiles. Returns how many tiles the widest box
+ * reaches to one side. */
 static int fill_boxes(cascade_box *boxes, int count, double variance, double resampled) {
   int reach = 0;
   for (int i = 0; i < count; i++) {

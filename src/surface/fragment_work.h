@@ -86,7 +86,7 @@ typedef struct fragment_work {
   const seen_surfaces *seen;
   const primitive_bins *bins;
   binned *wanted;           /* [mesh_count]; the primitives of each mesh that are seen */
-  small_view small;         /* all members but those that depend on the mesh */
+  small_view small;         /* a pattern: the members that depend on a mesh are not set */
   fragment_worker *workers; /* [threads] */
   float *least;             /* [mesh_count]; as in fragment_order */
   bool *dark_backs; /* [mesh_count]; in a light's view: whether the light leaves the mesh's backs dark */

@@ -42,10 +42,11 @@ void hl_exact_begin(hl_context *context, hl_voxel_type type, size_t count, hl_ex
  * may be null. */
 void hl_exact_note(hl_exact *exact, bool swap, const void *source, size_t first, size_t count);
 
-/* Takes the numbers out; the caller owns them. stored: the stored values of all voxels, [count]. *numbers is
- * null if floats hold all numbers. */
+/* Hands the recorded numbers to the caller, who owns them. stored: the stored values of all voxels, [count].
+ * *numbers becomes null if floats hold all numbers without rounding. */
 hl_status hl_exact_take(hl_exact *exact, const float *stored, void **numbers, hl_error *error);
-/* Takes out the numbers of a file. *file is owned by the caller, and -1 if floats hold all numbers. */
+/* Hands the recorded numbers over as a file, which the caller owns. *file becomes -1 if floats hold all
+ * numbers without rounding. */
 hl_status hl_exact_take_file(hl_exact *exact, int *file, hl_error *error);
 /* Reads `count` numbers of a file that hl_exact_take_file() gave, beginning with number `first`. stored:
  * the stored values of these voxels. False if the file cannot be read. */

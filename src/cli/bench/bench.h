@@ -51,7 +51,8 @@ enum bench_stage {
 };
 
 typedef struct bench_sample {
-  double frame, processor, stage[STAGE_COUNT]; /* seconds; processor: of all threads together */
+  double frame, processor, stage[STAGE_COUNT]; /* seconds; `processor` is the time of all threads
+                                                * together */
 } bench_sample;
 
 typedef struct bench_run {

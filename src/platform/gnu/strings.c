@@ -37,7 +37,7 @@ int strverscmp(const char *a, const char *b) {
     if (of_a != of_b) return of_a < of_b ? -1 : 1; /* the longer number is greater */
   } else if (zeros && begin < same && (digit_a || digit_b)) {
     if (digit_a != digit_b)
-      return digit_a ? -1 : 1; /* after the same zeros, a digit comes before all other characters */
+      return digit_a ? -1 : 1; /* behind equal zeros, digits sort before all other characters */
   }
   return (unsigned char)a[same] - (unsigned char)b[same];
 }

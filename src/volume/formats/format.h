@@ -95,8 +95,8 @@ enum { HL_FORMAT_SNIFFED_BYTES = 1024, HL_FORMAT_ENDINGS = 3 };
 /* A format's reader. Every member except load may be null. */
 typedef struct hl_format {
   const char *name;                       /* the format's name in error lines */
-  const char *endings[HL_FORMAT_ENDINGS]; /* extensions of file names that promise `beginning`; null after the
-                                           * last */
+  const char *endings[HL_FORMAT_ENDINGS]; /* extensions of file names with which files must start with
+                                           * `beginning`; the last one is followed by null */
   const char *title;                      /* the name in lists of formats; null: `name` */
   const char *more_endings;     /* further endings of names, for lists of formats, separated by blanks */
   const char *(*missing)(void); /* returns the library that the format needs and this build lacks;

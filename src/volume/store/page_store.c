@@ -83,8 +83,9 @@ static page_part part_in(const hl_pages *pages, const size_t page[3], const row_
   return p;
 }
 
-/* Writes slices k0 to k1 - 1 of a part; they lie in the page in one piece. Zeros need not be written: the
- * file is made of zeros, which its system neither writes nor reads. False if the system refused the write. */
+/* Writes slices k0 to k1 - 1 of a part of a page; they lie in the page in one piece. Slices of zeros are left
+ * out: the file is sparse, and reads as zeros where nothing was written. False if the system refused the
+ * write. */
 static bool write_part(const hl_pages *pages, const page_part *p, size_t k0, size_t k1,
                        const row_block *block) {
   unsigned char part[SLICES_AT_ONCE * PAGE_SLICE_BYTES], *to = part;

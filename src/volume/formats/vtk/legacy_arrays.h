@@ -13,7 +13,7 @@ typedef struct hl_legacy_array {
   hl_voxel_type type;
   size_t components, tuples;
   bool of_points;   /* whether the array stands under POINT_DATA, not CELL_DATA */
-  bool of_neither;  /* whether the array stands before both sections, as an array of the file itself */
+  bool of_neither;  /* whether the array stands before POINT_DATA and CELL_DATA: it belongs to the file */
   bool is_fraction; /* whether 0 to 1 in a text stand for 0 to 255 */
 } hl_legacy_array;
 

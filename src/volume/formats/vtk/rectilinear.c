@@ -18,7 +18,7 @@ typedef struct axis_map {
   double first, step; /* in the world */
   bool even;
   size_t *below;  /* owned; [count]; for each new voxel, the old voxel at its place or before it */
-  double *weight; /* owned; [count]; the weight of the old voxel after it */
+  double *weight; /* owned; [count]; the weight of the old voxel after `below` */
 } axis_map;
 
 static bool is_monotonic(const double *c, size_t count) {
