@@ -381,7 +381,8 @@ class Volume:
         return read_info(self._handle, self._file_text(), self._order)
 
     def _smallest_edge(self) -> float:
-        return float(min(raw_info(self._handle).spacing))
+        raw = raw_info(self._handle)  # owns the array of spacings
+        return float(min(raw.spacing))
 
     def percentile(self, percent: float) -> float:
         """The data value below which so many percent of the finite voxels lie, as ``numpy.percentile`` says.

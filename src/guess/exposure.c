@@ -18,12 +18,12 @@
 #include "scene/scene.h"
 #include "volume/colors.h"
 
-#define TARGET    0.871 /* linear light of 240 of 255, IEC 61966-2-1 */
-#define BRIGHTEST 0.99  /* the pixel that exposure brings to TARGET is brighter than this part of the pixels \
-                         */
-#define OPAQUE   0.98
-#define FAINT    0.02 /* least opacity of a step at which a ray meets a surface */
-#define THINNEST 0.15 /* fraction of the surfaces that are thinner than hl_exposure.thickness */
+#define TARGET 0.871 /* linear light of 240 of 255, IEC 61966-2-1 */
+/* The part of the pixels that are darker than the pixel which exposure brings to TARGET. */
+#define BRIGHTEST 0.99
+#define OPAQUE    0.98
+#define FAINT     0.02 /* least opacity of a step at which a ray meets a surface */
+#define THINNEST  0.15 /* fraction of the surfaces that are thinner than hl_exposure.thickness */
 
 enum { SIDE = 64, TABLE = 1024, MOST_LIGHTS = 4 };
 

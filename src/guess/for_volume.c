@@ -71,13 +71,14 @@ static void choose_lights(const hl_look *look, hl_light lights[2], size_t *count
   lights[1].shadows = HL_SHADOWS_OFF;
 }
 
-/* True if the memory limit leaves room for a sky. The memory that is held now does not count, so that all
- * processes that share a volume choose alike. */
-static bool has_room_for_sky(const hl_volume *volume) {
+/* True if the memory limit leaves room for a number of bytes beside the voxels and the copy of them that a
+ * renderer makes. The memory that is held now does not count, so that all processes that share a volume
+ * choose alike. */
+static bool has_room(const hl_volume *volume, uint64_t bytes) {
   uint64_t limit = volume->context->options.memory_limit, taken = 0;
   if (volume->voxels != NULL)
     taken = 2 * (uint64_t)hl_volume_voxel_count(volume) * hl_storage_bytes(volume->storage);
-  return limit == 0 || limit >= ROOM_FOR_SKY + taken;
+  return limit == 0 || limit >= bytes + taken;
 }
 
 void hl_scene_choose_sky(double strength, hl_scene_description *description) {
@@ -227,7 +228,7 @@ static hl_status make_scene_of(hl_context *context, hl_volume *volume, const cha
     hl_scene_choose_sky(look->sky, &description);
     description.render.kernel = labelled ? HL_KERNEL_BSPLINE : look->kernel; /* smooth labels are splines */
     status = expose(look, &analysis, lights, &description, error);
-    if (!has_room_for_sky(volume)) hl_scene_level_sky(&description);
+    if (!has_room(volume, ROOM_FOR_SKY)) hl_scene_level_sky(&description);
   }
   if (status == HL_OK) status = hl_scene_create(context, &description, scene, error);
   hl_transfer_function_release(context, &scene_volume.transfer_function);
@@ -235,17 +236,17 @@ static hl_status make_scene_of(hl_context *context, hl_volume *volume, const cha
   return status;
 }
 
-/* Makes the scene of the volume. Where the volume's voxels make stairs, it makes the scene of a smoother
- * volume (smoothing.h). */
+/* Makes the scene of the volume. Where the volume's voxels make stairs or grain, it makes the scene of a
+ * smoother volume (smoothing.h), if there is room for a float for each voxel. */
 static hl_status make_scene(hl_context *context, hl_volume *volume, const char *file, const hl_look *style,
                             hl_scene **scene, hl_error *error) {
   hl_data_analysis analysis;
   double sigma = 0;
   hl_volume *smoothed = NULL;
   hl_status status = hl_data_analyse(volume, &analysis, error);
-  if (status == HL_OK) sigma = hl_smoothing_for(volume, file, &analysis);
+  if (status == HL_OK && has_room(volume, (uint64_t)hl_volume_voxel_count(volume) * sizeof(float)))
+    sigma = hl_smoothing_for(volume, file, &analysis);
   if (status == HL_OK && sigma > 0) status = hl_volume_smooth(volume, sigma, &smoothed, error);
-  if (status == HL_ERROR_MEMORY) status = HL_OK; /* it is shown as it is where there is no room */
   if (status == HL_OK)
     status = make_scene_of(context, smoothed != NULL ? smoothed : volume, file, style, scene, error);
   hl_volume_release(smoothed);

@@ -296,7 +296,7 @@ def main():
             clean()
             named = re.escape(next(word for word in case.split() if "missing" in word or "bad" in word))
             results[f"'{case}' is refused"] = refused(case, 3, named)
-        results["meshes found beside volumes are refused"] = refused("part_?.obj", 2, "pattern that finds meshes")
+        results["meshes found beside volumes are refused"] = refused("part_?.obj", 2, "pattern found meshes")
     finally:
         os.chdir("/")
         shutil.rmtree(folder, ignore_errors=True)
