@@ -28,8 +28,8 @@
 #include <stdint.h>
 
 enum {
-  BRICK_MARGIN = 3,       /* number of coefficients of an axis that a brick stores beyond the number of its
-                           * cells */
+  BRICK_MARGIN = 3,       /* a brick stores this many more coefficients along an axis than it has cells along
+                           * it */
   BRICK_LEVELS_LIMIT = 16 /* the most levels of a field */
 };
 
@@ -45,11 +45,11 @@ typedef struct hl_bricks {
   int levels;          /* 1 .. BRICK_LEVELS_LIMIT */
   size_t dimension[3]; /* lattice points of level 0 along x, y, z, as many as a dense volume has voxels */
   double origin[3];    /* lattice coordinates of the volume's voxel (0,0,0) along x, y, z; not negative */
-  size_t directory_size[3]; /* blocks of level 0 along x, y, z; they are enough to hold all points */
-  hl_brick_entry
-      *directory; /* owned; [z][y][x] blocks of level 0; a brick of level l fills 2^l entries an axis */
-  float *pool;    /* owned; [slots][side + 3][side + 3][side + 3], z before y before x; data values */
-  size_t slots;   /* number of bricks in the pool */
+  size_t directory_size[3];  /* blocks of level 0 along x, y, z; together they hold all lattice points */
+  hl_brick_entry *directory; /* owned; [z][y][x], one entry for each block of level 0; a brick of level l has
+                              * 2^l entries along each axis */
+  float *pool;  /* owned; [slots][side + 3][side + 3][side + 3], x fastest; coefficients, data values */
+  size_t slots; /* number of bricks in the pool */
 } hl_bricks;
 
 #endif

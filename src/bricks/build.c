@@ -14,7 +14,7 @@
 enum {
   SHIFT_LEAST = 2,
   SHIFT_MOST = 8,
-  ACTIVE_CELLS = 4, /* number of cells along an axis on which a coefficient depends: i - 2 .. i + 1 */
+  ACTIVE_CELLS = 4, /* coefficient i depends on this many cells along an axis: i - 2 .. i + 1 */
   CELLS_BEFORE = 2
 };
 
@@ -35,7 +35,7 @@ static size_t brick_points(int shift) {
 
 /* ---- which coefficients are active ---- */
 
-/* Whether a brick that is coarser than the level covers a block of that level. */
+/* Whether a block of a level is covered by a brick that is coarser than this level. */
 static bool is_coarser(const hl_bricks *bricks, int level, const ptrdiff_t block[3]) {
   size_t at[3];
   for (int axis = 0; axis < 3; axis++) {
@@ -72,7 +72,7 @@ static void clear_block(const hl_lattice_box *cells, const ptrdiff_t block[3], i
       memset(own + (k * cells->count[1] + j) * cells->count[0] + low[0], 0, high[0] - low[0]);
 }
 
-/* Clears the cells that coarser bricks cover. */
+/* Clears those cells of a level that bricks of coarser levels cover. */
 static void clear_coarser(const hl_bricks *bricks, int level, const hl_lattice_box *cells,
                           unsigned char *own) {
   ptrdiff_t first[3], last[3], block[3];
@@ -92,8 +92,9 @@ static void combine(unsigned char *own, size_t count, size_t step) {
   for (size_t n = 0; n < count; n++) own[n] = own[n] & own[n + step] & own[n + 2 * step] & own[n + 3 * step];
 }
 
-/* Which coefficients of a box are active. own: has room for the box's cells. Coefficient (i, j, k) of the box
- * is at own[(k * cells.count[1] + j) * cells.count[0] + i]. */
+/* Says whether none, some or all coefficients of a box are active. own: scratch memory, a byte for each of
+ * the cells on which the box depends (cells_of()). Where only some are active, own[(k * cells.count[1] + j) *
+ * cells.count[0] + i] is 1 if coefficient (i, j, k) of the box is active, else 0. */
 typedef enum active_part { ACTIVE_NONE, ACTIVE_SOME, ACTIVE_ALL } active_part;
 
 static active_part find_active(const builder *b, int level, const hl_lattice_box *box, unsigned char *own) {
@@ -117,7 +118,7 @@ static active_part find_active(const builder *b, int level, const hl_lattice_box
 
 /* ---- assembling ---- */
 
-/* The number of floats of scratch memory that find_active() needs for its bytes. */
+/* The size, in floats, of the scratch memory `own` of find_active(), which holds bytes. */
 static size_t mask_floats(const hl_lattice_box *box) {
   const hl_lattice_box cells = cells_of(box);
   return hl_lattice_points(&cells) / sizeof(float) + 1;
@@ -127,7 +128,7 @@ static size_t mask_floats(const hl_lattice_box *box) {
 static size_t scratch_of(hl_lattice_box box, int levels) {
   size_t sum = 0;
   for (int level = 0; level < levels; level++) {
-    /* An even first point needs the most memory. */
+    /* A box that begins at an even point needs the most memory. */
     for (int axis = 0; axis < 3; axis++) box.first[axis] &= ~(ptrdiff_t)1;
     for (int axis = 0; axis < 3; axis++) box.count[axis] |= 1;
     hl_lattice_box coarse = hl_subdivision_source(&box);
@@ -192,8 +193,8 @@ static hl_status fail_leaf(const hl_bricks_leaf *leaf, const char *subject, cons
                  leaf->brick[1], leaf->brick[2], leaf->level, what);
 }
 
-/* The entries of a leaf that lie within the directory. blocks_of() returns false where the leaf lies outside
- * of the directory. */
+/* The directory's entries that belong to a leaf. blocks_of() returns false where the leaf lies outside of the
+ * directory. */
 typedef struct leaf_blocks {
   size_t low[3], high[3]; /* blocks low .. high - 1 */
 } leaf_blocks;
@@ -264,7 +265,8 @@ static hl_status make_directory(hl_context *context, const hl_bricks_source *sou
 
 /* ---- the whole ---- */
 
-/* Moves the bricks that are not constant together, and turns the other bricks into constants. */
+/* Turns bricks of equal coefficients into constants of the directory, and closes the gaps that they leave in
+ * the pool. */
 static void keep_bricks(const builder *b, size_t count) {
   hl_bricks *bricks = b->bricks;
   size_t points = brick_points(bricks->shift);
@@ -303,7 +305,7 @@ static hl_status make_bricks(hl_context *context, builder *b, size_t count, cons
   keep_bricks(b, count);
   if (bricks->slots == count) return HL_OK;
   float *kept = hl_reallocate(context, bricks->pool, bricks->slots * points, sizeof *kept);
-  if (kept != NULL) bricks->pool = kept; /* where there is no memory for a copy, the larger block stays */
+  if (kept != NULL) bricks->pool = kept; /* without memory for a smaller copy, the pool keeps its size */
   return HL_OK;
 }
 

@@ -25,9 +25,8 @@ typedef struct hl_bricks_source {
   int shift;           /* side = 2^shift cells; 2 to 8 */
   int levels;          /* 1 .. BRICK_LEVELS_LIMIT */
   size_t dimension[3]; /* lattice points of level 0 along x, y, z */
-  /* The value where there is no leaf. Leaves beside such blocks keep their coefficients. So the source's own
-   * coefficients must be `outside` at the borders of these leaves, unless the field shall end there in a
-   * step. */
+  /* The field's value where there is no leaf. The field ends there in a step, unless the source's own
+   * coefficients equal `outside` at the borders of the leaves beside: these coefficients are not changed. */
   float outside;
   /* Gives the source's own coefficients of the points first .. first + count - 1 of a level: out is
    * [count[2]][count[1]][count[0]], x fastest. first may be below 0, and points may lie beyond the dimension.

@@ -22,8 +22,8 @@ enum {
   TAPS = 4,
   COEFFICIENTS = TAPS * TAPS * TAPS,
   HALVINGS = 2, /* of a lattice cell */
-  FUNCTIONS = 7 /* number of affine functions that bound a cell, three along the axes and four of the
-                 * places in the cell */
+  FUNCTIONS = 7 /* number of affine functions that bound a cell: the three coordinates, the cell's three unit
+                 * coordinates and, in a tetrahedron, the sum of the unit coordinates */
 };
 
 typedef struct range {
@@ -40,7 +40,8 @@ typedef struct cell_search {
   const hl_cell_mesh_field *field;
   const hl_bricks_leaf *leaf;
   hl_cell_affine affine;
-  range departure; /* of the cell's values from the affine function */
+  range departure; /* range of the difference between the cell's values and the affine function near them; 0
+                    * in a tetrahedron */
   double slopes[FUNCTIONS][3];
   range extents[FUNCTIONS]; /* of the functions in the cell */
   int functions;
@@ -95,7 +96,8 @@ static void set_cell(cell_search *search, const hl_cell *cell, const hl_cell_sha
   set_functions(search, shape);
 }
 
-/* Whether a cube may meet the cell. low: its least corner. */
+/* Whether a cube may meet the cell. low: the cube's corner with the least coordinates. size: the cube's
+ * edge. */
 static bool meets(const cell_search *search, const double low[3], double size) {
   const double middle[3] = {low[0] + size / 2, low[1] + size / 2, low[2] + size / 2};
   for (int n = 0; n < search->functions; n++) {
@@ -204,7 +206,7 @@ static void bound_lattice_cell(cell_search *search, const ptrdiff_t cell[3]) {
   const double low[3] = {(double)cell[0] * scale, (double)cell[1] * scale, (double)cell[2] * scale};
   double c[COEFFICIENTS], bound;
   if (!meets(search, low, scale) || !differences(search, cell, c)) return;
-  if (!may_be_greater(search, c, &bound)) return; /* a spline, too, lies between its coefficients */
+  if (!may_be_greater(search, c, &bound)) return; /* the coefficients bound the spline, too */
   if (isnan(search->greatest)) search->greatest = 0;
   for (int axis = 0; axis < 3; axis++) along(c, axis, to_bezier);
   bound_cube(search, c, low, scale, HALVINGS);

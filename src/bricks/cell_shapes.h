@@ -11,9 +11,9 @@
 
 enum { HL_CELL_CORNERS = 8 };
 
-/* A cell. Hexahedra have eight corners in VTK's order: four around one face, and the four opposite to them.
- * Wedges and pyramids are hexahedra that name corners twice. Tetrahedra have four, and UINT32_MAX as their
- * fifth. */
+/* A cell, as numbers of points. Hexahedra have eight corners in VTK's order: four around one face, and the
+ * four opposite to them. Wedges and pyramids are hexahedra that name corners twice. Tetrahedra have four
+ * corners, and corner[4] is UINT32_MAX. */
 typedef struct hl_cell {
   uint32_t corner[HL_CELL_CORNERS];
 } hl_cell;
@@ -40,7 +40,7 @@ int hl_cell_corner_count(const hl_cell *cell);
 /* A cell's shape in the world. False if the cell has no volume or a corner without a value. */
 bool hl_cells_shape_in_world(const hl_cells *cells, size_t n, hl_cell_shape *shape);
 
-/* The same in lattice coordinates of level 0. */
+/* A cell's shape in lattice coordinates of level 0. Returns false as hl_cells_shape_in_world() does. */
 bool hl_cells_shape(const hl_cells *cells, const hl_cells_place *place, size_t n, hl_cell_shape *shape);
 
 #endif

@@ -15,10 +15,10 @@
 
 enum { SHIFT = 4, SIDE = 1 << SHIFT, STORED = SIDE + BRICK_MARGIN, LEVELS_MOST = 9 };
 
-/* Number of lattice points along a cell's edge. */
+/* The wanted number of lattice points along a cell's edge. */
 static const double POINTS_OF_AN_EDGE = 2;
-/* The fraction of cells, of the cells with the shortest edges, that may have shorter edges than the edge
- * which sets the finest spacing. */
+/* The part of the cells, the smallest ones, that may have shorter edges than the edge from which the finest
+ * spacing is chosen. */
 static const double FINEST_PART = 0.01;
 /* The most bytes that bricks take where there is no memory limit. */
 static const double BYTES_MOST = 1073741824.0;
@@ -81,7 +81,8 @@ static int bin_of(double edge) {
   return bin < 0 ? 0 : bin >= BINS ? BINS - 1 : bin;
 }
 
-/* The edge that the fraction FINEST_PART of the used cells does not reach. */
+/* The edge from which the finest spacing is chosen: the part FINEST_PART of the used cells have shorter
+ * edges. */
 static double finest_edge(const cell_field *field, size_t used) {
   size_t counts[BINS] = {0}, sum = 0;
   for (size_t n = 0; n < field->cells->cell_count; n++)
@@ -94,14 +95,14 @@ static double finest_edge(const cell_field *field, size_t used) {
 }
 
 static int level_of(double edge, double spacing) {
-  /* A bin is an eighth of an octave wide. */
+  /* 0.25 is more than the error of the finest edge, which is known to a bin: an eighth of an octave */
   double level = floor(log2(edge / POINTS_OF_AN_EDGE / spacing) + 0.25);
   return level < 0 ? 0 : level > LEVELS_MOST - 1 ? LEVELS_MOST - 1 : (int)level;
 }
 
-/* The number of bytes that the bricks need, approximately: those of the directory, and those of the cells,
- * estimated by the cells' volumes with an addition for borders and partly filled bricks. size: the size of
- * the mesh's box. */
+/* Estimates the number of bytes that the bricks need. Counts the directory's bytes, and the coefficients
+ * by the cells' volumes, times a factor for borders and partly filled bricks. size: the size of the
+ * mesh's box. */
 static double bytes_of(const cell_field *field, double spacing, const double size[3]) {
   double points = 0, blocks = 1;
   for (int axis = 0; axis < 3; axis++) blocks *= ceil(size[axis] / spacing / SIDE) + 1;
@@ -119,7 +120,7 @@ static double choose_spacing(const cell_field *field, size_t used, const double 
   double spacing = wanted, most = BYTES_MOST;
   uint64_t limit = field->context->options.memory_limit;
   if (limit > 0 && (double)limit / 4 < most) most = (double)limit / 4;
-  for (int axis = 0; axis < 3; axis++) /* a single row of blocks must not need more */
+  for (int axis = 0; axis < 3; axis++) /* the directory alone must not need more */
     spacing = fmax(spacing, size[axis] / SIDE * sizeof(hl_brick_entry) / most);
   while (bytes_of(field, spacing, size) > most && spacing < FARTHEST) spacing *= sqrt(2);
   if (spacing > wanted)
@@ -192,8 +193,8 @@ typedef struct fill_job {
   float *out;
 } fill_job;
 
-/* Sets the points of the box that lie in a cell. Where cells share a point, the last cell in the tree's order
- * counts, and each call meets all of these cells. */
+/* Sets the points of the box that lie in a cell of the mesh. It is called for all cells that may hold such
+ * points. Where several cells hold a point, the last one in the tree's order sets it. */
 static bool fill_from_cell(void *data, uint32_t n) {
   const fill_job *job = data;
   const hl_cell *cell = &job->field->cells->cells[n];

@@ -9,8 +9,8 @@ typedef struct coarsening {
   hl_bricks_source source;
 } coarsening;
 
-/* The number that the old field has at a point of a new level: its coefficient of this spacing where a brick
- * has one. */
+/* The old field's number at a point of a new level. Where the old field has a brick of this spacing, it is
+ * the brick's coefficient, else the field's value. */
 static float number_at(const hl_bricks *fine, int level, const ptrdiff_t point[3]) {
   int64_t block[3];
   double at[3];
@@ -44,8 +44,8 @@ static bool is_outside(const coarsening *c, const hl_brick_entry *entry) {
   return entry->slot < 0 && entry->constant == c->source.outside;
 }
 
-/* Splits a brick where the old field has a brick of a finer spacing, and leaves it out where the old field is
- * the number outside. */
+/* Splits a brick where the old field has a finer brick than this one. Leaves a brick out where the old field
+ * is everywhere the number outside. */
 static hl_bricks_choice choose(void *data, int level, const size_t brick[3]) {
   const coarsening *c = data;
   const size_t blocks = (size_t)2 << level, *size = c->fine->directory_size;

@@ -9,7 +9,8 @@ static int64_t clamp_whole(int64_t at, int64_t low, int64_t high) {
   return at < low ? low : at > high ? high : at;
 }
 
-/* The block whose brick has the cell, or the coefficient, at a coordinate of level 0. */
+/* The block of level 0 in whose brick the cell, or the coefficient, with this coordinate lies. at: a
+ * coordinate of level 0. */
 static int64_t block_of(const hl_bricks *bricks, int axis, int64_t at) {
   return clamp_whole(at, 0, hl_bricks_cells(bricks, axis) - 1) >> bricks->shift;
 }
@@ -48,8 +49,8 @@ static void weigh_subdivided(int level, int64_t point, double weight[TAPS]) {
 
 /* ---- coefficients of level 0 ---- */
 
-/* RUN: the most points along an axis that are done at once. SPAN: the number of coefficients along an axis on
- * which RUN points depend, at most (at level 1). */
+/* RUN: the most points along an axis that are computed together. SPAN: the most coefficients along an axis on
+ * which RUN points depend; level 1 needs the most. */
 enum { RUN = 8, SPAN = RUN / 2 + TAPS };
 
 /* A box of points of level 0 whose coefficients come from one brick. */
@@ -63,7 +64,8 @@ static int64_t clamp_point(const hl_bricks *bricks, int axis, int64_t at) {
   return clamp_whole(at, -1, hl_bricks_cells(bricks, axis) + 1);
 }
 
-/* The number of points along an axis, of `left` points from `at` on, that have the same block. */
+/* The number of points along an axis, from `at` on, that lie in one block. left: the most points that are
+ * wanted. */
 static int64_t run_length(const hl_bricks *bricks, int axis, int64_t at, int64_t left) {
   const int64_t block = block_of(bricks, axis, at), end = (block + 1) << bricks->shift;
   if (left > RUN) left = RUN;
@@ -93,8 +95,8 @@ static void copy_piece(const hl_bricks *bricks, const float *brick, const int64_
     }
 }
 
-/* The sums along x that a piece's points need: of each row of the brick from low[1] and low[2] on, for each
- * point along x. */
+/* Sums a brick's coefficients along x: one sum for each point of the piece along x and each row of the brick
+ * from low[1] and low[2] to high[1] and high[2]. */
 static void sum_rows(const hl_bricks *bricks, const float *brick, const piece *piece, taps at[3][RUN],
                      const int64_t low[3], const int64_t high[3], double sums[SPAN][SPAN][RUN]) {
   size_t width = hl_brick_width(bricks);
@@ -110,8 +112,9 @@ static void sum_rows(const hl_bricks *bricks, const float *brick, const piece *p
     }
 }
 
-/* Subdivides coefficients of a brick of a coarser level. Points that are neighbours share the sums of rows.
- * The numbers are those of single points, rounded to floats as a brick of level 0 holds them. */
+/* Computes a piece's coefficients by subdividing a brick of a coarser level. Neighbouring points share the
+ * sums of rows. Each number is the one that is computed for its point alone, rounded to a float as in a brick
+ * of level 0. */
 static void subdivide_piece(const hl_bricks *bricks, const hl_brick_entry *entry, const int64_t block[3],
                             const piece *piece) {
   double sums[SPAN][SPAN][RUN];

@@ -40,8 +40,8 @@ float hl_bricks_coefficient(const hl_bricks *bricks, const int64_t point[3]);
 /* The field's value at a point of the lattice. */
 double hl_bricks_value(const hl_bricks *bricks, const double point[3]);
 
-/* The least and the greatest of the coefficients on which the cells first .. last of level 0 depend. The
- * field's values in these cells lie between the two. */
+/* Finds the least and the greatest of the coefficients on which the cells first .. last of level 0 depend.
+ * The field's values in these cells lie between these two numbers. */
 void hl_bricks_range(const hl_bricks *bricks, const int64_t first[3], const int64_t last[3], float range[2]);
 
 /* Whether all coefficients and constants are finite. Numbers that are not finite stand for places without

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-/* How far outside of a cell a point may be, in parts of the cell, so that no point falls between two cells.
- */
+/* How far outside of a cell a point may lie and still count as inside, as a fraction of the cell. Without it,
+ * a point could fall between two cells. */
 static const double MARGIN = 1e-7;
 static const double CONVERGED = 1e-10;
 enum { STEPS_MOST = 20 };

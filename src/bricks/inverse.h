@@ -19,14 +19,14 @@ bool hl_cell_shape_ready(hl_cell_shape *shape);
  * lies outside. */
 bool hl_cell_weights(const hl_cell_shape *shape, const double point[3], double weights[8]);
 
-/* An affine function that is near the values which a cell interpolates (in a tetrahedron it equals them),
- * and affine functions that bound the cell. */
+/* Affine functions for a cell: one that is near the values which the cell interpolates (in a tetrahedron it
+ * equals them), and the cell's own coordinates, which bound the cell. */
 typedef struct hl_cell_affine {
   double middle[3];   /* the mean of the corners */
   double value;       /* the function's, at `middle` */
   double slope[3];    /* the function's, along x, y, z */
-  double place[3][3]; /* slopes of the cell's three unit coordinates in space; for a hexahedron near its
-                       * middle */
+  double place[3][3]; /* slopes, along x, y, z, of the cell's three unit coordinates; for a hexahedron those
+                       * near its middle */
 } hl_cell_affine;
 
 /* Fits the affine functions of hl_cell_affine to a cell. The shape must have been completed by

@@ -19,7 +19,7 @@ typedef struct cell_block {
 
 /* The blocks of one level. */
 typedef struct block_table {
-  cell_block **blocks; /* owned, each; [size]; null for a free place */
+  cell_block **blocks; /* [size]; the table owns the array and the blocks; null for a free place */
   size_t size, count;  /* size: a power of two, or 0 */
 } block_table;
 
@@ -146,7 +146,8 @@ hl_status hl_patches_add(hl_patches *patches, int level, const size_t first[3], 
 
 /* ---- means of finer cells ---- */
 
-/* The mean of the eight finer cells with a corner at (x, y, z) of a block, where all of them have values. */
+/* Finds the mean of the eight finer cells from (x, y, z) of a block on. Returns false where one of them has
+ * no value. */
 static bool mean_of_eight(const cell_block *fine, size_t x, size_t y, size_t z, float *mean) {
   double sum = 0;
   for (size_t n = 0; n < 8; n++)
@@ -186,7 +187,7 @@ static hl_status average(hl_patches *patches, const char *subject, hl_error *err
 
 /* ---- the source of the field ---- */
 
-/* The cell of the domain that is nearest to a cell. */
+/* The cell along an axis itself, or the domain's first or last cell if it lies beyond that. */
 static size_t clamp_cell(const hl_patches *patches, int level, int axis, ptrdiff_t cell) {
   size_t cells = patches->domain[axis] >> level;
   return cell < 0 ? 0 : (size_t)cell < cells ? (size_t)cell : cells - 1;
@@ -275,7 +276,7 @@ static void cover(void *data, int level, const ptrdiff_t first[3], const size_t 
 
 /* ---- which bricks ---- */
 
-/* A brick is split where the next finer level has a block within it. */
+/* Splits a brick where the next finer level has a block within it. */
 static hl_bricks_choice choose(void *data, int level, const size_t brick[3]) {
   enum {
     FINER = 1 << (SHIFT + 1 - BLOCK_SHIFT)

@@ -27,8 +27,9 @@ hl_lattice_box hl_subdivision_source(const hl_lattice_box *box);
 /* The number of floats of scratch memory that hl_subdivide() needs for a box. */
 size_t hl_subdivision_scratch(const hl_lattice_box *box);
 
-/* Fills a box. coarse: the coefficients of hl_subdivision_source(box). Boxes are stored [z][y][x]. A constant
- * stays the same number. */
+/* Fills a box, [z][y][x], with subdivided coefficients. coarse: the coefficients of the box
+ * hl_subdivision_source(box), [z][y][x]. Where all coefficients are one number, the result is exactly this
+ * number. */
 void hl_subdivide(const hl_lattice_box *box, const float *coarse, float *scratch, float *fine);
 
 /* The field at a lattice point, where the cubic B-spline is 1/6, 2/3, 1/6 along each axis. first: the

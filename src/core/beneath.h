@@ -7,7 +7,8 @@
  * of the folder, whether or not a file is there. The descriptor is closed on exec. */
 int hl_beneath_open(int folder, const char *name, int flags);
 
-/* The substitute for hl_beneath_open() on systems without openat2(): follows no links, and refuses "..". */
+/* Opens a file like hl_beneath_open(), for systems without openat2(). It follows no links at all, and refuses
+ * "..". */
 int hl_beneath_open_by_components(int folder, const char *name, int flags);
 
 #endif

@@ -5,9 +5,10 @@
 
 #if defined(__x86_64__)
 
-/* Intel 64 and IA-32 Architectures Software Developer's Manual, volume 1, 10.2.3 and 8.1.5: values and bits
- * of MXCSR, the control register for vectors: all exceptions are masked, rounding is to nearest, and
- * neither DAZ (bit 6) nor FZ (bit 15) is set; the lowest six bits are flags. */
+/* Values and bits of MXCSR, the control register for vectors (Intel 64 and IA-32 Architectures Software
+ * Developer's Manual, volume 1, 10.2.3 and 8.1.5). In VECTOR_DEFAULT all exceptions are masked, rounding is
+ * to nearest, and neither DAZ (bit 6) nor FZ (bit 15) is set. The lowest six bits are flags, which
+ * VECTOR_CONTROL leaves out. */
 static const unsigned int VECTOR_CONTROL = 0xffc0, VECTOR_DEFAULT = 0x1f80;
 /* The control word of the x87 unit: all exceptions are masked, precision is 64 bits, and rounding is to
  * nearest. */

@@ -11,8 +11,8 @@
 /* Opens a file for reading and calls the context's `reads` callback. Does not block on a pipe that has no
  * writer. */
 hl_status hl_file_open(hl_context *context, const char *path, int *descriptor, hl_error *error);
-/* Opens a file like hl_file_open(), but does not call `reads`. It serves threads other than the caller's,
- * which may not call `reads`, and files that were opened before. */
+/* Opens a file like hl_file_open(), but does not call `reads`. It is for threads other than the caller's,
+ * which may not call `reads`, and for files that were reported to `reads` before. */
 hl_status hl_file_open_again(hl_context *context, const char *path, int *descriptor, hl_error *error);
 /* Opens a folder, for hl_beneath_open() and fdopendir(). "" is the current folder, or the folder of a
  * confined context. */
@@ -63,7 +63,7 @@ typedef struct hl_output_memory {
   unsigned char *bytes; /* owned; [capacity]; the first `length` are written */
   size_t length, capacity, place;
   bool full;             /* an allocation failed */
-  hl_byte_stream stream; /* whose bytes come to this memory */
+  hl_byte_stream stream; /* the stream that writes to this memory */
 } hl_output_memory;
 
 /* `memory` must stay at its address until commit or abort. */

@@ -10,9 +10,9 @@ void hl_key_add(hl_key *key, const void *bytes, size_t count) {
   key->count += count;
 }
 
-/* The bits of a double, read as a whole number, grow with the double's magnitude. So that they grow with
- * the double itself, all bits of a negative number are inverted, and only the sign's bit of other numbers.
- * The highest byte comes first. */
+/* Stores doubles so that their bytes sort as the numbers do. The bits of a double, read as a whole number,
+ * grow with the double's magnitude. So all bits of a negative number are inverted, and of other numbers the
+ * sign bit alone. The highest byte comes first. */
 void hl_key_add_numbers(hl_key *key, const double *numbers, size_t count) {
   for (size_t n = 0; n < count; n++) {
     uint64_t bits;

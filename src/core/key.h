@@ -16,8 +16,8 @@ typedef struct hl_key {
 
 void hl_key_add(hl_key *key, const void *bytes, size_t count);
 
-/* Adds numbers so that memcmp() of two keys orders them as the numbers are ordered: -2, -1, 0, 1, 2. An order
- * by such keys stays when all lengths are multiplied by one factor. */
+/* Adds numbers so that memcmp() of two keys sorts them as the numbers: -2, -1, 0, 1, 2. This order does not
+ * change when all numbers are multiplied by one positive factor. */
 void hl_key_add_numbers(hl_key *key, const double *numbers, size_t count);
 
 static inline void hl_key_add_whole(hl_key *key, int64_t number) { hl_key_add(key, &number, sizeof number); }

@@ -12,15 +12,15 @@ typedef struct light_post {
   void *to;         /* [parts][most]; the bytes of part n begin at row n; nobody may read them before they
                      * have arrived */
   size_t most;
-  void *memory; /* [post_bytes] of the exchange, for the exchange's own use */
+  void *memory; /* for the exchange's own use; [the exchange's post_bytes] */
 } light_post;
 
 /* The parts of one picture, each made by a renderer of its own. All parts call these functions equally often
  * and in the same order. */
 typedef struct light_exchange {
   int part, parts; /* number of this renderer's part; number of parts */
-  /* Gives the bytes of all parts to all parts. from: [bytes]; to: [parts][bytes]. All parts give the same
-   * number of bytes. */
+  /* Sends this part's bytes to all parts, and receives theirs. Returns when all have arrived. All parts send
+   * the same number of bytes. from: [bytes]; to: [parts][bytes]. */
   void (*gather)(void *data, const void *from, size_t bytes, void *to);
   void *data; /* borrowed */
   /* Exchanges bytes while a part goes on with its work. Parts may give different numbers of bytes, all with
@@ -31,7 +31,7 @@ typedef struct light_exchange {
   void (*look)(void *data, const light_post *post);
   void (*receive)(void *data, const light_post *post);
   size_t post_bytes;  /* size of a post's memory */
-  size_t most_posted; /* bytes that the posts of all parts take together, approximately; 0: some megabytes */
+  size_t most_posted; /* about how many bytes a post receives from all parts together; 0: some megabytes */
 } light_exchange;
 
 static inline void hl_light_send(const light_exchange *exchange, const light_post *post) {

@@ -45,7 +45,7 @@ typedef struct hl_reserve {
   hl_context *context;
   bool keeps;                          /* if false, every block is allocated and released anew */
   int taken;                           /* blocks requested in this frame so far */
-  reserve_block block[RESERVE_BLOCKS]; /* a count of 0 means: not yet measured */
+  reserve_block block[RESERVE_BLOCKS]; /* the n-th is a frame's n-th block; 0 bytes: none */
 } hl_reserve;
 
 /* Takes a block of count * size uninitialised bytes from the reserve, or else from hl_allocate(); null when
@@ -79,13 +79,14 @@ typedef struct hl_layout {
   unsigned char *base; /* aligned to 64 bytes; null: counts only */
   size_t bytes;        /* bytes taken at present; SIZE_MAX: overflow */
   size_t most;         /* the most bytes that were taken at one time */
-  size_t counted;      /* of hl_layout_pass(): the bytes of the block */
+  size_t counted;      /* the bytes of the block; for hl_layout_pass() alone */
   int passes;          /* of hl_layout_pass() */
 } hl_layout;
 
-/* True before the pass that counts, and before the pass that hands out a block of the counted size. False
- * after the second pass. `base` is null then where the block could not be allocated, or where the passes took
- * different numbers of bytes, so that arrays may lie beyond the block. The caller owns the block. */
+/* Begins the next pass over a layout. The first pass counts bytes, and the second takes arrays from a block
+ * of the counted size. Returns true before each of the two passes, and then false. `base` is null in the end
+ * if the block could not be allocated, or if the second pass took another number of bytes than the first:
+ * arrays might then lie beyond the block. The caller owns the block. */
 bool hl_layout_pass(hl_layout *layout, hl_context *context);
 
 /* Takes count * size bytes, aligned to 64; returns null while counting. */
@@ -101,7 +102,7 @@ static inline void *hl_layout_take(hl_layout *layout, size_t count, size_t size)
   return taken;
 }
 
-/* While counting: gives back what was taken since `bytes` had this value. */
+/* In a pass that counts: gives back all bytes that were taken since layout->bytes had the value `bytes`. */
 static inline void hl_layout_give_back(hl_layout *layout, size_t bytes) {
   if (layout->bytes != SIZE_MAX) layout->bytes = bytes;
 }
