@@ -187,7 +187,7 @@ static hl_status average(hl_patches *patches, const char *subject, hl_error *err
 
 /* ---- the source of the field ---- */
 
-/* The cell along an axis itself, or the domain's first or last cell if it lies beyond that. */
+/* A cell's coordinate along an axis; beyond the domain's ends, that of its first or last cell. */
 static size_t clamp_cell(const hl_patches *patches, int level, int axis, ptrdiff_t cell) {
   size_t cells = patches->domain[axis] >> level;
   return cell < 0 ? 0 : (size_t)cell < cells ? (size_t)cell : cells - 1;

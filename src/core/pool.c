@@ -1,19 +1,19 @@
 /* core/pool.c - the thread team. Jobs follow each other quickly (two for each sheet), so workers spin for a
  * while before they sleep; with more threads than processors they sleep at once.
  *
- * Each thread owns a share: a run of consecutive indices of the job, the same run in every job of the same
- * length, so that the thread meets the same memory again. A share is one 64-bit word on its own cache line:
- * generation, end, next index. The owner claims indices from one end by compare-and-swap; a thread whose
- * own share is empty claims indices from the other end of another thread's share. Every second thread
- * starts with its last index: two threads with neighbouring shares then meet near the border of their
- * shares, and the indices that one thread takes from the other are mostly those that it took in the job
- * before. No thread waits for a worker that the system has not woken yet: on a busy machine the caller does
- * all the work. Jobs alternate between two slots, by the generation's parity. A job's description stays in
- * its slot until all workers have reported the indices that they claimed; only then can a later job of the
- * same parity start.
+ * Each thread owns a share: a run of consecutive indices of the job. In all jobs of one length a thread has
+ * the same run, so that it meets the same memory again. A share is one 64-bit word on its own cache line:
+ * generation, end, next index. The owner claims indices from one end by compare-and-swap; a thread whose own
+ * share is empty claims indices from the other end of another thread's share. Every second thread starts with
+ * its last index: two threads with neighbouring shares then meet near the border of their shares, and the
+ * indices that one thread takes from the other are mostly those that it took in the job before. No thread
+ * waits for a worker that the system has not woken yet: on a busy machine the caller does all the work. Jobs
+ * alternate between two slots, by the generation's parity. A job's description stays in its slot until all
+ * workers have reported the indices that they claimed; only then can a later job of the same parity start.
  *
- * An offer has shares of its own. Workers claim its indices where the current job has none left, and look for
- * a new job after each. The caller claims none before it ends the offer: jobs wait for the caller. */
+ * An offer has shares of its own. Where the current job has no index left, workers claim one of the offer's
+ * indices, and then look for a new job. The caller, for whom jobs wait, claims none of them before it ends
+ * the offer. */
 #define _GNU_SOURCE
 #include "core/pool.h"
 
@@ -49,7 +49,7 @@ typedef struct worker {
 typedef struct job {
   void (*function)(void *, size_t, int);
   void *data;
-  size_t base;                     /* the index of the job for which index 0 of the shares stands */
+  size_t base;                     /* the job's index that index 0 of the shares stands for */
   _Alignas(64) atomic_size_t done; /* the number of indices that workers have reported as finished */
 } job;
 
@@ -88,7 +88,8 @@ struct hl_pool {
   /* Used by the calling thread only. */
   _Alignas(64) int64_t asked,
       read;       /* when the cancel callback was last called and the clock was last read, in nanoseconds */
-  uint64_t waits; /* number of runs that other threads took part in */
+  uint64_t waits; /* how often the caller waited for other threads, at the end of a part of a run or of an
+                   * offer */
   int readings, unread; /* number of calls between two readings of the clock; number of calls that are left
                          * until the next reading */
 };
@@ -265,7 +266,7 @@ static void run_part(hl_pool *pool, size_t base, size_t count, void (*function)(
 }
 
 void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *, size_t, int), void *data) {
-  pool->readings = pool->unread = 0; /* how long the indices of the next job take is not known yet */
+  pool->readings = pool->unread = 0; /* nothing is known yet of how long the next job's indices take */
   if (pool->threads == 1 || count <= 1) {
     for (size_t index = 0; index < count && !hl_pool_stops(pool, 0); index++) function(data, index, 0);
     return;
@@ -283,7 +284,8 @@ void hl_pool_offer(hl_pool *pool, size_t count, void (*function)(void *, size_t,
   job->function = function;
   job->data = data;
   pool->offer.count = count;
-  /* the offer has a generation of its own, of the parity of the last job, whose shares are empty */
+  /* an offer has its own generation, 2 above the last job's: the parity is the same, and the last job's
+   * shares are empty */
   begin_job(pool, job, pool->offer.shares, atomic_load(&pool->generation) + 2, count);
 }
 

@@ -25,7 +25,8 @@ void hl_pool_destroy(hl_pool *pool); /* null is allowed */
  * there the result is false, and the pool can only be destroyed. */
 bool hl_pool_is_own(const hl_pool *pool);
 int hl_pool_threads(const hl_pool *pool);
-/* How often, since the pool was made, a run ended with a wait for other threads. */
+/* How often, since the pool was made, the caller waited for other threads: at the end of each run that they
+ * could take part in, and of each offer. */
 uint64_t hl_pool_waits(const hl_pool *pool);
 
 /* Calls function(data, index, worker) for each index in [0, count), worker in [0, threads). Returns when
@@ -33,10 +34,10 @@ uint64_t hl_pool_waits(const hl_pool *pool);
 void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *data, size_t index, int worker),
                  void *data);
 
-/* Offers the calls that hl_pool_run() would make to threads that have nothing to do in later runs. Returns at
- * once; with one thread, makes all the calls first. hl_pool_finish_offer() makes the calls that are left.
- * Until it returns, the memory that the calls read must not be written, and nothing else may be offered. The
- * calls of later runs come first. */
+/* Offers the calls that hl_pool_run() would make. Threads that have nothing to do in later runs make them;
+ * the calls of later runs come first. Returns at once; with one thread, makes all the calls itself.
+ * hl_pool_finish_offer() makes the calls that are left, and waits for the others. Before it returns, the
+ * memory that the calls read must not be written, and nothing else may be offered. */
 void hl_pool_offer(hl_pool *pool, size_t count, void (*function)(void *data, size_t index, int worker),
                    void *data);
 void hl_pool_finish_offer(hl_pool *pool); /* returns at once if nothing is offered */

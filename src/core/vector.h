@@ -61,7 +61,7 @@ static inline mat3 mat3_multiply(mat3 a, mat3 b) {
                            mat3_apply(a, mat3_column(b, 2)));
 }
 static inline mat3 mat3_transpose(mat3 m) { return mat3_from_columns(m.row[0], m.row[1], m.row[2]); }
-/* The product of the rows' lengths. No determinant of rows with these lengths is greater. */
+/* The product of the lengths of the rows: the greatest determinant that rows of these lengths can have. */
 static inline double mat3_row_sizes(mat3 m) {
   return vec3_length(m.row[0]) * vec3_length(m.row[1]) * vec3_length(m.row[2]);
 }

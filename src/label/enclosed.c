@@ -8,7 +8,8 @@ enum { PARTS = HL_VOXEL_PARTS, TAPS = HL_VOXEL_TAPS };
 
 typedef struct measuring {
   label_enclosed *enclosed;
-  float weights[PARTS][TAPS]; /* weights of the coefficients at the parts' middles */
+  float weights[PARTS][TAPS]; /* weights of a voxel's coefficients, along an axis, at the middle of each of
+                               * its parts */
 } measuring;
 
 /* The cubic B-spline's value at a distance. */
@@ -80,8 +81,8 @@ static void measure_slice(void *data, size_t z, int worker) {
 
 void hl_label_enclose(hl_pool *pool, label_enclosed *enclosed) {
   enum { STEPS_OF_NEWTON = 2 };
-  static const double FARTHEST = 0.01; /* a level farther from 1/2 would make things that are a voxel thin
-                                        * too thin for sheets */
+  static const double FARTHEST = 0.01; /* limit of the level's distance from 1/2: beyond it, sheets would miss
+                                        * things that are a voxel thin */
   measuring job = {.enclosed = enclosed};
   find_weights(job.weights);
   enclosed->level = 0.5f;

@@ -5,18 +5,19 @@
 
 enum { CELL = 2 }; /* length of a cell's edge in voxels */
 
-/* LEVEL_SUMS planes are sums over faces. LEVEL_BLENDED planes are blurred: the sums, and the plane that says
- * whether the field is thin. */
+/* LEVEL_SUMS: number of planes that are sums over faces. LEVEL_BLENDED: number of planes that are blurred,
+ * which are the sums and HL_LEVEL_THIN. */
 enum { LEVEL_SUMS = HL_LEVEL_FALL + 1, LEVEL_BLENDED = HL_LEVEL_THIN + 1 };
 
 /* The filter that blurs cells, [1 2 1] / 4, so that there are no steps from cell to cell. */
 static const label_filter BLUR = {2, {0.5f, 0.25f, 0}};
 
-/* Weight of the faces of an imagined flat border with the field 1/2, which are added everywhere. They keep
- * the field unchanged far from any border. */
+/* Weight of imagined faces that are added at every voxel to the sums over the border's faces. On them the
+ * field is 1/2 and falls by HL_LABEL_SLOPE, so that they keep the field unchanged far from any border. */
 static const float FAINT = 1e-3f;
 
-/* Falls across the border's faces count as at least this much, so that no field is made too steep. */
+/* The least fall across the border's faces; smaller falls count as this one, so that no field is made too
+ * steep. */
 static const float LEAST_FALL = 0.04f;
 
 /* Limits of a field's values, which must fit the bytes that store them (occupancy.c). */
@@ -85,7 +86,7 @@ static void add_faces(const level_job *job, const border_row *row, size_t x, flo
   }
 }
 
-/* Raises the greatest values of cells to the greatest values of a row of voxels. */
+/* Raises each cell's greatest value to the greatest of those values of a row that lie in the cell. */
 static void raise_most(const float *values, size_t count, float *most) {
   for (size_t x = 0; x < count; x++)
     if (values[x] > most[x / CELL]) most[x / CELL] = values[x];
@@ -115,7 +116,7 @@ static void sum_cells(void *data, size_t cell_z, int worker) {
     }
 }
 
-/* The greatest value in a cell and the cells around it. */
+/* The greatest value in a cell and in the cells beside it. */
 static float most_around(const label_levels *levels, const size_t cell[3]) {
   const float *most = plane_of(levels, HL_LEVEL_MOST);
   size_t low[3], high[3];
@@ -147,8 +148,8 @@ static void find_thin(void *data, size_t z, int worker) {
 
 /* ---- the field ---- */
 
-/* The two cells whose middles lie around a voxel along an axis. A voxel's middle lies a quarter of a cell
- * from the middle of its own cell. */
+/* The two cells along an axis between whose middles a voxel's middle lies. It lies a quarter of a cell from
+ * the middle of the voxel's own cell. */
 typedef struct cells_around {
   size_t own, other;
 } cells_around;

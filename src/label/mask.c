@@ -12,15 +12,16 @@
 #include "volume/colors.h"
 
 /* The labels' common share of the matter rises from 0 to 1 while the sum of their occupancies rises from
- * SHARE_FROM to SHARE_TO. Each label's part of that share is proportional to the square of its occupancy.
- * Derived: between two labels, whose occupancies a and 1 - a add up to 1, a^2 / (a^2 + (1 - a)^2) runs from 0
- * to 1 with the slope 2 in the middle, as steeply as the common share; where three labels meet, the parts
- * still add up to 1. */
+ * SHARE_FROM to SHARE_TO. Each label's part of the common share is proportional to the square of its
+ * occupancy. Derived: between two labels, whose occupancies a and 1 - a add up to 1, a^2 / (a^2 + (1 - a)^2)
+ * runs from 0 to 1 with the slope 2 in the middle, as steeply as the common share; where three labels meet,
+ * the parts still add up to 1. */
 static const float SHARE_FROM = 0.25f, SHARE_TO = 0.75f;
-/* Weight of the occupancies themselves, beside the share, in the mean of colours. Where nothing is visible,
- * the lattice thus continues the colours of the labels nearby. */
+/* Weight of the labels' occupancy, which is added to their common share in the mean of colours. So the
+ * lattice continues the labels' colours to places where the share is 0. */
 static const float FAINT = 1e-3f;
-/* Smaller occupancies do not count: they are the tails of the smoothing and the rounding of bytes. */
+/* Occupancies up to this number do not count: they come from the tails of the smoothing and from the rounding
+ * to bytes. */
 static const float LEAST = 1.0f / 16;
 
 typedef struct mask_job {
@@ -151,7 +152,7 @@ static bool is_even(const size_t dimension[3], const void *values, size_t bytes,
   return true;
 }
 
-/* A word from memory; the first byte is the word's lowest. */
+/* Reads a word whose lowest byte comes first in memory. */
 static uint32_t word_of(const unsigned char *bytes) {
   return bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
 }

@@ -15,25 +15,26 @@
 /* The greatest number of voxels of a mask: 32 bits number the bytes of the colours. */
 #define HL_MASK_VOXELS ((size_t)1 << 29)
 
-/* A lattice's bricks tell where the lattice is even, so that frames need not look closer there. Each brick
- * has two words, [bk][bj][bi]. Brick b covers the points from HL_MASK_BRICK b to HL_MASK_BRICK (b + 1), both
- * included, along each axis: all points on which positions in the brick's cells depend. The lower 16 bits of
- * the first word are a factor, and its other bits are the flags below. The second word is a colour. */
+/* The bricks of a lattice tell frames where the lattice is even, so that they need not look closer there.
+ * Each brick has two words, [bk][bj][bi][2]. Along each axis brick b covers the points from HL_MASK_BRICK b
+ * to HL_MASK_BRICK (b + 1), both included: these are all points on which positions in the brick's cells
+ * depend. The lower 16 bits of the first word are a factor, and its other bits are the flags below. The
+ * second word is a colour. */
 enum {
   HL_MASK_BRICK_SHIFT = 2,
   HL_MASK_BRICK = 1 << HL_MASK_BRICK_SHIFT,
   HL_MASK_EVEN = 1 << 16, /* all points of the brick have the factor of its first word and no slope */
-  /* all points of the brick have this colour; the colour is 0 where no label tints */
+  /* all points of the brick have the colour of its second word, which is 0 where no label tints */
   HL_MASK_EVEN_COLOR = 1 << 17
 };
 
-/* Makes a volume of the map's grid, to be read linearly between voxels. Its values are the factors. Its
- * colours, [k][j][i][4], are the colours of the labels that tint: the square roots of linear red, green and
- * blue, and how much of the colour the matter takes, each from 0 to 255; null where no labels tint. The
- * colours may be read two bytes beyond the last voxel. Its slopes, [k][j][i][4], are the factor's central
- * differences along i, j and k, HL_MASK_SLOPE_STEPS times as large, and 0. It has mask_bricks. A label's
- * share rises from 0 to 1 over about two voxels, and is 1/2 where the label meets another label or the rest.
- * threads: 0 for one per processor. */
+/* Makes a mask's lattice: a volume with the map's grid, which is interpolated linearly between voxels. Its
+ * values are the factors. Its colours, [k][j][i][4], are the colours of the labels that tint: the square
+ * roots of linear red, green and blue, and how much of the colour the matter takes, each from 0 to 255; they
+ * are null if no label tints. The colours may be read two bytes beyond the last voxel. Its slopes,
+ * [k][j][i][4], are the factor's central differences along i, j and k, times HL_MASK_SLOPE_STEPS, and a 0.
+ * Its bricks (mask_bricks) are made, too. A label's share rises from 0 to 1 over about two voxels, and is 1/2
+ * where the label meets another label or the rest. threads: 0 for one per processor. */
 hl_status hl_label_mask(hl_context *context, int threads, const hl_mask *mask, hl_volume **made,
                         hl_error *error);
 

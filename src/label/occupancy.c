@@ -8,9 +8,10 @@
 #include "label/enclosed.h"
 #include "label/levels.h"
 
-/* The filter that smooths along an axis. Derived: a Gaussian of standard deviation 2 voxels, cut at 6, less
- * half of its variance times its second difference. The variances cancel: flat and gently curved surfaces
- * stay where they are (to the fourth power of the scale), and the steps of voxels are damped. */
+/* The filter that smooths along an axis. Derived: it is G - sigma^2 / 2 * (second difference of G), where G
+ * is a Gaussian of standard deviation sigma = 2 voxels, cut at 6. Its variance is therefore 0: flat and
+ * gently curved surfaces stay where they are (to the fourth power of the scale), and the steps of voxels are
+ * damped. */
 static const label_filter SMOOTHING = {7,
                                        {0.292382144f, 0.238724523f, 0.123441568f, 0.028311217f, -0.011604395f,
                                         -0.014332039f, -0.006349609f, -0.004382337f}};
@@ -18,13 +19,15 @@ static const label_filter SMOOTHING = {7,
  * mending leaves. */
 static const label_filter FINISHING = {
     4, {0.555422454f, 0.257481129f, -0.014940464f, -0.018044430f, -0.002207463f}};
-/* The filter that turns values at the voxels' centres into the B-spline's coefficients. Derived: the spline's
- * values 1/6, 2/3, 1/6 are 1 + d/6, d the second difference; its inverse is 1 - d/6 + d d/36 - ... */
+/* The filter that turns values at the voxels' centres into the B-spline's coefficients. Derived: the spline
+ * weighs coefficients by 1/6, 2/3, 1/6, which is 1 + d/6 where d is the second difference. Its inverse is 1 -
+ * d/6 + d d/36 - ... */
 static const label_filter TO_COEFFICIENTS = {2, {1.5f, -10.0f / 36, 1.0f / 36}};
 
-/* Smoothing and mending take turns for ROUNDS rounds. Mending corrects voxels whose centres are on the wrong
- * side of the surface, by PUSH times their distance beyond TOLERATED from 1/2. Thin things therefore stay,
- * while surfaces that smoothing moves by a fraction of a voxel stay smooth. */
+/* Smoothing and mending take turns, ROUNDS times each. Mending looks for voxels whose centres are on the
+ * wrong side of the surface, and whose value differs from 1/2 by more than TOLERATED. It corrects the value
+ * by PUSH times this excess. Thin things therefore stay, while surfaces that smoothing moves by a fraction of
+ * a voxel stay smooth. */
 enum { ROUNDS = 2 };
 static const float TOLERATED = 0.12f, PUSH = 2.5f;
 
@@ -36,7 +39,8 @@ typedef struct occupancy_job {
   const int64_t *labels; /* [count], rising */
   size_t count;
   hl_label_part part;
-  unsigned char *inside; /* [size z][y][x]; 1 where the voxel has one of the labels; in the end the result */
+  unsigned char *inside; /* [size z][y][x]; 1 where the voxel has one of the labels, else 0; at the end the
+                          * occupancy as bytes */
   size_t *inside_counts; /* [size z]; the number of voxels that have one of the labels */
   label_field smooth;    /* the smoothed field, of the part's size */
   label_levels levels;
@@ -99,7 +103,7 @@ static void store_slice(void *data, size_t z, int worker) {
   }
 }
 
-/* One of the HL_LABEL_STEPS steps of the part is done. */
+/* Reports that the part has taken one more of the HL_LABEL_STEPS steps. */
 static void step_done(const occupancy_job *job) {
   hl_label_worked(job->work, hl_label_part_voxels(&job->part), 1);
 }

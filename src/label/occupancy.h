@@ -28,9 +28,10 @@ enum { HL_LABEL_STEPS = 6 }; /* the steps in which the voxels of a label's part 
 
 /* The smoothing of labels. */
 typedef struct hl_label_work {
-  const hl_context *context; /* is told the part that is done, as the stage "prepare" */
+  const hl_context *context; /* its progress callback is told the fraction that is done, as the stage
+                              * "prepare" */
   double whole;              /* voxels of all parts */
-  double done;               /* voxels, counted for each step that they have taken */
+  double done;               /* sum, over all steps that were taken, of the voxels that took them */
 } hl_label_work;
 
 size_t hl_label_part_voxels(const hl_label_part *part);
@@ -38,9 +39,9 @@ size_t hl_label_part_voxels(const hl_label_part *part);
 /* Counts voxels that have taken some steps, and tells how far the work has come. */
 void hl_label_worked(hl_label_work *work, size_t voxels, int steps);
 
-/* Makes the occupancy of all labels of a list together, over their common part. labels: [count],
- * rising. *made is null if no voxel has one of the labels. The memory is six and a half bytes for each voxel
- * of the part, of which one byte stays. work: is told of the part's voxels. */
+/* Makes the occupancy of all labels of a list together, over their common part. labels: [count], rising.
+ * *made is null if no voxel has one of the labels. The call takes seven and a half bytes of memory for each
+ * voxel of the part, and *made keeps one of them. work: is told of the part's voxels. */
 hl_status hl_label_occupancy(hl_context *context, hl_pool *pool, const hl_volume *map, const int64_t *labels,
                              size_t count, const hl_label_part *part, hl_label_work *work, hl_volume **made,
                              hl_error *error);

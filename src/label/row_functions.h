@@ -18,8 +18,9 @@ enum { HL_FILTER_REACH = 7, HL_FILTER_ROWS = 2 * HL_FILTER_REACH + 1 };
  * along an axis. */
 enum { HL_VOXEL_PARTS = 4, HL_VOXEL_TAPS = 5 };
 
-/* Sums over voxels: VOLUME, in voxels; FALL, the rate at which the volume falls as the level rises; SLOPES,
- * the gradients' lengths at the surface; SURFACE_PARTS, the number of parts in SLOPES. */
+/* Sums over voxels. VOLUME: the enclosed volume, in voxels. FALL: the rate at which this volume falls as the
+ * level rises. SLOPES: the gradients' lengths at the surface. SURFACE_PARTS: the number of parts of voxels
+ * that SLOPES adds up. */
 enum {
   HL_ENCLOSED_VOLUME,
   HL_ENCLOSED_FALL,
@@ -44,8 +45,9 @@ typedef struct label_row_functions {
   /* Sets the elements of `crossed` to 1 for voxels that the surface at `level` may cross, and to 0 for the
    * others. Returns how many of the others are above the level. crossed: [count]; overlaps nothing. */
   int32_t (*find_crossed)(const row_neighbours *rows, size_t count, float level, float *crossed);
-  /* Adds a voxel that the surface at `level` may cross to the measures, [HL_ENCLOSED_MEASURES]. weights: of
-   * the coefficients at the parts' middles; window: the coefficients around the voxel, [z][y][x]. */
+  /* Measures a voxel that the surface at `level` may cross, and adds the results to measures,
+   * [HL_ENCLOSED_MEASURES]. weights: the weights of the coefficients at the middles of the voxel's parts.
+   * window: the coefficients around the voxel, [z][y][x]. */
   void (*measure_voxel)(const float weights[HL_VOXEL_PARTS][HL_VOXEL_TAPS],
                         const float window[HL_VOXEL_TAPS][HL_VOXEL_TAPS][HL_VOXEL_TAPS], float level,
                         double *measures);

@@ -66,8 +66,9 @@ static void find_parts(const float weights[PARTS][TAPS], const float window[TAPS
         for (int i = 0; i < PARTS; i++) parts[k][j][i] += weights[k][tap] * planes[tap][j][i];
 }
 
-/* Differences of neighbouring parts along a line of PARTS rows of `width` values; at the line's ends they are
- * one-sided. Inlined, so that the compiler knows the width. */
+/* Finds the differences between neighbouring parts along a line of PARTS rows of `width` values. They
+ * are central differences, and one-sided ones at the line's ends. Inlined, so that the compiler knows
+ * the width. */
 static inline __attribute__((always_inline)) void find_differences(const float *rows, int width,
                                                                    float *restrict differences) {
   for (int n = 0; n < width; n++) {
@@ -79,7 +80,7 @@ static inline __attribute__((always_inline)) void find_differences(const float *
       differences[at * width + n] = 0.5f * (rows[(at + 1) * width + n] - rows[(at - 1) * width + n]);
 }
 
-/* Gradients, per part of a voxel, count as at least this length. */
+/* The least length of a gradient, per part of a voxel; shorter gradients count as this long. */
 static const float LEAST_GRADIENT = 0.05f / PARTS;
 
 /* The lengths of the gradients at the parts, and the parts' shares above the level. Derived: near a plane

@@ -15,7 +15,7 @@ typedef struct place {
 typedef struct joint_place {
   hl_label *labels; /* owned; [label_count]; without names */
   size_t label_count;
-  double rest;     /* the weight of the rest, for a mask */
+  double rest;     /* for a mask: the factor of matter that has none of the labels */
   hl_volume *made; /* null if nothing was made */
 } joint_place;
 
@@ -79,7 +79,7 @@ static void keep(hl_volume *map, int64_t label, hl_volume *made) {
   hl_volume_release(old);
 }
 
-/* Labels that are not on the shelf. */
+/* The labels of a list whose occupancies are not on the shelf. */
 typedef struct missing_labels {
   int64_t *labels;      /* owned; [count] */
   size_t *places;       /* owned; the labels' places in the caller's list */

@@ -7,16 +7,16 @@
 
 #include "label/occupancy.h"
 
-/* Gets the occupancies of labels. Occupancies that were made of the map before come from the shelf;
- * hl_label_occupancy() makes the others, after one pass over the map for all of them. labels: [count]; data
- * values, rising. made: [count]; retained for the caller; an element is null where no voxel has the label;
- * all are null after a failure. threads: 0 for one per processor. work: is told of the voxels of all these
- * labels' parts; null: they are all of the work. Any thread may call it. */
+/* Gets the occupancies of labels. The shelf gives those that were made of the map before.
+ * hl_label_occupancy() makes the others, whose parts are found in one pass over the map. labels: [count];
+ * data values, rising. made: [count]; retained for the caller; an element is null where no voxel has the
+ * label; all are null after a failure. threads: 0 for one per processor. work: is told of the voxels of all
+ * these labels' parts; null: progress is told for these labels alone. Any thread may call it. */
 hl_status hl_label_occupancies(hl_context *context, int threads, hl_volume *map, const int64_t *labels,
                                size_t count, hl_label_work *work, hl_volume **made, hl_error *error);
 
-/* The lattice that was last made of the mask's map, retained, if it was made of the same labels and rest;
- * else null. Any thread may call it. */
+/* Looks on the shelf of the mask's map for the lattice that was made last. Returns it, retained, if it was
+ * made of the same labels and the same `rest`; else null. Any thread may call it. */
 hl_volume *hl_mask_from_shelf(const hl_mask *mask);
 /* Keeps a lattice in place of the lattice kept before. If memory is short, the lattice is not kept. */
 void hl_mask_to_shelf(const hl_mask *mask, hl_volume *made);

@@ -100,7 +100,7 @@ static hl_status add_colors(hl_context *context, hl_pool *pool, solids_job *job,
   return status;
 }
 
-/* Makes the volume. values: [count]; the values of the labels. parts: working space for as many parts. */
+/* Makes the volume. values: [count], the values of the labels; parts: [count], scratch memory. */
 static hl_status make(hl_context *context, hl_pool *pool, int threads, solids_job *job, const int64_t *values,
                       hl_label_part *parts, hl_volume **made, hl_error *error) {
   hl_status status = hl_label_parts(context, pool, job->map, values, job->count, parts, error);
