@@ -2,8 +2,9 @@
  *
  * In: a mesh's triangles. Out: a normal for each corner at a crease. A vertex's normal is the mean of its
  * triangles' normals, weighted by area. A triangle whose normal differs much from this mean is at a crease.
- * The corners of triangles at a crease get the mean of those triangles alone that bend little against theirs.
- * Without creases a long box would look rounded, as its short faces count for little in the means. */
+ * The normal of a corner there is the mean over fewer triangles: those at the vertex that bend little against
+ * the corner's own triangle. Without creases a long box would look rounded, as its short faces count for
+ * little in the means. */
 #include "core/memory.h"
 #include "core/vector.h"
 #include "mesh/mesh.h"
@@ -18,8 +19,8 @@ enum { MOST_TRIANGLES = 256 };
 typedef struct edge_search {
   const hl_mesh_description *mesh;
   float (*sums)[3]; /* owned; [vertex_count]; sums of the triangles' cross products */
-  uint16_t *marks;  /* owned; [vertex_count]; at first 1 for vertices at creases, later the number of their
-                     * corners so far */
+  uint16_t *marks;  /* owned; [vertex_count]; first whether the vertex is at a crease, later the number of its
+                     * corners that are listed so far */
   uint32_t *first;  /* owned; [vertex_count + 1]; index at which the corners of a vertex at a crease begin */
   size_t *corners;  /* owned; [first[vertex_count]]; 3 x triangle + corner */
 } edge_search;
@@ -29,7 +30,7 @@ static vec3 position_of(const hl_mesh_description *d, uint32_t vertex) {
   return (vec3){p[0], p[1], p[2]};
 }
 
-/* The cross product of a triangle's edges: its normal, twice its area long. */
+/* The cross product of two edges of a triangle: a vector along its normal, as long as twice its area. */
 static vec3 cross_of(const hl_mesh_description *d, size_t triangle) {
   const uint32_t *corner = d->triangles[triangle];
   vec3 a = position_of(d, corner[0]);

@@ -126,8 +126,8 @@ static void add_vertices(gltf_reader *reader, const gltf_accessor *positions, co
   }
 }
 
-/* Adds the triangles of `count` corners. indices: null for the vertices in their order. flipped: the node's
- * transform is a mirror, which turns triangles over. */
+/* Adds the triangles that `count` corners make. indices: the vertex of each corner; null: corner n is vertex
+ * n. flipped: whether the node's transform is a mirror, which turns triangles over. */
 static hl_status add_faces(gltf_reader *reader, const gltf_accessor *indices, size_t count, size_t vertices,
                            size_t mode, bool flipped) {
   mesh_parts *parts = reader->parts;
@@ -151,7 +151,8 @@ static hl_status add_faces(gltf_reader *reader, const gltf_accessor *indices, si
   return status;
 }
 
-/* Whether a primitive also has its positions unpacked in a buffer, for programs that cannot unpack them. */
+/* Whether a primitive with compressed positions also has them uncompressed in a buffer, as files do for
+ * programs that cannot decompress them. */
 static bool has_plain_positions(const gltf_reader *reader, const json_t *primitive) {
   size_t index;
   return hl_gltf_index(json_object_get(primitive, "attributes"), "POSITION", &index) &&

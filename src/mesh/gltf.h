@@ -9,7 +9,7 @@
 typedef struct gltf_buffer {
   const unsigned char *bytes; /* [length] */
   size_t length;
-  bool owned; /* if false, the bytes are part of the file's text */
+  bool owned; /* if false, the bytes belong to the glTF file's own content */
 } gltf_buffer;
 
 typedef struct gltf_file {
@@ -19,11 +19,12 @@ typedef struct gltf_file {
   gltf_buffer *buffers; /* owned; [buffer_count] */
   size_t buffer_count;
   gltf_buffer chunk; /* the buffer of a GLB file; its length is 0 if there is none */
-  double **kept;     /* owned; [kept_count]; the numbers of sparse accessors */
+  double **kept;     /* owned; [kept_count]; blocks of numbers, one for each sparse accessor that was read */
   size_t kept_count;
 } gltf_file;
 
-/* Reads the buffers of the file: its own chunk, base64 texts, or files beside it. */
+/* Reads all buffers. The bytes of a buffer are the chunk of a GLB file, a base64 text in the JSON, or a file
+ * beside the glTF file. */
 hl_status hl_gltf_read_buffers(gltf_file *file, hl_error *error);
 void hl_gltf_release_buffers(gltf_file *file);
 

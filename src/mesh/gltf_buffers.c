@@ -192,7 +192,7 @@ static hl_status fail_accessor(const gltf_file *file, size_t index, size_t count
       file->path, index, count);
 }
 
-/* Keeps a block of numbers until the file is released. */
+/* Allocates a block of `count` numbers, all 0, which the file keeps until it is released. */
 static hl_status keep_numbers(gltf_file *file, size_t count, double **numbers, hl_error *error) {
   double **list = hl_reallocate(file->context, file->kept, file->kept_count + 1, sizeof *list);
   if (list == NULL) return hl_fail_memory(error, sizeof *list, "numbers of an accessor");

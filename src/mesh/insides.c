@@ -13,8 +13,8 @@ typedef struct part_search {
                      * parent */
   uint64_t *ways;   /* owned; [vertex_count]; for roots: the sum of the hashes of the part's edges, 0 where
                      * the part is closed */
-  double *volume;   /* owned; [vertex_count]; for roots: six times the volume that the part encloses; negative
-                     * where fronts face inwards */
+  double *volume;   /* owned; [vertex_count]; for roots: six times the volume that the part encloses, negative
+                     * if its fronts face inwards */
 } part_search;
 
 static uint32_t root_of(uint32_t *parent, uint32_t vertex) {

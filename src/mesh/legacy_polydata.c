@@ -52,7 +52,8 @@ static hl_status read_named(hl_legacy_vtk *file, const char *keyword, hl_voxel_t
   return hl_legacy_vtk_type(file, type_name, type, error);
 }
 
-/* Reads cells of version 5.1: the beginnings of all cells and the end of the last, and their points. */
+/* Reads the cells of a file of version 5.1. OFFSETS has where each cell begins, and where the last one ends,
+ * in CONNECTIVITY, which has the cells' points. */
 static hl_status read_offsets(hl_legacy_vtk *file, cells *cells, size_t offsets, size_t points,
                               hl_error *error) {
   hl_voxel_type type;
@@ -69,8 +70,8 @@ static hl_status read_offsets(hl_legacy_vtk *file, cells *cells, size_t offsets,
   return HL_OK;
 }
 
-/* Reads cells of older versions. Each cell is its number of points and then the points; the numbers of points
- * are taken out. */
+/* Reads the cells of a file of an older version. Each cell is written as its number of points and then its
+ * points; the numbers of points are left out of cells->points. */
 static hl_status read_lists(hl_legacy_vtk *file, cells *cells, size_t count, size_t numbers,
                             hl_error *error) {
   hl_status status = HL_OK;
@@ -95,7 +96,8 @@ static hl_status read_lists(hl_legacy_vtk *file, cells *cells, size_t count, siz
   return HL_OK;
 }
 
-/* Whether the line after the keyword's line begins the newer form. */
+/* Finds whether cells are written as in version 5.1: the line after the keyword's line then begins with
+ * OFFSETS. */
 static hl_status is_newer(hl_legacy_vtk *file, bool *newer, hl_error *error) {
   const unsigned char *bytes;
   size_t available;
@@ -143,7 +145,7 @@ static hl_status meet_array(hl_legacy_vtk *file, const hl_legacy_array *array, h
   bool active = hl_text_is_one_of(array->kind, "SCALARS|COLOR_SCALARS");
   cell_values *values = hl_polydata_claim(&reader->data, name, &shape,
                                           array->of_points ? AT_POINTS : AT_CELLS, active);
-  /* an array of the FIELD of the whole file has a size of its own */
+  /* an array of the whole file (FIELD) may have another number of tuples than there are points or cells */
   if (values == NULL || array->tuples != file->tuples) return hl_legacy_vtk_skip_array(file, array, error);
   shape.values = values->values;
   size_t count = array->tuples * array->components;

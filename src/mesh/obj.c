@@ -133,8 +133,8 @@ static hl_status read_normal(obj_reader *reader) {
   return HL_OK;
 }
 
-/* The index of a face's corner, counted from 1 on, or if negative from the last one back; -1 if the index is
- * out of range. */
+/* The index of a vertex, normal or texture coordinate that a face's corner names. The text counts from 1, or
+ * backwards from -1, which is the last of the `count` ones so far. -1 if the index is out of range. */
 static int64_t index_of(const char *text, size_t length, size_t count) {
   double number;
   if (!hl_text_number(text, length, &number) || fabs(number) > 1e15 || number != floor(number)) return -1;
@@ -158,8 +158,8 @@ static hl_status set_normal(obj_reader *reader, uint32_t vertex, const char *tex
   return HL_OK;
 }
 
-/* Gives the triangles of one face, from `first` on, the colour of the face's material. As soon as one face
- * has a colour, all have one. */
+/* Colours the triangles of one face, which begin at `first`, by the face's material. As soon as one face has
+ * a colour, all triangles have one: white without a material. */
 static hl_status color_face(obj_reader *reader, size_t first) {
   mesh_parts *parts = reader->parts;
   if (parts->face_colors == NULL && reader->material == NULL) return HL_OK;

@@ -139,7 +139,7 @@ typedef struct conversion {
   mesh_parts *parts;
   float (*colors)[4]; /* the colours of the points, or else of the cells; null if there are none */
   bool of_points;
-  size_t first_cell[CELL_KINDS]; /* index of each kind's first cell among all */
+  size_t first_cell[CELL_KINDS]; /* for each kind, the index of its first cell among the cells of all kinds */
   double radius;                 /* the radius where the file gives none */
   hl_error *error;
 } conversion;

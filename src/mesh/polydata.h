@@ -36,9 +36,9 @@ typedef struct polydata {
                                      * unless points have normals */
 } polydata;
 
-/* The place in the data for an array, which follows from its name and shape. Null if the array is of no use
- * or its place is taken. active: the file calls the array its scalars, which displace colours found
- * before. */
+/* Finds where in the data an array's values belong, which follows from its name and shape. Returns null if
+ * the mesh has no use for the array, or has such an array already. active: whether the file calls the array
+ * its active scalars; they displace colours that were found before. */
 cell_values *hl_polydata_claim(polydata *data, const char *name, const cell_values *shape, value_place place,
                                bool active);
 

@@ -1,8 +1,8 @@
 /* mesh/polydata_join.c - joins the pieces of a file.
  *
- * In: pieces with arrays of their own. Out: one polydata. Its points are the points of the pieces, one piece
- * after the other, and so are its cells of each kind. Values at cells are therefore put together kind by
- * kind. */
+ * In: pieces with arrays of their own. Out: one polydata. Its points are the points of the first piece, then
+ * those of the second, and so on. Cells are ordered by kind first, and within a kind by piece. Values at
+ * cells are therefore joined kind by kind. */
 #include <string.h>
 
 #include "core/memory.h"

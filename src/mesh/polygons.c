@@ -11,8 +11,8 @@
 #include "core/vector.h"
 #include "mesh/mesh.h"
 
-/* Polygons with more corners keep their fan, as the time of clipping grows with the square of their
- * number. */
+/* The most corners of a polygon that is clipped. Larger polygons keep their fan, because the time of clipping
+ * grows with the square of the number of corners. */
 enum { CORNERS_MOST = 1 << 14 };
 
 hl_status hl_mesh_note_polygon(mesh_parts *parts, size_t first, hl_error *error) {
@@ -114,8 +114,8 @@ static bool is_ear(const outline *o, uint32_t corner) {
   return true;
 }
 
-/* The next ear from a corner on. Where there is none, as in outlines that cross themselves, the next corner
- * that is not reflex, else the corner itself. */
+/* Finds the first ear from a corner on. An outline that crosses itself may have none; the result is then the
+ * first corner that is not reflex, or the given corner if all are. */
 static uint32_t find_ear(const outline *o, uint32_t from, size_t left) {
   uint32_t corner = from;
   for (size_t n = 0; n < left; n++, corner = o->next[corner])

@@ -10,11 +10,12 @@
 
 enum { SIDES = 12 };
 
-/* The cosine of half an angle between two pieces. A bend with a smaller cosine is cut short, lest its outer
- * edge reach far out: pieces that turn by more than 120 degrees. */
+/* The least cosine of half of the angle by which a tube turns at a bend. Pieces that turn by more than 120
+ * degrees have a smaller one. Such a bend is cut short, because its outer edge would reach far out. */
 static const double SHARP = 0.5;
 
-/* A line's piece from one point to the next: its direction and two directions across it, right-handed. */
+/* The axes of the piece of a tube from one of its line's points to the next: the direction along the piece,
+ * and two directions across it. They are right-handed. */
 typedef struct piece {
   vec3 along, u, v;
 } piece;
@@ -80,9 +81,9 @@ static void add_end(tube *tube, vec3 centre, const piece *piece, double radius, 
 
 static vec3 point_of(const float point[4]) { return (vec3){point[0], point[1], point[2]}; }
 
-/* Makes the piece of a tube that follows the piece `before` (null: there is none) in a given direction.
- * Derived: the mirror image in the plane where both pieces meet turns the first piece's directions across
- * into those of the second piece. */
+/* Makes the piece of a tube that follows the piece `before` and runs in the direction `along`. before: null
+ * for a tube's first piece. middle: the normal of the plane in which the two pieces meet. Derived: a mirror
+ * image in this plane turns the directions across the first piece into those across the second. */
 static piece follow(const piece *before, vec3 along, vec3 middle) {
   piece made = {.along = along};
   if (before != NULL) made.u = vec3_subtract(before->u, vec3_scale(middle, 2 * vec3_dot(before->u, middle)));
@@ -97,8 +98,8 @@ static void set_color(tube *tube, size_t point) {
   for (int c = 0; c < 4; c++) tube->color[c] = colors != NULL ? colors[point][c] : 1;
 }
 
-/* Adds the tube of a line of `count` points from `first` on. The line has at least two points, and no two
- * neighbours are the same. */
+/* Adds the tube of a line with the points first .. first + count - 1. There must be at least two points, and
+ * no two neighbours may be at one place. */
 static void add_tube(tube *tube, size_t first, size_t count) {
   const float(*points)[4] = (const float(*)[4])tube->parts->line_points + first;
   piece now = {0};
@@ -157,7 +158,7 @@ static bool make_room(mesh_parts *parts) {
          triangles = parts->triangle_count + (rings + ends / 2) * 2 * SIDES + ends * SIDES;
   hl_error ignored;
   bool colored = parts->colors != NULL || parts->line_colors != NULL, fresh = parts->colors == NULL;
-  if (colored && fresh) parts->vertex_room = 0; /* makes all arrays get the same room */
+  if (colored && fresh) parts->vertex_room = 0; /* all arrays then get one and the same room */
   if (vertices > UINT32_MAX || triangles > HL_LIMIT_TRIANGLES ||
       hl_mesh_reserve_vertices(parts, vertices, parts->normals != NULL, colored, &ignored) != HL_OK ||
       hl_mesh_reserve_triangles(parts, triangles, &ignored) != HL_OK)

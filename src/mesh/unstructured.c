@@ -56,7 +56,7 @@ static const cell_type *type_of(double number) {
       [5] = {CELLS_POLYGONS, 3, FLAT},
       [6] = {CELLS_STRIPS, 0, FLAT},
       [7] = {CELLS_POLYGONS, 0, FLAT},
-      [8] = {CELLS_POLYGONS, 4, FLAT}, /* a pixel, whose last two corners are exchanged */
+      [8] = {CELLS_POLYGONS, 4, FLAT}, /* a pixel; its last two corners must be swapped */
       [9] = {CELLS_POLYGONS, 4, FLAT},
       [10] = {VOLUME, 4, TETRAHEDRON},
       [11] = {VOLUME, 8, VOXEL},
@@ -161,7 +161,7 @@ static hl_status count_faces(hl_context *context, const unstructured_cells *grid
 /* The cells of one kind that are being filled. If arrays are null, the cells are only counted. */
 typedef struct cell_writer {
   cells *cells;
-  size_t *sources; /* the grid's cells from which the kind's cells come */
+  size_t *sources; /* for each of these cells, the number of the grid's cell from which it comes */
 } cell_writer;
 
 static void add_point(cell_writer *writer, double point) {

@@ -12,7 +12,8 @@
 #include "volume/formats/vtk/vtk_xml.h"
 #include "volume/io/numbers.h"
 
-/* Further arrays of a piece are ignored. A file with more than MOST_PIECES pieces is refused. */
+/* MOST_ARRAYS: the most arrays of a piece; further ones are ignored. MOST_PIECES: the most pieces of a file;
+ * a file with more is refused. */
 enum { MOST_ARRAYS = 256, MOST_PIECES = 4096 };
 
 /* The elements of the file that hold arrays. The four kinds of cells come first. */
@@ -49,7 +50,7 @@ typedef struct vtp_file {
   hl_vtk_xml xml;
   mesh_text text;
   section section;
-  /* Names that the section declares active. */
+  /* The names of the arrays that the current section's tag declares active. */
   char active_scalars[HL_VTK_NAME_BYTES], active_normals[HL_VTK_NAME_BYTES];
   vtp_piece *pieces; /* owned; [piece_count] */
   vtp_array *arrays; /* owned; [array_count]; piece after piece */
@@ -222,7 +223,7 @@ static hl_status spread_values(const vtp_file *file, const vtp_piece *piece, cel
   return HL_OK;
 }
 
-/* Reads an array of values if it is of use. */
+/* Reads an array of values at points or cells, if the mesh has a use for it. */
 static hl_status read_values(vtp_file *file, vtp_piece *piece, const vtp_array *array, hl_error *error) {
   value_place place = array->section == SECTION_POINT_DATA ? AT_POINTS : AT_CELLS;
   bool of_grid = piece->sources != NULL && place == AT_CELLS;

@@ -1,5 +1,5 @@
-/* particles/field.c - boxes of points, which are read from the blocks of a level and added to them; and what
- * a field becomes: an array of all points, or bricks.
+/* particles/field.c - copies boxes of points out of the blocks of a level, adds boxes to the blocks, and
+ * makes of a finished field an array of all points, or bricks.
  *
  * In: coefficients of all levels. Out: voxels or hl_bricks. */
 #include "core/memory.h"

@@ -13,8 +13,8 @@ enum {
    * long along every axis that is not periodic (see PART_OF_EXTENT). So it has at least four cells along
    * these axes, which kernels need for their margin (levels.h). */
   LEAST_CELLS = 16,
-  /* the lattice extends beyond the outermost places by the reach of a kernel of middling size, and at most
-   * by the longest extent divided by this number */
+  /* the lattice extends beyond the outermost places by the reach of a kernel of middling size, but by no more
+   * than the longest extent divided by this number */
   PART_OF_EXTENT = 8
 };
 
@@ -34,7 +34,8 @@ static void count_lengths(const hl_particle_set *set, lengths *l) {
   }
 }
 
-/* A length such that this part of the particles has smaller ones: the lower end of its bin. */
+/* A smoothing length below which about this part of the particles lie: the lower end of the bin where the
+ * part is reached. */
 static double length_below(const lengths *l, size_t count, double part) {
   uint64_t sum = 0;
   int bin = 0;
@@ -64,8 +65,8 @@ static void find_box(const hl_particle_set *set, const lengths *l, double low[3]
     if (!set->periodic[a]) low[a] -= pad, extent[a] += 2 * pad;
 }
 
-/* The number of levels that the widest kernels need. Cells are `spacing` long on level 0, and `longest` of
- * them lie along the longest axis. */
+/* The number of levels that the widest kernels need. most: the greatest smoothing length. spacing: the length
+ * of a cell of level 0. longest: the number of cells of level 0 along the longest axis. */
 static int levels_for(double most, double spacing, double longest) {
   int levels = 1;
   while (levels < HL_PARTICLE_LEVELS && most >= 4 * spacing && longest / 2 >= LEAST_CELLS) {

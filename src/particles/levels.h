@@ -12,8 +12,8 @@
 /* The least h', in spacings, for kernels that the level does not resolve. With it, some point always lies
  * nearer than 2 h'. */
 #define HL_PARTICLE_LEAST_LENGTH 0.7
-/* The greatest h in least spacings. The level above takes wider kernels; where there is none, they are
- * narrowed. */
+/* The greatest smoothing length on a level, in units of its least spacing. Wider kernels belong to the next
+ * coarser level; on the coarsest level they are narrowed to this length. */
 #define HL_PARTICLE_MOST_LENGTH 3.99
 
 enum { HL_PARTICLE_ROW = 16 }; /* the most points that a kernel reaches along an axis */
@@ -21,8 +21,8 @@ enum { HL_PARTICLE_ROW = 16 }; /* the most points that a kernel reaches along an
 typedef struct hl_particle_level {
   size_t points[3];
   bool periodic[3];
-  int margin; /* along axes that are not periodic, kernels have no points nearer to a face than this: such
-               * points would reach beyond the face when they are subdivided to level 0 */
+  int margin; /* the least distance, in points, of a kernel's points from a face, along axes that are not
+               * periodic; nearer points would reach beyond the face when they are subdivided to level 0 */
   double spacing[3];          /* world */
   double scale[3], offset[3]; /* lattice coordinate = scale * place + offset */
   double mean_square;         /* the mean of the squared spacings */
@@ -94,8 +94,9 @@ typedef struct hl_particle_run {
   size_t from; /* the first point's place in the box */
 } hl_particle_run;
 
-/* Calls `visit` for each piece of a box of points of a level, in a fixed order. Along periodic axes the box
- * goes on at the other end. Along other axes the points at the faces stand for the points beyond them. */
+/* Calls `visit` for each piece of a box of points of a level, in a fixed order. A box may reach beyond the
+ * level's ends: along periodic axes it goes on at the other end, and along other axes the points at the faces
+ * stand for the points beyond them. */
 void hl_particle_visit(const hl_particle_lattice *lattice, int level, const ptrdiff_t first[3],
                        const size_t count[3],
                        void (*visit)(void *data, const int32_t block[3], const hl_particle_run run[3]),

@@ -19,9 +19,9 @@ enum {
   LEAF = 16,          /* number of particles of a leaf */
   FANOUT = 8,         /* number of child nodes of a node */
   LAYERS = 12,        /* the most layers: enough for 16 * 8^11 particles */
-  FOUND_MOST = 4096,  /* the greatest number of distances that are collected before the farthest are
-                       * dropped, and of particles in a crowd */
-  AT_ONCE = 64 * LEAF /* number of particles of one call */
+  FOUND_MOST = 4096,  /* the most distances that a search collects before it drops the farthest ones; also the
+                       * most particles in a crowd */
+  AT_ONCE = 64 * LEAF /* number of particles that one call of a job searches for */
 };
 
 typedef struct box {
@@ -33,8 +33,8 @@ typedef struct tree {
   box *layer[LAYERS]; /* owned; layer 0 has the leaves */
   size_t count[LAYERS];
   int layers;
-  float unit[3];     /* size of a unit of places, divided by the least unit of the three axes; so squared
-                      * distances are 0 or at least 1 */
+  float unit[3];     /* the unit of places along each axis, divided by the least of the three; so a squared
+                      * distance is 0 or at least 1 */
   double least_unit; /* the least unit; world */
   size_t neighbours; /* k */
 } tree;
@@ -180,8 +180,8 @@ static float distance_between(const tree *t, const uint32_t a[3], const uint32_t
 static float search_one(search *s, size_t n, float bound) {
   s->place = s->tree->set->place[n];
   s->count = 0;
-  s->bound = bound * bound * 1.0001f;   /* the factor exceeds the rounding of distances */
-  if (!(s->bound > 0)) s->bound = 0.5f; /* more than 0, and less than any distance but 0 */
+  s->bound = bound * bound * 1.0001f;   /* 1.0001 makes up for the rounding of distances */
+  if (!(s->bound > 0)) s->bound = 0.5f; /* below the least distance other than 0 */
   look_at(s, s->tree->layers - 1, 0);
   drop_far(s);
   return sqrtf(s->bound);
@@ -232,7 +232,8 @@ static bool gather(const tree *t, int layer, size_t node, const box *leaf, float
   return true;
 }
 
-/* The k-th distance at a particle where it is below the crowd's bound (squared); otherwise infinite. */
+/* The k-th distance at a particle, found in the crowd; infinite if it is not below the bound within which the
+ * crowd was gathered. bound: the square of that distance. */
 static float search_crowd(search *s, crowd *c, size_t n, float bound) {
   const uint32_t *place = s->tree->set->place[n];
   const float *unit = s->tree->unit;
@@ -269,7 +270,7 @@ static size_t middle_of(const tree *t, size_t leaf, size_t begin, size_t end) {
  * does not exceed for the particle in the middle of the leaf. Returns this distance for the middle
  * particle. */
 static float search_leaf(search *s, crowd *c, size_t leaf, size_t middle, float bound) {
-  const float more = 1.2f; /* In even matter, distances of 48th neighbours differ by 5 %. */
+  const float more = 1.2f; /* in even matter, distances of 48th neighbours differ by only 5 % */
   const tree *t = s->tree;
   size_t begin = leaf * LEAF, end = begin + LEAF < t->set->count ? begin + LEAF : t->set->count;
   float at_middle = search_one(s, middle, bound), guess = more * more * at_middle * at_middle;
@@ -300,8 +301,8 @@ static void find_distances(void *data, size_t index, int worker) {
   }
 }
 
-/* Gives a length to particles that lie at one place with all their neighbours and so have none: the least
- * length of the other particles. */
+/* Gives a length to the particles whose neighbours all lie at their own place, and whose length is therefore
+ * 0: the least length of all other particles. */
 static hl_status mend_lengths(hl_particle_set *set, const char *subject, hl_error *error) {
   float least = INFINITY;
   for (size_t n = 0; n < set->count; n++)

@@ -19,7 +19,7 @@ enum {
 };
 
 typedef struct keyed {
-  uint64_t key;   /* bits of the place along x, y, z in turns, the highest first */
+  uint64_t key;   /* the bits of x, y and z in turns, beginning with the highest bit of each */
   uint32_t index; /* the particle's index in the input */
 } keyed;
 
@@ -46,7 +46,7 @@ static void place_of(const hl_particle_set *set, const double position[3], uint3
   }
 }
 
-/* Spreads the lowest 21 bits so that they are three apart (the "magic bits" of Morton codes). */
+/* Puts two zeros between any two neighbours among the lowest 21 bits (the "magic bits" of Morton codes). */
 static uint64_t apart(uint64_t x) {
   x = (x | x << 32) & 0x1f00000000ffff;
   x = (x | x << 16) & 0x1f0000ff0000ff;

@@ -115,21 +115,22 @@ hl_status hl_particles_plan(hl_context *context, const hl_particle_set *set,
                             hl_particle_plan *plan, hl_error *error);
 void hl_particle_plan_release(hl_context *context, hl_particle_plan *plan);
 
-/* The bytes of the bricks of a plan, and the bytes of one field while it is spread. */
+/* The first function gives the bytes of the plan's bricks; the second, the bytes that one field takes while
+ * it is spread. */
 double hl_particle_plan_brick_bytes(const hl_particle_plan *plan);
 double hl_particle_plan_field_bytes(const hl_particle_plan *plan);
 
-/* Coefficients of all levels. Points that lie in no block have the number `outside`. */
+/* The coefficients of all levels. At points that lie in no block the coefficient is `outside`. */
 typedef struct hl_particle_field {
   const hl_particle_plan *plan;
   float *points[HL_PARTICLE_LEVELS]; /* owned; [blocks][z][y][x], HL_PARTICLE_BLOCK points an axis */
   float outside;
 } hl_particle_field;
 
-/* Spreads the weights of the particles. weights: [set->count], one for each particle, in the set's order;
- * null: each is 1. The field is weight per world volume; the plan is borrowed by the field. The sum of the
- * coefficients of level 0, times the volume of a cell, is the sum of the weights, to the rounding of floats.
- * *field must be released also after a failure. */
+/* Spreads the weights of the particles: the field is weight per volume of the world. weights: [set->count],
+ * in the set's order; null: each weight is 1. The coefficients of level 0, each times the volume of a cell,
+ * add up to the sum of the weights, to the rounding of floats. The field borrows the plan. *field must be
+ * released also after a failure. */
 hl_status hl_particles_spread(hl_context *context, hl_pool *pool, const hl_particle_set *set,
                               const float *weights, const hl_particle_plan *plan, const char *subject,
                               hl_particle_field *field, hl_error *error);
@@ -140,8 +141,8 @@ static inline size_t hl_particle_field_floats(const hl_particle_field *field, in
   return field->plan->blocks[level].count * HL_PARTICLE_BLOCK_POINTS;
 }
 
-/* Copies the points of level 0, and along periodic axes the first point to the end once more. voxels:
- * [z][y][x], lattice.cells + 1 points an axis. */
+/* Copies the points of level 0. Along periodic axes the first point is repeated at the end. voxels:
+ * [z][y][x], lattice.cells + 1 points along each axis. */
 void hl_particle_field_copy(const hl_particle_field *field, hl_pool *pool, float *voxels);
 
 /* Makes bricks of a field whose plan has leaves. Along periodic axes the bricks reach from one end of the

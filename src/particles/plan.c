@@ -23,7 +23,7 @@ typedef struct planning {
   hl_block_table marked[HL_PARTICLE_LEVELS]; /* blocks of cells that kernels of the level reach */
   hl_block_table finer[HL_PARTICLE_LEVELS];  /* blocks of cells in which finer blocks are marked */
   bool all;                                  /* whether all blocks count as reached: nothing is marked */
-  int level;                                 /* of the box of points that is visited */
+  int level;                                 /* level of the box of points that is being visited */
 } planning;
 
 /* ---- marks ---- */
@@ -38,7 +38,8 @@ static void choose_levels(const hl_particle_set *set, const hl_particle_lattice 
   }
 }
 
-/* Blocks of one axis that a kernel marks: up to two ranges, as a periodic axis has both ends. */
+/* The blocks along one axis that a kernel marks. They are up to two ranges, because along a periodic axis a
+ * kernel may reach over the end. */
 typedef struct marks_of_axis {
   int low[3], high[3]; /* first and last block of each range */
   int count;
@@ -79,7 +80,8 @@ static void mark_blocks(planning *p, int level, const marks_of_axis axis[3]) {
               add_block(p, &p->marked[level], at);
 }
 
-/* Neighbours in the set mostly mark the same blocks: the marks of each level's last particle are kept. */
+/* Marks the blocks of all particles. Particles that follow each other in the set mostly mark the same blocks;
+ * the last marks of each level are kept, so that they are not made again. */
 static void mark_particles(planning *p, const hl_particle_set *set) {
   const hl_particle_lattice *lattice = &p->plan->lattice;
   hl_particle_level grid[HL_PARTICLE_LEVELS];
@@ -140,7 +142,7 @@ static void need_points(planning *p, int level, const ptrdiff_t first[3], const 
   hl_particle_visit(&p->plan->lattice, level, first, count, need_piece, p);
 }
 
-/* Adds the blocks from which the blocks of the next finer levels are subdivided. */
+/* Adds the blocks of each level from which blocks of the next finer level are subdivided. */
 static void need_coarser(planning *p) {
   for (int level = 0; level + 1 < p->plan->lattice.levels; level++)
     for (size_t n = 0; n < p->plan->blocks[level].count && p->status == HL_OK; n++) {
@@ -168,7 +170,7 @@ static hl_bricks_choice choose(void *data, int level, const size_t brick[3]) {
   if (!split && !is_reached(p, level, at)) return HL_BRICKS_NOTHING;
   for (int a = 0; a < 3; a++) {
     const hl_particle_lattice *lattice = &p->plan->lattice;
-    /* At both ends of a period the coefficients beyond the directory count as the brick's own. */
+    /* a brick at an end of a period holds coefficients beyond the directory as its own */
     bool begins = lattice->periodic[a] && at[a] == 0,
          ends = lattice->periodic[a] && (at[a] + 1) * HL_PARTICLE_BLOCK == directory_cells(lattice, level, a);
     first[a] = (ptrdiff_t)at[a] * HL_PARTICLE_BLOCK - (begins ? 1 : 0);

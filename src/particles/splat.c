@@ -39,13 +39,13 @@ typedef struct splatting {
   float *boxes;            /* owned; [threads][BOX^3] */
 } splatting;
 
-/* A particle's samples: rows along x. */
+/* A particle's samples of its kernel, stored as rows along x. */
 typedef struct samples {
   float row[ROW * ROW][ROW];
   int first[3], count[3]; /* points along each axis; along periodic axes some may lie outside of the field */
-  float squared[3][ROW];  /* squared distances from the points of each axis, in units of h'; 4 or more is out
-                           * of reach */
-  float sums[ROW];        /* the n-th sum is over the n-th samples of all rows */
+  float squared[3][ROW];  /* along each axis: squared distances from the particle to the points, in units of
+                           * h'; a point is out of reach at 4 or more */
+  float sums[ROW];        /* sums[n] is the sum of row[..][n] over all rows */
 } samples;
 
 /* ---- tiles ---- */
