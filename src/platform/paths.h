@@ -1,13 +1,15 @@
-/* platform/paths.h - how the system's names of files begin. */
+/* platform/paths.h - the beginnings of files' names: which names are absolute, and the folder of temporary
+ * files. */
 #ifndef HL_PLATFORM_PATHS_H
 #define HL_PLATFORM_PATHS_H
 
 #include <stdbool.h>
 
-/* Whether a name begins at the root of a file system, or of a drive, and not at the current folder. */
+/* Whether a name begins at the root of a file system or of a drive, so that it does not depend on the current
+ * folder. */
 bool hl_path_is_absolute(const char *path);
 
-/* The folder of large temporary files, where the user names none. */
+/* The folder in which large temporary files are put if the user names no other. */
 const char *hl_temporary_folder(void);
 
 #endif

@@ -8,9 +8,9 @@
  * of its control groups, rounded up. */
 int hl_cpu_count(void);
 
-/* The processor time that the control groups of this process grant, in processors, by cpu.max (version 2) or
- * cpu.cfs_quota_us (version 1). Infinite where they set no limit. root: a folder put before /proc and /sys;
- * "" except in tests. */
+/* The processor time that the control groups of this process grant, as a number of processors. It is read
+ * from cpu.max (version 2) or cpu.cfs_quota_us (version 1). Infinite where the groups set no limit. root: a
+ * folder put before /proc and /sys; "" except in tests. */
 double hl_cpu_quota(const char *root);
 
 #endif

@@ -9,7 +9,8 @@
 
 #include "core/memory.h"
 
-/* FETCHES threads of a rank fetch at once. A rank keeps up to REPLIES answers that are on their way. */
+/* FETCHES: the most threads of a rank that fetch at the same time. REPLIES: the most answers of a rank that
+ * may be under way. */
 enum { FETCHES = 8, REPLIES = 8 };
 
 /* A request for a part of another rank's block. */
@@ -20,16 +21,16 @@ typedef struct block_request {
 
 /* An answer that is on its way. */
 typedef struct block_reply {
-  unsigned char *bytes; /* lies in the memory of the hl_blocks */
+  unsigned char *bytes; /* a part of the memory that the hl_blocks owns */
   mpi_handle request;
-  bool sent; /* the answer was sent, and may not have arrived yet */
+  bool sent; /* whether an answer was sent, which may not have arrived yet */
 } block_reply;
 
 /* The state of one thread's fetch. */
 typedef struct block_fetch {
   hl_box *parts;           /* [ranks]; the part that each rank is asked for */
   mpi_handle *pending;     /* [ranks]; MPI's requests */
-  bool *waited;            /* [ranks]; whether `pending` is still waited for */
+  bool *waited;            /* [ranks]; whether the request in `pending` is not done yet */
   unsigned char *received; /* [shape.most][element_bytes] */
   int number;
   bool busy; /* read and written with `lock` held */
@@ -46,7 +47,7 @@ struct hl_blocks {
   block_fetch fetch[FETCHES];
   pthread_mutex_t lock;
   pthread_cond_t freed;       /* signalled when a fetch ends */
-  block_reply reply[REPLIES]; /* used in turn, with ranks->calling held */
+  block_reply reply[REPLIES]; /* used one after the other, by the thread that holds ranks->calling */
   int turn;
 };
 
@@ -88,7 +89,7 @@ static hl_blocks *blocks_with(const struct hl_block_server *server, uint64_t id)
 /* Sends the elements that a request asks for. The caller holds `calling`. */
 static void answer(hl_ranks *ranks, const block_request *asked) {
   hl_blocks *blocks = blocks_with(ranks->server, asked->id);
-  if (blocks == NULL) return; /* this rank has failed, and the job is about to end */
+  if (blocks == NULL) return; /* blocks are missing only if this rank has failed: the job is about to end */
   block_reply *reply = &blocks->reply[blocks->turn++ % REPLIES];
   for (int done = !reply->sent; !done;) ranks->mpi.calls->test(&ranks->mpi, &reply->request, &done);
   blocks->source.copy(blocks->source.data, &asked->box, reply->bytes);
@@ -114,8 +115,7 @@ static bool serve(hl_ranks *ranks) {
 
 static void *run_server(void *data) {
   hl_ranks *ranks = data;
-  prctl(PR_SET_TIMERSLACK, 1000UL, 0UL, 0UL,
-        0UL); /* by default the system may let each pause last 50 us longer */
+  prctl(PR_SET_TIMERSLACK, 1000UL, 0UL, 0UL, 0UL); /* without it, each pause may last 50 us longer */
   for (int asked = 0; !atomic_load(&ranks->server->stopped);) {
     asked = serve(ranks) ? 0 : asked + (asked < INT32_MAX);
     if (asked > 0) hl_ranks_pause(asked);
@@ -227,7 +227,7 @@ hl_status hl_blocks_share(hl_ranks *ranks, const hl_blocks_shape *shape, const h
                           hl_blocks **blocks, hl_error *error) {
   hl_status status = make_blocks(ranks, shape, source, blocks, error);
   if (status == HL_OK) {
-    set_first(ranks, *blocks, true); /* this must happen before any rank knows that all are ready */
+    set_first(ranks, *blocks, true); /* other ranks may ask for parts as soon as the gathering has ended */
     hl_ranks_gather(ranks, &source->box, sizeof source->box, (*blocks)->boxes);
     status = check_boxes(*blocks, error);
   }
@@ -278,8 +278,8 @@ static void end_fetch(hl_blocks *blocks, block_fetch *fetch) {
   pthread_mutex_unlock(&blocks->lock);
 }
 
-/* Asks a rank for a part of its block. Fetches of different arrays have different tags, within MPI's limit of
- * 32767. */
+/* Asks a rank for a part of its block. The tag of the answer differs between fetches and between arrays, and
+ * stays within MPI's limit of 32767. */
 static void ask(hl_blocks *blocks, block_fetch *fetch, int rank, unsigned char *to) {
   enum { MOST_ARRAYS = 4000 };
   hl_ranks *ranks = blocks->ranks;
@@ -314,8 +314,8 @@ static uint64_t nanoseconds_now(void) {
   return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
 }
 
-/* The place in the caller's array where a packed part can arrive directly. Null if the part's rows or slices
- * are not packed there. */
+/* The place in the caller's array where a part can be received directly. Null if the part's rows and slices
+ * are not adjacent there. */
 static unsigned char *place_of(const hl_blocks *blocks, const hl_box *box, const hl_box *part,
                                unsigned char *to, const size_t step[2]) {
   bool whole = part->count[0] * blocks->shape.element_bytes == step[0] && part->count[1] * step[0] == step[1];

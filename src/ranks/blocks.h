@@ -27,10 +27,10 @@ typedef struct hl_block_source {
 
 typedef struct hl_blocks hl_blocks;
 
-/* The properties of an array that all ranks must state alike. */
+/* The properties of an array; all ranks must give the same ones. */
 typedef struct hl_blocks_shape {
   size_t dimension[3];
-  size_t element_bytes, most; /* bytes of an element; greatest number of elements fetched at once */
+  size_t element_bytes, most; /* bytes of an element; the most elements that one call fetches */
 } hl_blocks_shape;
 
 /* Makes an array of this rank's block and the other ranks' blocks. Collective: all ranks call it. The boxes

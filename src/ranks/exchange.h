@@ -1,4 +1,5 @@
-/* ranks/exchange.h - the ranks of an MPI job as the parts of one picture: what renderers know of MPI. */
+/* ranks/exchange.h - lets the ranks of an MPI job be the parts of one picture. Renderers know of MPI by this
+ * alone. */
 #ifndef HL_RANKS_EXCHANGE_H
 #define HL_RANKS_EXCHANGE_H
 
@@ -6,8 +7,9 @@
 
 #include "core/light_exchange.h"
 
-/* The exchange by which each rank makes the part of a picture that has the rank's number. Of a single rank:
- * zeros, for it has nobody to exchange bytes with. ranks: borrowed by the exchange. */
+/* The exchange for a picture of which each rank makes one part: the part with the rank's number. All its
+ * members are zero if there is only one rank, which has nobody to exchange bytes with. The exchange borrows
+ * the ranks. */
 light_exchange hl_ranks_exchange(hl_ranks *ranks);
 
 #endif

@@ -74,7 +74,8 @@ struct mpi {
   const mpi_calls *calls;
   void (*function[MPI_FUNCTIONS])(void);
   mpi_handle world, byte, real, whole, sum; /* MPI_COMM_WORLD, MPI_BYTE, MPI_FLOAT, MPI_UINT64_T, MPI_SUM */
-  mpi_handle communicator;                  /* owned; a duplicate that exists from duplicate() to free() */
+  mpi_handle communicator;                  /* owned; a duplicate of the parent's; duplicate() makes it, and
+                                             * free() ends it */
 };
 
 /* A library's properties that are known before it is loaded. */

@@ -10,7 +10,7 @@
 #include "core/context.h"
 #include "core/memory.h"
 
-/* Greatest number of values or bytes of one call: MPI counts them by an int. */
+/* The most values or bytes that one call of MPI transfers, because MPI counts them by an int. */
 enum { MOST_VALUES = 1 << 28 };
 
 /* ---- waiting ---- */
@@ -133,8 +133,8 @@ static hl_status start(hl_ranks *ranks, bool alone, hl_error *error) {
   if (!running && !alone)
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "hl_ranks_join: MPI is not started: call MPI_Init_thread()");
   if (running)
-    needed = MPI_MULTIPLE; /* the caller, who started MPI, may call MPI while a thread of this library
-                            * answers */
+    needed = MPI_MULTIPLE; /* the caller, who started MPI, may call it at the same time as a thread of this
+                            * library that answers requests */
   int result = running ? hl_mpi_query_thread(mpi, &given) : hl_mpi_init_thread(mpi, needed, &given);
   if (result != 0) return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s does not start", mpi->name);
   ranks->started = !running;

@@ -19,11 +19,13 @@ struct hl_ranks {
   hl_context *context;
   mpi mpi;
   int rank, size;
-  bool started;                          /* MPI was started here, and must be ended here */
+  bool started;                          /* whether hl_ranks_join() started MPI, which must then be ended
+                                          * here, too */
   pthread_mutex_t calling;               /* held during each call of MPI */
   struct hl_block_server *server;        /* owned (blocks.h); null if no blocks are shared */
   atomic_uint_least64_t bytes, requests; /* received from other ranks */
-  atomic_uint_least64_t nanoseconds;     /* that threads spent waiting for received bytes */
+  atomic_uint_least64_t nanoseconds;     /* sum of the times for which threads waited for bytes from other
+                                          * ranks */
 };
 
 /* Waits until a request is done. Other threads can call MPI meanwhile. */
@@ -59,12 +61,12 @@ void hl_ranks_tell(hl_ranks *ranks, void *bytes, size_t count, int root);
 /* Adds up the counts of all ranks; all ranks get the sums. */
 void hl_ranks_sum_counts(hl_ranks *ranks, uint64_t *counts, size_t count);
 
-/* Completes an array of which each rank has computed a part: rank n's part ends where the part of rank n + 1
- * begins, at element hl_ranks_part(n + 1). Afterwards all ranks have all elements. element_bytes: bytes of
- * one element. */
+/* Completes an array of which each rank has computed a part. The parts are those of hl_ranks_part().
+ * Afterwards all ranks have all elements. element_bytes: bytes of one element. */
 void hl_ranks_complete(hl_ranks *ranks, void *elements, size_t count, size_t element_bytes);
 
-/* The number of the first of `count` elements that belongs to a rank; `count` for the rank after the last. */
+/* The index of the first of `count` elements that belongs to a rank; the rank's part ends where the next
+ * rank's part begins. `count` for the number after the last rank's. */
 static inline size_t hl_ranks_part(const hl_ranks *ranks, size_t count, int rank) {
   return (size_t)((unsigned __int128)count * (unsigned)rank / (unsigned)ranks->size);
 }

@@ -106,8 +106,8 @@ static double bare_distance(const hl_shape_list *list, size_t index, const unsig
                                        : solid_distance(shape, p);
 }
 
-/* The point of the surface that is nearest to a point, found by one step against the distance's gradient
- * that is as long as the distance. */
+/* The point of the surface that is nearest to a point. It is found by one step from the point, opposite to
+ * the gradient of the distance and as long as the distance. */
 static vec3 foot_point(const hl_shape_list *list, size_t index, const unsigned char *live, vec3 p,
                        double distance) {
   double h = list->shapes[index].edge / 64;
@@ -167,7 +167,7 @@ static hl_interval list_bounds(const hl_shape_list *list, size_t first, size_t e
     }
     live[index] = 1;
     if (shape->operation == HL_SHAPE_ADD && all.low >= own.high + shape->blend)
-      mark(first, index, live, 0); /* all earlier shapes are farther away than this one */
+      mark(first, index, live, 0); /* the earlier shapes are farther away than this one */
     bool turned = shape->operation == HL_SHAPE_SUBTRACT;
     all = (hl_interval){join(shape, all.low, turned ? own.high : own.low),
                         join(shape, all.high, turned ? own.low : own.high)};

@@ -50,7 +50,7 @@ static int64_t cell(double x) {
 }
 
 double hl_noise_at(const hl_noise *noise, vec3 p) {
-  /* so far out all doubles are whole numbers, at which noise is 0 */
+  /* all doubles that are so great are whole numbers, at which noise is 0 */
   if (!(fabs(p.x) + fabs(p.y) + fabs(p.z) < 0x1p50)) return 0;
   int64_t cx = cell(p.x), cy = cell(p.y), cz = cell(p.z);
   double x = p.x - (double)cx, y = p.y - (double)cy, z = p.z - (double)cz;
@@ -95,7 +95,8 @@ static double softness(const hl_shape *shape) {
   return shape->texture.soft > 0 ? shape->texture.soft : shape->edge;
 }
 
-/* The distance at which the edge of a solid has the density that a soft shape has at a given distance. */
+/* The distance from a solid's surface at which the solid has the same density as a soft shape at the given
+ * distance. */
 static double as_edge(const hl_shape *shape, double distance) {
   double at = distance / softness(shape);
   return shape->edge * (at < -0.5 ? -0.5 : at > 0.5 ? 0.5 : at);

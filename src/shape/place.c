@@ -83,7 +83,8 @@ static double reach(const hl_shape_list *list, size_t first, size_t end, vec3 u)
     vec3 local = vec3_scale(mat3_apply(shape->to_local.linear, u), shape->scale * shape->scale);
     double own = shape->type == HL_SHAPE_GROUP ? reach(list, index + 1, shape->end, local)
                                                : solid_reach(shape, local);
-    double growth = shape->blend / (4 * shape->scale); /* a rounded joint and a texture may reach further */
+    double growth = shape->blend / (4 * shape->scale); /* a rounded joint and a texture may extend the shape
+                                                        * by this length */
     if (shape->texture.pattern != HL_PATTERN_NONE)
       growth += shape->texture.soft / 2 + fmax(-shape->texture.amplitude, 0);
     own += growth * vec3_length(local) + vec3_dot(u, vec3_of(shape->position));

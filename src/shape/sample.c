@@ -72,7 +72,7 @@ static void sample_solids(void *data, size_t index, int worker) {
   }
   unsigned char *live = s->live + (size_t)worker * s->list->count;
   double radius = grid->voxel_size * sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]);
-  /* slightly wider than the block, against rounding */
+  /* a little more than the block's radius, to make up for rounding */
   hl_interval bounds = hl_shapes_bounds(s->list, voxel_centre(grid, middle[0], middle[1], middle[2]),
                                         radius + 1e-3 * grid->voxel_size, live);
   if (bounds.low >= edge / 2 || bounds.high <= -edge / 2) {
@@ -145,7 +145,7 @@ static void describe(const hl_shape_grid *grid, bool orbitals, hl_volume_descrip
 
 hl_status hl_shapes_sample(hl_context *context, const hl_shape_list *list, const hl_shape_grid *grid,
                            int threads, const char *subject, hl_volume **volume, hl_error *error) {
-  bool orbitals = list->shapes[0].type == HL_SHAPE_ORBITAL; /* if one shape is an orbital, all are */
+  bool orbitals = list->shapes[0].type == HL_SHAPE_ORBITAL; /* a list has orbitals alone or none */
   const size_t *dimension = grid->dimension;
   size_t count = dimension[0] * dimension[1] * dimension[2],
          bytes = orbitals ? sizeof(float) : sizeof(uint16_t);

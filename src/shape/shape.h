@@ -54,8 +54,8 @@ typedef struct hl_hypertexture {
   double
       amplitude; /* depth by which the surface recedes where the pattern's value is 1; negative: it grows */
   double soft;   /* length over which the density falls from 1 to 0; 0: HL_SHAPE_EDGE voxels */
-  int strands;   /* fur: the pattern's value at the nearest point of the surface is used all along the normal
-                    there */
+  int strands;   /* for fur: the pattern's value along a normal is everywhere the value where the normal meets
+                  * the surface */
   hl_noise noise;
 } hl_hypertexture;
 
@@ -76,9 +76,9 @@ typedef struct hl_shape {
   double rounding;       /* box, plane, cylinder: radius of the edges, inside the given size */
   int quantum[3];        /* orbital: quantum numbers n, l, m */
   hl_hypertexture texture;
-  size_t end;       /* index of the shape after this one and its members */
-  affine3 to_local; /* the map from the parent's frame to the shape's own; hl_shapes_place() sets it, and
-                     * `edge` */
+  size_t end;       /* index of the first shape that is neither this one nor one of its members */
+  affine3 to_local; /* the map from the parent's frame to the shape's own; like `edge`, hl_shapes_place() sets
+                     * it */
   double edge;      /* length of HL_SHAPE_EDGE voxels in the shape's own frame */
 } hl_shape;
 
@@ -102,8 +102,8 @@ void hl_shapes_place(hl_shape_list *list, double voxel_size);
 /* The longest edge of the box around all shapes, without margin; 0 if the box is empty. */
 double hl_shapes_extent(const hl_shape_list *list);
 
-/* Finds the grid; false if it needed more than HL_SHAPE_VOXELS voxels, or lay more than a trillion voxels
- * from the origin. */
+/* Finds the grid. Returns false if the grid would need more than HL_SHAPE_VOXELS voxels, or would lie more
+ * than a trillion voxels from the origin. */
 bool hl_shapes_grid(const hl_shape_list *list, double voxel_size, hl_shape_grid *grid);
 
 /* Bounds of a distance. */
@@ -119,7 +119,8 @@ double hl_shapes_distance(const hl_shape_list *list, const unsigned char *live, 
  * affect the distance there. */
 hl_interval hl_shapes_bounds(const hl_shape_list *list, vec3 p, double radius, unsigned char *live);
 
-/* The distance from a surface after its texture has changed it, from the distance before. p: own frame. */
+/* The distance from the surface of a shape with its texture. distance: the distance without the texture. p: a
+ * point of the shape's own frame. foot: the surface's nearest point. */
 double hl_hypertexture_distance(const hl_shape *shape, double distance, vec3 p, vec3 foot);
 hl_interval hl_hypertexture_bounds(const hl_shape *shape, hl_interval distance);
 /* Whether a texture matters at a distance from its surface: false where the distance is too large or too
@@ -129,8 +130,9 @@ bool hl_hypertexture_matters(const hl_shape *shape, double distance);
 /* The real hydrogen-like wave function, not normalised. p: own frame. */
 double hl_orbital_at(const hl_shape *shape, vec3 p);
 
-/* The volume of a list that has been placed for the grid. Orbitals are scaled to a greatest magnitude of 1.
- * threads: 0: one per processor. subject starts the error lines. */
+/* Makes a volume of a list of shapes, which hl_shapes_place() has placed for the grid's voxels. Orbitals are
+ * scaled so that their greatest magnitude is 1. threads: 0 for one per processor. subject: starts the error
+ * lines. */
 hl_status hl_shapes_sample(hl_context *context, const hl_shape_list *list, const hl_shape_grid *grid,
                            int threads, const char *subject, hl_volume **volume, hl_error *error);
 

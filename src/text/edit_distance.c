@@ -42,7 +42,7 @@ int hl_edit_distance(const char *a, const char *b) {
 const char *hl_nearest_name(const char *name, const char *const *names) {
   const char *nearest = NULL;
   int length = (int)strnlen(name, HL_EDIT_LONGEST),
-      allowed = length * 2 / 5; /* a name is near enough if at most two letters in five are wrong */
+      allowed = length * 2 / 5; /* a name is near enough if at most two in five of its letters are wrong */
   int best = 1 + (allowed < 2 && length > 2 ? 2 : allowed);
   for (size_t n = 0; names[n] != NULL; n++) {
     int distance = hl_edit_distance(name, names[n]);
@@ -57,7 +57,7 @@ const char *hl_nearest_candidate(const char *text, const char *(*candidate)(cons
                                  const void *data) {
   size_t length = strlen(text);
   const char *best = NULL, *name;
-  size_t best_distance = 2 + length / 4; /* farther names would puzzle more than help */
+  size_t best_distance = 2 + length / 4; /* a name that differs more would puzzle more than help */
   if (length > HL_EDIT_LONGEST) return NULL;
   for (size_t i = 0; (name = candidate(data, i)) != NULL; i++) {
     bool part_of_it = length >= 3 && strstr(name, text) != NULL;

@@ -15,8 +15,8 @@ int hl_edit_distance(const char *a, const char *b);
  * meant. */
 const char *hl_nearest_name(const char *name, const char *const *names);
 
-/* The nearest of candidate(data, 0), candidate(data, 1), ..., which ends with null; null if none is spelled
- * like the text. A candidate that holds the text is near. */
+/* Of candidate(data, 0), candidate(data, 1) and so on, up to the first null: the one that is nearest to the
+ * text. A candidate that contains the text is near. Null if none is near. */
 const char *hl_nearest_candidate(const char *text, const char *(*candidate)(const void *data, size_t index),
                                  const void *data);
 

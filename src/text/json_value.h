@@ -6,15 +6,16 @@
 
 enum { HL_JSON_NUMBER_BYTES = 64, HL_JSON_PIECE_BYTES = 8 };
 
-/* The shortest of 15, 16 or 17 digits that reads back as the same finite number, with a "." in every locale.
- */
+/* Writes a finite number with 15, 16 or 17 digits: as few as read back as the same number. The decimal point
+ * is "." in every locale. */
 void hl_json_number_text(double number, char text[HL_JSON_NUMBER_BYTES]);
 
 /* The length in bytes of the well-formed UTF-8 sequence at c; 0 if there is none (RFC 3629). */
 size_t hl_utf8_length(const unsigned char *c);
 
-/* Writes the character at *text, escaped for use between quotes, moves *text past it, and returns the piece's
- * length; 0 at the end. Bytes that are not UTF-8, as file names may hold, become U+FFFD. */
+/* Writes the character at *text as it stands between quotes in JSON, and moves *text past it. Returns
+ * the length of what was written; 0 at the end. Bytes that are not UTF-8, as file names may hold, become
+ * U+FFFD. */
 size_t hl_json_piece(const char **text, char piece[HL_JSON_PIECE_BYTES]);
 
 #endif

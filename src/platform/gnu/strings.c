@@ -20,12 +20,12 @@ static size_t digits_at(const char *text) {
   return count;
 }
 
-/* Numbers within names are compared as numbers; numbers that begin with zeros count as fractions, and come
- * before the others: 000, 00, 01, 010, 09, 0, 1, 9, 10. */
+/* Compares names, and numbers within names as numbers. Numbers that begin with zeros count as fractions and
+ * come before all other numbers: 000, 00, 01, 010, 09, 0, 1, 9, 10. */
 int strverscmp(const char *a, const char *b) {
-  size_t same = 0, begin = 0; /* the place of the first character that differs; the place where the number
-                               * begins in which it lies */
-  bool zeros = true;          /* of the number up to there there are zeros alone */
+  size_t same = 0, begin = 0; /* `same` is the place of the first character that differs. `begin` is where the
+                               * number begins that this character belongs to */
+  bool zeros = true;          /* whether the characters from `begin` to `same` - 1 are all '0' */
   for (; a[same] == b[same]; same++) {
     if (a[same] == '\0') return 0;
     if (!is_digit(a[same])) begin = same + 1, zeros = true;

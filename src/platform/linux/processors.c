@@ -58,7 +58,7 @@ static int read_numbers(const char *folder, const char *name, double number[2]) 
   return take_number(&rest, &number[1]) ? 2 : 1;
 }
 
-/* Processors that one group may use; infinite where it has no limit. */
+/* The number of processors whose time one group may use; infinite where it has no limit. */
 static double quota_of_group(const char *folder, bool unified) {
   double of_quota[2] = {-1, 100000}, of_period[2];
   if (unified) {
@@ -70,8 +70,9 @@ static double quota_of_group(const char *folder, bool unified) {
   return of_quota[0] > 0 && of_quota[1] > 0 ? of_quota[0] / of_quota[1] : INFINITY;
 }
 
-/* The least quota of a group and of all groups above it. path: "/..." below the hierarchy's folder. A
- * container may see its own group at the hierarchy's top under another path. */
+/* The least quota of a group and of all groups above it. path: the group's folder, "/..." below the
+ * hierarchy's. It may be missing: within a container a process may be told another path than the one that the
+ * container sees, where its own group is the hierarchy's top. */
 static double quota_of_path(const char *hierarchy, const char *path, bool unified) {
   char folder[PATH_BYTES];
   int length = snprintf(folder, sizeof folder, "%s%s", hierarchy, path);

@@ -30,7 +30,8 @@ sine_and_cosine hl_sincos(double x) {
 }
 
 double hl_exp10(double x) {
-  volatile double ten = 10; /* volatile: pow() of a constant ten would become a call of this function */
+  volatile double ten = 10; /* volatile: otherwise compilers turn pow() of the constant ten into a call of
+                             * this very function */
   return pow(ten, x);
 }
 

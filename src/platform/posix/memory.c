@@ -5,8 +5,9 @@
 #include <stdlib.h>
 #include <sys/mman.h>
 
-/* Asks the system to place large blocks in large pages. With small pages, every row of a tile would lie in a
- * page of its own, and translating the pages' addresses took longer than reading the rows. */
+/* The size of a large page, and the size of the blocks for which large pages are asked. With small pages,
+ * every row of a tile would lie in a page of its own, and translating the pages' addresses took longer than
+ * reading the rows. */
 enum { LARGE_PAGE = 1 << 21, LARGE_BLOCK = 1 << 22 };
 
 void *hl_aligned_allocate(size_t bytes, size_t alignment) {

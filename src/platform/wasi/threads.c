@@ -1,10 +1,10 @@
-/* platform/wasi/threads.c - see threads.h: POSIX threads over WebAssembly's atomic waits, in place of the C
- * library's functions, which start no thread and wait for none, and a lock around its memory, which is made
+/* platform/wasi/threads.c - see threads.h. Makes POSIX threads of WebAssembly's atomic waits: the C library's
+ * functions start no thread and wait for none. Puts a lock around the C library's allocator, which is made
  * for one thread.
  *
  * A mutex is Drepper's second one ("Futexes are tricky", 2011): 0 open, 1 held, 2 held and waited for. A
- * condition is a count of its signals: who waits sleeps while the count is what it was before the mutex was
- * opened. */
+ * condition is a count of its signals: a waiting thread sleeps until the count differs from what it was
+ * before the mutex was opened. */
 #include "platform/wasi/threads.h"
 
 #include <errno.h>
@@ -23,7 +23,7 @@ typedef struct helper {
 static helper helpers[MOST_HELPERS];
 static atomic_int allowed = 1;
 
-/* Sleeps while a number is what is expected. The numbers are 32 bits, as the instructions want. */
+/* Sleeps as long as *number equals `expected`. Both have 32 bits, as the instruction requires. */
 static void wait_while(atomic_int *number, int expected) {
   __builtin_wasm_memory_atomic_wait32((int *)number, expected, -1);
 }
@@ -164,7 +164,8 @@ int pthread_cond_signal(pthread_cond_t *condition) { return pthread_cond_broadca
 
 /* ---- memory ---- */
 
-/* The linker calls these for the functions that they are named after (scripts/wasm.ini). */
+/* The C library's own functions. The linker replaces calls of malloc() by calls of __wrap_malloc(), and so on
+ * (scripts/wasm.ini). */
 void *__real_malloc(size_t bytes);
 void *__real_calloc(size_t count, size_t bytes);
 void *__real_realloc(void *memory, size_t bytes);

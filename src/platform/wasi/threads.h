@@ -1,8 +1,8 @@
-/* platform/wasi/threads.h - the threads of a page. WebAssembly's system interface has none: a page starts
- * workers of its own, the helpers, before the library asks for threads. Each helper waits in the memory that
- * all of them share, and a thread of the library runs on one of them.
+/* platform/wasi/threads.h - the threads of a page. WebAssembly's system interface has no threads. A page
+ * therefore starts workers, the helpers, before the library asks for threads. Helpers share one memory and
+ * wait in it; each thread of the library runs on one helper.
  *
- * Helpers have no files. A caller that opens files allows one thread meanwhile. */
+ * Helpers cannot use files. While a caller opens files, it allows one thread alone. */
 #ifndef HL_PLATFORM_WASI_THREADS_H
 #define HL_PLATFORM_WASI_THREADS_H
 
@@ -10,10 +10,12 @@
 
 enum { MOST_HELPERS = 30 };
 
-/* The most threads of a pool, its caller included: hl_cpu_count() tells no more. At the beginning 1. */
+/* Limits the threads of pools: hl_cpu_count() tells no greater number. threads: the caller of a pool counts
+ * as one. The limit is 1 at the beginning. */
 void hl_helpers_allow(int threads);
 
-/* Says that a helper is there. number: from 0, each once. False: there is no such number. */
+/* Says that a helper has started. number: from 0 on, another one for each helper. False if there is no such
+ * number. */
 bool hl_helper_arrive(int number);
 
 /* Runs in a helper's worker, after hl_helper_arrive(), and does not return: runs threads of the library. */

@@ -12,7 +12,8 @@
 
 #include "platform/processors.h"
 
-/* The tag of the exceptions that longjmp() throws: clang names it in each file and defines it in none. */
+/* The tag of the exceptions that longjmp() throws. clang refers to it in each file, but no file of its own
+ * defines it. */
 __asm__(".globl __c_longjmp\n.tagtype __c_longjmp i32\n__c_longjmp:\n");
 
 double hl_cpu_quota(const char *root) {

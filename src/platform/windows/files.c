@@ -1,5 +1,5 @@
-/* platform/windows/files.c - open files: their descriptors, reading and writing at places, what is known of
- * them. */
+/* platform/windows/files.c - functions on open files: descriptors, reading and writing at an offset, size and
+ * kind. */
 #include <windows.h>
 
 #include <winternl.h>
@@ -145,7 +145,7 @@ ssize_t hl_posix_write(int descriptor, const void *bytes, size_t count) {
   return _write(descriptor, bytes, at_once(count));
 }
 
-/* Reads or writes at a place; the descriptor's own place stays. */
+/* Reads or writes at an offset of the file, and leaves the descriptor's own position as it is. */
 static ssize_t transfer(int descriptor, void *into, const void *from, size_t count, off_t offset) {
   HANDLE handle = handle_of(descriptor);
   LARGE_INTEGER before, none = {.QuadPart = 0};
@@ -236,7 +236,8 @@ int hl_posix_stat(const char *path, struct stat *about) {
   return stat_opened(hl_posix_open(path, O_PATH | O_CLOEXEC), about);
 }
 
-/* A link is opened itself: descriptor_of() refuses it only where it must be followed. */
+/* Tells about a link itself if AT_SYMLINK_NOFOLLOW is set: the link is opened, and descriptor_of() does not
+ * refuse it, because its flags lack O_NOFOLLOW. */
 int hl_posix_fstatat(int folder, const char *path, struct stat *about, int flags) {
   wchar_t *name = strpbrk(path, ":\\") == NULL ? hl_wide_text(path) : NULL;
   if (name == NULL) return errno = ENOENT, -1;

@@ -10,7 +10,8 @@ typedef struct kept_locale {
 } kept_locale;
 
 static char the_locale; /* its address stands for the locale "C" */
-/* Stands for "the thread had this locale already". */
+/* What uselocale() returns if nothing was changed, because the thread had the locale "C" already or memory
+ * was short. */
 static char no_change;
 
 locale_t newlocale(int mask, const char *name, locale_t base) {

@@ -40,7 +40,7 @@ int munmap(void *begin, size_t bytes) {
   return UnmapViewOfFile(begin) || VirtualFree(begin, 0, MEM_RELEASE) ? 0 : hl_system_error(GetLastError());
 }
 
-/* Unlocking memory that is not locked removes it from the process's working set. */
+/* VirtualUnlock() of memory that is not locked removes the memory from the process's working set. */
 int madvise(void *begin, size_t bytes, int advice) {
   if (advice == MADV_DONTNEED) VirtualUnlock(begin, bytes);
   return 0;

@@ -6,8 +6,9 @@
 #include <stddef.h>
 #include <wchar.h>
 
-/* A name for calls of the system. The caller frees it; null, with errno set, if the text is no UTF-8 or
- * without memory. Long names get the prefix that lifts the system's limit of 260 characters. */
+/* Converts a name for calls of the system. Long names get the prefix that lifts the system's limit of
+ * 260 characters. The caller frees the result. Null, with errno set, if the text is no UTF-8 or memory
+ * is short. */
 wchar_t *hl_wide_name(const char *path);
 
 /* The same text in UTF-16, with '\' for '/' and without a prefix. */

@@ -61,7 +61,7 @@ static BOOL find_writable(const wchar_t *name) {
   DWORD attributes = GetFileAttributesW(name);
   bool folder = attributes != INVALID_FILE_ATTRIBUTES && (attributes & FILE_ATTRIBUTE_DIRECTORY) != 0;
   if (folder || (attributes & FILE_ATTRIBUTE_READONLY) == 0)
-    return TRUE; /* of a folder the mark means nothing */
+    return TRUE; /* the mark "read only" has no meaning for folders */
   if (attributes != INVALID_FILE_ATTRIBUTES) SetLastError(ERROR_ACCESS_DENIED);
   return FALSE;
 }

@@ -51,12 +51,12 @@ static int add(glob_t *found, const char *path) {
   return 0;
 }
 
-/* Adds the files in a folder that a pattern names. path: [PATH_MAX]; the folder with its '/', or "" for the
- * current one; it has `length` characters, and is changed. */
+/* Adds the files that a pattern finds in a folder. path: [PATH_MAX]; the folder's name and a '/', or "" for
+ * the current folder, `length` characters; the function appends names to it. */
 static int find(char *path, size_t length, const char *pattern, glob_t *found);
 
-/* Continues a search at a name that was found in the folder `path`. rest: the rest of the pattern, from the
- * next '/' on; "" at the pattern's end. */
+/* Goes on with a search at a file or folder `name` in the folder `path`. rest: the pattern after this name,
+ * from its '/' on; "" at the pattern's end. */
 static int go_on(char *path, size_t length, const char *name, const char *rest, glob_t *found) {
   int written = snprintf(path + length, PATH_MAX - length, "%s%s", name, rest[0] != '\0' ? "/" : "");
   if (written < 0 || (size_t)written >= PATH_MAX - length || access(path, F_OK) != 0) return 0;

@@ -24,7 +24,7 @@
 int hl_cpu_count(void) {
   DWORD_PTR of_process = 0, of_system = 0;
   DWORD all = GetActiveProcessorCount(ALL_PROCESSOR_GROUPS);
-  if (GetActiveProcessorGroupCount() > 1) return (int)all; /* the mask knows of one group alone */
+  if (GetActiveProcessorGroupCount() > 1) return (int)all; /* the mask covers one group alone */
   if (!GetProcessAffinityMask(GetCurrentProcess(), &of_process, &of_system)) return all > 0 ? (int)all : 1;
   int count = __builtin_popcountll(of_process);
   return count > 0 ? count : 1;

@@ -1,4 +1,4 @@
-/* platform/windows/include/dlfcn.h - POSIX's <dlfcn.h>: the system's own libraries. */
+/* platform/windows/include/dlfcn.h - POSIX's <dlfcn.h>, for libraries in the system's own folder. */
 #ifndef HL_PLATFORM_WINDOWS_DLFCN_H
 #define HL_PLATFORM_WINDOWS_DLFCN_H
 

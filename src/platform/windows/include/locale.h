@@ -8,7 +8,8 @@
 typedef void *locale_t;
 #define LC_ALL_MASK 0x1f
 locale_t newlocale(int mask, const char *name, locale_t base);
-/* Sets the calling thread's locale, and returns an object that sets the one before. It must be given back. */
+/* Sets the calling thread's locale. Returns an object that stands for the locale before; it must be given to
+ * a second call, which restores that locale. */
 locale_t uselocale(locale_t locale);
 double strtod_l(const char *text, char **end, locale_t locale);
 

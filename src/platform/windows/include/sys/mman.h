@@ -12,7 +12,7 @@ enum { MADV_RANDOM, MADV_WILLNEED, MADV_DONTNEED, MADV_NOHUGEPAGE };
 
 void *mmap(void *address, size_t bytes, int protection, int flags, int descriptor, off_t offset);
 int munmap(void *begin, size_t bytes);
-/* MADV_DONTNEED lets the system take the memory of a mapped file back; other advice is not taken. */
+/* MADV_DONTNEED lets the system take back the memory of a mapped file. Other advice has no effect. */
 int madvise(void *begin, size_t bytes, int advice);
 
 #endif

@@ -1,5 +1,5 @@
-/* platform/windows/include/sys/resource.h - the part of POSIX's <sys/resource.h> that says what a process
- * held. */
+/* platform/windows/include/sys/resource.h - the part of POSIX's <sys/resource.h> that tells how much memory a
+ * process held at most. */
 #ifndef HL_PLATFORM_WINDOWS_SYS_RESOURCE_H
 #define HL_PLATFORM_WINDOWS_SYS_RESOURCE_H
 

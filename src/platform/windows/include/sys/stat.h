@@ -7,7 +7,7 @@
 #include <io.h>
 #include <sys/types.h>
 #include <time.h>
-#include <wchar.h> /* declares other structs of this kind, before their members become macros */
+#include <wchar.h> /* declares structs with such members, before these become macros */
 
 struct stat {
   unsigned long long st_dev, st_ino;

@@ -1,2 +1,2 @@
-/* platform/windows/include/sys/syscall.h - Linux's <sys/syscall.h>: no system call has a number that may be
- * used. */
+/* platform/windows/include/sys/syscall.h - Linux's <sys/syscall.h>, without numbers: no system call may be
+ * made by its number. */
