@@ -1,6 +1,6 @@
 /* volume/brick_bounds.h - bounds of bricks: the least and greatest stored value of the voxels on which each
- * brick of a volume depends. They are found while a volume larger than memory is stored; else the volume
- * would be read once more. */
+ * brick of a volume depends. For a volume larger than memory they are found while it is stored, because
+ * finding them later would mean reading the volume once more. */
 #ifndef HL_VOLUME_BRICK_BOUNDS_H
 #define HL_VOLUME_BRICK_BOUNDS_H
 

@@ -9,13 +9,13 @@
 #include "core/memory.h"
 #include "volume/in_bricks.h"
 
-static const double ALIKE =
-    1.5; /* axes whose steps are at most this many times as long as the shortest are halved together */
+static const double ALIKE = 1.5; /* greatest step of an axis that is halved, in units of the shortest step */
 
 enum {
   MOST_ROWS = 4,
   MOST_VALUES = 2 * MOST_ROWS
-}; /* numbers of voxels in a row of the volume, and for one voxel of the coarser volume */
+}; /* MOST_ROWS: the most rows of the volume that make a row of the coarser one. MOST_VALUES: the most values
+    * that make one value */
 
 typedef struct coarsening {
   const hl_volume *volume;
@@ -23,7 +23,8 @@ typedef struct coarsening {
   size_t factor[3];      /* 1 or 2 */
   size_t dimension[3];   /* of the coarser volume */
   unsigned char *voxels; /* [dimension[2]][dimension[1]][dimension[0]]; stored values of the coarser volume */
-  unsigned char *stored; /* owned; [threads][volume's row]; for rows of a volume with pages */
+  unsigned char *stored; /* owned; [threads][bytes of a row]; scratch memory for reading rows of a volume with
+                          * pages */
   float *numbers;        /* owned; [threads][MOST_ROWS][volume's row] */
 } coarsening;
 
@@ -62,8 +63,7 @@ static double mean_of(const float *values, size_t count) {
   return count > 0 ? sum / (double)count : (double)NAN;
 }
 
-/* The value that most of the values have, and the first of equally common values; NAN where there are none.
- */
+/* The most common of the values; the first one if several are equally common; NAN if there are none. */
 static double commonest_of(const float *values, size_t count) {
   size_t best = 0, most = 0;
   for (size_t n = 0; n + most < count; n++) {
@@ -113,8 +113,8 @@ static void make_slice(void *data, size_t k, int worker) {
   for (size_t j = 0; j < c->dimension[1]; j++) make_row(c, j, k, worker);
 }
 
-/* Places the coarser grid: a voxel lies in the middle of the voxels that it is made of. At the volume's
- * end, where some of these are missing, it lies as if all of them were there. */
+/* Places the coarser grid. Each of its voxels lies in the middle of the voxels that are merged in it. At the
+ * volume's end some of these may be missing; the voxel is placed as if all of them were there. */
 static void place(const coarsening *c, hl_volume_description *d) {
   static const hl_voxel_type types[] = {
       [HL_STORAGE_U8] = HL_VOXEL_U8, [HL_STORAGE_U16] = HL_VOXEL_U16, [HL_STORAGE_F32] = HL_VOXEL_F32};
@@ -135,7 +135,8 @@ static void place(const coarsening *c, hl_volume_description *d) {
   d->space = volume->space;
 }
 
-/* Copies to the coarser volume what surrounds the content, and what the file tells of its world. */
+/* Copies to the coarser volume the properties that do not depend on its resolution: the value around the
+ * content, the window, and what the file states about units, space and labels. */
 static void inherit(const hl_volume *volume, hl_volume *made) {
   made->unit = volume->unit;
   made->is_anatomical = volume->is_anatomical;

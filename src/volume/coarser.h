@@ -9,10 +9,10 @@
  * labels. */
 typedef enum hl_coarser_kind { HL_COARSER_MEANS, HL_COARSER_LABELS } hl_coarser_kind;
 
-/* Makes a volume by merging two voxels along each axis with short voxels, which are at most 1.5 times as
- * long as the shortest. A field in bricks, which has no labels, is made coarser along all axes, by leaving
- * its finest level out (bricks/coarser.h). The volume is not of colours and not over ranks, and a map of
- * labels has no numbers that floats round (volume/exact.h). */
+/* Makes a volume by merging two voxels along each short axis: an axis along which voxels are at most 1.5
+ * times as long as along the axis with the shortest ones. A field in bricks, which has no labels, is made
+ * coarser along all axes: its finest level is left out (bricks/coarser.h). Volumes of colours and volumes
+ * over ranks are not allowed, nor are maps of labels with numbers that floats round (volume/exact.h). */
 hl_status hl_volume_make_coarser(const hl_volume *volume, hl_coarser_kind kind, hl_volume **coarser,
                                  hl_error *error);
 

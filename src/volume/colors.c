@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "core/memory.h"
 
-/* With VOXELS_MOST voxels, 32 bits can number the bytes of the colours. */
+/* VOXELS_MOST: with more voxels, 32 bits could not number the bytes of the colours. */
 enum { ALPHA = 3, VOXELS_MOST = 1 << 29 };
 
 bool hl_can_be_colors(hl_voxel_type type, size_t components) {
@@ -46,9 +46,9 @@ static void divide_by_alpha(unsigned char *color) {
   }
 }
 
-/* Splits colours into densities and weighted colours. Where densities fall to nothing, the weights of the
- * colours fall, too, so that the colour of transparent voxels tints no edge. Weights are at least 1, so that
- * a mean of weights is never 0. */
+/* Splits colours into the densities from which opacity is computed, and colours with weights. A weight falls
+ * with its density, so that the colours of transparent voxels do not tint edges. It is at least 1, so that a
+ * mean of weights is never 0. */
 static void split(const hl_color_source *source, bool use_alpha, size_t count, unsigned char *colors,
                   unsigned char *densities) {
   for (size_t n = 0; n < count; n++) {

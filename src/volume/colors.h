@@ -24,7 +24,7 @@ void hl_colors_store(hl_voxel_type type, const void *stored, size_t step, size_t
 
 /* The collected data. An alpha that is the same everywhere tells nothing; then luminance takes its place. */
 typedef struct hl_color_source {
-  const hl_volume_description *grid; /* the file's grid; its type is the type of a component */
+  const hl_volume_description *grid; /* the file's grid; its `type` is the type of one component */
   const char *path;
   size_t components;  /* 3 or 4 */
   int component;      /* the component that is asked for: HL_COMPONENT_COLOR takes opacity from alpha, if

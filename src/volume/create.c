@@ -53,7 +53,8 @@ static affine3 index_to_world(const hl_volume_description *description) {
 
 static hl_status check_size(const hl_volume_description *description, const char *subject, hl_error *error) {
   const size_t *dimension = description->dimensions;
-  size_t bytes = 8; /* bytes of the largest voxel type, so that no later product overflows */
+  size_t bytes = 8; /* begins with the bytes of the largest voxel type; so products of sizes and bytes do not
+                     * overflow later either */
   bool fits = true;
   for (int axis = 0; axis < 3; axis++) {
     if (dimension[axis] < 1)
@@ -230,8 +231,8 @@ size_t hl_volume_row_room(const hl_volume *volume) {
   return width * (in_file ? hl_voxel_type_bytes(volume->type) + stored : stored);
 }
 
-/* The file's own numbers of a row of a volume with pages; they lie in a second scratch file. Null if the
- * file cannot be read. */
+/* Reads, for a row of a volume with pages, the file's own numbers, which lie in a second scratch file. Null
+ * if that file cannot be read. */
 static const void *numbers_in(const hl_volume *volume, size_t j, size_t k, unsigned char *buffer) {
   size_t width = volume->dimension[0], first = (k * volume->dimension[1] + j) * width;
   float *stored = (float *)(void *)(buffer + width * hl_voxel_type_bytes(volume->type));
@@ -266,7 +267,8 @@ bool hl_row_whole(const hl_volume *volume, hl_number_row row, size_t i, int64_t 
   bool is_64 = row.type == HL_VOXEL_I64 || row.type == HL_VOXEL_U64;
   if (is_64 && volume->value_scale == 1 && volume->value_offset == 0) {
     memcpy(whole, (const int64_t *)row.numbers + i, sizeof *whole);
-    return row.type == HL_VOXEL_I64 || *whole >= 0; /* the greatest unsigned ones look negative */
+    return row.type == HL_VOXEL_I64 || *whole >= 0; /* an unsigned number that is too great for int64_t looks
+                                                     * negative */
   }
   double value = volume->value_scale * hl_row_number(row, i) + volume->value_offset;
   if (!(value >= -TOO_GREAT && value < TOO_GREAT && value == floor(value))) return false;
@@ -303,8 +305,8 @@ static void choose_strides(const hl_volume_description *description, ptrdiff_t s
   memcpy(stride, is_packed ? packed : given, sizeof packed);
 }
 
-/* The greatest distance of slices that are borrowed: sampling counts the bytes between a few slices in 32
- * bits. */
+/* The greatest distance between slices, in bytes, of borrowed voxels. Sampling counts the bytes from one
+ * slice to the next few in 32 bits. */
 #define LARGEST_GAP ((ptrdiff_t)1 << 26)
 
 /* Whether the voxels can be borrowed: their type is stored unchanged, they are aligned for vector loads, rows
@@ -414,7 +416,7 @@ double hl_volume_value(const hl_volume *volume, size_t i, size_t j, size_t k) {
   return hl_volume_value_within(volume, i, j, k);
 }
 
-/* One voxel's number, as the only one of a row. own: room for the number. */
+/* The number of one voxel, as a row of this number alone. own: memory that the number may be stored in. */
 static hl_number_row number_of(const hl_volume *volume, size_t i, size_t j, size_t k, uint64_t *own) {
   const hl_pages *pages = volume->pages;
   if (volume->bricks != NULL) {
@@ -445,7 +447,7 @@ double hl_volume_value_within(const hl_volume *volume, size_t i, size_t j, size_
   if (volume == NULL || is_outside(volume, i, j, k)) return NAN;
   uint64_t own;
   double number = hl_row_number(number_of(volume, i, j, k, &own), 0);
-  /* a value that no finite float can hold stays transparent */
+  /* a number that is infinite as a float counts as not finite, so that it stays transparent */
   return isfinite((float)number) ? volume->value_scale * number + volume->value_offset : NAN;
 }
 

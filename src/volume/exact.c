@@ -12,7 +12,8 @@
 #include "volume/convert.h"
 #include "volume/store/scratch_file.h"
 
-/* Floats hold all whole numbers up to 2^24. Numbers nearer to 0 count as held, whatever their fraction. */
+/* Floats hold all whole numbers up to this one, 2^24. Numbers nearer to 0 are taken to be held, even if they
+ * have fractions. */
 #define HELD_BELOW 0x1p24
 
 void hl_exact_begin(hl_context *context, hl_voxel_type type, size_t count, hl_exact_place place,
@@ -47,8 +48,8 @@ static bool rounds_double(double value) {
 /* The magnitude of a signed number. */
 static uint64_t magnitude_of(int64_t value) { return value < 0 ? 0 - (uint64_t)value : (uint64_t)value; }
 
-/* Whether any number may be above 2^24, or below -2^24. Most files have no such number. The loops are of a
- * kind that compilers vectorise. */
+/* Whether a number may lie beyond 2^24 or -2^24. In most files none does. Compilers vectorise loops of this
+ * kind. */
 static bool any_great_32(bool is_signed, bool swap, const unsigned char *from, size_t count) {
   uint32_t bits = 0;
   for (size_t n = 0; n < count; n++) {
@@ -118,7 +119,8 @@ static int file_of(hl_exact *exact) {
   return none;
 }
 
-/* Writes all numbers of each piece in which a float rounds a number. */
+/* Writes numbers to the file, piece by piece: all numbers of a piece if a float rounds one of them, else
+ * none. */
 static void note_in_file(hl_exact *exact, bool swap, const unsigned char *from, size_t first, size_t count) {
   enum { PIECE = 2048 };
   unsigned char piece[8 * PIECE];
@@ -166,7 +168,8 @@ void hl_exact_note(hl_exact *exact, bool swap, const void *source, size_t first,
   else note_in_memory(exact, swap, from, first, count);
 }
 
-/* Sets the whole number of voxel n to the value of its float. For voxels whose whole number was not noted. */
+/* Sets the whole number of voxel n to the value of its float `stored`. It is for voxels whose number was not
+ * noted. */
 static void fill_number(hl_voxel_type type, double stored, size_t n, void *numbers) {
   switch (type) {
     case HL_VOXEL_U32:
@@ -185,8 +188,8 @@ static void fill_number(hl_voxel_type type, double stored, size_t n, void *numbe
   }
 }
 
-/* A noted number is zero at first. If a voxel's float differs from the float of the noted number, the number
- * was not noted. */
+/* Numbers are zeros until they are noted. So a number was not noted if its float is not the voxel's stored
+ * value. */
 void hl_exact_fill(hl_voxel_type type, const float *stored, size_t count, void *numbers) {
   for (size_t n = 0; n < count; n++)
     if (!((float)hl_exact_number(type, numbers, n) == stored[n]))
@@ -218,7 +221,7 @@ bool hl_exact_read(int file, hl_voxel_type type, size_t first, size_t count, con
     ssize_t got = pread(file, (unsigned char *)numbers + done, wanted - done, (off_t)(first * bytes + done));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return false;
-    if (got == 0) break; /* the rest of the file lies beyond the last number that was noted */
+    if (got == 0) break; /* the file ends behind the last number that was noted; the others are zeros */
     done += (size_t)got;
   }
   memset((unsigned char *)numbers + done, 0, wanted - done);

@@ -22,15 +22,15 @@ typedef enum hl_exact_place {
 typedef struct hl_exact {
   hl_context *context;
   hl_voxel_type type;
-  size_t first, count; /* the voxels whose numbers are kept: the number of the first voxel, which is 0
-                        * except over ranks, and how many there are */
+  size_t first, count; /* the voxels whose numbers are kept: number of the first one, which is 0 except over
+                        * ranks; number of voxels */
   hl_exact_place place;
   atomic_bool rounds;      /* whether a noted number is rounded by its float */
   atomic_int failure;      /* the system's error number if there was no room for the numbers, else 0 */
   _Atomic(void *) numbers; /* owned; [count], of the file's type; zeros at first; null until a number comes
                             * that a float rounds */
-  atomic_int file; /* owned; a file that holds the numbers in place of memory, with holes where nothing was
-                    * noted; -1: there is none */
+  atomic_int file; /* owned; the file that holds the numbers, if memory does not; holes, which read as zeros,
+                    * stand for numbers that were not noted; -1: no file */
 } hl_exact;
 
 void hl_exact_begin(hl_context *context, hl_voxel_type type, size_t count, hl_exact_place place,
@@ -58,7 +58,7 @@ void hl_exact_release(hl_exact *exact);
  * values. numbers: [count] of the type; zeros where nothing was noted. */
 void hl_exact_fill(hl_voxel_type type, const float *stored, size_t count, void *numbers);
 
-/* One number of a row. The row has values of the type in native byte order. */
+/* The number at index i of a row. row: numbers of the type, in native byte order. */
 static inline double hl_exact_number(hl_voxel_type type, const void *row, size_t i) {
   switch (type) {
     case HL_VOXEL_U32: return ((const uint32_t *)row)[i];

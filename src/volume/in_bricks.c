@@ -90,8 +90,8 @@ typedef struct brick_tally {
   const hl_volume *volume;
   double low, high, sum;
   double counted;   /* cells of level 0 */
-  double nonfinite; /* cells of level 0 without a number */
-  bool binned;      /* whether the range is known, and the histogram is filled */
+  double nonfinite; /* voxels whose coefficient is not finite; counted as cells of level 0 */
+  bool binned;      /* if set, the range is known, and values are counted in the histogram */
 } brick_tally;
 
 static void add_value(brick_tally *tally, float value, uint64_t weight, uint64_t *histogram) {
@@ -111,14 +111,15 @@ static void add_value(brick_tally *tally, float value, uint64_t weight, uint64_t
   tally->counted += (double)weight;
 }
 
-/* The points of level 0 of the volume's box along an axis: range[0] to range[1] - 1. */
+/* Finds the lattice points of level 0 in the volume's box, along an axis: range[0] to range[1] - 1. */
 static void points_in_box(const hl_volume *volume, int axis, int64_t range[2]) {
   double origin = volume->bricks->origin[axis];
   range[0] = (int64_t)ceil(origin - 0.5);
   range[1] = (int64_t)ceil(origin + (double)volume->dimension[axis] - 0.5);
 }
 
-/* The number of the box's points along an axis that lie in a cell of a level. */
+/* The number of the box's lattice points, along an axis, that lie in a cell of a level. box: as from
+ * points_in_box(). */
 static int64_t share_of(const int64_t box[2], int64_t cell, int level) {
   int64_t first = cell << level, end = (cell + 1) << level;
   if (first < box[0]) first = box[0];
@@ -126,7 +127,8 @@ static int64_t share_of(const int64_t box[2], int64_t cell, int level) {
   return end > first ? end - first : 0;
 }
 
-/* Adds one block of level 0, and the whole of a brick with its first block. */
+/* Adds the values of a brick to the tally when it is called for the brick's first block, and nothing for its
+ * other blocks. A block without a brick adds its constant. */
 static void add_block(brick_tally *tally, const int64_t block[3], uint64_t *histogram) {
   const hl_bricks *bricks = tally->volume->bricks;
   const hl_brick_entry *entry = hl_bricks_entry(bricks, block);

@@ -27,16 +27,17 @@ void hl_volume_set_field_error(hl_volume *volume, double value, const char *kind
 hl_status hl_volume_check_bricks(const hl_bricks *bricks, const hl_volume_description *grid,
                                  const char *subject, hl_error *error);
 
-/* Finds the statistics of a volume's coefficients: each coefficient counts once for each cell of level 0
- * that lies in its own cell and in the volume's box. So together they count as often as there are voxels.
- * Coefficients that are not finite do not count in range and mean. */
+/* Finds the statistics of a volume's coefficients. Each coefficient has a cell, and counts once for each cell
+ * of level 0 in it that lies in the volume's box. So all coefficients together count as often as there are
+ * voxels. Coefficients that are not finite do not count in range and mean. */
 hl_status hl_volume_measure_bricks(hl_volume *volume, const char *subject, hl_error *error);
 
 /* The number that stands for a voxel: where voxels stand on points of the lattice, the coefficient of level
  * 0, so that a dense volume of these voxels has the same field under the smoothing kernel; else the field's
  * value. */
 float hl_volume_value_of_bricks(const hl_volume *volume, const size_t voxel[3]);
-/* Those numbers of a row. row: [dimension[0]]. */
+/* Finds the numbers that stand for the voxels of a row, as hl_volume_value_of_bricks() does for one voxel.
+ * row: [dimension[0]]. */
 void hl_volume_row_of_bricks(const hl_volume *volume, size_t j, size_t k, float *row);
 
 #endif

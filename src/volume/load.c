@@ -17,8 +17,8 @@ static bool begins(const unsigned char *bytes, size_t length, const char *mark, 
   return length >= mark_length && memcmp(bytes, mark, mark_length) == 0;
 }
 
-/* The format that claims the first bytes. length: how many there are, which may be more than formats look at.
- */
+/* The format that claims a file by its first bytes. length: number of bytes that are known; formats look at
+ * HL_FORMAT_SNIFFED_BYTES at most. */
 static const hl_format *by_content(const unsigned char *bytes, size_t length) {
   if (length > HL_FORMAT_SNIFFED_BYTES) length = HL_FORMAT_SNIFFED_BYTES;
   for (int n = 0; hl_formats[n] != NULL; n++)
@@ -135,7 +135,8 @@ static hl_status fail_unknown(const hl_stream *stream, const unsigned char *byte
 
 static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
 
-/* The only file of an archive, or null. Files that macOS adds to archives do not count. */
+/* The only file in an archive; null if there are several, or none. Files that macOS adds to archives do not
+ * count. */
 static const hl_bundle_entry *only_file(const hl_bundle *bundle) {
   const hl_bundle_entry *only = NULL;
   for (size_t n = 0; n < bundle->count; n++) {
@@ -194,8 +195,8 @@ static hl_status load_folder(const char *path, hl_load_request *request, hl_volu
   return status;
 }
 
-/* Reads a store on a server. If the caller names no level, the level is read that a picture of the given
- * size can show. */
+/* Reads a store on a server. If the caller names no level, the level that is read is fine enough for a
+ * picture of the caller's size in pixels. */
 static hl_status load_from_server(const char *url, hl_load_request *request, hl_volume **volume,
                                   hl_error *error) {
   enum { PIXELS = 512 };
@@ -336,7 +337,7 @@ static hl_status finish(hl_load_request *request, const char *path, hl_status st
     memcpy((*volume)->window, request->window, sizeof request->window);
   (*volume)->is_anatomical = request->is_anatomical;
   (*volume)->says_labels = request->says_labels;
-  /* A spacing from the caller has no unit. */
+  /* A spacing that the caller gives has no unit. */
   (*volume)->unit = request->spacing[0] > 0 ? NULL : request->unit;
   (*volume)->selection = request->selection;
   (*volume)->series = request->series_list;

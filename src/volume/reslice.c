@@ -10,7 +10,7 @@
 #include "core/pool.h"
 #include "volume/volume.h"
 
-/* Samples from which on threads are worth while. */
+/* The least number of samples that are computed on several threads. */
 static const double MANY_SAMPLES = 1 << 20;
 static const double MOST_VOXELS = 1e9; /* of any number of a plane */
 
@@ -50,7 +50,8 @@ static hl_status check(const hl_volume *volume, const hl_reslice_options *option
   return HL_OK;
 }
 
-/* Whether a place lies within half a voxel of the grid. */
+/* Whether a place, in voxel indices, lies in the grid or at most half a voxel beyond its outermost voxels'
+ * centres. */
 static bool is_within(const hl_volume *volume, const double at[3]) {
   for (int axis = 0; axis < 3; axis++)
     if (!(at[axis] >= -0.5 && at[axis] < (double)volume->dimension[axis] - 0.5)) return false;
@@ -62,8 +63,8 @@ static double nearest(const hl_volume *volume, const double at[3]) {
                                 (size_t)floor(at[2] + 0.5));
 }
 
-/* Trilinear; a voxel without weight is not read, so that centres of voxels have exactly the voxels' values.
- */
+/* Interpolates linearly along the three axes. Voxels whose weight is 0 are not read, so that at the centre of
+ * a voxel the result is exactly the voxel's value. */
 static double interpolated(const hl_volume *volume, const double at[3]) {
   size_t low[3];
   double part[3], sum = 0;

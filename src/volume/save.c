@@ -22,8 +22,8 @@
 enum { OUT_BYTES = 1 << 18, ZLIB_WINDOW = 15, GZIP = 16 };
 enum {
   MOST_SHRUNK_LABELS = 64
-}; /* for each written voxel the values of its box are kept, two megabytes
-    * at most */
+}; /* greatest `shrink` of labels: all values that are merged in each voxel of a row are kept, at most two
+    * megabytes for each voxel */
 
 /* The state of writing voxels. */
 typedef struct saving {
@@ -31,9 +31,10 @@ typedef struct saving {
   const hl_volume *volume;
   const hl_writer *writer;
   size_t begin[3], end[3], shrink; /* the box in voxels; each written voxel is made of shrink^3 voxels */
-  bool labels;                /* whether the written voxel is the commonest of these values, not their mean */
+  bool labels;                /* whether a written voxel is the most common of these values, instead of their
+                               * mean */
   hl_volume_description grid; /* the grid that is written */
-  const char *unit;           /* unit of its lengths, static; null if unknown */
+  const char *unit;           /* unit of the grid's lengths, static; null if unknown */
   hl_output output;
   bool packs; /* whether bytes are packed now */
   struct {
@@ -60,7 +61,7 @@ static bool whole_range(hl_voxel_type type, double *low, double *high) {
   double span = ldexp(1, 8 * (int)hl_voxel_type_bytes(type));
   *low = is_signed ? -span / 2 : 0;
   *high = *low + span - 1;
-  if (*high == *low + span) *high = nextafter(*high, 0); /* for 64 bits: the greatest double below */
+  if (*high == *low + span) *high = nextafter(*high, 0); /* 64 bits: the greatest double in range */
   return true;
 }
 
@@ -128,8 +129,8 @@ static hl_status set_box(saving *s, const hl_volume_save_options *options, const
   return HL_OK;
 }
 
-/* Places the box. A written voxel lies at the middle of the voxels whose mean it is. Where the box ends
- * before that, the voxel lies as if all voxels were there. */
+/* Places the grid that is written. A written voxel lies in the middle of the voxels that are merged in it. At
+ * the box's end some of these may be missing; the voxel is placed as if all of them were there. */
 static void place_box(saving *s) {
   const hl_volume *volume = s->volume;
   vec3 origin = volume->index_to_world.offset;
@@ -184,8 +185,8 @@ static void add_row(saving *s, size_t j, size_t k) {
     }
 }
 
-/* The commonest of some values, the first of equally common ones. Boxes have few different values, so that
- * each is counted where it stands first. */
+/* The most common of some values; the first one if several are equally common. A value's occurrences are
+ * counted where the value comes up first; this is fast because a box has few different values. */
 static uint64_t commonest(const uint64_t *values, size_t count) {
   uint64_t best = values[0];
   size_t most = 0;
@@ -222,8 +223,7 @@ static void make_row(saving *s, size_t j, size_t k) {
     if (s->memory.counts[n] == 0 && keeps_numbers(s))
       memcpy(s->memory.row + n * sizeof(double), &s->memory.sums[n], sizeof(double));
     if (s->memory.counts[n] == 0)
-      continue; /* among the types that keep numbers, only doubles can stand for no
-                 * number */
+      continue; /* no voxel is finite; of the types that keep numbers, only doubles can have this */
     if (s->labels) put_label(s, n, commonest(s->memory.boxes + n * box, s->memory.counts[n]));
     else if (s->memory.counts[n] > 1) s->memory.sums[n] /= s->memory.counts[n];
   }
@@ -237,11 +237,11 @@ static uint16_t half_of(double value) {
   if (isnan(value)) return 0x7e00;
   if (size >= 65520) return (uint16_t)(sign | 0x7c00);
   int exponent;
-  frexp(size, &exponent); /* size = f 2^exponent with f from 0.5 to 1; the last of the 11 bits is worth
-                           * 2^(exponent - 11) */
+  frexp(size, &exponent); /* size = f 2^exponent with f from 0.5 to 1; so the lowest of the number's 11 bits
+                           * is worth 2^(exponent - 11) */
   int last = exponent - 11 > -24 ? exponent - 11 : -24;
-  double units = nearbyint(ldexp(size, -last)); /* at most 2048; below 1024 only for subnormals */
-  /* The exponent field of a half, less 1, where the number is 1024 units or more and thus no subnormal. */
+  double units = nearbyint(ldexp(size, -last)); /* from 1024 to 2048, or less for subnormals */
+  /* The exponent field of a number that is no subnormal (1024 units or more), less 1. */
   int biased = last + 24;
   return (uint16_t)(sign | (units < 1024 ? (unsigned)units
                                          : ((unsigned)(biased + 1) << 10) + (unsigned)(units - 1024)));

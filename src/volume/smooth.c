@@ -26,8 +26,8 @@ static gaussian make_gaussian(double sigma) {
   return made;
 }
 
-/* Convolves `count` lines of `length` numbers each, `step` apart; the lines adjoin. Beyond its ends a line
- * goes on with its last numbers. line: [length][count] floats of scratch. */
+/* Convolves `count` lines that lie side by side. Each has `length` numbers, which are `step` apart. Beyond a
+ * line's ends its first and its last number repeat. line: scratch memory, [length][count]. */
 static void convolve_lines(const gaussian *kernel, float *numbers, size_t length, size_t step, size_t count,
                            float *line) {
   for (size_t n = 0; n < length; n++) memcpy(line + n * count, numbers + n * step, count * sizeof *line);
@@ -56,7 +56,7 @@ static void convolve_row(const gaussian *kernel, float *numbers, size_t length, 
       numbers[n] += kernel->weight[d] * (middle[n - (size_t)d] + middle[n + (size_t)d]);
 }
 
-/* Along i, j and k. False: cancelled. */
+/* Convolves along i, j and k. Returns false if cancelled. */
 static bool convolve(hl_context *context, const gaussian *kernel, const size_t dimension[3], float *numbers,
                      float *line) {
   const size_t row = dimension[0], slice = row * dimension[1];
@@ -72,8 +72,8 @@ static bool convolve(hl_context *context, const gaussian *kernel, const size_t d
   return true;
 }
 
-/* Data values as floats; values that are not finite become 0. finite: 0 for these, 1 for all others. line:
- * room for a row of voxels. */
+/* Copies the volume's data values as floats, with 0 in place of values that are not finite. finite: set to 0
+ * for these values and to 1 for all others. line: scratch memory for a row of voxels. */
 static void take_values(const hl_volume *volume, float *line, float *values, float *finite) {
   const size_t row = volume->dimension[0];
   for (size_t k = 0, n = 0; k < volume->dimension[2]; k++)
@@ -89,8 +89,8 @@ static void take_values(const hl_volume *volume, float *line, float *values, flo
     }
 }
 
-/* Divides each sum by the weight that finite voxels have in it. For volumes in which some voxels are not
- * finite. */
+/* Divides each value by the weight of the finite voxels in it, and gives NAN to voxels that are not finite.
+ * It is for volumes with such voxels. share: the weights. */
 static void weigh(const hl_volume *volume, float *line, float *values, const float *share) {
   const size_t row = volume->dimension[0];
   for (size_t k = 0, n = 0; k < volume->dimension[2]; k++)
@@ -102,8 +102,8 @@ static void weigh(const hl_volume *volume, float *line, float *values, const flo
     }
 }
 
-/* Turns values, which are not all equal, into whole numbers of 16 bits in the same memory: value = scale *
- * number + offset. */
+/* Converts values in place to whole numbers of 16 bits, where value = scale * number + offset. The values
+ * must not all be equal. Sets scale and offset in the description. */
 static void store_in_16_bits(float *values, size_t count, hl_volume_description *description) {
   float low = values[0], high = values[0];
   uint16_t *numbers = (uint16_t *)(void *)values;

@@ -18,8 +18,8 @@
 #include "volume/store/pages.h"
 
 enum { LANES = 8 };
-/* PIECE: voxels between two checks for cancellation, which take a few milliseconds. COPIED_PIECE: voxels that
- * are copied together where rows are not adjacent. Both are multiples of LANES. */
+/* PIECE: number of voxels between two checks for cancellation; they take a few milliseconds. COPIED_PIECE:
+ * number of voxels that are copied at a time if rows are not adjacent. Both are multiples of LANES. */
 enum { PIECE = 1 << 22, COPIED_PIECE = 1 << 16 };
 
 /* The range of stored values; low > high if no voxel is finite. */
@@ -28,7 +28,8 @@ typedef struct tally {
   uint64_t finite;
 } tally;
 
-/* Equal bins over [low, high] in data order: a negative value_scale runs them from high to low. */
+/* Bins of equal width over the range of stored values, in the order of the data values: if value_scale is
+ * negative, the first bin has the greatest stored values. */
 typedef struct binning {
   double anchor, factor;
 } binning;
@@ -41,13 +42,14 @@ static binning make_binning(tally total, double value_scale) {
 }
 
 static int bin_of(binning bins, double stored) {
-  /* a voxel that has changed since the range was found may lie outside the range */
+  /* the caller may have changed a voxel since the range was found; the voxel may then lie outside the
+   * range */
   double place = (stored - bins.anchor) * bins.factor;
   return !(place > 0) ? 0 : place < HL_HISTOGRAM_BINS - 1 ? (int)place : HL_HISTOGRAM_BINS - 1;
 }
 
-/* This rank's voxels. Over ranks each rank counts the voxels of its own block, and then all counts are added
- * up. */
+/* The voxels of this rank, for a volume over ranks; null for other volumes. Each rank counts the voxels of
+ * its own block, and then the counts of all ranks are added up. */
 static const hl_own_voxels *own_voxels(const hl_volume *volume) {
   return volume->pages != NULL ? volume->pages->own : NULL;
 }
@@ -63,9 +65,10 @@ static size_t counted_voxels(const hl_volume *volume) {
 /* An iteration over the voxels, piece by piece. It begins with piece 0. */
 typedef struct walk {
   const hl_volume *volume;
-  void *buffer; /* owned by hl_volume_measure(); stored values of COPIED_PIECE voxels and of a row; null if
-                 * the volume is packed */
-  size_t count, first, piece; /* number of voxels; the current piece is [first, first + piece) */
+  void *buffer; /* owned by hl_volume_measure(); room for the stored values of COPIED_PIECE voxels and of one
+                 * row; null if the volume is packed */
+  size_t count, first, piece; /* number of all voxels; number of the current piece's first voxel; number of
+                               * voxels in the piece */
   const void *voxels;         /* voxels of the current piece */
   bool cancelled;
 } walk;
@@ -90,7 +93,8 @@ static const void *piece_of(const hl_volume *volume, size_t first, size_t count,
   return buffer;
 }
 
-/* The size in bytes of a walk's buffer, which also holds rows of the file's own numbers. */
+/* The size of a walk's buffer in bytes. The buffer must also have room for a row of the file's own
+ * numbers. */
 static size_t room_of(const hl_volume *volume) {
   size_t stored = (COPIED_PIECE + volume->dimension[0]) * hl_storage_bytes(volume->storage),
          row = hl_volume_row_room(volume);
@@ -133,8 +137,8 @@ static void bin_counts(const uint64_t *counts, int values, binning bins, uint64_
     if (counts[value] != 0) histogram[bin_of(bins, value)] += counts[value];
 }
 
-/* Partial results, one for each remainder of the voxel's index modulo LANES. Sums then do not wait for one
- * another, and compilers vectorise them. */
+/* Partial results: lane n has those of the voxels whose index has the remainder n modulo LANES. So no sum
+ * waits for another, and compilers vectorise the sums. */
 typedef struct lanes_f32 {
   float low[LANES], high[LANES];
   double sum[LANES];
@@ -226,7 +230,7 @@ static bool is_less(hl_voxel_type type, uint64_t a, uint64_t b) {
   return type == HL_VOXEL_I64 ? (int64_t)a < (int64_t)b : a < b;
 }
 
-/* Widens a range of whole numbers by a row. */
+/* Widens a range of 64-bit integers so that it holds the numbers of a row. */
 static void widen_whole(hl_number_row row, size_t count, uint64_t range[2]) {
   const uint64_t *numbers = row.numbers;
   for (size_t i = 0; i < count; i++) {
@@ -306,13 +310,15 @@ hl_status hl_volume_measure(hl_volume *volume, const char *subject, hl_error *er
 
 enum { HALVES = 65536 };
 
-/* The search for voxels by their rank, by counts of 16 bits of their keys. Keys sort as the stored values
- * do. */
+/* The state of a search for voxels by their rank in ascending order. Each value has a key, and keys sort as
+ * the values do. Keys are counted by 16 of their bits at a time. */
 typedef struct ranking {
   const hl_volume *volume;
   void *buffer;                   /* the buffer of `walk` */
-  uint64_t upper[HALVES], finite; /* counts by the upper half of the key, and the sum of these counts */
-  uint64_t lower[HALVES];         /* counts, by the lower half, of the keys whose upper half is `opened` */
+  uint64_t upper[HALVES], finite; /* number of keys with each upper half; number of all keys, which are those
+                                   * of finite voxels */
+  uint64_t lower[HALVES];         /* number of keys with each lower half, among the keys whose upper half is
+                                   * `opened` */
   uint32_t opened;                /* HALVES if there is none yet */
 } ranking;
 
@@ -360,8 +366,7 @@ static bool open_upper(ranking *r, uint32_t upper) {
   return !w.cancelled;
 }
 
-/* Finds the place in the counts at which a rank lies; *rank becomes the rank among the values of this
- * place. */
+/* Finds the entry of `counts` in which a rank lies. *rank becomes the rank among the values of this entry. */
 static uint32_t place_of(const uint64_t *counts, uint64_t *rank) {
   uint32_t place = 0;
   while (place + 1 < HALVES && *rank >= counts[place]) *rank -= counts[place++];
@@ -384,8 +389,9 @@ static double number_of_key(uint64_t key) {
   return value;
 }
 
-/* Counts the next 16 bits of the keys of the file's numbers that begin with `prefix`, which has `known` bits.
- * Numbers whose floats are not finite do not count. */
+/* Counts the file's numbers by 16 bits of their keys. Only keys that begin with the bits of `prefix`, of
+ * which there are `known`, are counted, by the 16 bits that follow. Numbers whose floats are not finite do
+ * not count. */
 static bool count_digits(ranking *r, uint64_t prefix, int known) {
   const hl_volume *volume = r->volume;
   memset(r->lower, 0, sizeof r->lower);
@@ -415,8 +421,8 @@ static bool number_at(ranking *r, uint64_t rank, double *number) {
   return true;
 }
 
-/* Finds the number that `rank` finite voxels precede in ascending order. It is the file's own number where
- * the stored values round it. False if cancelled. */
+/* Finds the number at a rank: `rank` finite voxels precede it in ascending order. Gives the file's own number
+ * if the volume keeps these, else the stored value. False if cancelled. */
 static bool stored_at(ranking *r, uint64_t rank, double *stored) {
   if (hl_volume_is_exact(r->volume)) return number_at(r, rank, stored);
   uint32_t key = place_of(r->upper, &rank);
