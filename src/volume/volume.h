@@ -31,7 +31,7 @@ typedef struct hl_selection {
   int time, channel, level;
 } hl_selection;
 
-/* A DICOM series of the input from which a volume was loaded; printable. */
+/* A DICOM series of the input from which a volume was loaded. All its texts are printable. */
 typedef struct hl_series_entry {
   char uid[HL_SERIES_TEXT_BYTES], modality[HL_SERIES_TEXT_BYTES], description[HL_SERIES_TEXT_BYTES];
   double number; /* NAN if absent */
@@ -63,8 +63,8 @@ struct hl_volume {
   atomic_int references;
   size_t dimension[3]; /* i, j, k */
   hl_storage storage;
-  const void *voxels; /* [k][j][i]; stored values; owned unless borrowed; null with pages or bricks. Rows are
-                       * packed.                       * Rows and slices of borrowed voxels may have gaps
+  const void *voxels; /* [k][j][i]; stored values; owned unless borrowed; null with pages or bricks. The
+                       * voxels of a row are adjacent; rows and slices of borrowed voxels may have gaps
                        * between them */
   size_t row_bytes, slice_bytes; /* bytes from row to row, and from slice to slice */
   void *exact; /* owned; [k][j][i]; the file's numbers, of `type`, if the stored floats round any of them
@@ -80,7 +80,8 @@ struct hl_volume {
                                * volume is a label map over ranks. Null until the labels are asked for */
   struct hl_bricks *bricks;   /* owned (bricks/bricks.h, in_bricks.h); the field itself; null if there are
                                * voxels. Voxels are found in it when they are asked for */
-  hl_volume_field_error field_error; /* of a field in bricks; its kind is null where it is unknown */
+  hl_volume_field_error field_error; /* for a field in bricks: how much it differs from its source; `kind` is
+                                      * null if this is unknown */
   void *owned_voxels;                /* the block to hl_release; null if borrowed */
   void (*release)(void *release_data, const void *voxels); /* gives borrowed voxels back; may be null */
   void *release_data;
@@ -90,13 +91,13 @@ struct hl_volume {
   hl_voxel_type type;     /* the type in the file */
   hl_space space;
   const char *unit;   /* unit of lengths in the world, static; null if unknown */
-  bool is_anatomical; /* whether the space is meant, as in DICOM and NIfTI; other programs write
-                       * left-posterior-superior for any data */
+  bool is_anatomical; /* whether the file states `space` on purpose, as DICOM and NIfTI do; other programs
+                       * write left-posterior-superior for any data */
   bool says_labels;   /* whether the file says that its values are names of regions */
   double window[2]; /* data values between which the file asks to show greys; NAN: the file does not say it */
   double minimum, maximum; /* data values over finite voxels */
-  uint64_t whole_range[2]; /* least and greatest value as 64-bit integers of `type`, where doubles round
-                            * the file's numbers (hl_volume_is_exact()) */
+  uint64_t whole_range[2]; /* least and greatest of the file's numbers, as 64-bit integers of `type`; set if
+                            * doubles would round the numbers (hl_volume_is_exact()) */
   double mean;
   uint64_t nonfinite_count;
   uint64_t histogram[HL_HISTOGRAM_BINS];
@@ -116,7 +117,7 @@ struct hl_volume {
   bool is_log_density;          /* whether values are logarithms of the density of particles (particles.c) */
   double smoothing;             /* standard deviation, in voxels, of the Gaussian that smoothed the voxels
                                  * (guess/smoothing.c) */
-  atomic_bool smoothing_chosen; /* hl_volume_smooth() was asked for it, or for none */
+  atomic_bool smoothing_chosen; /* whether hl_volume_smooth() gave this volume, smoothed or not */
   double surface_slope;         /* for an occupancy: the slope, per voxel, at the place where the occupancy
                                  * passes 1/2 */
   _Atomic(struct hl_data_analysis *)
@@ -150,7 +151,8 @@ static inline const void *hl_volume_row(const hl_volume *volume, size_t j, size_
  * and is needed if the voxels are not in memory. */
 const void *hl_volume_row_in(const hl_volume *volume, size_t j, size_t k, void *buffer);
 
-/* hl_volume_value() for the library's own functions, which have passed a door already (core/door.h). */
+/* Does the work of hl_volume_value() for functions of the library that have passed a door already
+ * (core/door.h). */
 double hl_volume_value_within(const hl_volume *volume, size_t i, size_t j, size_t k);
 
 /* One number of a row of stored values. */
@@ -188,18 +190,18 @@ static inline bool hl_row_repeats(hl_number_row row, size_t a, size_t b) {
   }
 }
 
-/* A data value of a row as a whole number, which no double rounds: a label. False where the value is none
- * that 64 bits with a sign hold. */
+/* Finds a data value of a row as a whole number (a label), not rounded by a double. Returns false if it is
+ * not a whole number that int64_t holds. */
 bool hl_row_whole(const hl_volume *volume, hl_number_row row, size_t i, int64_t *whole);
 
 /* Whether a voxel's data value is a whole number that hl_row_whole() reads. */
 typedef enum hl_whole {
-  HL_WHOLE_ABSENT, /* outside the grid, or not finite */
+  HL_WHOLE_ABSENT, /* the voxel is outside the grid, or its value is not finite */
   HL_WHOLE_FRACTION,
   HL_WHOLE_FOUND
 } hl_whole;
 
-/* The same for one voxel of any volume. */
+/* Finds the data value of a voxel as a whole number, as hl_row_whole() does; for a volume of any kind. */
 hl_whole hl_volume_whole(const hl_volume *volume, size_t i, size_t j, size_t k, int64_t *whole);
 
 /* The description of a volume's grid: dimensions, axes, origin and space. Its other members have their

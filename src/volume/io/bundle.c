@@ -73,7 +73,7 @@ typedef struct folder_walk {
   size_t files, depth; /* number of entries of all kinds so far */
 } folder_walk;
 
-/* Whether a name is a regular file, to which no link leads out of the folder. */
+/* Whether a name below the folder is a regular file, and no link in the name leads out of the folder. */
 static bool is_inside(const hl_bundle *bundle, const char *name, struct stat *about) {
   int file = hl_beneath_open(bundle->folder, name, O_PATH);
   bool inside = file >= 0 && fstat(file, about) == 0 && S_ISREG(about->st_mode);

@@ -23,7 +23,7 @@ struct hl_bundle {
   hl_context *context;
   char *path; /* owned; path of the folder or the archive */
   bool is_archive, is_file, listed;
-  bool is_open;                /* whether `folder` is open, as hl_bundle_find_ready() was called */
+  bool is_open;                /* whether `folder` is open, which it is after hl_bundle_find_ready() */
   int folder;                  /* owned; a folder's descriptor */
   const unsigned char *memory; /* borrowed; [memory_size]; the content of the archive or of the only file;
                                 * null if it is read from files */
@@ -63,12 +63,12 @@ hl_status hl_bundle_open_server(hl_context *context, const char *url, hl_bundle 
 static inline bool hl_bundle_is_on_server(const hl_bundle *bundle) { return bundle->brought != NULL; }
 /* Whether hl_bundle_find() knows this file of a server, or its absence, without asking the server. */
 bool hl_bundle_has_brought(const hl_bundle *bundle, const char *name);
-/* Fetches all those of the given files of a server that were not fetched before, in one request. Each has
- * at most `most` bytes. Only the caller's thread may call it. */
+/* Fetches files of a server in one request. Files that were fetched before are left out. most: the greatest
+ * length of a file in bytes. Only the caller's thread may call it. */
 hl_status hl_bundle_bring(const hl_bundle *bundle, const char *const *names, size_t count, uint64_t most,
                           hl_error *error);
 /* The first function gives the number of files that were fetched so far. The second forgets the files that
- * were fetched after the first `count`; no source of these may be open. */
+ * were fetched after the first `count`; no source of such a file may be open. */
 size_t hl_bundle_brought_count(const hl_bundle *bundle);
 void hl_bundle_forget(const hl_bundle *bundle, size_t count);
 /* The forms of hl_bundle_find() and hl_bundle_close() for a store on a server. */

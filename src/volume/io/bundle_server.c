@@ -89,7 +89,7 @@ static hl_status take(const hl_bundle *bundle, const char *const *names, size_t 
   return status;
 }
 
-/* Asks for files, none of which is brought. */
+/* Asks the server for files that were not fetched before. */
 static hl_status ask(const hl_bundle *bundle, const char *const *names, size_t count, uint64_t most,
                      hl_error *error) {
   const hl_context_options *options = &bundle->context->options;

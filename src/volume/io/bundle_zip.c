@@ -79,8 +79,8 @@ static hl_status find_directory(const hl_bundle *bundle, hl_source *source, uint
   return HL_OK;
 }
 
-/* Takes numbers from the zip64 extra field, which holds the numbers that did not fit 32 bits, in this order:
- * size, packed size, position. */
+/* Takes an entry's size, packed size and position from the zip64 extra field. The field has, in this order,
+ * those of the three numbers that did not fit 32 bits. */
 static void take_extra(const unsigned char *extra, size_t length, hl_bundle_entry *entry) {
   for (size_t n = 0; n + 4 <= length;) {
     size_t bytes = u16(extra + n + 2);

@@ -14,9 +14,10 @@
 /* ---- compressed: gzip, zlib, VTK's blocks ---- */
 
 enum {
-  DEFLATE_GREATEST_RATIO = 1032, /* RFC 1951: 258 bytes from two bits, one for the length and one for the
-                                  * distance */
-  PENDING_BYTES = 65536,         /* more bytes than zlib can keep in its window and bit buffer */
+  DEFLATE_GREATEST_RATIO = 1032, /* the greatest number of bytes from one byte: a code of one bit for the
+                                  * length and one of one bit for the distance give 258 bytes (RFC 1951) */
+  PENDING_BYTES = 65536,         /* more bytes than zlib can hold back: its window and bit buffer are
+                                  * smaller */
   /* zlib.h: the largest window; gzip and zlib are told apart by their first bytes. */
   AUTOMATIC_WINDOW = 15 + 32
 };
@@ -31,13 +32,14 @@ typedef struct blocks_stream {
   hl_stream base;
   z_stream zlib;
   bool started;
-  uint64_t block_count, block_bytes, last_bytes; /* sizes before packing; last_bytes is the size of the last
-                                                  * block */
+  uint64_t block_count, block_bytes, last_bytes; /* number of blocks; bytes of an unpacked block; bytes of the
+                                                  * last unpacked block */
   uint64_t *compressed_bytes;                    /* owned; [block_count] */
   uint64_t block;                                /* index of the current block */
   uint64_t plain_left, compressed_left;          /* bytes left of the current block */
   hl_vtk_packing packing;
-  unsigned char *packed, *whole; /* owned; a block of LZ4 or xz, packed and unpacked; null for zlib */
+  unsigned char *packed, *whole; /* owned; the current block of LZ4 or xz, as it is packed and as it is
+                                  * unpacked; null for zlib */
   size_t whole_done;             /* bytes of `whole` that were pulled; 0 until `whole` is filled */
 } blocks_stream;
 
@@ -131,7 +133,7 @@ hl_status hl_stream_push_inflate(hl_stream **stream, hl_error *error) {
   made->base.pull = inflate_pull;
   made->base.at_most = inflate_at_most;
   made->base.close = inflate_close;
-  *stream = &made->base; /* from here on the caller closes the stream, also after a failure */
+  *stream = &made->base; /* the caller must close *stream from now on, also if starting zlib fails */
   return start_zlib(&made->zlib, &made->base, &made->started, error);
 }
 
@@ -152,7 +154,8 @@ static hl_status fail_block(const blocks_stream *stream, hl_error *error) {
                                                                     : stream->block_bytes));
 }
 
-/* Ends the current block, which is full: lets zlib verify its checksum, and skips the rest of its input. */
+/* Ends the current block, all of whose bytes were made: lets zlib verify the checksum, and skips packed bytes
+ * that are left. */
 static hl_status end_block(blocks_stream *stream, hl_error *error) {
   inflate_result step = {.code = Z_OK};
   while (step.code != Z_STREAM_END) {
@@ -268,8 +271,8 @@ static hl_status read_integers(hl_stream *stream, size_t header_bytes, bool big_
 static hl_status read_block_header(blocks_stream *stream, size_t header_bytes, bool big_endian,
                                    uint64_t promised, hl_error *error) {
   hl_stream *below = stream->base.below;
-  uint64_t first[3]; /* number of blocks; bytes in each; bytes in the last block, 0 if the last block is
-                      * full */
+  uint64_t first[3]; /* number of blocks; bytes of an unpacked block; bytes of the last unpacked block, or 0
+                      * if it is as long as the others */
   hl_status status = read_integers(below, header_bytes, big_endian, first, 3, error);
   if (status != HL_OK) return status;
   stream->block_count = first[0];
@@ -326,7 +329,7 @@ typedef struct coded_stream {
   unsigned digit_bits;      /* bits in a digit: 6 or 4 */
   uint32_t bits;            /* value of the group's digits so far */
   unsigned held, padding;   /* number of the group's digits and padding characters so far */
-  unsigned char left[3];    /* decoded bytes that did not fit the last pull */
+  unsigned char left[3];    /* decoded bytes of the last group for which the last pull had no room */
   unsigned left_count;
   bool finished;
 } coded_stream;

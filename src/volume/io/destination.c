@@ -12,8 +12,8 @@
  * in every rank. */
 enum { LEAST_OVER_RANKS = 1 << 20 };
 
-/* Warns, before a large file is read, if a picture of it would be refused afterwards. A renderer holds for
- * each brick its bounds, a flag and a number of 32 bits (grid/bounds.h). */
+/* Warns, before a large file is read, that renderers will refuse to make a picture of it. A renderer takes
+ * memory for each brick: its bounds, a flag and a number of 32 bits (grid/bounds.h). */
 static void warn_of_pictures(hl_context *context, const hl_volume_description *grid, const char *path) {
   double bricks = 1, limit = (double)context->options.memory_limit;
   for (int axis = 0; axis < 3; axis++) bricks *= (double)(grid->dimensions[axis] / BRICK_SIDE + 1);
@@ -32,7 +32,8 @@ static void warn_of_pictures(hl_context *context, const hl_volume_description *g
            path, bytes / (1 << 20), limit / (1 << 20));
 }
 
-/* The numbers of the voxels that belong to this rank, which are the voxels of adjacent slices. */
+/* The numbers of the first of this rank's voxels and of the voxel after the last one. They belong to adjacent
+ * slices. */
 static void own_range(const hl_own_voxels *own, size_t *begin, size_t *end) {
   size_t slice = own->box.count[0] * own->box.count[1];
   *begin = own->box.begin[2] * slice;

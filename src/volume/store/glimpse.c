@@ -51,8 +51,8 @@ struct hl_glimpse {
 
 /* The indices of an axis that a lattice keeps. */
 typedef struct series {
-  size_t first, step; /* the kept indices are first, first + step and so on */
-  size_t run;         /* number of consecutive indices kept at each of these indices */
+  size_t first, step; /* kept indices come in runs, which begin at first, first + step and so on */
+  size_t run;         /* number of consecutive indices in each run */
   bool last;          /* whether the axis's last index is kept, too */
 } series;
 
@@ -60,8 +60,9 @@ static bool keeps(const series *s, size_t index, size_t dimension) {
   return (index >= s->first && (index - s->first) % s->step < s->run) || (s->last && index + 1 == dimension);
 }
 
-/* Lists the indices that guess/ looks at: samples from half a step inside on and their next neighbours;
- * samples from 0 on and the next two; rows; and the three pairs of faces. */
+/* Lists the indices of the lattices that guess/ looks at. Lattice 0: samples from half a step inside on, and
+ * their next neighbours along each axis. Lattice 1: samples from 0 on, and the next two along each axis.
+ * Lattice 2: whole rows along x. Lattices 3 to 5: samples on the pairs of opposite faces. */
 static void list_series(const size_t dimension[3], series all[LATTICES][3]) {
   size_t step = hl_lattice_step(dimension, HL_LATTICE_PLACES), border = hl_border_step(dimension),
          rows = hl_row_step(dimension);
@@ -88,7 +89,7 @@ static void lay_out(hl_glimpse *g, series all[LATTICES][3], hl_layout *layout) {
         if (l->place[a] != NULL) l->place[a][i] = kept ? (uint32_t)l->count[a] : NOT_KEPT;
         l->count[a] += kept;
       }
-      voxels *= l->count[a]; /* this product cannot overflow, as it is at most the grid's number of voxels */
+      voxels *= l->count[a]; /* it cannot overflow: at most the grid's number of voxels */
     }
     l->voxels = hl_layout_take(layout, voxels, g->bytes);
   }

@@ -11,8 +11,9 @@
 /* The greatest numbers of voxels of a lattice, and of a lattice on a face of the grid. */
 #define HL_LATTICE_PLACES 5e5
 #define HL_BORDER_PLACES  (HL_LATTICE_PLACES / 12)
-/* The greatest number of cells of a lattice whose cells are each examined by rows, and the approximate number
- * of voxels in the rows along x that are examined, where each cell has a row. */
+/* Limits for cells that are examined by whole rows along x, one row for each cell. HL_CELL_PLACES: the
+ * greatest number of cells of such a lattice. HL_ROW_VOXELS: the number of voxels in all the rows,
+ * approximately. */
 #define HL_CELL_PLACES 1e6
 #define HL_ROW_VOXELS  6e6
 

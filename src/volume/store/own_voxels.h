@@ -11,7 +11,7 @@
 typedef struct hl_own_voxels {
   hl_context *context;
   hl_box box;           /* the box of the whole volume that this rank holds */
-  hl_voxel_type type;   /* type of the voxels in memory; for stored values `stored` */
+  hl_voxel_type type;   /* type of the voxels in memory; it is `stored` if they are stored values */
   hl_voxel_type stored; /* type of the stored values: U8, U16 or F32 */
   size_t stored_bytes;  /* bytes of a stored value */
   const unsigned char *first;

@@ -14,7 +14,8 @@
 
 /* ---- parts of rows ---- */
 
-/* The number of the first page along an axis that holds a voxel. One page holds it, or two in the overlap. */
+/* The number of the first page along an axis that holds a voxel. *last: the number of the last one, which
+ * differs if the voxel lies in an overlap of pages. */
 static size_t first_page(const hl_pages *pages, int axis, size_t voxel, size_t *last) {
   *last = hl_page_of(pages, axis, voxel);
   size_t within = voxel - (*last << pages->shift), first = *last;
@@ -57,7 +58,8 @@ enum {
   SLICES_AT_ONCE = 8 /* slices written to a page at once */
 };
 
-/* Rows j0 to j1 - 1 of slices k0 to k1 - 1. A block of several slices has all rows. */
+/* A block of voxels: rows j0 to j1 - 1 of slices k0 to k1 - 1. If it has several slices, it has all of their
+ * rows. */
 typedef struct row_block {
   size_t j0, j1, k0, k1;
   const unsigned char *values; /* [k1 - k0][j1 - j0][dimension[0]]; stored values */
@@ -69,7 +71,7 @@ static bool all_zero(const unsigned char *bytes, size_t count) {
 
 /* The part of a block that lies in a page. */
 typedef struct page_part {
-  size_t x, y, z, number; /* the page's first voxel and its number */
+  size_t x, y, z, number; /* coordinates of the page's first voxel; number of the page */
   size_t j0, j1, k0, k1;
 } page_part;
 
@@ -130,8 +132,9 @@ static bool write_block(const hl_pages *pages, const row_block *block) {
   return true;
 }
 
-/* Writes voxels from number `first` on: as many whole slices as `count` voxels begin with, or else whole rows
- * of one slice. Returns the number of voxels written, which may be 0. */
+/* Writes voxels, beginning with number `first`: as many whole slices as there are at the beginning of the
+ * `count` voxels, or else as many whole rows of one slice. Returns the number of voxels that were written,
+ * which may be 0. */
 static size_t write_rows(hl_pages *pages, size_t first, size_t count, const unsigned char *values) {
   const size_t *n = pages->dimension;
   size_t row = first / n[0], j = row % n[1], k = row / n[1], rows = count / n[0];

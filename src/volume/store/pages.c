@@ -17,9 +17,9 @@
 
 /* ---- the scratch file ---- */
 
-/* Windows of voxels are loaded as a whole: up to SLICES_AROUND slices lie before the first page and after the
- * last. Pages begin at a cache line. Pages of WHOLE_UNITS or more, and pages over ranks, begin at the
- * system's units of memory. */
+/* SLICES_AROUND: windows of voxels are loaded as a whole, so that the mapping has room for this many slices
+ * before the first page and after the last. Pages begin at a cache line (LINE). Pages of WHOLE_UNITS or more
+ * bytes, and pages over ranks, begin at one of the system's units of memory (UNIT). */
 enum { SLICES_AROUND = 16, LINE = 64, UNIT = 4096, WHOLE_UNITS = 16 * UNIT };
 
 static size_t round_up(size_t bytes, size_t unit) { return (bytes + unit - 1) / unit * unit; }
@@ -114,7 +114,7 @@ static hl_status map_nothing(hl_pages *pages, hl_error *error) {
   if (mapping == MAP_FAILED)
     return hl_fail(error, HL_ERROR_MEMORY, "out of memory: no addresses for %.1f MiB of voxels: %s",
                    (double)pages->mapping_bytes / (1 << 20), strerror(errno));
-  /* otherwise several pages would share one large page of the system */
+  /* without this, the system could put several pages into one large page of its own */
   madvise(mapping, pages->mapping_bytes, MADV_NOHUGEPAGE);
   pages->mapping = mapping;
   pages->first = pages->mapping + round_up(SLICES_AROUND * pages->slice_bytes, UNIT);
@@ -184,7 +184,7 @@ void hl_pages_release(hl_pages *pages) {
 
 /* ---- which volumes ---- */
 
-/* The size in bytes of a volume that is worth a file. */
+/* The least size in bytes of a volume that is put into a file. */
 static const uint64_t LEAST_BYTES = 4 << 20;
 
 /* The number of bytes that a renderer holds for each voxel beside the voxel itself, approximately: bounds and
@@ -242,8 +242,8 @@ static void forget_if(hl_pages *pages, size_t number, unsigned char state) {
   count_held(pages, false);
 }
 
-/* Moves the clock's hand by one page, and forgets the page if it was not needed since the hand was there
- * last. */
+/* Moves the clock's hand by one page. Forgets this page if it was not needed since the hand last moved past
+ * it. */
 static void move_hand(hl_pages *pages, size_t count) {
   size_t number = __atomic_fetch_add(&pages->hand, 1, __ATOMIC_RELAXED) % count;
   unsigned char state = __atomic_load_n(&pages->state[number], __ATOMIC_RELAXED);
@@ -253,8 +253,8 @@ static void move_hand(hl_pages *pages, size_t count) {
                                 __ATOMIC_RELAXED, __ATOMIC_RELAXED);
 }
 
-/* The number of bytes of this volume's pages that may be held if `bytes` more are taken; UINT64_MAX for
- * all. */
+/* The number of bytes of this volume's pages that may stay in memory when `bytes` more are allocated;
+ * UINT64_MAX without a limit. */
 static uint64_t room(const hl_pages *pages, uint64_t bytes) {
   hl_context *context = pages->context;
   uint64_t limit = context->options.memory_limit, least = LEAST_PAGES * (uint64_t)pages->page_bytes;
@@ -264,8 +264,8 @@ static uint64_t room(const hl_pages *pages, uint64_t bytes) {
   return limit < others + least ? least : limit - others;
 }
 
-/* Makes room for `bytes` more. If pages hold more than is then allowed, forgets a sixteenth more than
- * necessary, so that the hand seldom moves. */
+/* Makes room for an allocation of `bytes` bytes. If the pages in memory are more than are then allowed,
+ * forgets so many that a sixteenth of the allowed bytes is free, so that the hand moves seldom. */
 static void make_room(hl_pages *pages, uint64_t bytes) {
   uint64_t most = room(pages, bytes);
   if (__atomic_load_n(&pages->held_bytes, __ATOMIC_RELAXED) <= most) return;
@@ -280,7 +280,8 @@ void hl_pages_finish(hl_pages *pages) {
   if (pages->blocks != NULL) return;
   close(pages->file);
   pages->file = -1;
-  madvise(pages->mapping, pages->mapping_bytes, MADV_RANDOM); /* fetch() says which pages are read */
+  madvise(pages->mapping, pages->mapping_bytes, MADV_RANDOM); /* from now on fetch() alone tells the system
+                                                               * which pages to read */
 }
 
 /* Asks the system to read a page as a whole, at once. By itself the system reads small parts as they are
@@ -320,7 +321,7 @@ static void hold_over_ranks(hl_pages *pages, size_t number) {
     __atomic_store_n(&pages->state[number], (unsigned char)PAGE_COMING, __ATOMIC_RELAXED);
     count_held(pages, true);
     make_room(pages, 0);
-    pthread_mutex_unlock(&pages->lock); /* while this page is fetched, other threads may fetch other pages */
+    pthread_mutex_unlock(&pages->lock); /* meanwhile, other threads may fetch other pages */
     fetch_from_ranks(pages, number);
     pthread_mutex_lock(&pages->lock);
     pthread_cond_broadcast(&pages->came);

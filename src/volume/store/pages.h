@@ -23,7 +23,8 @@
 #include "volume/store/own_voxels.h"
 #include "volume/volume.h"
 
-/* The states of a page. PAGE_NEEDED: held, and needed since the clock's hand passed it. */
+/* The states of a page. FORGOTTEN: not in memory. HELD: in memory. NEEDED: in memory, and needed since the
+ * clock's hand moved past it. COMING, over ranks: a thread is fetching it. */
 enum { PAGE_FORGOTTEN = 0, PAGE_HELD = 1, PAGE_NEEDED = 2, PAGE_COMING = 3 /* over ranks */ };
 
 enum {
@@ -43,16 +44,17 @@ typedef struct hl_pages {
   size_t count[3];      /* numbers of pages; page (x, y, z) has the number (z * count[1] + y) * count[0] +
                          * x */
   unsigned char *state; /* owned; [pages]; a number PAGE_...; atomic */
-  uint64_t held_bytes;  /* bytes of the pages in memory; atomic */
+  uint64_t held_bytes;  /* bytes of this volume's pages that are in memory; atomic */
   size_t hand;          /* the clock's hand: the page that it looks at next, modulo the number of pages;
                          * atomic */
   bool filled;          /* whether hl_pages_finish() was called */
-  bool in_use;          /* whether a volume was made: over ranks, others may then ask for voxels */
+  bool in_use;          /* whether a volume was made of these pages; over ranks, the other ranks may then ask
+                         * for voxels */
   hl_blocks *blocks;    /* owned; null for a scratch file */
   hl_own_voxels *own;   /* owned; the voxels behind `blocks` */
   uint32_t *version;    /* owned; over ranks [pages], else null; rises when a page is forgotten; atomic */
   pthread_cond_t came;  /* over ranks: signalled when a page that a thread was fetching has arrived */
-  pthread_mutex_t lock; /* held while values are counted; over ranks, also while pages come and go */
+  pthread_mutex_t lock; /* held while values are counted; over ranks, also while the states of pages change */
   uint64_t *counts; /* owned; [hl_values_of(storage)]; counts of the stored values; null if they were taken,
                      * or for floats */
   size_t counted;   /* number of counted values */
@@ -61,8 +63,8 @@ typedef struct hl_pages {
   struct hl_glimpse *glimpse; /* owned; glimpse of the stored voxels (volume/store/glimpse.h); may be null */
   int exact_file; /* owned; the file's own numbers (exact.h); -1 if the stored values are the numbers */
   int shift;
-  size_t row_bytes, slice_bytes, page_bytes; /* distances in a page from row to row and from slice to slice;
-                                              * distance from page to page */
+  size_t row_bytes, slice_bytes, page_bytes; /* distances in bytes: from row to row in a page, from slice to
+                                              * slice in a page, and from page to page */
 } hl_pages;
 
 /* Makes a scratch file of zeros in the folder, whose space on the disk is taken at once. *pages is owned by
@@ -88,8 +90,9 @@ void hl_pages_store(hl_pages *pages, size_t first, size_t count, const void *val
  * were taken before, and if voxels were not stored once each. */
 bool hl_pages_take_counts(hl_pages *pages, uint64_t *counts);
 
-/* Ends storing, after the last voxel. From now on a page that is needed is read as a whole, and nothing
- * beside it. By itself the system would read further, and map more than is counted. */
+/* Ends storing, after the last voxel. From now on a page that is needed is read as a whole, and no
+ * neighbouring page with it. By itself the system would read farther, and its mapped memory would exceed the
+ * bytes that are counted. */
 void hl_pages_finish(hl_pages *pages);
 
 /* Makes a volume over ranks. own: taken over, also on failure. shift: PAGE_SHIFT, or the shift of smaller
@@ -104,11 +107,12 @@ void hl_pages_load_row(const hl_pages *pages, size_t j, size_t k, void *row);
  * may read pages meanwhile. */
 void hl_pages_forget(const hl_pages *pages);
 
-/* Forgets as many pages as are in the way of `bytes` that are allocated soon; otherwise they would stay in
- * memory until the next page is needed. Other threads may read pages meanwhile. */
+/* Forgets pages so that `bytes` can be allocated within the limit. Without this call, pages would exceed the
+ * limit until the next page is needed. Other threads may read pages meanwhile. */
 void hl_pages_leave_room(const hl_pages *pages, uint64_t bytes);
 
-/* Holds a page from now on. Forgets other pages if the limit is reached. */
+/* Takes a page into memory, or notes that it was needed if it is there. Forgets other pages if the limit is
+ * reached. */
 void hl_pages_hold(const hl_pages *pages, size_t number);
 
 /* The page of a voxel along an axis. Voxels at the end of the grid may lie in the last page's overlap. */

@@ -34,8 +34,8 @@ int hl_scratch_open_empty(hl_context *context, const char *folder) {
 }
 
 /* Takes the file's space on the disk before anything is written: a mapped file that found no space later
- * would end the process. Asks for the free space first, so as not to fill a disk for a moment. Returns an
- * error number or 0. */
+ * would end the process. First asks how much space is free, because an attempt that fails would fill the disk
+ * for a moment. Returns an error number or 0. */
 static int take_space(int file, size_t bytes) {
   struct statvfs disk;
   if (fstatvfs(file, &disk) == 0 && bytes / disk.f_frsize >= disk.f_bavail) return ENOSPC;

@@ -18,7 +18,7 @@ int hl_scratch_open_empty(hl_context *context, const char *folder);
 /* Writes all bytes at an offset of the file. False, with errno set, on failure. */
 bool hl_scratch_write(int file, const unsigned char *bytes, size_t count, off_t at);
 
-/* Fails with the error line of hl_scratch_open() for the system's error number. */
+/* Fails with the error line that hl_scratch_open() gives. number: the system's error number. */
 hl_status hl_scratch_fail(const char *folder, size_t bytes, int number, hl_error *error);
 
 #endif
