@@ -31,13 +31,14 @@ hl_status hl_destination_open(hl_context *context, const hl_volume_description *
                               hl_destination_kind kind, const char *path, hl_destination *destination,
                               hl_error *error);
 
-/* Takes a place for `count` voxels from number `first` on: the voxels' own memory, or a block that is
- * released when the place is put. Every place that was taken must be put. */
+/* Gives a place to which the caller writes `count` voxels, beginning with number `first`: the volume's own
+ * memory for these voxels, or a block of its own. hl_destination_put() takes the voxels over and releases
+ * such a block. Every place that was taken must be put. */
 hl_status hl_destination_take(hl_destination *destination, size_t first, size_t count, void **place,
                               hl_error *error);
 void hl_destination_put(hl_destination *destination, size_t first, size_t count, void *place);
 
-/* Whether any of these voxels is kept. Over ranks other voxels need not be read. */
+/* Whether any of these voxels is kept. Over ranks, voxels of other ranks are not, and need not be read. */
 bool hl_destination_wants(const hl_destination *destination, size_t first, size_t count);
 
 /* Whether there is no array of all voxels, so that hl_destination_store() copies voxels to their places. */
@@ -57,7 +58,7 @@ static inline void hl_destination_note(hl_destination *destination, bool swap, c
 hl_status hl_destination_adopt(hl_destination *destination, const hl_volume_description *grid,
                                hl_volume **volume, hl_error *error);
 
-/* Makes the volume like hl_destination_adopt(), of voxels that are colours. */
+/* Makes a volume of colours, and otherwise does what hl_destination_adopt() does. */
 hl_status hl_destination_adopt_colors(hl_destination *destination, const hl_color_source *source,
                                       hl_volume **volume, hl_error *error);
 

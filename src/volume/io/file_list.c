@@ -82,7 +82,7 @@ typedef struct files_stream {
   hl_file_list list;
   size_t next;         /* index of the file that is opened next */
   hl_stream *file;     /* owned; the current file, at its voxels; null if there is none */
-  uint64_t each, left; /* bytes that each file gives; bytes that the current file has still to give */
+  uint64_t each, left; /* bytes of voxels in each file; bytes that are left in the current file */
 } files_stream;
 
 /* Opens a file and goes to its voxels. *file is owned by the caller, also on failure. */
@@ -147,8 +147,7 @@ static void files_close(hl_stream *base) {
   hl_release(base->context, stream->header_path);
 }
 
-/* Compares the size that is promised of each file with the file's length, before memory is taken for the
- * voxels. */
+/* Checks that each file is long enough for its voxels, before memory is taken for these. */
 static hl_status check_files(const files_stream *stream, hl_error *error) {
   for (size_t n = 0; n < stream->list.count; n++) {
     hl_stream *file = NULL;

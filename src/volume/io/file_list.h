@@ -13,7 +13,8 @@ typedef struct hl_file_list {
   hl_context *context;
   char **names; /* owned; [count] */
   size_t count, room;
-  size_t line_skip, byte_skip; /* lines to skip in each file, and then bytes to skip after unpacking */
+  size_t line_skip, byte_skip; /* numbers of lines, and then of unpacked bytes, that each file has before its
+                                * voxels */
   bool skip_to_last;           /* whether the voxels are the last bytes of each file */
   hl_file_packing packing;
 } hl_file_list;

@@ -21,8 +21,8 @@ typedef struct hl_number_code {
 /* The number that the bytes of a type stand for. */
 double hl_binary_number(const unsigned char *bytes, hl_voxel_type type, bool big_endian);
 
-/* Reads `count` numbers. *numbers is owned by the caller (hl_release), [count]. Integers are exact up to
- * 2^53. Fails, before memory is taken, if the stream cannot hold that many. */
+/* Reads `count` numbers. *numbers: [count], owned by the caller (hl_release). Integers are exact up to 2^53.
+ * Fails if the stream cannot hold so many numbers; this is found before memory is taken. */
 hl_status hl_read_numbers(hl_stream *stream, const hl_number_code *code, uint64_t count, double **numbers,
                           hl_error *error);
 

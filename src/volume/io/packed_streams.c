@@ -43,7 +43,8 @@ static hl_status fail_absent(const hl_stream *stream, const char *name, hl_error
 
 #ifdef HL_HAS_BZIP2
 
-/* The greatest ratio: a block of 900000 bytes takes at least about 40. */
+/* The greatest number of bytes that one packed byte can become: a block of 900000 bytes is packed to about 40
+ * or more. */
 enum { BZIP2_GREATEST_RATIO = 25000 };
 
 typedef struct bzip2_stream {
@@ -130,7 +131,7 @@ hl_status hl_stream_push_bzip2(hl_stream **stream, hl_error *error) {
 
 #ifdef HL_HAS_LZMA
 
-/* The greatest memory that unpacking may take. The strongest setting takes 65 MiB. */
+/* The most memory that unpacking may take, in bytes. Files packed with the strongest setting take 65 MiB. */
 #define XZ_MEMORY ((uint64_t)256 << 20)
 /* The greatest ratio: about 273 bytes from two bits, and the coder's own overhead. */
 enum { XZ_GREATEST_RATIO = 8192 };

@@ -12,7 +12,8 @@ typedef struct parts {
   hl_part_reader read;
   void *data;
   pthread_mutex_t lock;
-  atomic_size_t done, failed; /* failed: the lowest index of a part that failed, or SIZE_MAX */
+  atomic_size_t done, failed; /* done: number of parts that are done; failed: the lowest index of a part that
+                               * failed, or SIZE_MAX */
   hl_status status;           /* status of one part */
   hl_error error;
 } parts;

@@ -90,8 +90,9 @@ static bool is_swapped(const hl_payload *payload) {
   return !payload->text && payload->big_endian != native_is_big_endian;
 }
 
-/* Reads `count` values into `raw`, and converts them into `place`, the memory of the voxels from number
- * `done` on. `done` values came before. Both may be the same memory. */
+/* Reads the next `count` values into `raw`, and converts them into `place`. Both may be the same memory.
+ * done: the number of values that were read before, which is also the number of the first voxel in
+ * `place`. */
 static hl_status read_piece(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t count,
                             void *raw, void *place, hl_destination *destination, hl_error *error) {
   hl_voxel_type type = payload->grid.type;
@@ -110,14 +111,15 @@ typedef struct page_reading {
   hl_stream *stream;
   const hl_payload *payload;
   hl_destination *destination;
-  size_t piece, done; /* voxels of a piece; voxels that all threads have read */
+  size_t piece, done; /* number of voxels that are read at once; number of voxels that all threads together
+                       * have read */
   bool in_place;      /* whether voxels of the file are as long as stored ones */
   bool failed;        /* whether reading has stopped after a failure */
   pthread_mutex_t lock;
 } page_reading;
 
-/* Reads the next piece, whichever `index` the call has, as threads do not take the lock in the order of their
- * pieces. */
+/* Reads the next piece. It need not be the piece number `index`: pieces are read in their order, and threads
+ * may take the lock in another order. */
 static hl_status read_into_pages(void *data, size_t index, int worker, hl_error *error) {
   page_reading *r = data;
   (void)index, (void)worker;
@@ -139,9 +141,9 @@ static hl_status read_into_pages(void *data, size_t index, int worker, hl_error 
   return status;
 }
 
-/* The number of voxels that a thread reads at once. Some whole slices are stored fastest, and are read if an
- * eighth of the memory limit has room for the slices of all threads; otherwise whole rows of about
- * PIECE_BYTES, or a part of a row. */
+/* The number of voxels that a thread reads at once. Whole slices are stored fastest; some of them are read at
+ * once if those of all threads take at most an eighth of the memory limit. Otherwise about PIECE_BYTES are
+ * read at once: whole rows, or a part of one row. */
 static size_t piece_for_pages(const hl_context *context, const hl_payload *payload, int threads,
                               size_t voxel_bytes) {
   enum { SLICES = 8, MOST_BYTES = 1 << 27 };
@@ -302,7 +304,7 @@ static hl_status read_text(hl_stream *stream, const hl_payload *payload, hl_dest
  * the components of a voxel lie side by side, and all voxels where components follow each other as a whole.
  * The magnitude is summed up in the voxels themselves, so that any order needs no more memory. */
 
-/* The position, in the file's order, of the next value. */
+/* The place, in the file's order, of the value that comes next. */
 typedef struct component_place {
   size_t first; /* number of the voxel of the block's first value */
   size_t component;
@@ -320,8 +322,8 @@ static double value_of(const hl_payload *payload, const void *stage, size_t inde
          payload->grid.value_offset;
 }
 
-/* Adds a square to a magnitude: the square root of the sum of squares so far, computed in double, which holds
- * the squares of all floats. */
+/* Adds the square of a component to a vector's magnitude, which is the square root of the sum of the squares.
+ * The sum is computed in double, which holds the squares of all floats. */
 static void add_square(float *magnitude, size_t component, double value) {
   double before = component > 0 ? (double)*magnitude : 0;
   *magnitude = (float)(component > 0 ? sqrt(before * before + value * value) : fabs(value));
@@ -405,7 +407,8 @@ static hl_status read_components(hl_stream *stream, const hl_payload *payload, h
 
 /* ---- the whole ---- */
 
-/* requesting one byte more also lets a decompressor verify its checksum */
+/* Checks that the stream ends with the voxels. Asking for one byte more also makes a decompressor verify its
+ * checksum. */
 static hl_status check_end(hl_stream *stream, const hl_payload *payload, hl_error *error) {
   bool to_the_end = payload->components == 1 || payload->component < 0 ||
                     payload->block < voxel_count(payload);

@@ -32,7 +32,7 @@ typedef struct hl_payload {
                           * binary */
   bool text_is_fraction; /* whether the numbers 0 to 1 of the text stand for the values 0 to 255 of u8 */
   hl_trailing trailing;
-  const char *promiser; /* the place that states size and type, for error lines, such as "the header" */
+  const char *promiser; /* for error lines: what states the size and the type, such as "the header" */
 } hl_payload;
 
 void hl_payload_defaults(hl_payload *payload);
@@ -41,8 +41,8 @@ void hl_payload_defaults(hl_payload *payload);
  * checked. */
 uint64_t hl_payload_bytes(const hl_payload *payload);
 
-/* The volume's grid. A magnitude has floats to which the scale has been applied. spacing: replaces the grid's
- * spacing unless 0. */
+/* The grid of the volume that the payload gives. A magnitude has floats, to which scale and offset of the
+ * file have been applied. spacing: the lengths of the steps, in place of the file's; all 0: the file's. */
 hl_volume_description hl_payload_grid(const hl_payload *payload, const double spacing[3]);
 
 /* Checks the grid and, before any allocation, whether the stream can hold the voxels. Then reads and converts

@@ -18,12 +18,12 @@ struct hl_source {
   hl_context *context;
   char *path;                  /* owned */
   int descriptor;              /* a file's descriptor, else -1 */
-  bool is_borrowed;            /* whether the descriptor is the caller's */
+  bool is_borrowed;            /* whether the caller owns the descriptor */
   const unsigned char *memory; /* borrowed; [size]; may be null */
   uint64_t size;
   unsigned char *window; /* owned; for files: the bytes [window_begin, + window_length) */
   uint64_t window_begin;
-  size_t window_length, window_most; /* window_most: number of bytes of the last look */
+  size_t window_length, window_most; /* bytes in the window; bytes for which the last look asked the file */
   /* Data that lie in another source, perhaps deflated. */
   hl_source *below;  /* owned; may be null */
   uint64_t below_at; /* the next byte that is taken from `below` */
@@ -179,7 +179,7 @@ static hl_status grow(hl_source *source, uint64_t needed, hl_error *error) {
   return HL_OK;
 }
 
-/* Calls inflate() once, with all the free room. */
+/* Calls inflate() once; it may fill all the memory that is free. */
 static hl_status inflate_more(hl_source *source, hl_error *error) {
   const unsigned char *bytes;
   size_t available;
@@ -230,8 +230,7 @@ static hl_status peek_inflated(hl_source *source, uint64_t offset, size_t wanted
   else if (source->inflated.length - offset < *available)
     *available = (size_t)(source->inflated.length - offset);
   if (*available > 0)
-    *bytes = source->inflated.bytes + offset; /* otherwise *bytes stays at the caller's empty
-                                               * block */
+    *bytes = source->inflated.bytes + offset; /* else *bytes remains the empty block that the caller set */
   return status;
 }
 

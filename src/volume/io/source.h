@@ -13,8 +13,8 @@ enum { HL_SOURCE_WINDOW_BYTES = 65536 };
 
 typedef struct hl_source hl_source;
 
-/* Opens a regular file. quiet: does not call the context's `reads` callback. For threads other than the
- * caller's, which may not call it, and for files that were opened before. */
+/* Opens a regular file. quiet: whether the context's `reads` callback is not called. It must be quiet on
+ * threads other than the caller's, and for files that were reported before. */
 hl_status hl_source_open(hl_context *context, const char *path, bool quiet, hl_source **source,
                          hl_error *error);
 /* Opens the first `size` bytes of a descriptor's file. The descriptor stays the caller's, and must stay open
@@ -27,9 +27,9 @@ hl_status hl_source_of_memory(hl_context *context, const char *path, const void 
 /* Makes a source of the bytes [begin, begin + count) of *source. The new source replaces *source and owns
  * it. */
 hl_status hl_source_cut(hl_source **source, uint64_t begin, uint64_t count, hl_error *error);
-/* Makes a source of the data that raw deflate data from position `begin` of *source hold, at most `limit`
- * bytes. They are inflated when they are first needed, and kept. The new source replaces *source and owns
- * it. */
+/* Makes a source of the bytes that are deflated, without a header, from position `begin` of *source on. At
+ * most `limit` bytes are inflated. They are inflated when they are first needed, and then kept. The new
+ * source replaces *source and owns it. */
 hl_status hl_source_inflate(hl_source **source, uint64_t begin, uint64_t limit, hl_error *error);
 void hl_source_close(hl_source *source); /* null is allowed */
 

@@ -242,8 +242,8 @@ hl_status hl_stream_read_all(hl_stream *stream, void *bytes, size_t wanted, hl_e
   return status;
 }
 
-/* Skips bytes of a plain file, or of memory, without reading them, as far as it has them. Returns their
- * number. */
+/* Skips bytes of a plain file or of memory without reading them, if there are enough of them to be worth it.
+ * Returns the number of bytes that were skipped. */
 static uint64_t seek_over(hl_stream *stream, uint64_t count) {
   if (stream->below != NULL || !file_of(stream)->regular) return 0;
   file_stream *file = (file_stream *)stream;

@@ -35,8 +35,8 @@ struct hl_stream {
 /* Opens a file. regular_only: whether to refuse pipes and devices, for files that another file names. */
 hl_status hl_stream_open(hl_context *context, const char *path, bool regular_only, hl_stream **stream,
                          hl_error *error);
-/* Opens a file's content in the caller's memory, which must outlive the stream. path: the file's name in
- * errors; files that it names are looked for in path's folder. */
+/* Opens a block of memory as the content of a file. The memory must outlive the stream. path: the file's name
+ * in error lines; other files that the content names are looked for in the folder of `path`. */
 hl_status hl_stream_open_memory(hl_context *context, const char *path, const void *bytes, size_t byte_count,
                                 hl_stream **stream, hl_error *error);
 /* Replaces *stream by the file that its own file names (relative to its folder). */
@@ -67,8 +67,8 @@ void hl_stream_take(hl_stream *stream, size_t count);
 hl_status hl_stream_read(hl_stream *stream, void *bytes, size_t wanted, size_t *count, hl_error *error);
 /* Reads exactly the requested bytes, or fails. */
 hl_status hl_stream_read_all(hl_stream *stream, void *bytes, size_t wanted, hl_error *error);
-/* Reads the rest of a pipe, or of compressed data whose parts are needed in any order. *bytes must be null
- * before, and is owned by the caller, also on failure. */
+/* Reads all bytes that are left: of a pipe, or of compressed data whose parts are needed in any order. *bytes
+ * must be null before; the caller owns it, also on failure. */
 hl_status hl_stream_read_rest(hl_stream *stream, unsigned char **bytes, size_t *length, hl_error *error);
 hl_status hl_stream_skip(hl_stream *stream, uint64_t count, hl_error *error);
 /* Reads one line, without its line end. A line ends with LF, with CR LF or, if the first line ends with it,

@@ -15,8 +15,8 @@ static inline bool hl_is_space(char c) { return c == ' ' || (c >= '\t' && c <= '
  * upper or lower case. False if the text is no number or has HL_NUMBER_CHARACTERS or more characters. */
 bool hl_text_number(const char *text, size_t length, double *value);
 
-/* Converts all of a text to a whole number, also one written as 13.0 or 1e3. False if it is none that 64 bits
- * with a sign hold. */
+/* Converts a whole text to a whole number; the text may also be 13.0 or 1e3. False if the text is no number
+ * that int64_t holds. */
 bool hl_text_whole(const char *text, int64_t *whole);
 
 /* Reads numbers separated by white space. Returns their number, or -1 if the text holds anything else or more

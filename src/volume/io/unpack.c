@@ -31,7 +31,7 @@ static voidpf zlib_allocate(voidpf context, uInt count, uInt size) {
 }
 static void zlib_release(voidpf context, voidpf memory) { hl_release(context, memory); }
 
-/* The part of a length that zlib can take, as zlib counts in 32 bits. */
+/* The part of a length that one call of zlib can take, because zlib counts in 32 bits. */
 static uInt at_most(size_t left) { return left < (1u << 30) ? (uInt)left : 1u << 30; }
 
 hl_status hl_unpack_deflate(hl_context *context, const unsigned char *packed, size_t length, void *bytes,

@@ -7,13 +7,13 @@
 
 #include "core/error.h"
 
-/* Whether packed data can hold `count` bytes; asked before memory is taken for them. Deflate data are judged
- * by deflate's best ratio, Blosc data by the block's own header. */
+/* Whether packed data of `length` bytes can hold `count` bytes. Callers ask this before they take memory.
+ * Deflate's greatest ratio decides for deflate data, and the block's header for Blosc data. */
 bool hl_deflate_can_hold(size_t length, size_t count);
 bool hl_blosc_can_hold(const unsigned char *packed, size_t length, size_t count);
 
-/* Unpacks into bytes [0, count). *sound: false if the data are damaged or hold another number of bytes.
- * Deflate data have zlib's header or gzip's. hl_unpack_blosc() fails in builds without its library. */
+/* Unpacks data to bytes[0 .. count). *sound: false if the data are damaged, or hold more or fewer bytes.
+ * Deflate data may have zlib's header or gzip's. hl_unpack_blosc() fails in builds without Blosc. */
 hl_status hl_unpack_deflate(hl_context *context, const unsigned char *packed, size_t length, void *bytes,
                             size_t count, bool *sound, hl_error *error);
 hl_status hl_unpack_blosc(const char *path, const unsigned char *packed, size_t length, void *bytes,

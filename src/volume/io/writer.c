@@ -51,7 +51,7 @@ static void put_real(hl_written_header *header, size_t at, double value) {
   memcpy(header->bytes + at, &real, sizeof real);
 }
 
-/* Places a grid in a world whose x and y point the other way. */
+/* Turns a grid by half a turn about z: x and y point the other way afterwards. */
 static void turn(hl_volume_description *grid) {
   for (int row = 0; row < 2; row++) {
     grid->origin[row] = 0 - grid->origin[row];

@@ -19,7 +19,7 @@ typedef struct hl_written_header {
   unsigned char bytes[HL_WRITER_HEADER_BYTES];
   size_t length;
   const char *end;  /* text after the voxels; null if there is none */
-  const char *unit; /* input: the unit of the grid's lengths, one of the units that the writer knows; null
+  const char *unit; /* set before the call: the unit of the grid's lengths, which the writer must know; null
                      * if unknown */
   size_t size_at;   /* position at which the number of the voxels' packed bytes is stated, in
                      * HL_WRITER_SIZE_CHARACTERS; 0 if nowhere */
@@ -40,8 +40,8 @@ typedef struct hl_writer {
                       * converted to the first. Null if it states none, so that lengths stay as they are */
 } hl_writer;
 
-/* The unit in which a writer writes lengths of this unit, and the factor by which they are multiplied. If
- * the volume or the format has no unit, lengths stay as they are, and the result is null and 1. */
+/* The unit in which a writer writes lengths that are given in `unit`. *factor: the number by which the
+ * lengths are multiplied. If the volume or the format has no unit, the result is null and *factor is 1. */
 const char *hl_written_unit(const hl_writer *writer, const char *unit, double *factor);
 
 /* The writer for a file's name; null if there is none. */

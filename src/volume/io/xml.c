@@ -10,7 +10,7 @@ static hl_status fail(const hl_stream *stream, const char *message, hl_error *er
                         (unsigned long long)stream->offset, message);
 }
 
-/* Advances to the next character c, or to the end. */
+/* Moves to the next character c. *found: false if the stream ends before one. */
 static hl_status skip_to(hl_stream *stream, char c, bool *found, hl_error *error) {
   *found = false;
   while (!*found) {
@@ -25,7 +25,7 @@ static hl_status skip_to(hl_stream *stream, char c, bool *found, hl_error *error
   return HL_OK;
 }
 
-/* Moves past the next occurrence of ending, whose last character is '>'. */
+/* Moves past the next `ending`, a text that ends with '>'. */
 static hl_status skip_past(hl_stream *stream, const char *ending, hl_error *error) {
   size_t length = strlen(ending);
   for (;;) {
@@ -58,8 +58,8 @@ static size_t tag_length(const unsigned char *bytes, size_t length) {
   return 0;
 }
 
-/* Reads a character reference, "&#181;" or "&#xB5;", and writes the character as UTF-8, which is never
- * longer. Returns the reference's length; 0 if it is none. */
+/* Reads a character reference, such as "&#181;" or "&#xB5;", and writes its character to *out as UTF-8, which
+ * is never longer. Returns the reference's length; 0 if there is none. */
 static size_t resolve_number(const char *value, char **out) {
   bool hex = value[1] == '#' && (value[2] == 'x' || value[2] == 'X');
   size_t n = hex ? 3 : 2, digits = 0;

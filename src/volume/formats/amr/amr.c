@@ -87,10 +87,11 @@ void hl_amr_set_spacing(hl_amr *amr, const double spacing[3]) {
     amr->shape.spacing[axis] = spacing[axis] * (double)refinement(amr, amr->shape.levels - 1);
 }
 
-/* The voxels that stand for the finest cells. */
+/* The grid of the volume: its voxels are the cells of the finest level. */
 static hl_volume_description grid_of(const hl_amr *amr) {
   hl_volume_description grid;
-  double cells = (double)((size_t)1 << amr->lattice_level[0]); /* of the finest level, in one of level 0 */
+  double cells = (double)((size_t)1 << amr->lattice_level[0]); /* number of cells of the finest level along a
+                                                                * cell of level 0 */
   hl_volume_description_defaults(&grid);
   grid.type = HL_VOXEL_F32;
   for (int axis = 0; axis < 3; axis++) {

@@ -24,7 +24,8 @@ typedef struct hl_amr_shape {
 typedef struct hl_amr {
   hl_context *context;
   hl_amr_shape shape;
-  int lattice_level[HL_AMR_LEVELS_MOST]; /* the level of patches.h for each level */
+  int lattice_level[HL_AMR_LEVELS_MOST]; /* for each level, its number in patches.h, which counts from the
+                                          * finest level */
   hl_patches *patches;                   /* owned */
   const char *subject;                   /* borrowed; starts error lines */
 } hl_amr;
@@ -38,7 +39,7 @@ hl_status hl_amr_begin(hl_context *context, const hl_amr_shape *shape, const cha
 hl_status hl_amr_add(hl_amr *amr, int level, const ptrdiff_t first[3], const size_t count[3],
                      const float *values, hl_error *error);
 
-/* Replaces the size of the finest cells, in the world; all 0: leaves it as it is. */
+/* Sets the size of the volume's voxels, the finest cells, in the world. All 0: the size stays. */
 void hl_amr_set_spacing(hl_amr *amr, const double spacing[3]);
 
 /* Makes the volume. Its voxels have the size of the finest cells. */

@@ -185,7 +185,7 @@ typedef struct fab_layout {
   bool big_endian;
 } fab_layout;
 
-/* Reads the line in front of a patch's values, whose end is not included. */
+/* Reads the line in front of a patch's values. length: without the line's end. */
 static bool read_fab_line(const char *line, size_t length, fab_layout *layout, ptrdiff_t first[3],
                           size_t count[3], ptrdiff_t *components) {
   text_cursor text = {line, line + length, "", 1};
@@ -252,7 +252,8 @@ static void cut_patch(const float *values, const ptrdiff_t from[3], const size_t
     }
 }
 
-/* Reads a patch from a place of its file. first, count: its cells as Cell_H lists them. */
+/* Reads the patch that begins at position `place` of a file. first, count: the patch's cells, as Cell_H lists
+ * them. */
 static hl_status read_patch(plotfile *file, int level, hl_source *source, uint64_t place,
                             const ptrdiff_t first[3], const size_t count[3], hl_error *error) {
   const unsigned char *bytes;

@@ -15,7 +15,7 @@ typedef struct hl_dicom_packed {
   const hl_dicom_pixels *pixels;
   const unsigned char *bytes;
   size_t length;
-  bool *is_rgb; /* set where colours were converted to RGB */
+  bool *is_rgb; /* set to true if the decoder has converted the colours to RGB */
 } hl_dicom_packed;
 
 hl_status hl_dicom_decode_rle(const hl_dicom_packed *packed, void *values, hl_error *error);
@@ -28,7 +28,7 @@ hl_status hl_dicom_decode_jpeg_2000(const hl_dicom_packed *packed, void *values,
 /* Fails with "PATH: a damaged CODEC picture: WHY". */
 hl_status hl_dicom_fail_packed(const hl_dicom_packed *packed, const char *codec, const char *why,
                                hl_error *error);
-/* Compares a codec's own header with the pixels that the file promises. Fails where they differ. */
+/* Fails unless the header within the compressed data promises the same pixels as the file's header. */
 hl_status hl_dicom_check_packed(const hl_dicom_packed *packed, const char *codec, size_t columns, size_t rows,
                                 size_t samples, int bits, hl_error *error);
 

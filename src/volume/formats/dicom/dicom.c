@@ -18,7 +18,7 @@ static bool has_content(const unsigned char *bytes, size_t length) {
   return hl_dicom_has_mark(bytes, length);
 }
 
-/* Claims files by their name, as old files have no mark. */
+/* Claims files by their names, because old DICOM files lack the mark "DICM". */
 static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) {
   static const char *const endings[] = {".dcm", ".dicom", ".ima"};
   const unsigned char *bytes;

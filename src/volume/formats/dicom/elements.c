@@ -37,8 +37,8 @@ static bool is_long(uint16_t vr) {
   return false;
 }
 
-/* The sequences that are read in files without value representations, since such files do not mark sequences
- * of known length. */
+/* Whether a sequence is read in a file without value representations. Such a file does not mark sequences
+ * whose length is stated, so that the wanted ones are listed here. */
 static bool is_wanted_sequence(uint32_t tag) {
   static const uint32_t tags[] = {
       0x52009229, 0x52009230, /* functional groups: shared, per frame */
@@ -50,7 +50,7 @@ static bool is_wanted_sequence(uint32_t tag) {
       0x0062000a, /* VOI LUT of a frame, detectors, entries of a DICOMDIR, segment of a frame */
       0x0020930e, 0x0020930f, 0x00209310,
       0x00620002,                        /* plane position and orientation in an ultrasound volume,
-                                            temporal position, segments */
+                                          * temporal position, segments */
       0x00189076, 0x00189226, 0x00189115 /* diffusion directions, MR image frame type, MR modifier */
   };
   for (size_t n = 0; n < sizeof tags / sizeof *tags; n++)
@@ -178,7 +178,7 @@ hl_status hl_dicom_next(hl_dicom_reader *reader, hl_dicom_element *element, bool
       reader->level[reader->depth - 1].item_end = reader->at;
       continue;
     }
-    if (element->tag >> 16 == 0xfffe) { /* an end marker without a beginning is ignored */
+    if (element->tag >> 16 == 0xfffe) { /* an end marker where nothing was begun is ignored */
       reader->at = element->offset;
       continue;
     }

@@ -25,7 +25,7 @@ typedef struct hl_dicom_level {
   uint32_t tag;
   uint32_t item; /* number of the current item, from 0 */
   bool in_item, fragments;
-  bool implicit;     /* whether its items are written implicitly */
+  bool implicit;     /* whether the elements in its items state no value representations */
   uint64_t end;      /* position of the sequence's end; UINT64_MAX if an end marker ends it */
   uint64_t item_end; /* position of the item's end; UINT64_MAX if an end marker ends it */
 } hl_dicom_level;

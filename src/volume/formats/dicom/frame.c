@@ -146,7 +146,7 @@ static hl_status read_fragments(hl_source *source, const hl_dicom_file *file, ui
     bytes += length;
   }
   if (status == HL_OK && bytes > hl_source_size(source)) status = fail_short(source, begin, error);
-  enum { SPARE = 16 }; /* bytes beyond the end that decoders may read */
+  enum { SPARE = 16 }; /* number of bytes behind the frame's end that decoders may read */
   if (status == HL_OK)
     status = make_room(space->context, &space->packed, &space->packed_capacity, (size_t)bytes + SPARE, error);
   *total = 0;
@@ -189,7 +189,7 @@ static void unpack_bits(const unsigned char *packed, size_t first_bit, size_t co
   }
 }
 
-/* Unpacks Y1 Y2 Cb Cr, which stand for two pixels (PS3.3, C.7.6.3.1.2). */
+/* Unpacks groups of four bytes, Y1 Y2 Cb Cr. Each group stands for two pixels (PS3.3, C.7.6.3.1.2). */
 static void unpack_halved(const unsigned char *packed, size_t pixels, unsigned char *values) {
   for (size_t n = 0; n + 1 < pixels; n += 2, packed += 4, values += 6) {
     const unsigned char two[6] = {packed[0], packed[2], packed[3], packed[1], packed[2], packed[3]};
@@ -197,7 +197,8 @@ static void unpack_halved(const unsigned char *packed, size_t pixels, unsigned c
   }
 }
 
-/* Rearranges one plane for each sample to samples side by side. */
+/* Rearranges a frame that is stored as one plane for each sample, so that the samples of a pixel lie side by
+ * side. size: bytes of a sample. */
 static void interleave(const unsigned char *planes, size_t pixels, size_t samples, size_t size,
                        unsigned char *values) {
   for (size_t n = 0; n < pixels; n++)
@@ -299,8 +300,8 @@ static void cut_tile(const hl_dicom_pixels *p, size_t tile, size_t size, unsigne
     memmove(values + row * columns * size, values + ((y + row) * p->columns + x) * size, columns * size);
 }
 
-/* Replaces pixel values by the colours that they stand for, from the last to the first, as colours are
- * longer. */
+/* Replaces pixel values by the colours that they stand for, in place. It begins with the last pixel, because
+ * a colour is longer than a value. */
 static void apply_palette(const hl_dicom_pixels *p, const hl_dicom_palette *palette, size_t count,
                           hl_dicom_workspace *space) {
   for (size_t n = count; n-- > 0;) {

@@ -34,7 +34,8 @@ bool hl_dicom_may_begin(const unsigned char *bytes, size_t length) {
   return explicit || (bytes[5] == 0 && bytes[6] == 0 && bytes[7] == 0 && bytes[4] <= 64);
 }
 
-/* This syntax is implicit and little-endian, except for the pixels, which are big-endian. */
+/* The UID of a transfer syntax that is implicit and little-endian, except for the pixels, which are
+ * big-endian. */
 #define GE_PRIVATE "1.2.840.113619.5.2"
 
 static void use_syntax(hl_dicom_header *header, hl_dicom_reader *reader) {
@@ -258,7 +259,8 @@ static hl_status take_offsets(hl_dicom_reader *reader, const hl_dicom_element *e
   return status;
 }
 
-/* A number for the kind of a picture. Equal texts have equal numbers (FNV-1a, cut to 52 bits). */
+/* A number that stands for a kind of picture, which a text names. Equal texts give equal numbers (FNV-1a, cut
+ * to 52 bits). */
 static double kind_of(const char *text) {
   uint64_t hash = 14695981039346656037u;
   for (; *text != 0; text++) hash = (hash ^ (unsigned char)*text) * 1099511628211u;
@@ -384,7 +386,8 @@ static hl_status take_pixels(const hl_dicom_reader *reader, const hl_dicom_eleme
   return HL_OK;
 }
 
-/* Takes a frame's place in the space of an ultrasound volume, if the frame has no place in the patient. */
+/* Uses a frame's place in the space of an ultrasound volume if the frame has no place in the patient's
+ * space. */
 static void take_volume_place(hl_dicom_header *header, hl_dicom_frame *frame) {
   if (isnan(frame->position[0]) && !isnan(frame->volume_position[0])) {
     memcpy(frame->position, frame->volume_position, sizeof frame->position);
@@ -394,8 +397,9 @@ static void take_volume_place(hl_dicom_header *header, hl_dicom_frame *frame) {
     memcpy(frame->orientation, frame->volume_orientation, sizeof frame->orientation);
 }
 
-/* Finds the tiles of a mosaic along a side (mosaic.h), and the position of its first slice. The mosaic's own
- * position is the position of a picture of the mosaic's size around the slice's middle. */
+/* Finds how many tiles a mosaic has along a side (mosaic.h), and the position of the first slice. The
+ * position that the file states is that of a picture of the mosaic's size whose middle is the middle of the
+ * first slice. */
 static void finish_mosaic(const hl_source *source, hl_dicom_header *header) {
   hl_dicom_pixels *p = &header->pixels;
   size_t tiles = (size_t)ceil(sqrt(fmin(header->mosaic.slices, 65536)));

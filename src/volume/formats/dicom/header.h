@@ -25,9 +25,10 @@ typedef enum hl_dicom_codec {
 typedef struct hl_dicom_frame {
   double position[3];    /* the centre of the first voxel, in the patient's space: LPS, millimetres */
   double orientation[6]; /* unit steps along a row, then along a column */
-  double spacing[2];     /* between rows, then between columns */
+  double spacing[2];     /* distance between rows, then distance between columns */
   double slope, intercept;
-  double location;                                  /* along the normal, millimetres: SliceLocation */
+  double location;                                  /* SliceLocation: coordinate along the normal,
+                                                     * millimetres */
   double volume_position[3], volume_orientation[6]; /* position and orientation in the space of an ultrasound
                                                      * volume */
   /* Attributes in which volumes at the same positions differ: echoes, diffusion, phases, times, kinds of
@@ -67,8 +68,8 @@ typedef struct hl_dicom_header {
   double slice_spacing, thickness, imager_spacing[2], dose_scale;
   double window[2]; /* centre and width of the window */
   hl_dicom_frame base;
-  hl_dicom_frame
-      *frames; /* owned; [frames_told]; the attributes that the file states for single frames; may be null */
+  hl_dicom_frame *frames; /* owned; [frames_told]; the attributes that the file states frame by frame; null if
+                           * it states none so */
   size_t frames_told, frames_capacity;
   double *offsets; /* owned; [offset_count]; offsets along the normal of a dose grid's frames */
   size_t offset_count;

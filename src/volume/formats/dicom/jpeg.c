@@ -36,7 +36,8 @@ static hl_status decode(const hl_dicom_packed *packed, void *values, hl_error *e
 
 #include "volume/io/jpeg_fault.h"
 
-/* Runs the decoder. After this call, or a jump out of it, the decoder must be destroyed. */
+/* Runs the decoder. The caller must destroy the decoder afterwards, also if an error jumped out of this
+ * call. */
 static hl_status run(struct jpeg_decompress_struct *info, const hl_dicom_packed *packed,
                      unsigned char *values, hl_error *error) {
   const hl_dicom_pixels *p = packed->pixels;

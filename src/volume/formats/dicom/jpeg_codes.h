@@ -23,8 +23,9 @@ typedef struct hl_jpeg_reader {
   size_t length, at;
   uint64_t bits; /* bits that come next, from bit `bit_count` - 1 downwards */
   int bit_count;
-  size_t missing;                         /* number of bytes read beyond the end */
-  size_t restart;                         /* units between restarts; 0 if there are no restarts */
+  size_t missing;                         /* number of bytes that were asked for beyond the end */
+  size_t restart;                         /* number of units between two restart markers; 0 if there are no
+                                           * such markers */
   hl_jpeg_table table[2][HL_JPEG_TABLES]; /* tables of DC codes and differences; tables of AC codes */
 } hl_jpeg_reader;
 
@@ -39,8 +40,8 @@ enum {
   HL_JPEG_RESTART_INTERVAL = 0xdd
 };
 
-/* Takes a segment that the reader does not keep itself: any segment except tables of codes and the restart
- * interval. */
+/* Takes a segment that the reader does not keep itself, for the decoder: any segment except tables of codes
+ * and the restart interval. */
 typedef hl_status hl_jpeg_take_function(void *decoder, int marker, const unsigned char *content,
                                         size_t length, hl_error *error);
 

@@ -41,9 +41,9 @@ static double number_of(const unsigned char *bytes, size_t length) {
   return hl_text_number(trimmed, strlen(trimmed), &number) ? number : 0;
 }
 
-/* Reads the numbers of a tag from its items. An item consists of four words, of which one is the length of
- * its text, and of the text, which is padded to whole words. numbers: [most]; the numbers that the texts of
- * the first items hold. */
+/* Reads the numbers of a tag. Each is the text of an item, of which there are `items`. An item consists of
+ * four words, of which one is the text's length, and of the text, which is padded to whole words. numbers:
+ * [most]; set to the numbers of the first items. */
 static void read_items(csa_reader *csa, bool second, uint32_t items, double *numbers, uint32_t most) {
   for (uint32_t n = 0; n < items && csa->at < csa->length; n++) {
     uint32_t words[4];
@@ -91,8 +91,8 @@ static hl_status take_csa(hl_dicom_reader *reader, const hl_dicom_element *eleme
   return status;
 }
 
-/* Takes the name of a private creator, which reserves a block of elements. Returns the block if the name is
- * the wanted one, else `before`. */
+/* Looks at the name of a private creator, an element that reserves a block of elements. *block becomes this
+ * block if the name is `name`; otherwise it stays. */
 static hl_status take_creator(hl_dicom_reader *reader, const hl_dicom_element *element, const char *name,
                               unsigned *block, hl_error *error) {
   char text[64];

@@ -10,7 +10,8 @@
 #include "volume/formats/dicom/elements.h"
 
 typedef struct hl_dicom_mosaic {
-  unsigned header_block, csa_block; /* the private blocks of the groups 0019 and 0029; 0 if not seen */
+  unsigned header_block, csa_block; /* numbers of the private blocks in the groups 0019 and 0029; 0 until they
+                                     * are found */
   double slices;                    /* number of slices; 0 if not told */
   double normal[3];                 /* the direction from slice to slice; 0 if not told */
 } hl_dicom_mosaic;

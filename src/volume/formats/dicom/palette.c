@@ -19,8 +19,8 @@ static size_t promised(const hl_dicom_palette *palette, int c) {
   return count > 0 && count < ENTRIES ? (size_t)count : ENTRIES;
 }
 
-/* Reads a plain table's words. A table of 8 bits may have two entries packed in a word, or one entry in each
- * word. */
+/* Reads the entries of a table that is not segmented. Entries of 8 bits may lie two in a word, or one in each
+ * word. Returns the number of entries. */
 static size_t read_plain(const unsigned char *bytes, size_t length, size_t count, int bits, bool big,
                          unsigned char *entries) {
   bool packed = bits <= 8 && length < 2 * count;

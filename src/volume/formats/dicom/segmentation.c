@@ -39,7 +39,7 @@ static const hl_dicom_frame *frame_at(const segment_reading *r, size_t place, si
 
 /* ---- which segments overlap ---- */
 
-/* Packs the mask of a slice, a bit for each voxel. */
+/* Packs a slice's mask into bits: bit n is 1 where voxel n is not 0. */
 static void pack(const unsigned char *values, size_t count, uint64_t *bits) {
   memset(bits, 0, (count + 63) / 64 * sizeof *bits);
   for (size_t n = 0; n < count; n++) bits[n / 64] |= (uint64_t)(values[n] != 0) << (n % 64);
@@ -51,7 +51,8 @@ static bool share_a_bit(const uint64_t *a, const uint64_t *b, size_t words) {
   return false;
 }
 
-/* Compares the masks of the segments at one place. masks: space for all of them. */
+/* Compares the masks of all segments in the slice `place`, to find which segments overlap. masks: scratch
+ * memory for all of these masks. */
 static hl_status compare_place(segment_reading *r, size_t place, uint64_t *masks, size_t *shown,
                                hl_error *error) {
   size_t words = (r->slice_voxels + 63) / 64, count = 0, segments = r->stack->times;
@@ -205,7 +206,7 @@ static hl_status choose_layer(segment_reading *r, hl_load_request *request, hl_e
   payload.components = r->layer_count;
   payload.colors = HL_COLORS_UNREAD;
   bool chosen = request->component != HL_COMPONENT_DEFAULT;
-  if (!chosen) request->component = 0; /* numbers of segments have no magnitude */
+  if (!chosen) request->component = 0; /* values that are names have no magnitude */
   status = hl_component_only(request, r->set->bundle->path, false, &payload, error);
   if (!chosen) request->component = HL_COMPONENT_DEFAULT;
   if (status == HL_OK && payload.component < 0)

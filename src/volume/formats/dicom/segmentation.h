@@ -9,7 +9,8 @@
 
 /* Reads a stack that has segments (stack.h). Masks become a label map whose values are the segments' numbers.
  * It has one component; where segments overlap, it has as many components as are needed to keep each voxel's
- * segments apart. Of fractions, the chosen segment is read as an array of its own. */
+ * segments apart. If the frames are fractions, each segment is an array of its own, and the chosen one is
+ * read. */
 hl_status hl_dicom_segmentation_read(hl_dicom_set *set, hl_dicom_stack *stack, hl_load_request *request,
                                      hl_volume **volume, hl_error *error);
 

@@ -14,7 +14,7 @@ enum {
   LABEL = 0x00620005,
   COLOR = 0x0062000d
 };
-enum { HL_NO_SEGMENT = -1 /* the number of a segment whose item tells none: no frame names it */ };
+enum { HL_NO_SEGMENT = -1 /* the number of a segment whose item states none; no frame refers to it */ };
 
 size_t hl_dicom_segment_of(const hl_dicom_segments *segments, double number) {
   for (size_t n = 0; n < segments->count; n++)

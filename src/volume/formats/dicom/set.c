@@ -137,7 +137,8 @@ static void move(hl_dicom_frame *frame, vec3 direction, double distance) {
   frame->position[2] += distance * direction.z;
 }
 
-/* The distance from slice to slice that the file states; negative if it runs against the normal. */
+/* The distance from slice to slice that the file states: its slice spacing, else its slice thickness, else 1.
+ * It is negative if slices follow each other against the normal. */
 static double stated_step(const hl_dicom_header *header) {
   if (isfinite(header->slice_spacing) && header->slice_spacing != 0) return header->slice_spacing;
   return header->thickness > 0 && isfinite(header->thickness) ? header->thickness : 1;
@@ -249,7 +250,7 @@ static hl_status add_file(hl_dicom_set *set, hl_dicom_header *header, size_t ent
                           .is_volume_space = header->is_volume_space,
                           .frames.are_times = header->vectors.are_times,
                           .frames.count = (size_t)header->frame_count};
-  /* Padding tells where a picture shows nothing. In segmentations, 0 does. */
+  /* Padding values stand for places where a picture shows nothing. In segmentations 0 stands for them. */
   if (header->segments.kind == HL_DICOM_NO_SEGMENTS) take_padding(header, file->padding);
   else file->padding[0] = file->padding[1] = NAN;
   status = find_series(set, header, &file->series, error);
