@@ -57,7 +57,8 @@ static hl_status choose_named(hl_load_request *request, const char *path, hl_err
                  hl_text_printable(shown, request->array), list);
 }
 
-/* Whether an array holds no volume: VTK notes in such arrays which values are doubles of others or hidden. */
+/* Whether an array is one in which VTK marks values that are doubles of others, or hidden. Such an array is
+ * no volume. */
 static bool is_ghost(const hl_array_entry *array) {
   return hl_text_is_one_of(array->name, "vtkGhostType|vtkGhostLevels|vtkValidPointMask");
 }
@@ -144,8 +145,8 @@ void hl_channel_name(hl_channel *channel, const char *name) {
  * picture a thousand pixels across, and take minutes. */
 static const uint64_t VOXELS_OF_A_PICTURE = (uint64_t)1 << 30;
 
-/* Whether a level's longest axis has a voxel for each pixel of the part of the picture that the volume
- * fills. */
+/* Whether a level is fine enough for a picture: its longest axis has a voxel for each pixel of the part that
+ * the volume fills. */
 static bool fills_picture(const hl_level_size *level, int pixels) {
   size_t longest = 0;
   for (int axis = 0; axis < 3; axis++)
@@ -221,7 +222,8 @@ static int default_component(hl_load_request *request, const char *path, bool is
   return magnitude ? HL_COMPONENT_MAGNITUDE : 0;
 }
 
-/* In a series, sets *wanted to the component that the caller's time or channel stands for. */
+/* Finds the component for the caller's time and channel, if the components are a series. *wanted: set to this
+ * component. */
 static hl_status component_of_steps(hl_load_request *request, const char *path, bool is_series,
                                     const hl_payload *payload, int *wanted, hl_error *error) {
   hl_selection *selection = &request->selection;

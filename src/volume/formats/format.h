@@ -25,8 +25,8 @@ typedef struct hl_load_request {
   hl_channel *channels;     /* owned; [selection.channels]; set by readers, where the file describes
                              * channels */
   const char *unit;       /* set by readers: the unit of lengths, static; null if the file does not tell it */
-  bool is_anatomical;     /* set by readers of formats that hold bodies: the anatomical space that the
-                           * file states is meant */
+  bool is_anatomical;     /* set by readers of formats that hold bodies: whether the file states its
+                           * anatomical space on purpose */
   bool says_labels;       /* set by readers: the file says that its values are names of regions */
   const char *series;     /* DICOM: the number, UID or description of the wanted series; null if the
                            * reader may choose */
@@ -124,7 +124,8 @@ typedef struct hl_format {
   hl_status (*load_bundle)(hl_bundle *bundle, hl_load_request *request, bool *claimed, hl_volume **volume,
                            hl_error *error);
 
-  /* Whether load_bundle finds its files by their names, without a list of them, and so on servers, too. */
+  /* Whether load_bundle opens its files by their names and needs no list of files. Such a format can be read
+   * from servers, too. */
   bool finds_by_name;
 } hl_format;
 

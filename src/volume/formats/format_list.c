@@ -81,7 +81,7 @@ hl_status hl_volume_get_format(size_t index, hl_file_format *format) {
 typedef struct packing {
   const char *name, *missing;
   const char *read_endings,
-      *written_endings; /* null: this is no packing of whole files, or it is never written */
+      *written_endings; /* null: whole files are not packed so; or they are not written */
 } packing;
 
 static const packing packings[] = {

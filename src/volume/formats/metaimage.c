@@ -193,7 +193,7 @@ static void make_grid(const meta_header *header, hl_volume_description *grid) {
     }
   }
   grid->type = header->type;
-  /* the world is ITK's, whatever the directions of the axes are */
+  /* positions are in ITK's world (x to the left, y to the back), whatever the directions of the axes are */
   grid->space = header->grid.is_anatomical ? HL_SPACE_LPS : HL_SPACE_UNKNOWN;
   grid->value_scale = header->slope;
   grid->value_offset = header->intercept;

@@ -40,7 +40,7 @@ static bool has_content(const unsigned char *bytes, size_t length) {
   return bytes[IS_GOOD] == 0 && bytes[IS_GOOD + 1] <= 1;
 }
 
-/* Places the volume, whose middle lies at the index size / 2, also where the size is odd. */
+/* Places the volume by its middle, which is at the index size / 2, even if the size is odd. */
 static void place(const unsigned char *header, hl_volume_description *grid) {
   /* Directions of the axes i, j, k, and the middle. */
   static const double usual[12] = {-1, 0, 0, 0, 0, -1, 0, 1, 0, 0, 0, 0};
@@ -75,7 +75,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   payload.grid.type = type_of(word_at(header + TYPE));
   payload.components = word_at(header + SIZES + 12);
   payload.big_endian = true;
-  payload.trailing = HL_TRAILING_IGNORED; /* times of the scan and tags follow the voxels */
+  payload.trailing = HL_TRAILING_IGNORED; /* the scan's times and tags may follow the voxels */
   place(header, &payload.grid);
   request->unit = "millimetre";
   request->is_anatomical = true;

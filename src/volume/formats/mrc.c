@@ -55,12 +55,12 @@ static double load_real(const mrc_header *header, int place) {
   return (double)value;
 }
 
-/* Whether a mode exists, by IMOD's and CCP-EM's pages. */
+/* Whether a number is a mode by the pages of IMOD or CCP-EM. */
 static bool is_mode(int64_t mode) {
   return (mode >= 0 && mode <= 4) || mode == 6 || mode == 12 || mode == 16 || mode == 101;
 }
 
-/* Whether sizes and mode are possible in this byte order. */
+/* Whether the sizes and the mode are possible if the header has this byte order. */
 static bool is_possible(const unsigned char *bytes, bool big_endian) {
   for (int axis = 0; axis < 3; axis++)
     if ((int32_t)load_word(bytes + AT_SIZES + 4 * axis, big_endian) < 1) return false;
@@ -76,8 +76,8 @@ static hl_status read_header(hl_stream *stream, mrc_header *header, hl_error *er
   hl_status status = hl_stream_read_all(stream, header->bytes, HEADER_BYTES, error);
   if (status != HL_OK) return status;
   bool little = is_possible(header->bytes, false), big = is_possible(header->bytes, true);
-  /* both byte orders are possible only for sizes like 16777216; the machine stamp then decides: 0x11 means
-   * big-endian */
+  /* both byte orders are possible if sizes are numbers like 16777216; then the machine stamp decides, where
+   * 0x11 means big-endian */
   header->big_endian = big && (!little || header->bytes[AT_MARK + 4] == 0x11);
   if (!little && !big) {
     int64_t mode = load_integer(header, AT_MODE);
@@ -95,8 +95,8 @@ static hl_status read_header(hl_stream *stream, mrc_header *header, hl_error *er
   return HL_OK;
 }
 
-/* Whether a file of mode 0 has unsigned bytes. IMOD writes unsigned bytes as mode 0, too; its stamp marks
- * such files, and a flag in them marks bytes as signed. */
+/* Whether the bytes of a file of mode 0 are unsigned. The format says that they are signed, but IMOD writes
+ * unsigned ones, too: its stamp marks its files, and a flag then marks signed bytes. */
 static bool has_unsigned_bytes(const mrc_header *header) {
   enum { STAMP = 1146047817, SIGNED = 1 };
   return load_integer(header, AT_IMOD_STAMP) == STAMP && (load_integer(header, AT_IMOD_FLAGS) & SIGNED) == 0;
@@ -140,12 +140,12 @@ static hl_status read_stack(const mrc_header *header, const char *path, hl_paylo
   size_t rows;
   if (!hl_multiply(payload->grid.dimensions[0], payload->grid.dimensions[1], &rows) ||
       !hl_multiply(rows, (size_t)each, &payload->block))
-    payload->block = SIZE_MAX; /* the size is impossible on purpose, so that the check of the grid refuses
-                                * the file */
+    payload->block = SIZE_MAX; /* an impossible size, which makes the check of the grid refuse the file */
   return HL_OK;
 }
 
-/* The cosine and the sine of an angle in degrees. An angle of 0 was not written, and counts as 90. */
+/* Finds the cosine and the sine of an angle in degrees. An angle of 0 means that none was written, and counts
+ * as 90. */
 static void turn(double degrees, double *cosine, double *sine) {
   bool right = degrees == 90 || degrees == 0 || !isfinite(degrees);
   *cosine = right ? 0 : cos(degrees * (HL_PI / 180));
@@ -179,8 +179,8 @@ static void read_axes(const mrc_header *header, int axes[3]) {
   for (int n = 0; n < 3; n++) {
     int64_t axis = load_integer(header, AT_AXES + 4 * n);
     if (axis >= 1 && axis <= 3) seen |= 1 << axis;
-    axes[n] = (int)(axis - 1); /* the subtraction is correct also for the least int, since no smaller
-                                * number occurs */
+    axes[n] = (int)(axis - 1); /* computed in 64 bits; an order with numbers other than 1, 2, 3 is replaced
+                                * below */
   }
   if (seen == (1 << 1 | 1 << 2 | 1 << 3)) return;
   for (int n = 0; n < 3; n++) axes[n] = n;
@@ -214,7 +214,7 @@ static void place(const mrc_header *header, hl_volume_description *grid) {
 typedef struct nibble_stream {
   hl_stream base;
   uint64_t columns, column; /* numbers in a row; index of the next number in the row */
-  unsigned char upper;      /* the voxel in the other half of the last byte */
+  unsigned char upper;      /* the second voxel of the last byte that was read */
 } nibble_stream;
 
 static hl_status pull_nibbles(hl_stream *stream, unsigned char *bytes, size_t capacity, size_t *count,

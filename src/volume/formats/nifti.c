@@ -202,7 +202,7 @@ static hl_status read_scale(const nifti_header *header, hl_volume_description *g
   return HL_OK;
 }
 
-/* Places the volume by method 3: an affine matrix by rows. */
+/* Places the volume by the format's method 3: the rows of an affine matrix. */
 static void place_by_sform(const nifti_header *header, hl_volume_description *grid) {
   for (int row = 0; row < 3; row++) {
     for (int axis = 0; axis < 3; axis++)
@@ -215,8 +215,8 @@ static void place_by_sform(const nifti_header *header, hl_volume_description *gr
  * nifti_quatern_to_mat44() of the format's reference implementation, nifti1_io.c. */
 static const double HALF_TURN = 1e-7;
 
-/* Places the volume by method 2: a rotation as the unit quaternion (a, b, c, d), of which a >= 0 is left out,
- * voxel sizes and an offset. */
+/* Places the volume by the format's method 2: a rotation, voxel sizes and an offset. The rotation is the unit
+ * quaternion (a, b, c, d), where a >= 0 is not stored. */
 static void place_by_qform(const nifti_header *header, const double spacing[3], hl_volume_description *grid) {
   double b = load_real(header, header->layout->quaternion, 0),
          c = load_real(header, header->layout->quaternion, 1);
@@ -270,7 +270,7 @@ static void place_by_origin(const nifti_header *header, const double spacing[3],
          header->path, any && near ? "SPM's origin" : "the volume's middle");
 }
 
-/* Uses the first placement that the file has and that is possible. */
+/* Places the volume by the first of the methods that the file has and that gives possible axes. */
 static void place(const nifti_header *header, hl_volume_description *grid) {
   double spacing[3];
   for (int axis = 0; axis < 3; axis++) {
@@ -319,15 +319,14 @@ static hl_status go_to_voxels(hl_stream **stream, const nifti_header *header, co
                       ? load_real(header, header->layout->vox_offset, 0)
                       : (double)(int64_t)load_bits(header, header->layout->vox_offset, 8);
   if (header->is_analyze && offset < 0)
-    offset = -offset; /* the offset within each volume, by the format's
-                       * description */
+    offset = -offset; /* in ANALYZE, a negative offset is one within each volume */
   if (!(offset >= 0 && offset < 9e15) || offset != floor(offset))
     return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)header->layout->vox_offset,
                           "%s, byte %zu: vox_offset is %g, must be a whole number of bytes", header->path,
                           header->layout->vox_offset, offset);
   uint64_t skip = (uint64_t)offset;
   if (!header->is_pair) {
-    uint64_t least = header->layout->header_bytes + 4; /* four more bytes announce extensions */
+    uint64_t least = header->layout->header_bytes + 4; /* four bytes tell whether extensions follow */
     skip = (skip < least ? least : skip) - header->layout->header_bytes;
     return hl_stream_skip(*stream, skip, error);
   }
@@ -377,8 +376,8 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
 }
 
-/* Replaces *stream by the header NAME.hdr if it is the voxels' file NAME.img of a pair. *switched: whether
- * there was a header. */
+/* If *stream is NAME.img, the voxels' file of a pair, replaces it by the header NAME.hdr. *switched: whether
+ * there is such a header. */
 static hl_status switch_to_header(hl_stream **stream, bool *switched, hl_error *error) {
   const char *slash = strrchr((*stream)->path, '/'), *name = slash == NULL ? (*stream)->path : slash + 1;
   char header[NAME_BYTES];

@@ -173,8 +173,8 @@ static hl_status read_header(hl_stream *stream, npy_header *header, char *text, 
 
 /* ---- the voxels ---- */
 
-/* Makes the payload. Sizes are taken as the values lie in the file, fastest first: in C order the last axis,
- * in Fortran order the first. */
+/* Makes the payload. Its sizes are in the order of the values in the file, the fastest axis first. This is
+ * the last axis in C order, and the first one in Fortran order. */
 static hl_status make_payload(const npy_header *header, bool *is_series, hl_payload *payload,
                               hl_error *error) {
   int axes = header->axes, first = 0;
@@ -203,7 +203,8 @@ static hl_status make_payload(const npy_header *header, bool *is_series, hl_payl
   hl_status status = hl_volume_check_grid(&payload->grid, header->path, error);
   if (status != HL_OK) return status;
   size_t voxels = payload->grid.dimensions[0] * payload->grid.dimensions[1] * payload->grid.dimensions[2];
-  /* components vary fastest if they are the last axis in C order or the first axis in Fortran order */
+  /* the components of a voxel lie side by side if they are the fastest axis: the last one in C order, the
+   * first one in Fortran order */
   payload->block = header->numbers > 1 || last_is_component != header->fortran ? 1 : voxels;
   return HL_OK;
 }
@@ -217,7 +218,7 @@ static hl_status transpose(int grid_axes, hl_volume **volume, hl_error *error) {
   size_t bytes = exact ? hl_voxel_type_bytes(read->type) : hl_storage_bytes(read->storage);
   const ptrdiff_t stride[3] = {(ptrdiff_t)bytes, (ptrdiff_t)(bytes * read->dimension[0]),
                                (ptrdiff_t)(bytes * read->dimension[0] * read->dimension[1])};
-  for (int axis = 0; axis < 3; axis++) { /* axis of the file: 0 is z, or y of a plane */
+  for (int axis = 0; axis < 3; axis++) { /* axis 0 of the file is z, or y of a plane */
     int turned = axis < grid_axes ? grid_axes - 1 - axis : axis;
     description.dimensions[turned] = read->dimension[axis];
     description.stride_bytes[turned] = stride[axis];
@@ -252,7 +253,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   if (status != HL_OK) return status;
   int grid_axes = header.axes == 4 ? 3 : header.axes;
   double spacing[3];
-  for (int axis = 0; axis < 3; axis++) /* sizes along x, y and z, here in the file's order */
+  for (int axis = 0; axis < 3; axis++) /* from x, y, z to the order of the file's axes */
     spacing[axis] = request->spacing[header.fortran && axis < grid_axes ? grid_axes - 1 - axis : axis];
   status = hl_payload_read(*stream, &payload, spacing, volume, error);
   return status == HL_OK && header.fortran ? transpose(grid_axes, volume, error) : status;

@@ -14,7 +14,7 @@
 
 /* ---- which axes belong to the grid, which hold components, and where the grid lies ---- */
 
-/* Whether the samples along an axis are several values of one voxel. */
+/* Whether an axis holds the components of a voxel, instead of voxels. */
 static bool is_component_axis(const nrrd_header *header, const nrrd_axis *axis) {
   if (header->space.has_directions) return !axis->has_direction;
   int space = 0;
@@ -24,8 +24,9 @@ static bool is_component_axis(const nrrd_header *header, const nrrd_axis *axis) 
   return axis->kind[0] != 0 && !hl_text_is_one_of(axis->kind, "domain|space|none|???");
 }
 
-/* Whether a first axis of at most four samples holds components: true where the file states no kinds of axes
- * and has four axes or more. */
+/* Whether the first axis holds components although the file does not say so. This is assumed if the axis has
+ * at most four samples, the file states neither directions nor kinds of axes, and four axes or more have
+ * several samples. */
 static bool is_first_of_components(const nrrd_header *header) {
   bool unsaid = header->axis[0].size <= 4 && !header->space.has_directions;
   int thick = 0;
@@ -60,8 +61,8 @@ static int choose_axes(const nrrd_header *header, int chosen[NRRD_MOST_AXES]) {
  * before and after them. */
 static hl_status find_components(const nrrd_header *header, const int chosen[NRRD_MOST_AXES], int count,
                                  bool *is_series, hl_payload *payload, hl_error *error) {
-  size_t before = 1, since = 1; /* products of the grid axes' sizes: before the components, and since the last
-                                 * component axis */
+  size_t before = 1, since = 1; /* products of the sizes of grid axes: those before the components, and those
+                                 * since the last axis of components */
   int grid_axis = 0;
   *is_series = false;
   for (int n = 0; n < header->dimension; n++) {
@@ -217,7 +218,7 @@ static hl_status load_with(nrrd_header *read, hl_stream **stream, hl_load_reques
   const nrrd_header header = *read;
   bool is_series = false;
   status = place_grid(&header, &payload, &is_series, error);
-  /* The series are layers of segments, of which the volume is one. */
+  /* the components are no times: they are layers of segments, of which one becomes the volume */
   if (is_series && header.segment_count > 0) {
     is_series = false;
     if (request->component == HL_COMPONENT_DEFAULT) request->component = 0;

@@ -62,7 +62,8 @@ static bool read_variable(mat_file *file, matrix *mat, matrix *older) {
   return true;
 }
 
-/* Puts the matrix into the grid, whose indices begin at 0. False if no grid has such axes. */
+/* Sets the grid's axes and origin from the matrix, which counts voxels from 1; the grid counts from 0.
+ * Returns false if no grid can have such axes. */
 static bool put(const matrix *from, const char *path, hl_volume_description *grid) {
   hl_volume_description placed = *grid;
   for (int row = 0; row < 3; row++) {

@@ -1,4 +1,5 @@
-/* volume/formats/spm_mat.h - where SPM keeps the place of an ANALYZE volume: NAME.mat beside NAME.hdr. */
+/* volume/formats/spm_mat.h - reads the file NAME.mat beside NAME.hdr, in which SPM keeps the place of an
+ * ANALYZE volume. */
 #ifndef HL_VOLUME_SPM_MAT_H
 #define HL_VOLUME_SPM_MAT_H
 

@@ -146,8 +146,8 @@ static double pixel_spacing(const hl_dicom_frame *frame, int which) {
   return frame->spacing[which] > 0 && isfinite(frame->spacing[which]) ? frame->spacing[which] : 1;
 }
 
-/* The distance between slices that the file states. Used for a single slice, or where positions are missing.
- */
+/* The distance between slices that the file states. It is used for a single slice, or if positions are
+ * missing. */
 static double stated_spacing(const sorting *s, bool *known) {
   const hl_dicom_file *file = file_of(s, s->frames[0].frame);
   *known = true;
@@ -418,7 +418,7 @@ static void spread(const sorting *s, size_t count, bool snap, hl_dicom_stack *st
   }
 }
 
-/* Says how slices were put where the file has none. count: the number of all slices. */
+/* Tells the user how slices were put at places where the file has none. count: the number of all slices. */
 static void tell_spacing(const sorting *s, const hl_dicom_stack *stack, bool even, size_t count) {
   char text[300], holes[100] = "";
   double step = count > 1 ? (s->places[s->place_count - 1] - s->places[0]) / (double)(count - 1) : 0;

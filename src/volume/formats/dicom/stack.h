@@ -20,8 +20,8 @@ typedef struct hl_dicom_stack {
   const hl_dicom_frame *
       *frames; /* owned; [place_count][times]; for segments: null where a segment has no frame */
   size_t place_count, times;
-  const hl_dicom_segments *segments; /* for a segmentation by frames, which has a place in `times` for each
-                                      * segment; else null */
+  const hl_dicom_segments *segments; /* for a segmentation by frames, where `times` counts the segments; else
+                                      * null */
   size_t empty_count;                /* number of empty slices */
   hl_dicom_slice *slices;            /* owned; [grid.dimensions[2]] */
   hl_volume_description grid;        /* dimensions, origin, axes, space */

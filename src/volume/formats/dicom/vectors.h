@@ -27,8 +27,8 @@ void hl_dicom_vectors_release(hl_context *context, hl_dicom_vectors *vectors);
 /* The frame's slice, counted from 0. Where no slices are told, the result is the frame's own index, or 0 if
  * the frames are times. */
 size_t hl_dicom_vectors_slice(const hl_dicom_vectors *vectors, size_t frame);
-/* A number that differs between the volumes of frames, and rises from volume to volume; NAN if no vector
- * tells it. */
+/* A number for the volume to which a frame belongs. It differs between volumes, and rises from each volume to
+ * the next. NAN if no vector tells it. */
 double hl_dicom_vectors_volume(const hl_dicom_vectors *vectors, size_t frame);
 /* Whether the frames are projections from several sides, not slices. */
 bool hl_dicom_vectors_are_projections(const hl_dicom_vectors *vectors);

@@ -22,7 +22,7 @@
 typedef struct reading {
   const hl_dicom_set *set;
   const hl_dicom_stack *stack;
-  size_t time;   /* number of the frame to take at each place */
+  size_t time;   /* which of the frames at each place is taken */
   int component; /* the sample to take, or HL_COMPONENT_MAGNITUDE */
   hl_voxel_type type;
   bool as_floats; /* whether values are computed as floats; otherwise stored values are kept */
@@ -295,7 +295,7 @@ static hl_status read_all(reading *r, hl_error *error) {
   if (status != HL_OK || r->as_floats || !hl_destination_is_apart(&r->to) || !any_padded(r)) return status;
   hl_destination_close(&r->to);
   for (int w = 0; w < hl_pool_threads(r->workers.pool); w++) {
-    hl_release(r->set->context, r->workers.others[w]); /* voxels of the gap slices have another size now */
+    hl_release(r->set->context, r->workers.others[w]); /* slices that fill gaps have another size now */
     r->workers.others[w] = NULL;
   }
   r->as_floats = true;

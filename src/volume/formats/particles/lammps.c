@@ -43,7 +43,8 @@ static hl_status next_number(lammps_dump *dump, hl_error *error) {
   return HL_OK;
 }
 
-/* kinds: what follows "ITEM: BOX BOUNDS". */
+/* Reads the box of a step. kinds: the rest of the line "ITEM: BOX BOUNDS", which tells the kinds of the
+ * borders. */
 static hl_status read_box(lammps_dump *dump, const char *kinds, hl_error *error) {
   hl_particle_columns *columns = &dump->columns;
   bool triclinic = strstr(kinds, "xy") != NULL || strstr(kinds, "abc") != NULL,
@@ -65,7 +66,7 @@ static hl_status read_box(lammps_dump *dump, const char *kinds, hl_error *error)
   return HL_OK;
 }
 
-/* names: what follows "ITEM: ATOMS". */
+/* Reads the names of the columns. names: the rest of the line "ITEM: ATOMS". */
 static hl_status read_atoms(lammps_dump *dump, char *names, hl_error *error) {
   bool wanted = dump->steps == dump->wanted + 1;
   char *words[HL_PARTICLE_COLUMNS_MOST];

@@ -16,8 +16,8 @@
 
 enum {
   SIDE = 512,            /* voxels along an axis at most, by default */
-  POINTS_A_PARTICLE = 64 /* kernels of 48 neighbours with h = 2 voxels cover 6 voxels for each particle,
-                          * and more where particles cluster */
+  POINTS_A_PARTICLE = 64 /* most voxels for each particle, by default: kernels of 48 neighbours with h = 2
+                          * voxels need 6 for each particle, and more where particles cluster */
 };
 #define LEAST_POINTS ((size_t)1 << 21)
 #define MOST_POINTS  ((size_t)1 << 31)
@@ -142,7 +142,7 @@ static float empty_density(const hl_particles_description *d, const hl_particle_
   return isfinite(least) ? (float)(0.1 * least) : 1;
 }
 
-/* What is done with each number of a field. */
+/* The numbers of a field, and how they are converted. */
 typedef struct conversion {
   float *field;
   const float *by; /* the density, for means */
@@ -169,7 +169,8 @@ static void divide(void *data, size_t index, int worker) {
     c->field[n] = c->by[n] > 0 ? c->field[n] / c->by[n] : c->outside;
 }
 
-/* Makes the wanted quantity of the levels that the volume takes. density: null, or the density of a mean. */
+/* Converts the field from densities to the wanted quantity, on those levels that the volume keeps. density:
+ * for a mean, the field of the density; else null. */
 static void convert(const making *m, hl_particle_field *field, const hl_particle_field *density) {
   bool in_bricks = field->plan->leaves != NULL;
   if (m->d->quantity == HL_PARTICLES_DENSITY) return;
@@ -198,7 +199,7 @@ static hl_status make_field(const making *m, const hl_particle_plan *plan, hl_pa
 /* Bricks are made where they need less memory than this part of an array of all voxels. The number is chosen,
  * not measured: values are found more slowly in bricks, so that bricks must save much memory. */
 #define BRICKS_PART 0.6
-/* The most bytes of bricks, and of the fields of which they are made, where there is no memory limit. */
+/* Without a memory limit: the most bytes that bricks, and the fields of which they are made, may take. */
 #define BRICK_BYTES 1073741824.0
 
 static size_t fields_of(const hl_particles_description *d) {
@@ -211,8 +212,9 @@ static double voxel_bytes(const hl_particle_lattice *lattice) {
   return bytes;
 }
 
-/* Plans bricks. Where their memory has no room, and no spacing is wanted, the spacing grows. *plan has no
- * leaves where an array of voxels is better, or where no bricks of the wanted spacing have room. */
+/* Makes a plan of bricks. If memory has no room for them, the spacing grows, unless the caller wants a
+ * certain spacing. *plan has no leaves if an array of voxels is better, or if bricks of the wanted spacing
+ * have no room. */
 static hl_status plan_bricks(const making *m, hl_particle_plan *plan) {
   const uint64_t limit = m->context->options.memory_limit;
   const double most = limit > 0 ? (double)limit / 2 : BRICK_BYTES;

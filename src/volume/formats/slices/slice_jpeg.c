@@ -17,7 +17,8 @@ hl_status hl_slice_read_jpeg(const hl_slice_file *file, hl_slice_shape *shape, u
 #include "core/memory.h"
 #include "volume/io/jpeg_fault.h"
 
-/* Runs the decoder. After this call, or a jump out of it, the decoder must be destroyed. */
+/* Runs the decoder. The caller must destroy the decoder afterwards, also if an error jumped out of this
+ * call. */
 static hl_status run(struct jpeg_decompress_struct *info, const hl_slice_file *file, hl_slice_shape *shape,
                      unsigned char **samples, hl_error *error) {
   enum { PIXELS_OF_BYTE = 8 * 64 }; /* a block of 8 x 8 pixels takes at least a bit */

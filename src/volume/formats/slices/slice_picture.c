@@ -60,8 +60,8 @@ static double sample_at(const hl_slice_shape *shape, const unsigned char *sample
   return wide;
 }
 
-/* Takes a component. voxels: stored values of the shape's type, which is unsigned; or floats, for a
- * magnitude; or colours. */
+/* Stores a component of a picture. voxels: for a component, stored values of the shape's type, which is
+ * unsigned; for a magnitude, floats; or else colours. */
 static void take_component(const hl_slice_shape *shape, const unsigned char *samples, int component,
                            void *voxels) {
   size_t count = shape->width * shape->height, step = shape->samples,

@@ -52,7 +52,8 @@ static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 static bool cut_name(const hl_bundle_entry *entry, numbered_name *name) {
   const char *slash = strrchr(entry->name, '/'), *base = slash == NULL ? entry->name : slash + 1;
   const char *dot = strrchr(base, '.'), *end = dot == NULL ? base + strlen(base) : dot;
-  hl_raw_slice raw; /* the numbers of its size and type do not number a slice */
+  hl_raw_slice raw; /* the size and the type of bare voxels; the numbers in them are not the number of a
+                     * slice */
   hl_payload whole;
   if (hl_slice_is_raw(base) && hl_raw_name(base, &whole) && whole.grid.dimensions[2] != 1) return false;
   if (hl_slice_is_raw(base) && hl_raw_slice_name(base, strlen(base), &raw)) {
@@ -182,7 +183,7 @@ static hl_status measure(slices_reading *r, hl_slice_stack *stack, hl_error *err
     if (hl_cancelled(file.context))
       return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", r->bundle->path);
     uint64_t size = name_of(r, n)->entry->size, least = name_of(r, 0)->entry->size;
-    if (size >= least / 64) continue; /* the file is not much shorter than the first picture's file */
+    if (size >= least / 64) continue; /* files not much shorter than the first picture's need no check */
     status = read_file(r, n, true, path, sizeof path, &file, error);
     if (status == HL_OK) status = hl_slice_measure(&file, &shape, error);
     hl_release(file.context, (void *)file.bytes);

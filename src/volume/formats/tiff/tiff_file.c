@@ -132,8 +132,8 @@ hl_status tiff_file_fail(const tiff_file *file, const char *what, hl_error *erro
                  file->message);
 }
 
-/* The number of bytes of the directory at an offset, by its number of entries. Refuses more entries than any
- * program writes, as libtiff's time grows with the square of their number. */
+/* Finds how many bytes a directory takes, which follows from its number of entries. Refuses more entries than
+ * any program writes, because libtiff's time grows with the square of their number. */
 static hl_status measure_directory(tiff_file *file, uint64_t offset, uint64_t *bytes, hl_error *error) {
   enum { ENTRIES_MOST = 512 };
   unsigned char head[8] = {0};
@@ -351,7 +351,7 @@ typedef struct page_reading {
   int component; /* index of the wanted component, or an HL_COMPONENT_ value */
   uint32_t chunk_width, chunk_height, chunk_depth;
   bool tiled;
-  size_t row_bytes, chunk_bytes; /* bytes of the rows of a chunk that the page has */
+  size_t row_bytes, chunk_bytes; /* bytes of a row; bytes of those rows of a chunk that lie in the page */
   unsigned char *chunk;          /* owned; [chunk_bytes] */
   unsigned char *samples;        /* owned; a row of samples of the voxel type */
   unsigned char *picked;         /* owned; a row of the wanted component */
@@ -476,7 +476,7 @@ static hl_status read_chunk(page_reading *r, unsigned plane, uint32_t x, uint32_
   uint32_t slice = r->target->slice;
   uint32_t index = r->tiled ? TIFFComputeTile(tiff, x, y, slice, sample) : TIFFComputeStrip(tiff, y, sample);
   hl_status status = decode(r, index, rows, error);
-  /* Slices of the tile before this one. */
+  /* the bytes of the tile's slices before this one */
   size_t before = (size_t)(slice % r->chunk_depth) * r->chunk_height * r->row_bytes;
   for (uint32_t row = 0; status == HL_OK && row < rows; row++)
     take_row(r, r->chunk + before + row * r->row_bytes, plane, columns, (size_t)(y + row) * shape->width + x);
@@ -503,8 +503,8 @@ static hl_status read_chunks(page_reading *r, hl_error *error) {
  * larger than a megabyte: hundreds of tiny pages in a small file would take seconds. */
 enum { TILE_IN_PAGES = 1024, SMALL_TILE_BYTES = 1 << 20 };
 
-/* Measures a chunk. Only rows that the page has are decoded. Refuses a chunk if libtiff computes another
- * length for its rows. */
+/* Finds the sizes of the page's chunks. Only rows that lie in the page are decoded. Fails if libtiff computes
+ * another length for the rows of a chunk. */
 static hl_status measure_chunks(page_reading *r, hl_error *error) {
   const tiff_shape *shape = r->shape;
   TIFF *tiff = r->file->tiff;

@@ -10,7 +10,7 @@
 
 #include "volume/exact.h"
 
-/* The description of a page's voxels in its directory. */
+/* What a directory says of its page's voxels. */
 typedef struct tiff_shape {
   uint32_t width, height, depth; /* depth: number of slices of a page (ImageDepth) */
   hl_voxel_type type;
@@ -55,8 +55,8 @@ bool tiff_shapes_equal(const tiff_shape *a, const tiff_shape *b);
 /* Finds the offsets of all directories; they are owned by the caller (hl_release). */
 hl_status tiff_file_pages(tiff_file *file, uint64_t **offsets, size_t *count, hl_error *error);
 
-/* The position of the current directory's first pixels in the file, if all of its pixels follow them
- * uncompressed and each sample has whole bytes; else 0. *bytes: the size of a slice. */
+/* The position in the file of the current directory's first pixel, if all pixels are uncompressed, follow
+ * each other and have samples of whole bytes; else 0. *bytes: the size of a slice. */
 uint64_t tiff_file_plain(tiff_file *file, const tiff_shape *shape, uint64_t *bytes);
 
 /* Whether the current directory's chunks have enough bytes for a page of its shape, at the best ratio that

@@ -25,8 +25,8 @@ enum {
 typedef struct stack_file {
   char *path;                  /* owned */
   const unsigned char *memory; /* [memory_size]; the file's content; null if the file is read */
-  unsigned char *unpacked; /* owned; the same memory, if it was filled here, from a pipe or an archive; else
-                            * null */
+  unsigned char *unpacked; /* owned; equals `memory` if the content was read here, from a pipe or an archive;
+                            * else null */
   size_t memory_size;
   uint64_t *offsets; /* owned; [count] */
   size_t count;
@@ -39,9 +39,9 @@ typedef struct stack_reading {
   tiff_plan plan;
   stack_file *files; /* owned; [plan.file_count] */
   int level;
-  uint64_t plain, plain_bytes; /* position of the first slice's pixels, if all slices follow each other
-                                * there uncompressed, and bytes of a slice; 0 if libtiff decodes each slice
-                                * from a page */
+  uint64_t plain, plain_bytes; /* position of the first slice's pixels, and bytes of a slice, if the slices
+                                * follow each other uncompressed; both 0 if libtiff decodes each slice from a
+                                * page */
   tiff_shape shape;            /* shape of each slice, at the level */
   uint32_t width, height;      /* size at level 0 */
   int component;
@@ -126,9 +126,9 @@ static hl_status check_size(const stack_reading *r, tiff_file *file, hl_error *e
       (unsigned long long)file->size);
 }
 
-/* Finds whether the pixels of more slices than the file has pages follow the first page's pixels. ImageJ
- * writes files above 4 GB this way, and tifffile on request; slices of a page lie so unless they are tiled.
- * *pages: number of all slices. */
+/* Finds whether the first page's pixels are followed by the pixels of more slices than the file has pages.
+ * ImageJ writes files above 4 GB this way, and tifffile on request. So do the slices of a page lie, unless
+ * they are tiled. *pages: set to the number of all slices. */
 static hl_status find_plain(stack_reading *r, tiff_file *file, const tiff_shape *shape,
                             const char *description, const stack_file *stack, size_t *pages,
                             hl_error *error) {
@@ -265,7 +265,7 @@ static hl_status decode_slice(stack_reading *r, size_t z, int worker, void *voxe
   if (r->threads.opened[worker] != slice->file) {
     tiff_file_close(file);
     r->threads.opened[worker] = slice->file;
-    file->warnings = TIFF_NO_WARNINGS; /* warnings were logged when the pages were found */
+    file->warnings = TIFF_NO_WARNINGS; /* warnings were logged when the pages were looked for */
     status = tiff_file_open(r->context, stack->path, stack->memory, stack->memory_size, true, file, error);
     if (status != HL_OK) r->threads.opened[worker] = UINT32_MAX;
   }
@@ -342,7 +342,7 @@ static void describe(const stack_reading *r, hl_payload *payload) {
   for (int axis = 0; axis < 3; axis++) {
     double step = (r->plan.spacing[axis] > 0 ? r->plan.spacing[axis] : known) * coarser[axis];
     grid->axis[axis][axis] = step;
-    /* voxels of reduced levels are larger; their grid begins at the same corner as the full one */
+    /* voxels of a coarser level are larger, but the grid begins at the same corner as at level 0 */
     grid->origin[axis] = (step - step / coarser[axis]) / 2;
   }
   payload->components = r->shape.components;

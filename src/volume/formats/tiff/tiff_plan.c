@@ -68,7 +68,8 @@ typedef struct ome_reader {
   bool in_pixels, done, is_planned;
   /* The current TiffData. */
   struct {
-    bool is_open, whole; /* is_open: its planes are not placed yet; whole: they go on to the last plane */
+    bool is_open, whole; /* is_open: whether the element's planes are still to be placed; whole: whether the
+                          * element goes on to the last plane */
     size_t first[3], count, page;
   } element;
   size_t placed; /* number of planes placed by all elements */
@@ -203,7 +204,7 @@ static hl_status read_file(ome_reader *ome, const hl_xml_tag *tag, hl_error *err
   if (name == NULL) return HL_OK;
   if (strchr(name, '/') != NULL || strlen(name) >= sizeof ome->file || name[0] == 0)
     return fail_ome(ome, "names a file that is not beside it", error);
-  /* a name of the first file itself */
+  /* the first file may also name itself: then `file` stays empty */
   if (strcmp(name, slash != NULL ? slash + 1 : ome->path) != 0) strcpy(ome->file, name);
   return HL_OK;
 }
@@ -446,7 +447,7 @@ static hl_status plan_pages(hl_load_request *request, const char *path, const ch
   bool told = read_series(description, components, &sizes) &&
               hl_multiply(sizes.times.count, sizes.channels.count, &wanted) &&
               hl_multiply(wanted, sizes.slices.count, &wanted) && wanted <= pages;
-  const size_t slices = depth > 1 ? depth : pages; /* of a depth, each page is a volume */
+  const size_t slices = depth > 1 ? depth : pages; /* a page of several slices is a volume */
   if (!told) sizes = (series_sizes){{pages / slices, slices}, {1, 0}, {slices, 1}};
   if (told && wanted < pages)
     hl_log(plan->context, HL_LOG_WARNING,

@@ -14,7 +14,8 @@ typedef struct tiff_slice {
 
 typedef struct tiff_plan {
   hl_context *context;
-  tiff_slice *slices; /* owned; [slice_count]; the chosen time step and channel, along z */
+  tiff_slice *slices; /* owned; [slice_count]; the pages of the slices along z, at the chosen time step and
+                       * channel */
   size_t slice_count;
   char **files; /* owned; [file_count]; names of files beside the first one; files[0] is null and stands for
                  * the first file */
@@ -24,7 +25,7 @@ typedef struct tiff_plan {
                       * the pages */
 } tiff_plan;
 
-/* Makes the plan. description: of the first page, or null. pages: number of slices of all pages of the first
+/* Makes the plan. description: the first page's, or null. pages: number of slices of all pages of the first
  * file. components: samples of a pixel. depth: slices of a page. resolution: pixels per unit along x and y of
  * the first page; 0 if not told. Release the plan also after a failure. */
 hl_status tiff_plan_make(hl_load_request *request, const char *path, const char *description, size_t pages,

@@ -1,9 +1,9 @@
 /* volume/formats/vdb/nanovdb_bricks.c - see nanovdb_bricks.h.
  *
- * In: a grid's tree. Out: bricks of level 0, of 32^3 cells. A brick all of whose coefficients, with its
- * margins, are one number becomes a constant: no bit of the field changes. Each brick is read twice: first to
- * learn which ones are constants. Beyond the box of active voxels the voxels at its faces go on, as a dense
- * volume's do. */
+ * In: a grid's tree. Out: bricks of level 0, of 32^3 cells. If all coefficients of a brick, margins included,
+ * are one number, the brick becomes a constant, which changes no bit of the field. Each brick is read twice:
+ * first to learn which bricks are constants. Beyond the box of active voxels, the values at the box's faces
+ * continue, as in a dense volume. */
 #include "volume/formats/vdb/nanovdb_bricks.h"
 
 #include <math.h>
@@ -28,11 +28,12 @@ typedef struct brick_reader {
   float *scratch; /* owned; [threads][2][COEFFICIENTS] */
 } brick_reader;
 
-/* Reads a brick's coefficients. The part of them within the box is read into `box`, and then continued. */
+/* Reads a brick's coefficients: first the part within the box of active voxels, into `box`. Beyond the faces,
+ * the values at the faces continue. */
 static hl_status read_brick(const brick_reader *r, size_t number, float *box, float *brick, hl_error *error) {
   const hl_bricks *bricks = r->bricks;
   int64_t first[3];
-  size_t low[3], count[3], at[3][WIDTH]; /* at: the place in `box` of each coefficient along an axis */
+  size_t low[3], count[3], at[3][WIDTH]; /* at: for each coefficient along an axis, its place in `box` */
   for (int a = 0; a < 3; a++) {
     int64_t block = (int64_t)(number % bricks->directory_size[a]), last = (int64_t)r->size[a] - 1;
     number /= bricks->directory_size[a];
@@ -93,8 +94,8 @@ hl_status nanovdb_bricks_read(const nanovdb_grid *grid, const hl_volume_descript
   size_t entries = 1;
   *bricks = (hl_bricks){.shift = SHIFT, .levels = 1};
   for (int a = 0; a < 3; a++) {
-    /* the coordinates of the grid are then those of the voxels (grid/grid.h), so that pictures have the
-     * bytes of a dense volume */
+    /* with this origin the grid's coordinates are those of the voxels (grid/grid.h), so that pictures have
+     * the same bytes as a dense volume's */
     bricks->origin[a] = 1;
     bricks->dimension[a] = description->dimensions[a] + 2;
     bricks->directory_size[a] = (bricks->dimension[a] + SIDE - 1) / SIDE;

@@ -29,9 +29,10 @@ typedef struct walk {
   pnanovdb_buf_t memory;
   pnanovdb_root_handle_t root;
   int64_t low[3], size[3]; /* the box of active voxels */
-  int64_t first[3];        /* lower nodes: coordinate of the first one; their number */
+  int64_t first[3];        /* coordinates of the first lower node that the box meets; `count` is the number of
+                            * these nodes along each axis */
   size_t count[3];
-  hl_voxel_type type;  /* type of the values before they are stored */
+  hl_voxel_type type;  /* type of the values as they are staged, before they are stored in the volume */
   size_t bytes;        /* bytes of such a value */
   size_t stored_bytes; /* bytes of a voxel of the volume */
   unsigned char *voxels;
@@ -186,7 +187,7 @@ static bool is_quantised(uint32_t kind) {
          kind == PNANOVDB_GRID_TYPE_FP16 || kind == PNANOVDB_GRID_TYPE_FPN;
 }
 
-/* The number of bits of a value in leaves of quantised kinds, as a power of two. */
+/* The exponent n of 2^n, which is the number of bits of a value in a leaf of a quantised kind. */
 static uint32_t log_bits(const walk *w, pnanovdb_leaf_handle_t leaf) {
   switch (w->grid->kind) {
     case PNANOVDB_GRID_TYPE_FP4: return 2;
@@ -252,7 +253,8 @@ static bool tile_value(const walk *w, pnanovdb_address_t address, bool state, un
 
 /* ---- boxes of voxels ---- */
 
-/* Clips [begin, begin + side) to the volume, and converts it to the volume's own indices. */
+/* Clips the cube that begins at `begin` and is `side` long to the volume's box. from, to: set to the cube's
+ * indices in the volume; `to` is past the end. False if they do not meet. */
 static bool clip(const walk *w, const int64_t begin[3], int64_t side, int64_t from[3], int64_t to[3]) {
   bool any = true;
   for (int a = 0; a < 3; a++) {
@@ -328,7 +330,7 @@ static bool put_lower(const walk *w, pnanovdb_lower_handle_t lower, const int64_
   return sound;
 }
 
-/* Stores the 128^3 voxels from `begin` on, by the root's tile that holds them. */
+/* Stores the 128^3 voxels from `begin` on. They lie in one tile of the root, or in none. */
 static bool put_region(const walk *w, const int64_t begin[3]) {
   uint32_t kind = w->grid->kind;
   const pnanovdb_coord_t place = {(int32_t)begin[0], (int32_t)begin[1], (int32_t)begin[2]};

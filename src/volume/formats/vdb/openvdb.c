@@ -20,7 +20,8 @@ static hl_status fail_unconverted(const char *path, hl_error *error) {
 static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   const hl_context_options *options = &request->context->options;
   const char *path = (*stream)->path;
-  /* A path of the open file. In a confined context `path` would name another file to the program. */
+  /* the open file has a path by its descriptor; to the program, `path` would name another file if the context
+   * is confined */
   char opened[40];
   const void *bytes = NULL;
   size_t byte_count = 0;

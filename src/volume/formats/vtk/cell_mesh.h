@@ -16,7 +16,8 @@ typedef struct hl_cell_mesh {
   size_t *sources;     /* owned; [cell_count]; for each cell, the number of the piece's cell from which it
                         * was made */
   size_t point_count, cell_count, cell_room;
-  size_t first_point, first_cell;    /* where the piece that was begun last begins */
+  size_t first_point, first_cell;    /* numbers of the first point and the first cell of the piece that was
+                                      * begun last */
   size_t left_out, flat, simplified; /* numbers of cells that were left out because of their kind, cells
                                       * that enclose no volume, and cells whose edges were curved */
 } hl_cell_mesh;

@@ -47,7 +47,7 @@ hl_status hl_legacy_vtk_type(const hl_legacy_vtk *file, const char *name, hl_vox
       {"unsigned_short", HL_VOXEL_U16},
       {"short", HL_VOXEL_I16},
       {"unsigned_int", HL_VOXEL_U32},
-      {"int|vtkIdType", HL_VOXEL_I32}, /* VTK writes indices as int, whatever their width in memory */
+      {"int|vtkIdType", HL_VOXEL_I32}, /* VTK writes its indices as int, however wide they are in memory */
       {"unsigned_long|vtktypeuint64", HL_VOXEL_U64},
       {"long|vtktypeint64", HL_VOXEL_I64},
       {"float", HL_VOXEL_F32},
@@ -79,7 +79,7 @@ static hl_status skip_values(hl_legacy_vtk *file, size_t count, size_t value_byt
   return HL_OK;
 }
 
-/* The greatest number of values of an array. */
+/* The most values that an array may have. */
 static const size_t VALUES_MOST = SIZE_MAX / 8;
 
 /* Passes an array to the file's reader. Its type and size are not yet checked. */
@@ -188,8 +188,8 @@ static hl_status skip_metadata(hl_legacy_vtk *file, hl_error *error) {
   return status;
 }
 
-/* Skips a text of a binary file. Its length comes first, in one, two, four or eight bytes as the first two
- * bits tell, then its letters (vtkDataWriter). */
+/* Skips a text of a binary file. The text's length comes first: it takes one, two, four or eight bytes, which
+ * its first two bits tell. Then come the letters (vtkDataWriter). */
 static hl_status skip_binary_string(hl_legacy_vtk *file, hl_error *error) {
   static const size_t more[4] = {7, 3, 1, 0}; /* number of bytes of the length after the first */
   unsigned char first, rest[7];

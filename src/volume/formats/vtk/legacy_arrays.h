@@ -26,7 +26,8 @@ struct hl_legacy_vtk {
   bool text;                       /* whether the file is ASCII; otherwise it is BINARY, big-endian */
   bool in_point_data, has_section; /* has_section: POINT_DATA or CELL_DATA has come */
   size_t tuples;                   /* number of values in each array of the POINT_DATA or CELL_DATA section */
-  bool found;                      /* set to stop reading: the stream is at the values that were looked for */
+  bool found;                      /* set by `meet` to stop reading: the stream is then at the values that
+                                    * were looked for */
   /* Called when the values of an array come next. Reads the values, skips them by hl_legacy_vtk_skip(), or
    * sets file->found. */
   hl_status (*meet)(hl_legacy_vtk *file, const hl_legacy_array *array, hl_error *error);

@@ -28,7 +28,7 @@ typedef struct cells_file {
   size_t size[3]; /* points of a curvilinear grid along i, j, k */
   number_list points, types;
   number_list list;             /* in a file before version 5.1: count, points, count, points, ... */
-  number_list offsets, corners; /* of a newer file; the first offset is 0 */
+  number_list offsets, corners; /* in a file of version 5.1 or newer; the first offset is 0 */
   size_t offset_count, room;    /* the numbers of offsets and of corners that the line CELLS states in a
                                  * newer file */
   bool lists;                   /* in the first pass: arrays are listed */

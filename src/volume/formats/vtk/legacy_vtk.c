@@ -26,9 +26,9 @@ typedef struct vtk_header {
   size_t counts[3];
   size_t tuples; /* number of values of the volume's array, once it is found */
   hl_load_request *request;
-  bool of_cells; /* whether the volume's array is of cells */
+  bool of_cells; /* whether the volume's array has a value for each cell, instead of each point */
   bool lists;    /* in the first pass: arrays are listed */
-  bool once;     /* there is no second pass, so that reading stops at the first suitable array */
+  bool once;     /* whether the file can be read only once: reading then stops at the first suitable array */
   size_t arrays; /* number of arrays so far that can hold the volume */
 } vtk_header;
 

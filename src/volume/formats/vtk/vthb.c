@@ -29,8 +29,9 @@ typedef struct amr_list {
   hl_load_request *request;
   hl_vtk_xml xml;
   double origin[3];
-  double spacing[HL_AMR_LEVELS_MOST][3]; /* of each level; 0 for a level that is not described */
-  int level;                             /* of the block that is open; -1 if none is */
+  double spacing[HL_AMR_LEVELS_MOST][3]; /* spacing of each level; 0 for a level that the list does not
+                                          * describe */
+  int level;                             /* level of the Block whose tag is open; -1 if none is open */
   int levels;
   amr_box *boxes; /* owned; [box_count] */
   size_t box_count, box_room;

@@ -205,8 +205,8 @@ static void make_grid(const vti_header *header, const double extent[6], bool cel
   }
 }
 
-/* The index of the active scalars at points. If no array at points has one component, the index of the active
- * scalars at cells. */
+/* The index of the active scalars at points, if there are any. Otherwise the index of the active scalars at
+ * cells, but only if no array at points has one component; else -1. */
 static int active_array(const vti_header *header) {
   if (header->active_points >= 0) return header->active_points;
   for (size_t n = 0; n < header->request->array_count; n++)
@@ -288,8 +288,8 @@ static hl_status read_piece(hl_stream **stream, vti_header *header, size_t index
 static void place_of(const vti_header *header, const vti_piece *piece, size_t first[3]) {
   for (int axis = 0; axis < 3; axis++) {
     double before = piece->extent[2 * axis] - header->grid.extent[2 * axis];
-    first[axis] = before >= 0 ? (size_t)before : SIZE_MAX; /* a piece that begins before the whole does not
-                                                            * fit */
+    first[axis] = before >= 0 ? (size_t)before : SIZE_MAX; /* SIZE_MAX, if the piece begins before the whole
+                                                            * volume: it does not fit */
   }
 }
 
@@ -311,8 +311,8 @@ static hl_status read_pieces(hl_stream **stream, vti_header *header, hl_volume *
     if (is_empty(&header->pieces[n])) continue;
     place_of(header, &header->pieces[n], first);
     status = read_piece(stream, header, n, &piece, error);
-    /* memory for the whole volume is taken only when a first piece was read, as a header alone can promise
-     * anything */
+    /* memory for the whole volume is taken only after a first piece was read, because a header can promise
+     * any size */
     if (status == HL_OK && pieces.to.context == NULL)
       status = hl_pieces_begin(header->request->context, &grid, (*stream)->path, &pieces, error);
     if (status == HL_OK) pieces.to.path = (*stream)->path; /* the path of the stream that is open now */
@@ -365,7 +365,8 @@ static hl_status place_rectilinear(hl_stream **stream, vti_header *header, hl_vo
 static hl_status load_image(hl_stream **stream, hl_load_request *request, bool nested, hl_volume **volume,
                             hl_error *error);
 
-/* Reads one file. parts: the request for the file, whose lists are owned by the caller. */
+/* Reads the volume of one file of several. part: the request for this file; its lists are owned by the
+ * caller. */
 static hl_status read_part(const vti_header *header, size_t index, hl_load_request *part, hl_volume **volume,
                            hl_error *error) {
   hl_stream *stream = NULL;
@@ -377,8 +378,8 @@ static hl_status read_part(const vti_header *header, size_t index, hl_load_reque
   return status;
 }
 
-/* The grid of the whole volume, with the type of the first part, which also tells whether values belong to
- * points or cells. */
+/* The grid of the whole volume. Its type is that of the first file's volume. of_cells: whether the first
+ * file's values belong to cells. */
 static hl_volume_description grid_of_parts(const vti_header *header, const hl_volume *part, bool of_cells) {
   hl_volume_description grid;
   hl_volume_description_defaults(&grid);

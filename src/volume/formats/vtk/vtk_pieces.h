@@ -19,7 +19,7 @@ typedef struct hl_vtk_piece_array {
   hl_vtk_section section;
   char name[HL_VTK_NAME_BYTES];
   size_t components; /* at least 1 */
-  bool is_active;    /* whether the section calls them its active scalars */
+  bool is_active;    /* whether it is the active scalars of its section */
 } hl_vtk_piece_array;
 
 typedef struct hl_vtk_piece {
@@ -34,7 +34,7 @@ typedef struct hl_vtk_pieces {
   const char *const *types;   /* [type_count]; the types of files that the reader takes */
   size_t type_count, type;    /* type: index of the file's */
   hl_vtk_xml xml;             /* xml.stream must be set before */
-  hl_vtk_piece *pieces;       /* owned; [piece_count]; those with points */
+  hl_vtk_piece *pieces;       /* owned; [piece_count]; the pieces that have points */
   hl_vtk_piece_array *arrays; /* owned; [array_count]; piece after piece */
   size_t piece_count, piece_room, array_count, array_room;
   hl_vtk_section section;

@@ -70,8 +70,8 @@ bool hl_vtk_xml_find_type(const char *name, hl_voxel_type *type);
 /* Finds a type like hl_vtk_xml_find_type(). Fails if there is none. */
 hl_status hl_vtk_xml_type(const hl_vtk_xml *xml, const char *name, hl_voxel_type *type, hl_error *error);
 
-/* Opens the file of *stream again at the array's values, and pushes the decoders of the array's encoding.
- * Binary values must have `promised` bytes. */
+/* Replaces *stream by the same file, opened again, at the array's values, with the decoders of their encoding
+ * on top. promised: the number of bytes that binary values must have. */
 hl_status hl_vtk_xml_open_array(hl_stream **stream, const hl_vtk_xml *xml, const hl_vtk_array *array,
                                 uint64_t promised, hl_error *error);
 

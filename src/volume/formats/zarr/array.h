@@ -15,7 +15,7 @@ typedef enum hl_zarr_compressor {
   HL_ZARR_DEFLATE, /* zlib or gzip */
   HL_ZARR_ZSTD,
   HL_ZARR_BLOSC,
-  HL_ZARR_LZ4, /* a block after its unpacked size in four bytes */
+  HL_ZARR_LZ4, /* the size of the unpacked block, in four bytes, and then a block of LZ4 */
   HL_ZARR_BZIP2,
   HL_ZARR_XZ
 } hl_zarr_compressor;
@@ -60,8 +60,8 @@ typedef struct hl_zarr_array {
   unsigned char fill[8]; /* the value of voxels in missing chunks, native byte order */
   hl_zarr_codecs codecs;
   char separator;        /* separator in the names of chunks: '.' or '/' */
-  bool separator_untold; /* version 2: whether chunks that are absent under names with '.' are looked for
-                          * under names with '/' */
+  bool separator_untold; /* version 2: whether the separator is not stated; then chunks that are missing under
+                          * names with '.' are looked for under names with '/' */
   bool has_prefix;       /* whether names of chunks begin with "c" */
   struct {
     bool are_used;                    /* whether files are shards, which hold several chunks */

@@ -41,7 +41,7 @@ hl_status hl_zarr_type_3(const hl_zarr_reading *r, const char *name) {
 /* ---- fill values ---- */
 
 static void store_integer(hl_voxel_type type, int64_t value, unsigned char fill[8]) {
-  /* keeps the low bytes, which two's complement makes right for signed and unsigned types */
+  /* the low bytes of a number in two's complement are right for signed and for unsigned types */
   uint8_t byte = (uint8_t)value;
   uint16_t word = (uint16_t)value;
   uint32_t wide = (uint32_t)value;
@@ -178,7 +178,7 @@ hl_status hl_zarr_filters_2(const hl_zarr_reading *r, const json_t *list) {
     hl_voxel_type own = r->array->type;
     if (name != NULL && hl_text_is_one_of(name, "quantize|bitround")) {
       if (!filter_type(entry, "astype", own, &filter.to) || filter.to != own) return fail_filter(r, name);
-      continue; /* such a filter rounded values before they were stored, so that nothing can be undone */
+      continue; /* this filter only rounded values before they were stored; it need not be undone */
     }
     if (name == NULL || codecs->filter_count == HL_ZARR_FILTERS_MOST || codecs->big_endian)
       return fail_filter(r, name);

@@ -147,8 +147,8 @@ static double number_of(hl_voxel_type type, const unsigned char *bytes) {
     memcpy(bytes, &number, sizeof number); \
   } while (0)
 
-/* Stores a number as bytes of the type, the least significant first. Whole numbers wrap around, as sums of
- * them do. */
+/* Stores a number as bytes of a type, the least significant byte first. Whole numbers wrap around at the
+ * type's range, as their sums do. */
 static void put_number(hl_voxel_type type, double value, unsigned char *bytes) {
   bool whole = type != HL_VOXEL_F32 && type != HL_VOXEL_F64;
   if (whole && !(fabs(value) < 0x1p62)) value = 0;
@@ -173,7 +173,8 @@ static int64_t whole_of(hl_voxel_type type, const unsigned char *bytes) {
   return (int64_t)bits;
 }
 
-/* Undoes differences by sums, exactly for whole numbers, modulo the type's range. */
+/* Undoes the differences of neighbours by adding them up. For whole numbers the sums are exact, modulo the
+ * type's range. */
 static void undo_delta(const hl_zarr_filter *filter, const unsigned char *from, size_t count,
                        unsigned char *to) {
   size_t step = hl_voxel_type_bytes(filter->from), wide = hl_voxel_type_bytes(filter->to);

@@ -48,8 +48,8 @@ static bool names_are_known(int rank, const hl_zarr_axis *axis) {
   return seen[HL_ZARR_X] == 1 && seen[HL_ZARR_Y] == 1;
 }
 
-/* Sets *unit, the factor on all lengths along the space axes: micrometres if each of these axes has a known
- * unit, else 1. Returns whether each has one. */
+/* Reads the axes. unit: set to the factors by which lengths along the axes become micrometres, or all to 1
+ * unless each axis of space has a known unit. Returns whether each has one. */
 static bool read_axes(const json_t *axes, int rank, hl_zarr_axis *axis, double unit[3]) {
   bool told = json_array_size(axes) == (size_t)rank, all = true;
   for (int n = 0; n < rank && told; n++) {

@@ -8,8 +8,8 @@
 
 enum { HL_ZARR_PATH_BYTES = 512, HL_ZARR_METADATA_BYTES_MOST = 4 << 20 };
 
-/* Brings all metadata of the groups or arrays in `count` folders from a server, at once. Elsewhere, does
- * nothing. */
+/* Fetches all metadata of the groups or arrays in `count` folders at once, if the bundle is a store on a
+ * server. Does nothing for other bundles. */
 hl_status hl_zarr_metadata_bring(const hl_bundle *bundle, const char (*folders)[HL_ZARR_PATH_BYTES],
                                  size_t count, hl_error *error);
 

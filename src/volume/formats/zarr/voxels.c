@@ -41,7 +41,7 @@ typedef struct reading {
   uint64_t size[3];            /* size of the volume */
   uint64_t files[3], inner[3]; /* along i, j, k: number of files, and number of chunks in each file */
   uint64_t parts;              /* number of all parts */
-  uint64_t first;              /* the first part of those that are being read */
+  uint64_t first;              /* number of the first part of the files that are being read */
   size_t
       stride[HL_ZARR_AXES_MOST]; /* along the array's axes: bytes from a voxel to the next one in a chunk */
   unsigned char fill[4];         /* the fill value in stored form */
@@ -238,7 +238,7 @@ static hl_status read_part(void *data, size_t number, int index, hl_error *error
   if (!place_part(r, r->first + number, &p)) return HL_OK;
   uint64_t slice = r->size[0] * r->size[1];
   if (!hl_destination_wants(r->to, p.begin[2] * slice, p.count[2] * slice)) {
-    /* Another rank knows whether the chunk exists. */
+    /* the chunk counts as found: only the rank that keeps its voxels knows whether it exists */
     atomic_fetch_add_explicit(&r->found, 1, memory_order_relaxed);
     return HL_OK;
   }
@@ -262,7 +262,8 @@ static uint64_t longest_file(const hl_zarr_array *array) {
   return __builtin_mul_overflow(chunk, array->shards.chunks, &length) ? UINT64_MAX : length + 64;
 }
 
-/* Whether any voxel of a file is kept. number: the file's first part. place: one of its parts. */
+/* Whether any voxel of a file is kept here. number: the number of the file's first part. place: set to the
+ * place of one of the file's parts. */
 static bool wants_file(const reading *r, uint64_t number, part *place) {
   uint64_t slice = r->size[0] * r->size[1], inner = r->inner[0] * r->inner[1] * r->inner[2];
   for (uint64_t n = 0; n < inner; n++)
@@ -272,8 +273,8 @@ static bool wants_file(const reading *r, uint64_t number, part *place) {
   return false;
 }
 
-/* Brings the files of `count` parts from r->first on, by their names with this separator. again: only those
- * that the server does not have by their names with the array's separator. */
+/* Fetches the files of the `count` parts from r->first on. separator: the separator in the files' names.
+ * again: whether to fetch only those files that the server does not have under the array's own separator. */
 static hl_status bring_files(const reading *r, uint64_t count, char separator, bool again, hl_error *error) {
   uint64_t inner = r->inner[0] * r->inner[1] * r->inner[2];
   const char *names[FILES_AT_A_TIME];

@@ -98,8 +98,8 @@ static void describe(const hl_zarr_image *image, int number, hl_payload *payload
   if (choice->axis[HL_ZARR_Z] < 0) payload->grid.axis[HL_ZARR_Z][HL_ZARR_Z] = known;
 }
 
-/* The array's size along an axis of a kind (time, channel), and the place where the chosen index along this
- * axis is kept. */
+/* The size of the array along the axis of a kind (time, channel). *axis: set to the number of this axis; -1
+ * if there is none. */
 static size_t count_along(const hl_zarr_image *image, const hl_zarr_array *array, hl_zarr_axis kind,
                           int *axis) {
   *axis = -1;
@@ -269,7 +269,7 @@ static hl_status load_described(const hl_bundle *bundle, const char *folder, con
   return status;
 }
 
-/* Loads a node. depth: the number of collections around the group, such as a plate and its well. */
+/* Loads a group or an array. depth: the number of collections around it, such as a plate and a well. */
 static hl_status load_node(const hl_bundle *bundle, char folder[HL_ZARR_PATH_BYTES], int depth,
                            hl_load_request *request, hl_volume **volume, hl_error *error) {
   json_t *attributes;
