@@ -38,18 +38,22 @@ HL_API hl_option_kind hl_option_kind_of(const char *name);
 /* The choices of a named option, ended by a null name; null where the option has no choices. */
 HL_API const hl_setting_choice *hl_option_choices(const char *name);
 
-/* What is known of the description that hl_scene_compose() changes; flags, joined by |. */
+/* What the caller tells hl_scene_compose() of the description that it changes: flags, joined by |. */
 typedef enum hl_compose_flag {
   /* The description was made by hl_scene_for_volume() or another function that chooses. What follows from
    * an option (camera, light, sky) is then chosen anew. */
   HL_COMPOSE_BARE = 1,
-  HL_COMPOSE_CHANGED = 2, /* the caller changed what is seen of the volumes: a bare camera frames them anew */
-  HL_COMPOSE_CUT = 4,     /* the caller cut the volume: bare light is made for what is left */
+  HL_COMPOSE_CHANGED = 2, /* the caller changed what is seen of the volumes: the camera of an HL_COMPOSE_BARE
+                           * description frames them anew */
+  HL_COMPOSE_CUT = 4, /* the caller cut the volume: the light of an HL_COMPOSE_BARE description is chosen for
+                       * the part that is left */
   HL_COMPOSE_CAMERA = 8,  /* the caller placed the camera: it stays */
   HL_COMPOSE_LIGHTS = 16, /* the caller chose the lights: they stay as strong as they are */
   HL_COMPOSE_SKY = 32,    /* the caller chose the sky: it stays */
-  HL_COMPOSE_MESHES = 64, /* the caller added meshes: a bare camera takes them into the picture, too */
-  HL_COMPOSE_VALUES = 128 /* bare label maps are drawn by their values, as by options that are about values */
+  HL_COMPOSE_MESHES = 64, /* the caller added meshes: the camera of an HL_COMPOSE_BARE description takes them
+                           * into the picture, too */
+  HL_COMPOSE_VALUES = 128 /* label maps of an HL_COMPOSE_BARE description are drawn by their values, as if an
+                           * option were about values */
 } hl_compose_flag;
 
 /* Makes the scene of a description and options, which are applied in one order, whatever order they stand

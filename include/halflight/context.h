@@ -35,7 +35,7 @@ typedef enum hl_status {
   HL_ERROR_MEMORY = 2,      /* the allocator returned null, or the context's memory limit was reached */
   HL_ERROR_IO = 3,          /* a file could not be opened, read, written or renamed */
   HL_ERROR_INPUT = 4,       /* a file or a scene is malformed */
-  HL_ERROR_UNSUPPORTED = 5, /* well-formed, but this version cannot do it */
+  HL_ERROR_UNSUPPORTED = 5, /* the input is well-formed, but this version cannot do what it asks for */
   HL_ERROR_CANCELLED = 6,   /* the context's cancel callback said stop */
   HL_ERROR_INTERNAL = 7     /* a fault in the library itself */
 } hl_status;
@@ -58,8 +58,8 @@ typedef enum hl_instruction_set {
   HL_INSTRUCTION_SET_AUTO = 0,       /* the best that the processor has */
   HL_INSTRUCTION_SET_SCALAR = 1,     /* the set that the compiler assumes of every processor; on 64-bit Arm
                                       * this set has no vectors */
-  HL_INSTRUCTION_SET_AVX2 = 2,       /* and FMA: Haswell, Zen and later */
-  HL_INSTRUCTION_SET_AVX512 = 3,     /* F, DQ, BW and VL: Skylake servers and later */
+  HL_INSTRUCTION_SET_AVX2 = 2,       /* AVX2 and FMA: Haswell, Zen and later */
+  HL_INSTRUCTION_SET_AVX512 = 3,     /* AVX-512 F, DQ, BW and VL: Skylake servers and later */
   HL_INSTRUCTION_SET_NEON = 4,       /* every 64-bit Arm processor */
   HL_INSTRUCTION_SET_AVX512_VBMI = 5 /* AVX-512 with VBMI, VBMI2 and VNNI: Ice Lake, Zen 4 and later */
 } hl_instruction_set;
@@ -95,8 +95,8 @@ typedef struct hl_context_options {
   /* Asked every few milliseconds. A non-zero answer makes the running call return HL_ERROR_CANCELLED soon:
    * within a tenth of a second, for pictures up to 4096 x 4096 pixels and volumes up to 512^3 voxels. */
   int (*cancelled)(void *user_data);
-  uint64_t memory_limit;              /* bytes held through this context at once; 0: no limit */
-  hl_instruction_set instruction_set; /* an unsupported choice is refused */
+  uint64_t memory_limit;              /* the most bytes that the context may hold at once; 0: no limit */
+  hl_instruction_set instruction_set; /* hl_context_create() refuses a set that the processor lacks */
   const char *data_folder; /* the folder of files that scenes call "data:..."; copied; null: none */
   /* Called with the path of every file that is opened for reading: scenes, volumes, the data files that their
    * headers name, transfer functions, pictures. A program can use it to avoid writing over one of them. */
@@ -107,7 +107,7 @@ typedef struct hl_context_options {
    * program itself. */
   hl_status (*convert)(void *user_data, const char *format, const char *path, const void **bytes,
                        size_t *byte_count, hl_error *error);
-  /* Takes the bytes of `convert` back. */
+  /* Releases the bytes that `convert` gave. */
   void (*converted)(void *user_data, const void *bytes, size_t byte_count);
   /* Called where a volume's file is the URL of a Zarr store on a server ("http://..." or "https://...").
    * The callback brings `count` files of the store, whose names are relative to the store ("0/c/1/2/3").
@@ -137,7 +137,7 @@ typedef struct hl_context_options {
                * of the process belongs to */
 } hl_context_options;
 
-typedef struct hl_context hl_context; /* usable from several threads at once */
+typedef struct hl_context hl_context; /* several threads may use a context at once */
 
 HL_API void hl_context_options_defaults(hl_context_options *options);
 

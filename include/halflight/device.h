@@ -13,7 +13,7 @@ extern "C" {
 typedef struct hl_device {
   char name[128];          /* "NVIDIA H100 80GB HBM3" */
   char interface_name[16]; /* "cuda", "opencl" */
-  char version[128];       /* of the driver and of the compiler */
+  char version[128];       /* the versions of the driver and of the compiler */
   uint64_t memory_bytes;
   int processor; /* non-zero: the device computes on the machine's processors; "gpu" and "auto" never
                   * choose it */

@@ -56,7 +56,7 @@ typedef struct hl_overlay {
   hl_axes axes;
   const hl_annotation *annotations; /* [annotation_count] */
   size_t annotation_count;
-  const char *letter; /* at the upper left, bold: "a"; may be null */
+  const char *letter; /* the panel's letter, such as "a", drawn in bold at the upper left; may be null */
 } hl_overlay;
 
 HL_API void hl_overlay_defaults(hl_overlay *overlay);
@@ -64,12 +64,13 @@ HL_API void hl_overlay_defaults(hl_overlay *overlay);
 /* A picture on the page. */
 typedef struct hl_figure_panel {
   const hl_image
-      *image; /* borrowed; null: nothing is there but the overlay. On a transparent page it then has
-               * the colours that it has over the scene's picture, so that it can be laid over that */
+      *image; /* borrowed; null: the panel shows the overlay alone. On a transparent page the overlay then has
+               * the colours that it has over the scene's picture, so that it can be laid over that picture */
   const hl_scene *scene; /* borrowed; the scene of the picture, for its background, exposure, camera and
                           * volumes; null: the overlay may hold annotations in fractions and a letter alone */
-  double left, top, width, height; /* on the page, millimetres from its upper left */
-  int frame;                       /* non-zero: a thin line around it, as of an inset */
+  double left, top, width, height; /* place and size of the panel on the page, in millimetres; left and top
+                                    * are measured from the page's upper left corner */
+  int frame;                       /* non-zero: a thin line is drawn around the panel, as around an inset */
   hl_overlay overlay;
 } hl_figure_panel;
 

@@ -21,9 +21,9 @@ typedef struct hl_cells_description {
   const unsigned char *types; /* [cell_count]; VTK's numbers of the types of cells: 10 tetrahedra, 12
                                * hexahedra, 13 wedges, 14 pyramids, ...; cells that enclose no volume are left
                                * out, with a warning */
-  const int64_t *ends;        /* [cell_count]; the place in `corners` one past each cell's last corner */
+  const int64_t *ends;        /* [cell_count]; the index in `corners` one past each cell's last corner */
   size_t cell_count;
-  const int64_t *corners; /* [corner_count]: points, from 0; in VTK's order */
+  const int64_t *corners; /* [corner_count]; indices of points, from 0; in VTK's order */
   size_t corner_count;
   const double *values; /* one value for each point, or for each cell; NaN: there is no data */
   int of_cells;         /* non-zero: values belong to cells, and a point gets the mean of the cells around it.

@@ -21,7 +21,7 @@ typedef enum hl_light_type {
 } hl_light_type;
 
 typedef enum hl_shadows {
-  HL_SHADOWS_DEFAULT = 0, /* for a light: what the render settings say */
+  HL_SHADOWS_DEFAULT = 0, /* for a light: the shadows that the render settings state */
   HL_SHADOWS_OFF = 1,
   HL_SHADOWS_HARD = 2,
   HL_SHADOWS_SOFT = 3
@@ -80,7 +80,8 @@ typedef struct hl_light {
   const double (*vertices)[3]; /* polygon; [vertex_count][3] */
   size_t vertex_count;
   double color[3];
-  double intensity; /* a sample receives color * intensity at any distance, unless falloff is set */
+  double intensity; /* the light that a sample receives is color * intensity, at any distance, unless falloff
+                     * is set */
   hl_falloff falloff;
   hl_shadows shadows;
   hl_light_texture texture;   /* copied with its pixels by hl_scene_create() */

@@ -140,8 +140,8 @@ typedef struct hl_scene_volume {
   const hl_cut *cuts; /* [cut_count]; matter is left at a point where each of the cuts leaves it */
   size_t cut_count;
   hl_cut_shading cut_shading;
-  int cut_casts_shadow; /* non-zero: what `cuts` remove goes on taking light; default 0 */
-  hl_mask mask;         /* of a volume that is no label map itself */
+  int cut_casts_shadow; /* non-zero: matter that `cuts` remove casts its shadow all the same; default 0 */
+  hl_mask mask;         /* masks the volume; only a volume that is no label map has one */
 } hl_scene_volume;
 
 /* A mesh among the volumes. The colours of its vertices, faces or spheres, if it has some, are multiplied by
@@ -242,7 +242,7 @@ typedef struct hl_scene_description {
                        * everywhere; default 0 */
 } hl_scene_description;
 
-typedef struct hl_scene hl_scene; /* never changes; its references are counted */
+typedef struct hl_scene hl_scene; /* a scene; it never changes, and its references are counted */
 
 /* Fill a struct with its defaults. */
 HL_API void hl_scene_description_defaults(hl_scene_description *description);
@@ -492,7 +492,8 @@ HL_API HL_WARN_UNUSED hl_status hl_camera_fit(const hl_scene_description *descri
  * direction null: nothing is done. */
 HL_API void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elevation_deg,
                                double direction[3]);
-/* The same for a light in HL_LIGHT_FRAME_CAMERA. */
+/* Finds the direction of a light at an azimuth and an elevation as hl_light_direction() does, but in the axes
+ * of HL_LIGHT_FRAME_CAMERA. */
 HL_API void hl_light_direction_beside(double azimuth_deg, double elevation_deg, double direction[3]);
 
 #ifdef __cplusplus

@@ -60,7 +60,8 @@ typedef struct hl_function_image {
   const float *pixels; /* [height][width][4]: linear RGB times opacity, and opacity per unit_distance; the top
                           row has the greatest second numbers; null: there is no image */
   int width, height;
-  double low[2], high[2]; /* of its outermost pixels' outer borders */
+  double low[2], high[2]; /* the image covers the plane from `low` to `high`, the outer borders of its
+                           * outermost pixels */
 } hl_function_image;
 
 /* A transfer function of two numbers. */
@@ -72,7 +73,8 @@ typedef struct hl_function_plane {
   const hl_function_polygon *polygons;
   size_t polygon_count;
   hl_function_image image;
-  double second_scale; /* a factor by which the second number is multiplied first; 0 counts as 1 */
+  double second_scale; /* the second number is multiplied by this factor before the function uses it; 0 counts
+                        * as 1 */
 } hl_function_plane;
 
 /* What the values of a volume look like: opacity and colour are piecewise linear in data values, and

@@ -236,7 +236,7 @@ HL_API const char *hl_volume_unit(const hl_volume *volume);
 /* An array of the file that a volume was loaded from. */
 typedef struct hl_volume_array {
   size_t struct_size; /* set by the caller */
-  const char *name;   /* "" where the format has no names; the volume's */
+  const char *name;   /* "" where the format has no names; the text belongs to the volume */
   size_t components;  /* values per voxel, or volumes of a series */
   hl_voxel_type type; /* 0: a type that cannot be read */
   int of_cells;       /* VTK: values between the points */
@@ -275,7 +275,7 @@ typedef struct hl_volume_channel {
   const char *name;   /* "" where the file has none; the volume's */
   int has_color;
   double srgb[3];   /* 0 to 1; 0 without a colour */
-  double window[2]; /* data values between which the file asks to show it; NaN: none */
+  double window[2]; /* the range of data values that the file asks to show; NaN: it asks for none */
   int chosen;       /* the volume was read from this channel */
 } hl_volume_channel;
 

@@ -68,7 +68,8 @@ typedef struct image_pair {
   char **paths;    /* A and B */
   hl_image *a, *b; /* owned */
   hl_image_difference difference;
-  double mean; /* greatest absolute mean of a channel */
+  double mean; /* for each channel, the absolute value of the mean difference is found; this is the greatest
+                * of these values */
 } image_pair;
 
 /* The measured value that a limit is for. */
@@ -136,8 +137,8 @@ static int print_text(const image_pair *comparison) {
   return finish_stdout();
 }
 
-/* Writes |b - a| times a factor, opaque. A colour shows the difference of alpha where that is greater than
- * its own. */
+/* Writes |b - a| times a factor, as an opaque picture. A colour channel shows the difference of alpha where
+ * that difference is greater than the channel's own. */
 static int write_picture(cli_host *host, const image_pair *comparison) {
   const char *path = comparison->values[DIFF_OUTPUT].text;
   const cli_value *amplify = &comparison->values[DIFF_AMPLIFY];

@@ -40,8 +40,8 @@ void frames_draw_bar(cli_host *host, int done, int wanted, int rendered, double 
 
 /* How pictures are written. */
 typedef struct frames_style {
-  bool opaque;                       /* also where the scene's background is transparent */
-  bool no_metadata;                  /* a picture does not carry its scene */
+  bool opaque;      /* pictures are opaque even where the scene's background is transparent */
+  bool no_metadata; /* pictures do not carry their scenes */
   const struct cli_overlay *overlay; /* drawn over each; may be null */
 } frames_style;
 

@@ -115,7 +115,7 @@ static void listen_to_signals(void) {
   struct sigaction action, before;
   memset(&action, 0, sizeof action);
   action.sa_handler = on_signal;
-  action.sa_flags = SA_RESTART; /* reads that a signal interrupts go on; the cancel callback ends them */
+  action.sa_flags = SA_RESTART; /* an interrupted system call goes on; the cancel callback ends the work */
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);

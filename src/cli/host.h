@@ -10,7 +10,7 @@
 
 typedef struct cli_host {
   hl_context *context;
-  bool quiet;   /* no warnings, no bar, no summary */
+  bool quiet;   /* the program prints no warnings, no bar and no summary */
   bool bar;     /* stderr is a terminal that can redraw a line */
   bool own_bar; /* the command draws the bar itself: each call of the library is a part of a longer run */
   bool color;
@@ -32,13 +32,13 @@ typedef struct cli_host_options {
   hl_instruction_set instruction_set;
   const char *device;      /* null: the processors */
   hl_mpi mpi;              /* launcher_mpi() (ranks.h) where processes may join */
-  bool (*cancelled)(void); /* may be null; else it is asked, in addition to signals, on the thread that
-                            * renders */
-  void (*progressed)(const char *stage,
-                     double fraction); /* told by the thread that calls the library; or null */
-  const char *data_folder;             /* null: HALFLIGHT_DATA, or ../shared/data */
-  char *const *operands; /* the command line's INPUTs; null-terminated; must stay where it is. Files are
-                          * fetched only from those of them that are URLs. May be null */
+  bool (*cancelled)(void); /* asked, in addition to signals, whether the run is to end; called by the thread
+                            * that renders; may be null */
+  void (*progressed)(const char *stage, double fraction); /* receives the progress of a library call, on the
+                                                           * thread that made the call; may be null */
+  const char *data_folder;                                /* null: HALFLIGHT_DATA, or ../shared/data */
+  char *const *operands; /* the command line's INPUTs, null-terminated; the array must stay where it is. Files
+                          * are fetched only from INPUTs that are URLs. May be null */
 } cli_host_options;
 
 /* Rows of a subcommand's table of options, for what the context needs to know. heading: the group that begins

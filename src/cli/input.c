@@ -73,7 +73,7 @@ static int read_whole(cli_input *input, int descriptor, uint64_t limit) {
   size_t capacity = 0;
   long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
   if (limit == 0 && pages > 0 && page_bytes > 0) limit = (uint64_t)pages * (uint64_t)page_bytes / 2;
-  enum { LONGEST_SCENE = 16 << 20 }; /* bytes; the library reads no longer scene */
+  enum { LONGEST_SCENE = 16 << 20 }; /* the most bytes of a scene's text; the library refuses longer texts */
   enum { TELLING = 65536 };          /* bytes at the beginning of an input that suffice to tell its kind */
   bool ended = false, scene = false;
   int exit_code = EXIT_CODE_OK;
@@ -116,9 +116,9 @@ static int open_standard_input(cli_input *input, uint64_t limit) {
   return open_pipe(input, STDIN_FILENO, limit);
 }
 
-/* Opens an input that is an ordinary file: finds out its kind, and reads pictures into memory, and also
- * scenes whose name (as /dev/stdin) does not lie in the folder from which their files' names start. If the
- * file is missing (descriptor < 0), a later reader reports the error. */
+/* Opens an input that is an ordinary file: finds out its kind. Reads the file into memory if it is a picture,
+ * or a scene whose path begins with "/dev/": such a path says nothing of the folder in which the names of the
+ * scene's files start. If the file is missing (descriptor < 0), a later reader reports the error. */
 static int open_file(cli_input *input, int descriptor, uint64_t limit) {
   unsigned char first[1024];
   ssize_t got = descriptor >= 0 ? pread(descriptor, first, sizeof first, 0) : 0;

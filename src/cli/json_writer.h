@@ -28,7 +28,7 @@ void json_signed_number(json_writer *writer, const char *key, int64_t value);
 void json_number(json_writer *writer, const char *key, double value);
 /* One line: [a, b, c] */
 void json_numbers(json_writer *writer, const char *key, const double *values, size_t count);
-/* A value that is written already. */
+/* Writes a value that is JSON text already. */
 void json_written(json_writer *writer, const char *key, const char *value);
 void json_whole_numbers(json_writer *writer, const char *key, const uint64_t *values, size_t count);
 

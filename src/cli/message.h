@@ -6,7 +6,7 @@
 
 enum {
   EXIT_CODE_OK = 0,
-  EXIT_CODE_FAILURE = 1, /* while running; or a limit of `diff` was exceeded */
+  EXIT_CODE_FAILURE = 1, /* the run failed after it had begun, or a limit of `diff` was exceeded */
   EXIT_CODE_USAGE = 2,
   EXIT_CODE_INPUT = 3,       /* a file that was given is missing or malformed */
   EXIT_CODE_UNSUPPORTED = 4, /* the input was understood, but this version or this machine cannot do what
@@ -26,7 +26,7 @@ __attribute__((format(printf, 1, 2))) void say(const char *format, ...);
 /* The phase in which a library call failed; it decides whether the user's options, a file or the system is to
  * blame, and so the exit code. */
 typedef enum cli_phase {
-  PHASE_SETUP,  /* setting up, by the options alone */
+  PHASE_SETUP,  /* the library is being set up; the user's options alone are to blame */
   PHASE_READ,   /* reading a file that the user named */
   PHASE_CHANGE, /* applying options to a scene that was good */
   PHASE_RUN     /* rendering, writing */

@@ -191,7 +191,7 @@ static bool is_number(const char *text) {
   return text[0] != '\0' && text[strspn(text, "0123456789+-.eE")] == '\0';
 }
 
-/* The row of the option with this name; the count of rows: there is none. */
+/* Whether a name, of which the first `length` characters count, is this word. word: may be null. */
 static bool is_word(const char *word, const char *name, size_t length) {
   return word != NULL && strlen(word) == length && strncmp(word, name, length) == 0;
 }

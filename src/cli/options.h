@@ -31,10 +31,11 @@ typedef hl_setting_choice cli_choice; /* a null name ends the list */
 
 typedef struct cli_option {
   const char *name; /* without the dashes */
-  const char *also; /* another word for it, as other programs call it; null: none */
+  const char *also; /* another word for the option, as other programs call it; null: none */
   char letter;      /* the letter of the short form; 0: none */
   cli_option_kind kind;
-  const char *argument; /* the value as help shows it; null for a switch, or to list the choices */
+  const char *argument; /* the option's value as help shows it; null: the option is a switch, or help lists
+                         * its choices */
   const char *help;     /* lines, the first one short */
   const char *group;    /* heading above this option in help; null: the option belongs to the group of the
                          * option before */
@@ -70,7 +71,7 @@ typedef struct cli_command {
   const char *name;
   const char *operands; /* as help shows them: "INPUT" */
   int operand_count;    /* the least number of operands */
-  int operand_most;     /* the greatest; 0: exactly operand_count */
+  int operand_most;     /* the greatest number of operands; 0: there must be exactly operand_count */
   const char *summary;  /* one line, for the list of commands */
   const char *description;
   const cli_option *options;
@@ -78,9 +79,9 @@ typedef struct cli_command {
   const cli_option *shared; /* another subcommand's table; this subcommand has some of its options, too;
                              * null: none */
   size_t shared_count;
-  bool (*has_shared)(size_t row); /* whether it has the option in this row of `shared` */
-  /* values: [option_count + shared_count]; those of the command's own table come first. operands: null
-   * after the last. Returns the exit code */
+  bool (*has_shared)(size_t row); /* whether this subcommand has the option in this row of `shared` */
+  /* values: [option_count + shared_count]; values for the command's own table come first. operands: ended by
+   * null. Returns the exit code */
   int (*run)(const cli_value *values, char **operands);
 } cli_command;
 

@@ -44,7 +44,7 @@ typedef struct cli_file_identity {
 typedef struct cli_read_files {
   cli_file_identity *files; /* owned; [count] */
   size_t count, capacity;
-  bool incomplete; /* a file is missing for lack of memory */
+  bool incomplete; /* memory was short: at least one file is not in the list */
 } cli_read_files;
 
 void read_files_add(cli_read_files *read, const char *path);

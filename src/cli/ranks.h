@@ -9,17 +9,17 @@
 typedef struct launcher {
   const char *rank_name, *size_name; /* names of the variables */
   const char *rank, *size;           /* values of these variables, which must be checked */
-  hl_mpi mpi;                        /* the library that its processes join by */
+  hl_mpi mpi;                        /* the MPI library by which the launcher's processes join */
 } launcher;
 
-/* False: no launcher has started this process. */
+/* Finds the launcher that started this process. False: no launcher did. */
 bool launcher_of_process(launcher *found);
 
-/* The library for a context's options. */
+/* The MPI library that a context's options name: that of the process's launcher. */
 hl_mpi launcher_mpi(void);
 
 /* Joins the processes that mpirun has started. option: for error lines. Returns the exit code;
- * to be left with hl_ranks_leave() in any case. */
+ * call hl_ranks_leave() in any case. */
 int ranks_begin(cli_host *host, const char *option, hl_ranks **ranks);
 
 /* Ends the other ranks, too, where the exit code stands for a failure, so that nobody waits for a rank that

@@ -39,7 +39,8 @@ hl_status hl_check_volume_names(const hl_composer *composer, const hl_scene_desc
 bool hl_text_is_for(const hl_composer *composer, const char *text, const hl_scene_volume *volume,
                     size_t index, const char **rest);
 
-/* The value that a repeated option gives one volume; the last one counts; null: it gives none. */
+/* The value that an option, which may be given several times, gives one volume. The last value for this
+ * volume counts; null: there is none. */
 const char *hl_text_for(const hl_composer *composer, hl_ask option, const hl_scene_volume *volume,
                         size_t index);
 
@@ -82,8 +83,8 @@ hl_status hl_compose_sky(const hl_composer *composer, hl_scene_description *desc
 
 /* ---- camera.c ---- */
 
-/* Places the camera. seen: the visible part of the volumes has changed, so that a bare camera frames them
- * anew. */
+/* Places the camera. seen: whether the visible part of the volumes has changed; if so, an automatic camera
+ * frames them anew. */
 hl_status hl_compose_camera(const hl_composer *composer, bool seen, hl_scene_description *description);
 
 /* Moves the camera along its direction and zooms, so that everything in the scene fits into the picture. */
@@ -91,8 +92,8 @@ hl_status hl_frame_anew(hl_scene_description *description, hl_error *error);
 
 /* ---- values.c ---- */
 
-/* Takes the labels off bare label maps whose values the options ask for. *scene: a new scene of the
- * description; null: there is no such label map. */
+/* Turns those bare label maps back into volumes of values whose values the options ask for. *scene: a new
+ * scene of the description; null: there is no such label map. */
 hl_status hl_compose_values(const hl_composer *composer, const hl_scene_description *description,
                             hl_scene **scene);
 

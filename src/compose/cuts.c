@@ -39,8 +39,9 @@ static bool read_normal(const char *text, double normal[3]) {
   return normal[0] != 0 || normal[1] != 0 || normal[2] != 0;
 }
 
-/* Reads a plane across an axis. x=AT and x=AT: cut away what lies from AT on, and x=:AT what lies before it.
- * The other two coordinates of the point do not matter. */
+/* Reads a plane across an axis. The texts "x=AT" and "x=AT:" cut away the part from AT on, and "x=:AT" the
+ * part before AT. The point of the plane has AT as its coordinate along the axis; its other two coordinates
+ * do not matter. */
 static bool read_axis_plane(const char *text, typed_cut *cut) {
   hl_axis_range away = {.axis = *text - 'x'};
   const char *at = text + 2;
@@ -106,8 +107,8 @@ size_t hl_count_cuts(const hl_asked *asked) {
   return count;
 }
 
-/* Places a cut. low, high: the box around the volume's voxels. The end of a box that is left out lies beyond
- * the voxels. */
+/* Places a cut. low, high: the box around the volume's voxels. Where the text leaves an end of a cut box out,
+ * this end lies beyond the voxels. */
 static void place_cut(const typed_cut *typed, const double low[3], const double high[3], hl_cut *cut) {
   double longest = 0;
   for (int a = 0; a < 3; a++) {

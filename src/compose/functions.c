@@ -24,7 +24,8 @@ static const char *colormap_name(const void *data, size_t index) {
   return hl_colormap_name(index);
 }
 
-/* The known name that a text is, in upper or lower case; null: the text is none. */
+/* Compares a text with known names, without regard to upper and lower case. Returns the name that equals the
+ * text; null: none does. */
 static const char *find_known(const char *text, const char *(*known)(const void *, size_t)) {
   const char *candidate;
   for (size_t i = 0; (candidate = known(NULL, i)) != NULL; i++)

@@ -7,7 +7,8 @@
 #include "core/door.h"
 #include "core/memory.h"
 
-/* The number of layers of the volume's file: components that are neither time steps nor channels. */
+/* The number of label layers in the volume's file. Components that are neither time steps nor channels are
+ * such layers. */
 static size_t layers_of(const hl_volume *volume) {
   hl_volume_selection read = {.struct_size = sizeof read};
   if (hl_volume_get_selection(volume, &read) == HL_OK && (read.times > 1 || read.channels > 1)) return 1;
@@ -76,7 +77,7 @@ static hl_status make(const hl_composer *composer, const hl_scene_description *d
   return HL_OK;
 }
 
-/* Makes a scene of the first `kept` volumes of the scene, and the layers. */
+/* Replaces *scene by a scene of its first `kept` volumes, followed by the layers. */
 static hl_status add_layers(const hl_composer *composer, const hl_label_layers *layers, size_t kept,
                             hl_scene **scene) {
   hl_scene_description description = *hl_scene_describe(*scene);

@@ -36,7 +36,8 @@ int animate_join(const animate_frames *frames, const char *path, double frames_p
 /* Removes the film's pictures, and the folder if it is empty then. */
 void animate_remove_frames(const animate_frames *frames);
 
-/* Does the same for the pictures of a series of files, "turn-frames/000000.png" and so on. */
+/* These two functions join and remove the pictures of a series of files, whose names are
+ * "turn-frames/000000.png" and so on. */
 int animate_join_series(const char *folder, int count, const char *output, double frames_per_second,
                         bool quiet);
 void animate_remove_series(const char *folder, int count);

@@ -68,8 +68,9 @@ typedef struct bench_result {
   bench_run run[SETTING_COUNT];
 } bench_result;
 
-/* A scene with the shadows of one setting at one moment of the motion; at: from 0, its start, to 1, its end.
- * Null after a printed error, with *exit_code set. */
+/* Makes the scene with the shadows of one setting at one moment of the motion. at: the moment, from 0 (the
+ * motion's start) to 1 (its end). After an error, which is printed, the result is null and *exit_code is set.
+ */
 hl_scene *bench_scene_at(cli_host *host, const hl_scene *scene, enum bench_setting setting,
                          enum bench_move move, double at, int *exit_code);
 

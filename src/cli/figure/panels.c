@@ -134,7 +134,7 @@ static int add_json_option(const page_reading *reading, figure_panel *panel, con
   if (json_is_true(value) && render_options[which].kind == OPTION_SWITCH)
     return add_option(panel, name, NULL);
   if (json_is_null(value) || json_is_false(value))
-    return EXIT_CODE_OK; /* the shared options say that it is off */
+    return EXIT_CODE_OK; /* `null` or `false` switches an option off that the shared options give */
   if (!json_is_array(value) || !render_options[which].repeatable)
     return add_value(reading, panel, which, value);
   size_t index;
@@ -204,8 +204,8 @@ static int read_corner(const page_reading *reading, figure_panel *panel, const j
   return EXIT_CODE_OK;
 }
 
-/* Joins an object's options, `above`, with the options `below`, which count where the object has none of
- * that name. Both may be null. */
+/* Joins two objects of options. Where both have an option of one name, the value in `above` counts. Both
+ * objects may be null. */
 static json_t *join(const json_t *below, const json_t *above) {
   json_t *joined = json_object();
   const char *key;
@@ -256,7 +256,8 @@ static int add_panel(page_reading *reading, const json_t *given, const json_t *b
   if (exit_code == EXIT_CODE_OK && inset != NULL && inside >= 0)
     exit_code = fail(EXIT_CODE_INPUT, "%s: an inset has no inset", reading->path);
   if (exit_code == EXIT_CODE_OK && inset != NULL) {
-    json_t *bare = json_copy(keys); /* the overlays of the panel are not drawn over its inset again */
+    json_t *bare = json_copy(keys); /* the inset gets the panel's options without the overlays, which are
+                                     * drawn once, over the panel */
     static const char *const drawn[] = {"scale-bar", "scale_bar", "legend", "axes", "annotate", "unit"};
     for (size_t n = 0; n < sizeof drawn / sizeof *drawn; n++) json_object_del(bare, drawn[n]);
     exit_code = add_panel(reading, inset, bare, index);

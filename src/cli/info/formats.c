@@ -9,7 +9,7 @@
 #include "cli/message.h"
 #include "cli/openvdb.h"
 
-/* The formats of one kind. get: a function like hl_volume_get_format(). */
+/* One kind of formats, as volumes or pictures. get: hl_volume_get_format() or a function like it. */
 typedef struct format_kind {
   const char *key, *title;
   hl_status (*get)(size_t index, hl_file_format *format);
@@ -23,7 +23,7 @@ static const format_kind kinds[] = {
     {"figures", "figures", hl_figure_get_format}};
 enum { KIND_COUNT = sizeof kinds / sizeof *kinds };
 
-/* A format of a kind. False beyond the last. */
+/* Gets format number `index` of a kind. False where the kind has no more formats. */
 static bool get_format(const format_kind *kind, size_t index, hl_file_format *format) {
   *format = (hl_file_format){.struct_size = sizeof *format};
   if (kind->get(index, format) != HL_OK) return false;

@@ -36,7 +36,7 @@ static const cli_option info_options[INFO_OPTION_COUNT] = {
     [INFO_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),
 };
 
-/* The file's arrays, and which array and component the volume was read from. */
+/* Prints the file's arrays, and which array and component the volume was read from. */
 static void print_json_arrays(json_writer *json, const hl_volume *volume) {
   hl_volume_array array = {.struct_size = sizeof array}, chosen = {.components = 1};
   json_open_array(json, "arrays");
@@ -57,7 +57,7 @@ static void print_json_arrays(json_writer *json, const hl_volume *volume) {
   else json_whole_number(json, "component", (uint64_t)chosen.component);
 }
 
-/* How many time steps, channels and resolutions there are, and which were read. */
+/* Prints the numbers of time steps, channels and resolutions in the file, and which of them were read. */
 static void print_json_selection(json_writer *json, const hl_volume *volume) {
   hl_volume_selection selection = {.struct_size = sizeof selection};
   if (hl_volume_get_selection(volume, &selection) != HL_OK) return;
@@ -223,7 +223,7 @@ static void print_arrays(const hl_volume *volume) {
 
 enum { RANGE_BYTES = 2 * HL_NUMBER_TEXT_BYTES + 8 };
 
-/* The range as JSON, with all digits. */
+/* Prints the range of data values as JSON, with all digits. */
 static void print_json_range(json_writer *json, const hl_volume *volume) {
   char ends[2][HL_NUMBER_TEXT_BYTES], text[RANGE_BYTES];
   if (hl_volume_write_range(volume, 0, ends[0]) != HL_OK ||
@@ -388,7 +388,8 @@ static int info_of_volume(cli_host *host, const cli_value *values, const cli_inp
   return exit_code == EXIT_CODE_OK ? finish_stdout() : exit_code;
 }
 
-/* Tells of a scene: its picture, how much of each kind it holds, and each volume as of a file. */
+/* Tells of a scene: its picture, the number of its volumes, lights and so on, and each volume as if its file
+ * were told of alone. */
 static int tell_scene(cli_host *host, bool as_json, const char *title, const hl_scene_description *scene) {
   json_writer json = {0};
   int exit_code = EXIT_CODE_OK;

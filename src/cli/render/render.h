@@ -100,7 +100,7 @@ enum render_option {
 
 enum { RENDER_SIZE_TEXT = 32 };
 
-/* Choices that another command has, too. */
+/* The choices of --instruction-set, which other commands have, too. */
 extern const cli_choice instruction_set_choices[];
 
 extern const cli_option render_options[RENDER_OPTION_COUNT];
@@ -109,9 +109,9 @@ extern const cli_option render_options[RENDER_OPTION_COUNT];
  * not have such options. */
 bool render_is_of_picture(enum render_option which);
 
-/* Whether the operands or the options ask for a picture of each of several files; makes these pictures.
- * motion: what moves from file to file (film/film.h); its context, scene and frames are not used; null:
- * nothing. */
+/* render_is_series() tells whether the operands or the options ask for a picture of each of several files,
+ * and render_series() makes these pictures. motion: the numbers that change from file to file (film/film.h);
+ * its context, scene and frames are not used; null: nothing changes. */
 struct film_options;
 bool render_is_series(const cli_value *values, char **operands);
 int render_series(const cli_value *values, char **operands, const struct film_options *motion);
@@ -158,7 +158,7 @@ int render_channels(const cli_value *values, int channels[HL_CHANNELS_MOST], siz
  * one. */
 bool render_has_channels(const cli_value *values);
 
-/* The reading of volumes that the options ask for. */
+/* Finds the options for loading volumes that the command line asks for. */
 void render_load_options(const cli_value *values, hl_volume_load_options *options);
 
 /* Loads the operands into one scene: a scene file, a picture that carries a scene, or one or more volumes,

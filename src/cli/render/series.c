@@ -143,15 +143,15 @@ static int make_scene(series_job *job) {
 /* Whether a picture is there, was made of this scene, and is not older than the file. */
 static bool is_there(const series_job *job, int number, const hl_scene *scene, const char *path) {
   struct stat picture, file;
-  if (overlay_is_any(&job->overlay)) return false; /* the scene that it carries does not tell of it */
+  if (overlay_is_any(&job->overlay)) return false; /* a picture's scene omits its overlays */
   if (stat(path, &picture) != 0 || stat(job->files.names[number], &file) != 0 ||
       picture.st_mtim.tv_sec < file.st_mtim.tv_sec)
     return false;
   return frames_have_scene(&job->host, path, scene);
 }
 
-/* Whether the picture is there. Whether it was made of the right scene is seen from the scene's text. For
- * the text no volume or mesh need be read: the first file's takes its place. */
+/* Whether the picture is there and was made of the right scene. The scenes' texts are compared. To make the
+ * text, no volume or mesh is read: the first file's volume or mesh stands in its place. */
 static bool is_made(series_job *job, int number, const char *path) {
   hl_scene *scene = NULL;
   hl_error error = {0};
@@ -198,7 +198,7 @@ static int make_pictures(series_job *job) {
   if (hl_renderer_create(job->host.context, &renderer, &error) != HL_OK)
     return host_fail(&job->host, PHASE_SETUP, HL_ERROR_MEMORY, &error);
   job->progress.wanted = (job->files.count - job->part + job->parts - 1) / job->parts;
-  job->host.quiet = true; /* warnings were told with the first file */
+  job->host.quiet = true; /* the first file's warnings were printed; later files give the same ones */
   int exit_code = EXIT_CODE_OK;
   for (int n = job->part; n < job->files.count && exit_code == EXIT_CODE_OK; n += job->parts) {
     frames_draw_bar(&job->host, job->progress.done + job->progress.failed, job->progress.wanted,

@@ -22,8 +22,8 @@ typedef struct series_job {
     char **names; /* owned; [count]: volumes, or meshes where there is no volume */
     int count;
     bool of_meshes; /* the files are meshes */
-    bool *bad;      /* owned; [count]: cannot be read, and was told */
-    int first;      /* the number of the file that the scene is of */
+    bool *bad;      /* owned; [count]; whether the file cannot be read; its error was then printed */
+    int first;      /* the number of the file whose content `scene` has */
   } files;
   char *meshes[MAXIMUM_OPERANDS + 1]; /* borrowed; meshes that are in every picture; null after the last */
   int mesh_count;

@@ -9,7 +9,8 @@
  * any folder. folder: the folder from which the scene's names start; null: the current folder. */
 hl_status view_name_absolutely(hl_context *context, const char *folder, hl_scene **scene, hl_error *error);
 
-/* The scene of a file: a scene, a mesh or a volume. context: a hl_context, of the scene. */
+/* Opens a file, and makes its scene. The file may hold a scene, a mesh or a volume. context: the hl_context
+ * that the scene is made with. */
 hl_status view_open_file(void *context, const server_file *file, hl_scene **scene, hl_error *error);
 
 #endif

@@ -42,7 +42,7 @@ static bool make_token(char token[VIEW_TOKEN_DIGITS + 1]) {
   return true;
 }
 
-/* In place of whatever has the name. */
+/* Writes the token to a new file, in place of whatever has this path. */
 static bool write_token(const char *path, const char *token) {
   unlink(path);
   int descriptor = open(path, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, S_IRUSR | S_IWUSR);
