@@ -38,8 +38,8 @@ typedef struct distances {
   size_t count;
 } distances;
 
-/* The distances of a sample's values from the background, ascending. A value on the other side of the
- * background has the distance 0. */
+/* The distances of a sample's values from the background, ascending. The distance is measured in one
+ * direction: values on the other side of the background get 0. */
 static void measure(const float *values, size_t count, double background, double direction, float *distance) {
   for (size_t n = 0; n < count; n++) {
     size_t from = direction > 0 ? n : count - 1 - n;
@@ -151,10 +151,10 @@ static bool is_floating(const hl_volume *volume) {
 
 /* Where a volume's values lie, relative to the sample's range. */
 typedef struct spread {
-  double low, high; /* hardly any voxel has a value below or above */
-  double zero;      /* the data value 0 */
-  bool fills,
-      signs; /* fills: there is no air around the matter; signs: values lie clearly on both sides of 0 */
+  double low, high;  /* hardly any voxel has a value below `low` or above `high` */
+  double zero;       /* the data value 0 */
+  bool fills, signs; /* fills: no air is around the matter; signs: values lie clearly on both sides of the
+                      * data value 0 */
 } spread;
 
 static spread spread_of(const hl_sample *sample, double background) {
@@ -411,8 +411,8 @@ static int place_of(value_table *table, int64_t value) {
  * voxels is not examined, because it may look repeated by chance, as in a map of a few plates. */
 enum { MOST_REPEATED = 8, LEAST_REPEATED = 8 };
 
-/* Whether along an axis each voxel is repeated `count` times, as in a volume that was enlarged by repeating
- * its voxels; count: a power of two. The function looks at the places of a lattice. */
+/* Whether each voxel is repeated `count` times along an axis, as in a volume that was enlarged by repeating
+ * its voxels. Only voxels at the places of a lattice are looked at. count: a power of two. */
 static bool is_repeated(const hl_volume *volume, int axis, size_t count) {
   const size_t *n = volume->dimension, step = hl_lattice_step(n, HL_LATTICE_PLACES);
   if (n[axis] < LEAST_REPEATED * count || n[axis] % count != 0) return false;
@@ -430,8 +430,9 @@ static bool is_repeated(const hl_volume *volume, int axis, size_t count) {
   return true;
 }
 
-/* Fills in tallies. False at a value that is no whole number, and where there are too many values. Where
- * voxels are repeated, the neighbours are those in the volume from which this one was enlarged. */
+/* Counts, for each value, the neighbours of its voxels, and those neighbours that have the value, too. False
+ * at a value that is no whole number, and where there are too many values. Where voxels are repeated, the
+ * neighbours are those in the volume from which this one was enlarged. */
 static bool count_neighbours(const hl_volume *volume, value_table *table) {
   const size_t *n = volume->dimension;
   size_t step = hl_lattice_step(n, HL_LATTICE_PLACES), apart[3] = {1, 1, 1};

@@ -47,7 +47,7 @@ static double share_of_cliffs(const hl_volume *volume, const hl_sample *sample, 
   return count.steps > 0 ? (double)count.cliffs / (double)count.steps : 0;
 }
 
-/* How much values change per voxel edge where they pass a level, in the mean; 0: they pass it nowhere.
+/* The mean slope, per voxel edge, of the values where they pass a level; 0: they pass it nowhere.
  * Derived: a slope g in any direction is a difference g cos(t) along an axis, and a pair of neighbours lies
  * on both sides of the level with a probability in proportion to |cos(t)|. So the mean difference of such
  * pairs is g <cos^2> / <|cos|> = g (1/3) / (1/2) over all directions. */

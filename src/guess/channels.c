@@ -9,7 +9,7 @@
 #include "core/memory.h"
 #include "scene/scene.h"
 
-/* MANY_SHEETS: more sheets than a volume of 2048 voxels along each side has. */
+/* MANY_SHEETS: scenes of more sheets may get a warning; a volume of 2048 voxels along each side has fewer. */
 enum { NAME_BYTES = 256, MANY_SHEETS = 4096 };
 
 /* ---- one scene of several ---- */
@@ -132,7 +132,8 @@ hl_status hl_scene_join(hl_context *context, hl_scene *const *scenes, size_t cou
 
 /* ---- colours ---- */
 
-/* The colour that a volume's file gives the volume's channel. */
+/* Finds the colour that a volume's file gives the channel from which the volume was read. False: it gives
+ * none. */
 static bool told_color(const hl_volume *volume, double srgb[3]) {
   if (volume == NULL || volume->channels == NULL) return false;
   const hl_channel *channel = &volume->channels[volume->selection.channel];
@@ -164,7 +165,7 @@ hl_status hl_scene_channel_color(const hl_scene_description *description, size_t
 
 /* ---- channels of a file ---- */
 
-/* The scenes that are made of the channels. */
+/* The scenes of single channels, while they are made. */
 typedef struct channel_scenes {
   hl_context *context;
   const char *path, *look;

@@ -7,9 +7,10 @@
 #include "core/vector.h"
 #include "scene/geometry/cut.h"
 
-/* Whether a ray comes through such a face between two points of index space, of which the second is left of
- * the volume. cuts: [volume->cut_count]; the shapes of the volume's cuts. *outward: the face's normal, as a
- * gradient of index space, away from what is left. */
+/* Whether a ray crosses a face of a cut or of the clip box between two points of index space. The second
+ * point must lie in the part of the volume that the cuts and the box leave. cuts: [volume->cut_count]; the
+ * shapes of the volume's cuts. *outward: the face's normal, a gradient in index space that points away from
+ * the part that is left. */
 bool hl_cut_face_between(const hl_scene_volume *volume, const cut_shape *cuts, vec3 before, vec3 here,
                          vec3 *outward);
 

@@ -39,7 +39,7 @@ typedef struct exposure {
                               * shadows leave on bright media */
   double step;               /* world units */
   double empty;              /* a value of the invisible surroundings */
-  double flat; /* a gradient up to this length belongs to no surface; in values per world unit */
+  double flat; /* a sample whose gradient is at most this long is no surface; values per world unit */
   double opacity[TABLE], color[TABLE][3]; /* entries over the volume's range */
 } exposure;
 
@@ -145,8 +145,8 @@ static bool cross_grid(const hl_scene_volume *volume, vec3 from, vec3 along, dou
 }
 
 /* The thickness of a surface in steps: the depth at which the optical depth becomes 1, if values go on rising
- * as steeply as at a sample. It is measured from the place where matter begins to be visible. Infinite where
- * no depth hides anything. steepness: values per step. */
+ * as steeply as at a sample. The depth is measured from the place where matter begins to be visible. It is
+ * infinite where matter of any depth stays transparent. steepness: values per step. */
 static double thickness_at(const exposure *e, int entry, double value, double steepness) {
   const hl_volume *volume = e->volume->volume;
   double per_entry = (volume->maximum - volume->minimum) / (TABLE - 1), optical_depth = 0;
@@ -165,8 +165,8 @@ typedef struct ray_face {
   double at;
 } ray_face;
 
-/* Finds the face that a ray comes through between two points. before, here: points of index space, one step
- * apart; t: the place of `here` on the ray. */
+/* Notes the face of a cut that a ray comes through between two points, if there is one. before, here: points
+ * of index space, one step apart; t: the distance of `here` along the ray, in world units. */
 static void pass_face(const exposure *e, ray_face *face, double t, vec3 before, vec3 here) {
   vec3 outward;
   if (!hl_cut_face_between(e->volume, e->cuts, before, here, &outward)) return;
@@ -174,7 +174,8 @@ static void pass_face(const exposure *e, ray_face *face, double t, vec3 before, 
   face->at = t - e->step / 2;
 }
 
-/* The fraction of light from a direction that reaches a point of the world, in steps of three voxels. */
+/* The fraction of the light from a direction that reaches a point of the world. The way is sampled in steps
+ * of three voxel edges. */
 static double passing(const exposure *e, vec3 point, vec3 towards) {
   enum { STEPS = 3 };
   const size_t *size = e->volume->volume->dimension;
@@ -211,8 +212,9 @@ static void light_reaching_face(const exposure *e, vec3 point, vec3 normal, samp
   }
 }
 
-/* Lights a sample by the face where it lies within a voxel and a half behind the face. At this depth the
- * renderer's normal is half way between the face's normal and the normal of the data. */
+/* Gives a sample the light of a face that the ray has come through, if the sample lies within a voxel and a
+ * half behind the face. At this depth the renderer's normal is half way between the face's normal and the
+ * normal of the data. */
 static void light_by_face(const exposure *e, const ray_face *face, double t, vec3 point, vec3 to_eye,
                           sample_light *lit) {
   bool behind = (t - face->at) * vec3_dot(face->normal, to_eye) < 1.5 * e->step;

@@ -31,13 +31,14 @@
  * normal lights a whole slab. */
 #define SHEETS_OF_MEDIA    540
 #define SHEETS_OF_SURFACES 720
-/* Sheet spacing as a part of a surface's thickness (hl_exposure). Rings grow with the square of the spacing
- * over the thickness. */
+/* The greatest sheet spacing, as a fraction of a surface's thickness (hl_exposure). Rings on a surface get
+ * stronger with the square of the spacing over the thickness. */
 #define SPACING_PER_THICKNESS 0.28
-/* A number like SPACING_PER_THICKNESS, for small grids. Even with closer sheets, small grids have no more
- * sheets than other grids. */
+/* The same fraction as SPACING_PER_THICKNESS, for small grids. Even with sheets so close, small grids have no
+ * more sheets than other grids. */
 #define SMALL_GRIDS_SPACING_PER_THICKNESS 0.1
-/* Least spacing in all grids, and least spacing for surfaces in small grids; smallest voxel edges. */
+/* LEAST_SPACING: the least spacing in all grids. SMALL_GRIDS_SPACING: the least spacing for surfaces in small
+ * grids. Both are in smallest voxel edges. */
 #define LEAST_SPACING       0.25
 #define SMALL_GRIDS_SPACING 0.125
 

@@ -11,8 +11,9 @@
 #include "guess/view.h"
 
 /* The fraction of the picture's half width or height that the visible voxels fill. */
-#define FILLED       0.92 /* seen from one direction */
-#define FILLED_LEAST 0.82 /* least part, where the eye stands back for turning */
+#define FILLED 0.92 /* seen from one direction */
+/* The least such fraction where the eye stands back to leave room for turning. */
+#define FILLED_LEAST 0.82
 /* In a turn the outline may reach beyond the picture by this factor, which is less than its invisible rim. */
 #define OVER 1.04
 /* A view replaces an earlier one if it is wider by this factor. */
@@ -46,7 +47,8 @@ static double reach(const frame_job *job, vec3 along, double tangent) {
 
 /* The depth of the nearest eye that sees the outline between two opposite sides of the picture. Derived: all
  * points lie between the plane x = ex + t (z - ez) and its mirror image, so ex - t ez >= l and -ex - t ez >=
- * r, the reaches to the two sides; together ez <= -(l + r) / (2 t), with ex = (l - r) / 2. */
+ * r, where l and r are the outline's reaches to the two sides. Together ez <= -(l + r) / (2 t), with ex = (l
+ * - r) / 2. */
 
 static double nearest_eye(const frame_job *job, vec3 along, double tangent) {
   return -(reach(job, along, tangent) + reach(job, vec3_scale(along, -1), tangent)) / 2 / tangent;
@@ -110,7 +112,7 @@ static void look(frame_job *job, const hl_view *view) {
   hl_view_axes(view, &job->right, &job->up, &job->forward);
 }
 
-/* As needed(), for every azimuth. */
+/* The least distance or half height as needed() finds it, for all azimuths of a turn. */
 static double needed_in_a_turn(const frame_job *job, const hl_view *view, vec3 target) {
   frame_job turned = *job;
   hl_view at = *view;
@@ -130,7 +132,7 @@ static double radius_about(const hl_outline *outline, vec3 target) {
   return greatest;
 }
 
-/* As needed(), for every direction. */
+/* The least distance or half height as needed() finds it, for all directions of view. */
 static double needed_at_all(const frame_job *job, vec3 target) {
   double radius = radius_about(job->outline, target), tangent = fmin(job->tangent_x, job->tangent_y);
   return tangent > 0 ? radius * sqrt(1 + 1 / (tangent * tangent)) /* radius over the sine */
@@ -187,7 +189,7 @@ static double make_room(const frame_job *job, const frame_job *few, const hl_vie
 
 /* ---- cameras ---- */
 
-/* Begins a job. outline: empty (zeros) means that it is found here. */
+/* Begins a job of framing. outline: if it is empty (zeros), the outline is found here. */
 static hl_status begin(const hl_scene_description *description, double zoom, const hl_camera *camera,
                        hl_outline *outline, frame_job *job, hl_error *error) {
   bool perspective = camera->type == HL_CAMERA_PERSPECTIVE, possible = zoom >= 1e-6 && zoom <= 1e6;
@@ -263,9 +265,8 @@ static double flatness(const hl_outline *outline, const hl_view *view) {
 
 hl_status hl_view_widen(const hl_scene_description *description, hl_outline *outline, hl_view *view,
                         hl_error *error) {
-  static const double turns[] = {
-      0, -2, 4, 2,
-      1, -3, 5, 3}; /* the three-quarter views to try, turned by these multiples of HL_VIEW_AZIMUTH */
+  /* The three-quarter views to try: each is the view turned by one of these multiples of HL_VIEW_AZIMUTH. */
+  static const double turns[] = {0, -2, 4, 2, 1, -3, 5, 3};
   const hl_camera usual = {.type = HL_CAMERA_PERSPECTIVE, .fovy_deg = 30};
   hl_scene_description square = *description;
   square.width = square.height = 1;

@@ -14,7 +14,7 @@
 
 #define FLOW_DEPTH   2.0  /* optical depth of a flow in which all values are shown */
 #define MEDIUM_DEPTH 10.0 /* optical depth of smoke across its own size */
-#define SHELL        0.2  /* optical depth of a field's shell, for a line that crosses it */
+#define SHELL        0.2  /* optical depth of the shell of a field, along a line that crosses the shell */
 #define FINE         96   /* voxel edges across an object; the opacities of solid matter are chosen for it */
 
 /* The colours of a function at four distances from the background: faint, solid, dense and top. Linear RGB.
@@ -89,7 +89,7 @@ static void add_shell_and_core(hl_function_writer *w, int side) {
   const double ramp = a->solid - a->faint, top = fmax(a->top, a->solid * 1.001), way = top - a->solid;
   const double shell = a->faint + 0.35 * ramp, core = a->solid + 0.35 * way,
                half = fmin(fmin(0.03 * top, 0.25 * ramp), 0.15 * way);
-  const double thin = 0.3; /* optical depth across the object of matter beside the shell */
+  const double thin = 0.3; /* the optical depth, across the object, of the matter beside the shell */
   /* The greatest opacity of the shell. Derived: where a field falls from its top to nothing within half an
    * object, the values of the shell, which are 2 half apart, take half / top of the object. The mean of a
    * tent is half its peak. */
@@ -168,8 +168,8 @@ static void label_color(size_t label, double linear[3]) {
   }
 }
 
-/* Makes a label opaque close to its own number only: between two regions the kernel passes through numbers
- * that belong to neither. */
+/* Makes a label opaque only close to its own number: between two regions the kernel makes numbers that belong
+ * to neither region. */
 static void add_label(hl_function_writer *w, double label, double before, double after, double narrowest) {
   static const double part = 0.03; /* fraction of the way to the next number */
   double down = fmin(fmax(part * (label - before), narrowest), 0.45 * (label - before)),
@@ -215,7 +215,7 @@ void hl_write_signed(hl_function_writer *w) {
   const hl_data_analysis *a = w->analysis;
   static const double cold[3][3] = {{0.10, 0.30, 0.75}, {0.06, 0.18, 0.62}, {0.02, 0.06, 0.35}};
   static const double warm[3][3] = {{0.95, 0.52, 0.20}, {0.85, 0.28, 0.08}, {0.60, 0.08, 0.03}};
-  w->direction = 1; /* the function is for both sides at once */
+  w->direction = 1; /* one function serves both sides of the background */
   const double top = fmax(a->top, a->solid * 1.001), at[3] = {a->faint, a->solid, top};
   add_shell_and_core(w, -1);
   add_shell_and_core(w, 1);

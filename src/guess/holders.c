@@ -25,12 +25,13 @@
 #define CLEAR 1.5
 
 #define LEFT      0.01 /* fraction of a holder that may remain in the gap beside the object */
-#define RIM_LEVEL 0.3  /* fraction of the level from which cells are seen as rims */
+#define RIM_LEVEL 0.3  /* cells are seen as rims from this fraction of the level on */
 
 enum { DIRECTIONS = 1000 };
-enum { SAMPLE = 4096 };                    /* most cells or voxels of a body that are looked at */
-enum { FOR_EACH = 4 };                     /* most planes that cut off one holder */
-static const uint32_t BESIDE = UINT32_MAX; /* stands in place of a body's number: holders and rims */
+enum { SAMPLE = 4096 }; /* most cells or voxels of a body that are looked at */
+enum { FOR_EACH = 4 };  /* most planes that cut off one holder */
+/* Stands in place of a body's number, for cells of holders and rims. */
+static const uint32_t BESIDE = UINT32_MAX;
 
 /* The levels by which cells belong to bodies: mean optical depths, as fractions of the greatest cell's. At
  * the first level faint holders are seen. At the second one, foam and clothes no longer join a holder to the
@@ -44,7 +45,7 @@ typedef struct body_cells {
   bool at_border; /* the body has cells at the grid's border */
 } body_cells;
 
-/* A direction, and what is measured along it. */
+/* A direction, and the lengths that are measured along it. */
 typedef struct side {
   vec3 direction;
   double cell_width; /* of one cell */
@@ -60,9 +61,10 @@ typedef struct search {
   side sides[DIRECTIONS];
   body_cells object;
   double object_length;
-  double grid_length; /* along the grid's three edges; no two cells are farther apart */
-  double densest;     /* distance from the background; NaN: not found yet */
-  float faint;        /* mean depth of the cells in the faintest rims */
+  double grid_length; /* the sum of the lengths of the grid's three edges; no two cells are farther apart */
+  double densest; /* the distance from the background beyond which the object's matter counts as dense; NaN:
+                   * not found yet */
+  float faint;    /* mean depth of the cells in the faintest rims */
   side planes[HL_HOLDER_PLANES];
   size_t plane_count;
 } search;
@@ -242,7 +244,8 @@ static side tilt(const search *s, const body_cells *cells, side plane, size_t *m
   return plane;
 }
 
-/* The plane that cuts off most of a body. *most: how many of the cells that are looked at. */
+/* Finds the plane, out of the directions of `sides`, that cuts off most of a body. *most: how many cells the
+ * plane cuts off, of the cells that are looked at. */
 static side best_plane(const search *s, const body_cells *cells, size_t *most) {
   side plane = s->sides[0];
   *most = 0;
@@ -253,8 +256,9 @@ static side best_plane(const search *s, const body_cells *cells, size_t *most) {
   return *most > 0 ? tilt(s, cells, plane, most) : plane;
 }
 
-/* Adds planes until there are `most_planes`, each of which cuts off as much as it can of what is left of a
- * body. *left: the fraction of the body that is left in the end. Fails for lack of memory. */
+/* Adds planes that cut off a body, until there are `most_planes`. Each new plane cuts off as much as one
+ * plane can of the part of the body that is left. *left: the fraction of the body that is left in the end.
+ * Fails for lack of memory. */
 static hl_status cut_off(search *s, uint32_t body, size_t most_planes, double *left, hl_error *error) {
   body_cells cells;
   hl_status status = find_cells(s, body, &cells, error);
@@ -318,15 +322,15 @@ static hl_status is_met(const search *s, uint32_t body, bool *met, hl_error *err
   return status;
 }
 
-/* True if a plane could cut off a point. */
+/* True if a point lies beyond the object's hull in some direction, so that a plane could cut it off. */
 static bool is_beside(const search *s, vec3 point) {
   bool beside = false;
   for (int d = 0; d < DIRECTIONS && !beside; d++) beside = lies_beyond(point, &s->sides[d]);
   return beside;
 }
 
-/* Drops what no plane could cut off. In each row these lie in one stretch, since they are all cells
- * that are beyond no side. */
+/* Takes cells out of the holders and rims (BESIDE) if no plane could cut them off. In each row these cells
+ * lie in one stretch, because the cells that lie beyond no side fill a convex shape. */
 static void drop_what_is_within(search *s) {
   const int *n = s->seen->size;
   for (int k = 0; k < n[2]; k++)

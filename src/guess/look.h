@@ -11,10 +11,10 @@ typedef struct hl_look {
   hl_kernel kernel;
   double key, fill, sky; /* intensities of the light with shadows, of the light without shadows, and of the
                           * sky */
-  double left;           /* the part of the light of shadow-casting lights that reaches surfaces, for
-                          * hl_scene_exposure(); 0: exposure leaves the lights as they are */
-  bool on_black;         /* the background of a bare volume is black */
-  const char *next;      /* the style that is next best for such data */
+  double left;      /* the fraction of the light of the sky, and of lights with shadows, that shadows leave on
+                     * media, for hl_scene_exposure(); 0: the lights' strengths are not scaled by an exposure */
+  bool on_black;    /* a bare volume gets a black background */
+  const char *next; /* the style that is next best for such data */
 } hl_look;
 
 #endif

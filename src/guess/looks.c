@@ -145,7 +145,8 @@ hl_status hl_transfer_function_automatic(hl_context *context, const hl_volume *v
                        error);
 }
 
-/* The look that shows a volume where no look is asked for; for label maps, their row of the table. */
+/* The look that shows a volume where no look is asked for; label maps have a row of the table for themselves.
+ */
 static hl_status find_look(const hl_volume *volume, const char *file, const hl_look **look, hl_error *error) {
   hl_data_analysis analysis;
   hl_status status = hl_data_analyse(volume, &analysis, error);

@@ -40,8 +40,8 @@ static int object_bins(const hl_volume *volume, const hl_data_analysis *a, doubl
   return count;
 }
 
-/* The end of the bins, from `from` on, that belong to one peak: the valley before the next peak, or the end
- * of all bins. */
+/* Finds the end of the bins that belong to the peak at bin `from`: the valley before the next peak, or the
+ * end of all bins. */
 static int end_of_peak(const double *counts, int count, int from) {
   double peak = counts[from], valley = counts[from];
   int at_valley = from;
@@ -53,8 +53,8 @@ static int end_of_peak(const double *counts, int count, int from) {
   return count;
 }
 
-/* The first bin after the background's tail. A peak whose highest bin is the first bin belongs to no
- * material. */
+/* Finds the first bin after the tail of the background's peak. A peak whose highest bin is the first bin
+ * belongs to no material. */
 static int end_of_tail(const double *counts, int count) {
   int end = end_of_peak(counts, count, 0);
   bool falls = true;

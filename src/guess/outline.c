@@ -180,7 +180,7 @@ static double farthest_of_box(const points_box *box, vec3 along) {
   return sum + 1e-12 * size;
 }
 
-/* The first of the points that reach farthest. */
+/* The index of the point that reaches farthest along a direction; of several such points, the first. */
 static size_t farthest(const hl_outline *outline, const points_box *boxes, vec3 along) {
   size_t best = 0;
   double most = -INFINITY;
@@ -240,7 +240,7 @@ static void look_at_point(farthest_points *far, vec3 point, double radius) {
   }
 }
 
-/* used: [vertex_count]; all false at first. */
+/* Compares a mesh's vertices with the farthest points so far. used: [vertex_count]; all false at first. */
 static void look_at_mesh(farthest_points *far, const hl_scene_mesh *mesh, bool *used) {
   const hl_mesh_description *d = hl_mesh_describe(mesh->mesh);
   affine3 placement = hl_scene_mesh_to_world(mesh);

@@ -24,8 +24,8 @@ void hl_outline_release(hl_outline *outline);
  * thinned outline reaches less far than the whole one by at most half a per cent of the extent. */
 hl_status hl_outline_thin(const hl_outline *outline, hl_outline *thinned, hl_error *error);
 
-/* The greatest of p . along - tangent p . forward over all points of all balls; along is perpendicular to
- * forward. */
+/* The reach of the outline along a direction: the greatest of p . along - tangent p . forward over all points
+ * of all balls. `along` is perpendicular to forward. */
 double hl_outline_reach(const hl_outline *outline, vec3 along, vec3 forward, double tangent);
 
 /* The n-th of `count` directions that are spread evenly over the sphere (spherical Fibonacci points; Swinbank

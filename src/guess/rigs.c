@@ -55,8 +55,8 @@ static const rig rigs[RIGS] = {
     [OVERCAST] = {1, {{0, 80, 60, 0.30, WHITE, true}}, 2.2}};
 /* clang-format on */
 
-/* The ratio of the sky's strength to the intensity of the key light, for scenes that had no sky. Bare
- * volumes have the same ratio. */
+/* The ratio of the sky's strength to the key light's intensity that a rig gives scenes without a sky. Scenes
+ * of bare volumes have this ratio, too. */
 #define SKY_OVER_KEY 0.43
 
 const char *hl_light_rig_name(size_t index) { return index < RIGS ? hl_light_rig_choices[index].name : NULL; }
@@ -67,8 +67,8 @@ static const rig *rig_named(const char *name) {
   return NULL;
 }
 
-/* The intensity of which the rig's lights have shares: that intensity is the scene's strongest light's, or
- * the one of the light that a scene without lights gets. */
+/* The intensity of which the rig's lights get shares. It is the intensity of the scene's strongest light; a
+ * scene without lights counts as if it had the light that is chosen for such scenes. */
 static double key_intensity(const hl_scene_description *description) {
   hl_light key;
   double strongest = 0;
@@ -78,8 +78,9 @@ static double key_intensity(const hl_scene_description *description) {
   return strongest > 0 ? strongest : key.intensity;
 }
 
-/* The factor for all shares. A medium receives all lamps alike, from whatever direction they shine. So where
- * no volume is shaded, all lamps together are as strong as the key light. */
+/* The factor by which all shares are multiplied. A medium receives all lamps alike, whatever their
+ * directions. So where no volume is shaded, the factor makes all lamps together at most as strong as the key
+ * light. */
 static double share_factor(const rig *rig, const hl_scene_description *description) {
   double sum = 0;
   bool media = description->volume_count > 0 && description->mesh_count == 0;

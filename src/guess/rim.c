@@ -24,8 +24,9 @@ static int levels_below(double distance, double solid) {
   return (int)fmin(fmax(ceil(distance / solid * LEVELS - 0.5), 0), LEVELS);
 }
 
-/* Counts, for each level, the pairs of neighbours that lie on both sides of it: they are the surface's
- * area. To examine every second place of the sample along each axis is enough for 64 levels. */
+/* Counts, for each level, the pairs of neighbours that have values on both sides of the level: this number
+ * stands for the surface's area. For 64 levels it is enough to examine every second place of the sample along
+ * each axis. */
 static void count_areas(const hl_volume *volume, const hl_sample *sample, const hl_data_analysis *a,
                         double areas[LEVELS]) {
   const size_t *n = volume->dimension, step = 2 * sample->step;

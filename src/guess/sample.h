@@ -24,7 +24,7 @@ typedef struct hl_sample {
 hl_status hl_sample_make(const hl_volume *volume, hl_sample *sample, hl_error *error);
 void hl_sample_release(hl_sample *sample);
 
-/* The value that a fraction (0..1) of an ascending array does not reach. */
+/* The quantile of an ascending array: `fraction` (0 to 1) of its elements are below it. */
 double hl_quantile(const float *ascending, size_t count, double fraction);
 
 /* The commonest value: found by halving an ascending array again and again, each time to its densest half

@@ -17,9 +17,10 @@
 #define SPECKS_AT_MOST 0.03
 #define FAINT_RATIO    200 /* a body is a speck if another body has this many times its optical depth */
 
-#define TISSUE          (-300) /* a limit in Hounsfield units: tissue is denser, foam and clothes are not */
-#define BODY_AT_LEAST   0.8    /* least fraction of the dense cells that a patient's body has */
-#define HOLDER_AT_LEAST (1.0 / 500) /* least fraction of the body's cells that a holder has */
+#define TISSUE        (-300) /* a limit in Hounsfield units: tissue is denser, foam and clothes are not */
+#define BODY_AT_LEAST 0.8    /* least fraction of the dense cells that a patient's body has */
+/* A holder has from this fraction of the body's cells to HOLDER_AT_MOST. */
+#define HOLDER_AT_LEAST (1.0 / 500)
 #define HOLDER_AT_MOST  (1.0 / 30)
 
 enum { BINS = 4096, SPECK = 3, SPECK_RATIO = 50, SMALL_RATIO = 5000 };
@@ -103,7 +104,7 @@ static void add_row(hl_seen *seen, ptrdiff_t j, ptrdiff_t k) {
   }
 }
 
-/* The number of a cell's voxels along an axis that are examined; at least 1. */
+/* Along an axis, the number of voxels of a cell that are examined; at least 1. */
 static double looked_at(const hl_seen *seen, int axis, int cell) {
   ptrdiff_t step = (ptrdiff_t)seen->step, stride = axis == 0 ? 1 : (ptrdiff_t)seen->stride,
             begin = seen->first[axis];
@@ -363,7 +364,8 @@ typedef struct voxel_row {
   size_t cells;
 } voxel_row;
 
-/* The first voxel that counts, from `from` on towards `to`; to + way if there is none. way: 1 or -1. */
+/* The index of the first voxel in a row that counts, from index `from` on towards `to`; `to + way` if none
+ * counts. way: 1 or -1. */
 static ptrdiff_t first_that_counts(const hl_seen *seen, const voxel_row *row, ptrdiff_t from, ptrdiff_t to,
                                    int way) {
   const ptrdiff_t step = (ptrdiff_t)seen->step;

@@ -26,14 +26,16 @@ typedef struct hl_seen {
   float *depth; /* owned; optical depth per world length: for each stored whole number, or, for floats, for
                  * the low end of each bin */
   struct {
-    const hl_transfer_function *function; /* evaluated in bins where it bends */
+    const hl_transfer_function *function; /* evaluated for the voxel's own value in bins where the function
+                                           * bends; elsewhere it is interpolated */
     double low, scale;                    /* bin = (value - low) * scale */
     unsigned char *bends;                 /* owned; [bins]; whether the function bends in the bin */
   } bins;                                 /* for floats */
   unsigned char *kind;                    /* owned; [size[2]][size[1]][size[0]]; HL_SEEN_... */
   float *mean;                            /* owned; [size[2]][size[1]][size[0]]; mean depth per length of a
                                            * cell's voxels */
-  void *row;   /* owned; memory for a row of the volume's stored values; null: the volume is in memory */
+  void *row; /* owned; room for the stored values of a row of voxels; null: the volume is in memory, and needs
+              * none */
   float faint; /* depth per length from which voxels beside seen cells count */
 } hl_seen;
 

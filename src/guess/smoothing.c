@@ -82,7 +82,9 @@ hl_status hl_volume_smooth(hl_volume *volume, double sigma, hl_volume **smoothed
     status = hl_volume_convolve(volume, sigma, smoothed, error);
     if (status != HL_OK) return status;
     (*smoothed)->smoothing = hypot(sigma, volume->smoothing);
-    status = hl_data_keep(*smoothed, &analysis, error); /* noise, which is gone, tells scans from fields */
+    /* The analysis of the unsmoothed volume is kept: its noise, which smoothing removes, tells scans from
+     * fields. */
+    status = hl_data_keep(*smoothed, &analysis, error);
     if (status != HL_OK) {
       hl_volume_release(*smoothed);
       *smoothed = NULL;

@@ -25,7 +25,7 @@ static const int directions[DIRECTIONS][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},
                                               {1, 0, 1},  {1, 0, -1}, {0, 1, 1}, {0, 1, -1}, {1, 1, 1},
                                               {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
 
-/* Voxels of a kind that were met: their number, and the ranges of their places. */
+/* The voxels of one kind that were met: their number, and the bounds of their places. */
 typedef struct met {
   size_t count, low[3], high[3];
 } met;
@@ -80,7 +80,8 @@ static bool is_in_tube(const vessel_search *s, const size_t seed[3]) {
   return along == 1 || along == 2;
 }
 
-/* Looks at the places of the sample's lattice. every: one of this number of bright voxels is examined. */
+/* Counts the object's voxels, bright voxels and voxels in tubes, at the places of the sample's lattice.
+ * every: of this number of bright voxels one is examined. */
 static void look(const vessel_search *s, size_t every, met *things, met *bright, met *tubes) {
   const size_t *n = s->volume->dimension, step = s->sample->step;
   *things = *bright = *tubes = (met){0};
@@ -104,7 +105,7 @@ static bool are_spread(const met *tubes, const met *things) {
 }
 
 /* True if the voxels beyond the level are vessels. expected: their number in the sample, approximately.
- * *few: set where they are few enough to be vessels. */
+ * *few: whether these voxels are few enough to be vessels. */
 static bool are_vessels(const vessel_search *s, size_t expected, bool *few) {
   met things, bright, tubes;
   size_t every = expected / MOST_SEEDS + 1;

@@ -15,7 +15,7 @@
 #include "guess/seen_cells.h"
 #include "scene/scene.h"
 
-#define BEND 3 /* distance, in places of the lattice, over which relief is measured */
+#define BEND 3 /* relief is measured by second differences over this distance, in places of the lattice */
 /* The largest body decides alone if it has at least this fraction of all solid places. */
 #define BODY_AT_LEAST 0.4
 /* The side turned to the eye must have this many times the relief of the opposite side. */
@@ -58,8 +58,8 @@ static bool allocate(hl_context *context, const hl_volume *volume, size_t step, 
   return s->solid != NULL && s->area[0] != NULL && s->area[1] != NULL && s->area[2] != NULL;
 }
 
-/* A voxel's index for a place of the lattice. The lattice reaches both ends of each axis: the last place is
- * the last voxel. */
+/* The index of the voxel for place n of the lattice along an axis. The lattice reaches both ends of each
+ * axis: its last place is the last voxel. */
 static size_t place_of(const hl_volume *volume, const shape *s, size_t step, int axis, int n) {
   return n + 1 == s->size[axis] ? volume->dimension[axis] - 1 : (size_t)n * step;
 }
@@ -115,7 +115,7 @@ static bool measure(shape *s) {
   return total > 0;
 }
 
-/* *any: whether the volume shows any object. */
+/* Makes the shape of the objects on the lattice. *any: whether the volume shows any object. */
 static hl_status make_shape(const hl_volume *volume, const hl_data_analysis *analysis, shape *s, bool *any,
                             hl_error *error) {
   hl_context *context = volume->context;

@@ -25,8 +25,8 @@ hl_status hl_view_automatic(const hl_scene_description *description, hl_outline 
 
 /* ---- which way up a volume is, where its file cannot say. */
 
-/* up: an axis of the world, or its opposite. azimuth_deg: azimuth of the three-quarter view that shows
- * most. */
+/* The way up that was guessed for a volume. up: an axis of the world, or its opposite. azimuth_deg: azimuth
+ * of the three-quarter view that shows most. */
 typedef struct hl_upright {
   vec3 up;
   double azimuth_deg;
