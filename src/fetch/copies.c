@@ -17,7 +17,7 @@
 #define MARK     "\nhalflight-copy 1\n"
 #define NEW_NAME "new-"
 
-/* The lines after the bytes of a copy: MARK, the URL, the condition, the number of bytes, and the length of
+/* The lines that follow a copy's bytes: MARK, the URL, the condition, the number of bytes, and the length of
  * these lines. */
 enum { LENGTH_DIGITS = 8, LINES_MOST = FETCH_URL_BYTES + FETCH_CONDITION_BYTES + 64 };
 

@@ -97,7 +97,7 @@ static void read_result(FILE *said, curl_transfer *transfer) {
 }
 
 /* Reads the first line of a transfer: "transfer NUMBER PROBLEM ANSWER". Returns the transfer; null if the
- * line is another. */
+ * line is no such line. */
 static curl_transfer *read_first_line(const char *line, curl_transfer *transfers, size_t count) {
   static const char word[] = "transfer ";
   char *end;
@@ -158,7 +158,7 @@ hl_status curl_run(const fetcher *f, curl_transfer *transfers, size_t count, uin
   hl_status status = problem == 0        ? HL_OK
                      : problem == ENOENT ? fail(error, "there is no program curl: install it (Debian: curl)")
                                          : fail(error, strerror(problem));
-  /* A server may send more than it said. */
+  /* A server may send more bytes than it announced, so the length of files is limited here. */
   process_limit(&curl, memory_most, most);
   if (status == HL_OK) status = await(f, &curl, error);
   if (status == HL_OK) read_results(curl.messages, transfers, count);

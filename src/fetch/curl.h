@@ -15,7 +15,7 @@ typedef struct curl_transfer {
   char condition[FETCH_CONDITION_BYTES]; /* a line of the request's header that lets the server find out
                                           * whether its file has changed; "" for none */
   /* Results. */
-  int problem; /* curl's exit code for this transfer; -1 if curl ended before */
+  int problem; /* curl's exit code for this transfer; -1 if curl ended before the transfer did */
   int answer;  /* the server's status code; 0 without an answer */
   char next_condition[FETCH_CONDITION_BYTES]; /* the condition for the next request; "" if there is none */
   char said[FETCH_SAID_BYTES];                /* curl's words about the problem */

@@ -23,7 +23,7 @@ typedef struct wanted {
   const char *name;
   curl_transfer transfer;
   char path[COPIES_PATH_BYTES]; /* the file that curl writes to; "" if there is none */
-  hl_fetched_file copy;         /* the copy from before; {-1, 0} if there is none */
+  hl_fetched_file copy;         /* the copy that an earlier run left; {-1, 0} if there is none */
   bool done;
 } wanted;
 

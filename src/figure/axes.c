@@ -53,7 +53,7 @@ static void draw_arrows(const hl_ink *ink, const hl_overlay_place *place) {
   const double length = 2.1 * ink->size, room = length + 1.1 * ink->size;
   const double x = place->picture.left + place->picture.width - place->margin - room;
   const double y = place->picture.top + place->picture.height - place->margin - room;
-  int order[3] = {0, 1, 2}; /* the axes, the one farthest from the eye first */
+  int order[3] = {0, 1, 2}; /* the numbers of the axes, the one that points farthest from the eye first */
   for (int a = 0; a < 2; a++)
     for (int b = 0; b < 2; b++)
       if (seen(&place->map, order[b]).z > seen(&place->map, order[b + 1]).z) {
@@ -76,8 +76,8 @@ static void draw_arrows(const hl_ink *ink, const hl_overlay_place *place) {
 
 /* ---- letters ---- */
 
-/* Names a direction of the picture by one or two axes. Each has a part of at least 0.4 in the direction; the
- * axis with the greater part comes first. */
+/* Names a direction of the picture by one axis or two. An axis is named if the direction's part along it is
+ * at least 0.4; the axis with the greater part comes first. */
 static void name_direction(const hl_overlay_place *place, const axis_names *names, vec3 way, char name[8]) {
   double part[3] = {way.x, way.y, way.z};
   name[0] = '\0';

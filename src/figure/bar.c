@@ -17,14 +17,14 @@ enum { LABEL_BYTES = 96 };
 typedef struct bar_unit {
   const char *name;    /* the unit's name in the files */
   const hl_unit *unit; /* null: the name is not known */
-  double per_scene;    /* the length, in the files' unit, of the length 1 of the scene */
+  double per_scene;    /* the length, in the files' unit, of one length unit of the scene's world */
 } bar_unit;
 
 static const char *name_of(const hl_scene_volume *volume) {
   return volume->name != NULL ? volume->name : volume->file != NULL ? volume->file : "volume";
 }
 
-/* Takes the unit of the first volume, and compares the units of the others with it. */
+/* Takes the unit of the first volume, and refuses a volume whose unit is another. */
 static hl_status add_volume(const hl_overlay *overlay, const hl_scene_volume *volume, bar_unit *unit,
                             hl_error *error) {
   const char *name = overlay->world_unit != NULL ? overlay->world_unit : hl_volume_unit(volume->volume);
@@ -73,7 +73,7 @@ static hl_status find_scale(const hl_overlay_place *place, double *scale, hl_err
   return HL_OK;
 }
 
-/* The length, in the files' unit, of the unit that the bar's text has. */
+/* Finds the length, in the files' unit, of the unit in which the bar's text is written. */
 static hl_status length_of(const hl_unit *written, const bar_unit *unit, double *length, hl_error *error) {
   if (written == unit->unit) *length = 1;
   else if (unit->unit != NULL) *length = written->metres / unit->unit->metres;
@@ -87,7 +87,7 @@ static hl_status length_of(const hl_unit *written, const bar_unit *unit, double 
 static hl_status choose_length(const hl_overlay *overlay, const bar_unit *unit, double longest,
                                double *length, char label[LABEL_BYTES], hl_error *error) {
   const hl_unit *written = unit->unit;
-  double in_files = 1; /* the length, in the files' unit, of the unit that the text has */
+  double in_files = 1; /* the length, in the files' unit, of the unit in which the bar's text is written */
   hl_status status = HL_OK;
   const char *name = overlay->scale_bar_unit;
   if (name != NULL) {

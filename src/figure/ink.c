@@ -32,8 +32,8 @@ static char *clean(const char *text) {
 static PangoLayout *lay_out(const hl_ink *ink, const hl_line_of_text *line) {
   PangoLayout *layout = pango_cairo_create_layout(ink->cairo);
   PangoFontDescription *font = pango_font_description_new();
-  cairo_font_options_t *unhinted =
-      cairo_font_options_create(); /* places letters alike on paper and in pixels */
+  /* Without hinting, letters have the same places on paper and in pixels. */
+  cairo_font_options_t *unhinted = cairo_font_options_create();
   cairo_font_options_set_hint_style(unhinted, CAIRO_HINT_STYLE_NONE);
   cairo_font_options_set_hint_metrics(unhinted, CAIRO_HINT_METRICS_OFF);
   cairo_font_options_set_antialias(unhinted, CAIRO_ANTIALIAS_GRAY);
@@ -101,8 +101,8 @@ void hl_ink_bar(const hl_ink *ink, hl_rectangle bar) {
   const double rim = ink->size * halo_width / 2;
   set_grey(ink->cairo, ink->halo, halo_alpha);
   cairo_rectangle(ink->cairo, bar.left - rim, bar.top - rim, bar.width + 2 * rim, bar.height + 2 * rim);
-  cairo_rectangle(ink->cairo, bar.left + bar.width, bar.top, -bar.width,
-                  bar.height); /* a rectangle drawn backwards leaves the bar out of the halo */
+  /* The bar's rectangle runs backwards, so that the bar is left out of the halo. */
+  cairo_rectangle(ink->cairo, bar.left + bar.width, bar.top, -bar.width, bar.height);
   cairo_fill(ink->cairo);
   set_grey(ink->cairo, ink->color, 1);
   cairo_rectangle(ink->cairo, bar.left, bar.top, bar.width, bar.height);

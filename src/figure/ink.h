@@ -19,12 +19,14 @@ typedef struct hl_ink {
 typedef struct hl_line_of_text {
   const char *text;
   double x, y;             /* points */
-  double align_x, align_y; /* the part of the text that lies at (x, y): 0 its left or top edge, 1 its right or
-                              bottom edge */
+  double align_x, align_y; /* which part of the text lies at (x, y): 0: its left or top edge; 1: its right or
+                            * bottom edge; between: a part in between */
   double scale;            /* factor of the letters' size; 0 counts as 1 */
   bool bold;
-  bool paragraphs;  /* a line break begins a new line; otherwise it is drawn as a character */
-  double wide_most; /* greatest width of a line, points; a longer line ends in "..."; 0: any width */
+  bool paragraphs;  /* a line break begins a new line; where this is false, a line break is drawn as a
+                     * character */
+  double wide_most; /* the greatest width of a line, points; a longer line is cut and ends in "..."; 0: any
+                     * width */
 } hl_line_of_text;
 
 void hl_ink_text(const hl_ink *ink, const hl_line_of_text *line);

@@ -105,9 +105,8 @@ static hl_status draw_picture(hl_context *context, cairo_t *cairo, const hl_figu
   cairo_translate(cairo, place.left, place.top);
   if (!exact) cairo_scale(cairo, place.width / width, place.height / height);
   cairo_set_source_surface(cairo, surface, 0, 0);
-  if (pixels && !exact)
-    cairo_pattern_set_extend(cairo_get_source(cairo),
-                             CAIRO_EXTEND_PAD); /* keeps the picture's edges opaque */
+  /* Pixels beyond the picture's edges repeat the edges, which so stay opaque. */
+  if (pixels && !exact) cairo_pattern_set_extend(cairo_get_source(cairo), CAIRO_EXTEND_PAD);
   cairo_pattern_set_filter(cairo_get_source(cairo), exact ? CAIRO_FILTER_NEAREST : CAIRO_FILTER_GOOD);
   cairo_rectangle(cairo, 0, 0, width, height);
   if (exact) cairo_set_antialias(cairo, CAIRO_ANTIALIAS_NONE);

@@ -8,13 +8,14 @@ typedef struct hl_unit {
   const char *symbol;   /* as figures write the unit */
   const char *names[3]; /* as people and files write the unit; null after the last */
   double metres;
-  int chosen; /* non-zero: hl_unit_for() may choose this unit */
+  int chosen; /* non-zero: hl_unit_for() may return this unit */
 } hl_unit;
 
 /* The unit with this name; null: no known unit has it. */
 const hl_unit *hl_unit_find(const char *name);
 
-/* The unit in which the number of a length lies from 1 to 1000, or comes closest to that. */
+/* The unit in which a length's number lies from 1 to 1000. Where no unit gives such a number, the unit whose
+ * number comes closest to that range. */
 const hl_unit *hl_unit_for(double metres);
 
 /* The greatest number of the form 1, 2 or 5 times a power of ten that is at most `most`. */

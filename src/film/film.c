@@ -68,7 +68,7 @@ static json_t *step_into(json_t *at, const char *name) {
   return json_array_get(at, strtoul(name, NULL, 10));
 }
 
-/* A number that is whole in the scene stays whole. */
+/* Makes a number of JSON. Where the scene has a whole number, the value is rounded to a whole number. */
 static json_t *number_like(const json_t *before, double value) {
   return json_is_integer(before) ? json_integer(llround(value)) : json_real(value);
 }

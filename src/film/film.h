@@ -21,12 +21,12 @@ typedef struct film_options {
   const hl_scene *scene;
   const char *const *keys; /* [key_count]: "PATH=FRAME:VALUE,..." */
   size_t key_count;
-  bool smooth;   /* numbers change slowly at both ends of each stretch between keys; if false, at an even
+  bool smooth;   /* true: between two keys, numbers change slowly at both ends; false: they change at an even
                   * pace */
-  int turntable; /* frames of a whole turn about the picture's vertical axis; 0 for no turn, FILM_WHOLE_TURN
-                  * for as many as the film has */
-  int frames;    /* number of frames; 0 for as many as the turntable has, or up to the last key's last
-                  * frame */
+  int turntable; /* the number of frames in which the camera turns once about the picture's vertical axis; 0:
+                  * no turn; FILM_WHOLE_TURN: all frames of the film */
+  int frames;    /* number of frames; 0: as many as the turntable has, or else up to the last frame that has a
+                  * key */
 } film_options;
 
 /* Makes a film. Fails where keys cannot be read or no number lies at their paths (HL_ERROR_ARGUMENT), or

@@ -10,8 +10,8 @@
 typedef struct hl_codes {
   hl_srgb_encoder encoder;
   int depth;           /* bits of a code: 8 or 16 */
-  bool transparent;    /* four codes a pixel, the last one alpha; else three */
-  bool opaque_alpha;   /* a pixel has four codes, and its alpha is the code of full opacity */
+  bool transparent;    /* a pixel has four codes, of which the last one is alpha; false: three codes */
+  bool opaque_alpha;   /* a pixel has four codes, and the code of alpha is always that of full opacity */
   float background[3]; /* linear */
   float exposure;      /* factor on the picture's light */
   hl_tone tone;        /* after the exposure */

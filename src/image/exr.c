@@ -35,11 +35,11 @@ typedef struct exr_reading {
   size_t length;
   hl_error *error;
   exr_context_t file;
-  unsigned present;        /* bit i is set if the file has the channel whose channel_index is i */
+  unsigned present;        /* bit i is set if the file has channel number i (channel_index) */
   uint64_t pixel_bytes;    /* bytes of all channels of one pixel */
   exr_attr_box2i_t window; /* the data window */
   hl_image *image;
-  char message[200]; /* the first complaint of OpenEXRCore */
+  char message[200]; /* the first message in which OpenEXRCore complains */
 } exr_reading;
 
 static int64_t on_size(exr_const_context_t file, void *user_data) {
@@ -273,7 +273,7 @@ typedef struct exr_writing {
   uint64_t at;      /* write position in bytes */
   int system_error; /* errno of the first failed write */
   bool write_failed;
-  char message[200]; /* the first complaint of OpenEXRCore */
+  char message[200]; /* the first message in which OpenEXRCore complains */
 } exr_writing;
 
 static int64_t on_write(exr_const_context_t file, void *user_data, const void *bytes, uint64_t length,

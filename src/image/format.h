@@ -10,7 +10,7 @@
 #include "core/file.h"
 #include "image/image.h"
 
-/* The size of a picture, as its file's first bytes state it. */
+/* The size that a picture's file claims in its first bytes. */
 typedef struct hl_image_claim {
   bool known; /* false: more bytes are needed to find the size */
   uint64_t width, height;

@@ -119,8 +119,8 @@ static bool in_runs(const hdr_cursor *cursor, size_t width) {
          at[1] == 2 && at[2] < 128;
 }
 
-/* Reads one of a row's four rows of bytes. A count above 128 repeats the byte that follows; any other count
- * precedes as many single bytes. */
+/* Reads one of the four rows of bytes that make a row of pixels. Each run begins with a count. A count n
+ * above 128 repeats the next byte n - 128 times; any other count n is followed by n single bytes. */
 static hl_status take_runs(hdr_cursor *cursor, unsigned char *to, size_t width) {
   for (size_t x = 0; x < width;) {
     if (cursor->length - cursor->at < 2) return fail_end(cursor);
@@ -139,8 +139,8 @@ static hl_status take_runs(hdr_cursor *cursor, unsigned char *to, size_t width) 
   return HL_OK;
 }
 
-/* Reads a row of whole pixels. (1, 1, 1, n) repeats the pixel before n times; a second such code right after
- * it repeats n x 256 times, and so on. */
+/* Reads a row of whole pixels. The code (1, 1, 1, n) repeats the last pixel n times; a second such code right
+ * after it repeats n x 256 times, and so on. */
 static hl_status take_pixels(hdr_cursor *cursor, const hdr_row *row) {
   int shift = 0;
   for (size_t x = 0; x < row->width;) {
@@ -183,8 +183,8 @@ static void convert_row(const hdr_row *row, const float scale[EXPONENTS], bool f
 
 /* ---- the picture ---- */
 
-/* The fewest bytes that the rows of this header can take. Plain rows and rows in runs of pixels both begin
- * with a pixel. */
+/* The fewest bytes that the rows can take in a file with this header. Plain rows and rows in runs of pixels
+ * both begin with a pixel. */
 static uint64_t least_bytes(const hdr_cursor *cursor, const hdr_header *header) {
   uint64_t row = 4;
   if (in_runs(cursor, (size_t)header->width)) row += 8 * ((header->width + RUN_MAX - 1) / RUN_MAX);

@@ -272,7 +272,7 @@ static hl_status decode(hl_context *context, const char *name, const unsigned ch
   size_t value_bytes = header.type[2] == '8' ? 8 : 4, data = cursor.end;
   uint64_t rest = length - data, row = header.shape[1] * header.shape[2] * value_bytes;
   bool right_size = header.shape[0] <= HL_IMAGE_SIDE_MAX && header.shape[1] <= HL_IMAGE_SIDE_MAX;
-  right_size = !right_size || header.shape[0] * row == rest; /* shapes that are not right are refused below */
+  right_size = !right_size || header.shape[0] * row == rest; /* too great sizes are refused below */
   if (!right_size)
     return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)data,
                           "%s: byte %zu: %" PRIu64 " bytes of data, expected %" PRIu64 " for %" PRIu64

@@ -10,8 +10,8 @@
 
 #include "core/memory.h"
 
-/* One of Newton's steps for r^5 = value. Seven steps from this first guess reach double precision for values
- * in [0.008, 1.02]: the guess is at most 31 % off, and each step squares the error. */
+/* Finds the root of r^5 = value by seven steps of Newton's method. They reach double precision for values in
+ * [0.008, 1.02]: the guess is at most 31 % off, and each step squares the error. */
 static double fifth_root(double value, double guess) {
   double r = guess;
   for (int step = 0; step < 7; step++) {
@@ -63,7 +63,7 @@ static float float_from_bits(uint32_t bits) {
 enum {
   KEY_SHIFT = 15,
   KEY_OF_ONE = 127 << 8
-}; /* the key of x is its float bits >> KEY_SHIFT, counted downwards from the key of 1 */
+}; /* the key of x is (its float bits >> KEY_SHIFT) - (KEY_OF_ONE - HL_SRGB_KEYS) */
 
 hl_status hl_srgb_encoder_create(hl_context *context, int maximum, hl_srgb_encoder *encoder,
                                  hl_error *error) {

@@ -42,7 +42,7 @@ typedef struct hl_loaded_volume {
   int component, time, channel, level;
   const char *series;
   double spacing[3];
-  double smooth;     /* what the voxels were smoothed by */
+  double smooth;     /* the standard deviation by which the voxels were smoothed */
   hl_volume *volume; /* owned */
 } hl_loaded_volume;
 

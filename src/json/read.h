@@ -42,7 +42,8 @@ hl_status hl_json_prefix(hl_json_reader *reader, const char *place);
 /* The name of a value's type with its article: "an object", "a string" and so on. */
 const char *hl_json_type_name(const json_t *value);
 
-/* Enters a member or an element: adds it to the place. Returns the mark for hl_json_leave(). */
+/* Enters a member or an element: appends its key or number to the reader's place. Returns the mark that
+ * hl_json_leave() takes. */
 size_t hl_json_enter(hl_json_reader *reader, const char *key);
 size_t hl_json_enter_index(hl_json_reader *reader, size_t index);
 void hl_json_leave(hl_json_reader *reader, size_t mark);
@@ -56,7 +57,8 @@ hl_status hl_json_number(hl_json_reader *reader, const json_t *object, const cha
 hl_status hl_json_integer(hl_json_reader *reader, const json_t *object, const char *key, int *number);
 hl_status hl_json_flag(hl_json_reader *reader, const json_t *object, const char *key, int *flag);
 hl_status hl_json_text(hl_json_reader *reader, const json_t *object, const char *key, const char **text);
-/* Reads one of the null-terminated names. *choice becomes the name's index plus first. */
+/* Reads a text that must be one of `names`, a list that ends with null. *choice becomes the index of the text
+ * in this list, plus `first`. */
 hl_status hl_json_choice(hl_json_reader *reader, const json_t *object, const char *key,
                          const char *const *names, int first, int *choice);
 /* Reads an array of exactly count numbers. key: the value's name in errors. */

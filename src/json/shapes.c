@@ -36,12 +36,13 @@ static const char *const keys_of_type[][16] = {
     [HL_SHAPE_GROUP] = {COMMON_KEYS, "shapes"},
 };
 
-/* A list that is being read, and the groups that contain it. */
+/* A list of shapes that is being read, and the groups that contain it, the outermost first. */
 typedef struct reading {
   hl_json_reader *reader;
   const json_t *groups;
   hl_shape_list *list;
-  const char *open[HL_SHAPES_DEEPEST]; /* [depth]; the groups' names, null for a group without a name */
+  const char *open[HL_SHAPES_DEEPEST]; /* [depth]; the names of the groups that contain the list; null for a
+                                        * group without a name */
   size_t depth;
   int seed; /* added to every hypertexture's seed */
 } reading;
@@ -379,8 +380,8 @@ hl_status hl_json_check_groups(hl_json_reader *reader, const json_t *groups) {
   return HL_OK;
 }
 
-/* Chooses the edge of voxels. size: number of voxels along the longest side; for 0 the edge is "voxel_size",
- * or follows from DEFAULT_SIZE. */
+/* Chooses the edge of voxels. size: number of voxels along the longest side; 0: "voxel_size" is the edge, and
+ * without this key the edge follows from DEFAULT_SIZE. */
 static hl_status choose_voxel_size(hl_json_reader *reader, const json_t *object, const hl_shape_list *list,
                                    int size, double *voxel_size) {
   double extent = hl_shapes_extent(list), margin = HL_SHAPE_EDGE + 2 * HL_SHAPE_MARGIN;

@@ -62,7 +62,7 @@ _Static_assert(sizeof(hl_color_point) == 4 * sizeof(double), "colour points are 
 enum { SOLID_POINTS = 2 };
 static const double solid_begins = 0.375, solid_is_full = 0.625, solid_opacity = 0.95;
 
-/* Makes a solid clear outside, and gives its inside this opacity. */
+/* Makes everything outside of a solid clear, and gives the inside this opacity. */
 static hl_status set_solid_opacity(hl_json_reader *reader, double opacity, hl_transfer_function *function) {
   hl_opacity_point *points = hl_allocate(reader->context, SOLID_POINTS, sizeof *points);
   if (points == NULL)
@@ -75,7 +75,7 @@ static hl_status set_solid_opacity(hl_json_reader *reader, double opacity, hl_tr
   return HL_OK;
 }
 
-/* Reads one colour for all values. */
+/* Reads a colour that all values get. */
 static hl_status read_plain_color(hl_json_reader *reader, const json_t *value,
                                   hl_transfer_function *function) {
   hl_color_point *point = hl_allocate_zeroed(reader->context, 1, sizeof *point);
@@ -275,9 +275,8 @@ hl_status hl_json_read_transfer_function(hl_json_reader *reader, const json_t *v
     if (status != HL_OK) hl_json_prefix(reader, reader->place);
     return status;
   }
-  size_t mark = subject.volume != NULL ? hl_json_enter(reader, "transfer_function")
-                                       : 0; /* in a file that holds only a function, the function is the
-                                             * root */
+  /* A function in a file of its own is the root of the JSON text. */
+  size_t mark = subject.volume != NULL ? hl_json_enter(reader, "transfer_function") : 0;
   hl_status status = read_members(reader, value, subject, function);
   if (status == HL_OK) hl_json_leave(reader, mark);
   return status;

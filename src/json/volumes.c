@@ -401,7 +401,8 @@ static hl_status choose_shading(hl_json_reader *reader, const json_t *value, hl_
 static bool is_there(const hl_json_reader *reader, const char *file) {
   if (is_data(file) && reader->context->options.data_folder == NULL) return false;
   char *path = hl_json_path(reader, file);
-  bool there = path == NULL; /* without memory, loading the file reports the error */
+  /* Without memory for the path, the file counts as there: loading it then reports the error. */
+  bool there = path == NULL;
   for (size_t v = 0; !there && reader->like != NULL && v < reader->like->volume_count; v++)
     there = reader->like->volumes[v].file != NULL && strcmp(reader->like->volumes[v].file, path) == 0;
   if (!there && reader->like == NULL) there = hl_file_kind(reader->context, path) != 0;
@@ -410,7 +411,8 @@ static bool is_there(const hl_json_reader *reader, const char *file) {
 }
 
 /* A volume in JSON may name a stand-in for its file. Where the file is absent, *value becomes a copy of the
- * volume's JSON with the keys of the stand-in. The copy is owned by the shelf. */
+ * volume's JSON in which the keys of the stand-in replace those of the file. The copy is owned by the shelf.
+ */
 static hl_status choose_stand_in(hl_json_reader *reader, const json_t **value, hl_volume_shelf *shelf) {
   const json_t *stand_in = json_object_get(*value, "stand_in");
   const char *file = NULL;

@@ -54,7 +54,7 @@ static size_t numbers_of(const hl_mesh *mesh) {
 }
 
 static hl_status check_mesh(const hl_scene_mesh *mesh, size_t index, hl_error *error) {
-  enum { MOST_NUMBERS = 300000 }; /* a text with more numbers would have several megabytes */
+  enum { MOST_NUMBERS = 300000 }; /* more numbers would take several megabytes in a scene's text */
   if (mesh->file == NULL && numbers_of(mesh->mesh) > MOST_NUMBERS)
     return hl_fail(
         error, HL_ERROR_ARGUMENT,

@@ -16,7 +16,7 @@
 
 /* ---- files ---- */
 
-/* The last of the held files; path: taken over. */
+/* Adds a file to the end of the list of held files. path: `held` owns it from now on. */
 static hl_status hold(held_scene *held, const char *stem, const char *ending, char *path, hl_error *error) {
   if (path == NULL || held->count == held->room) {
     hl_release(held->context, path);

@@ -14,7 +14,7 @@
 #include "core/memory.h"
 #include "volume/volume.h"
 
-enum { AROUND = 3 }; /* number of voxels beyond the visible ones that kernels and normals need */
+enum { AROUND = 3 }; /* number of voxels around the visible voxels that kernels and normals read */
 
 /* ---- what a value shows ---- */
 
@@ -53,7 +53,7 @@ static bool shows(const hl_scene_volume *volume, double low, double high) {
 /* ---- planes of voxels ---- */
 
 typedef struct plane_range {
-  double low, high; /* of the finite voxels; low > high: there is none */
+  double low, high; /* the least and the greatest finite voxel; low > high: no voxel is finite */
 } plane_range;
 
 static void widen(plane_range *range, double value) {
@@ -97,7 +97,8 @@ static bool plane_shows(const hl_scene_volume *volume, const plane_range *planes
   return shows(volume, range.low, range.high);
 }
 
-/* Where nothing shows, all planes stay. */
+/* Finds the planes that are kept: from the first to the last plane that shows anything, and AROUND more at
+ * either end. Where no plane shows anything, all planes are kept. */
 static void find_ends(const hl_scene_volume *volume, const plane_range *planes, size_t count, size_t *begin,
                       size_t *end) {
   size_t first = 0, last = count - 1;
@@ -112,7 +113,8 @@ static void find_ends(const hl_scene_volume *volume, const plane_range *planes, 
 
 static bool stays_whole(const hl_scene_description *d, const hl_scene_volume *volume) {
   if (d->render.kernel == HL_KERNEL_INTERPOLATING) return true;
-  if (volume->label_count > 0 && volume->iso_count > 0) return true; /* surfaces of values beside labels */
+  /* Isosurfaces show values beside the labels. */
+  if (volume->label_count > 0 && volume->iso_count > 0) return true;
   for (size_t n = 0; n < d->volume_count; n++) {
     const char *other = d->volumes[n].transfer_function.plane.second == HL_SECOND_VOLUME
                             ? d->volumes[n].transfer_function.plane.volume

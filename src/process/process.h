@@ -28,7 +28,8 @@ void process_limit(const process *p, uint64_t memory, uint64_t file);
 /* Waits until the child ends by itself. Returns whether the child succeeded. */
 bool process_wait(process *p);
 
-/* Finds out, without waiting, whether the child has ended; *succeeded is then whether it succeeded. */
+/* Finds out, without waiting, whether the child has ended. If it has, *succeeded says whether it succeeded.
+ */
 bool process_has_ended(process *p, bool *succeeded);
 
 /* Copies the first line that the child wrote to standard error, or "NAME has failed" if it wrote nothing. */

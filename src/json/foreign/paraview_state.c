@@ -33,9 +33,9 @@ enum { ID_BYTES = 24 };
 
 /* The properties of a representation that shows a volume. */
 typedef struct shown_volume {
-  bool by_plane;      /* the volume is shown by a function of two numbers */
+  bool by_plane;      /* a function of two numbers shows the volume */
   bool by_gradient;   /* the function's second number is the gradient's length */
-  bool other_opacity; /* opacity depends on another array */
+  bool other_opacity; /* the opacity depends on another array than the colours */
   double unit;
   char colors[ID_BYTES], opacities[ID_BYTES]; /* ids of the lookup table and of the opacity function */
 } shown_volume;
@@ -45,8 +45,8 @@ typedef struct state {
   double boxes[MOST_BOXES * BOX_NUMBERS], range[4];
   size_t box_numbers, range_numbers;
   size_t functions;       /* number of functions of two numbers with boxes */
-  size_t planes, volumes; /* numbers of representations that show a volume: by a function of two numbers,
-                           * and by a function of one number */
+  size_t planes, volumes; /* number of representations that show a volume by a function of two numbers, and
+                           * number of representations that show a volume by a function of one number */
   shown_volume shown;     /* the last representation that shows a volume */
   json_t *kept;           /* owned; the lookup tables and opacity functions by their ids, each as arrays of
                            * numbers by property */
@@ -62,7 +62,7 @@ typedef struct proxy {
   double range[4];
   size_t box_numbers, range_numbers;
   char property[32];
-  bool in_domain; /* the tags list values that the property may have */
+  bool in_domain; /* the current tags list the values that the property may have, not the value that it has */
 } proxy;
 
 static hl_status refuse(hl_error *error, const char *path, const char *what) {
