@@ -68,7 +68,8 @@ static half_space through(vec3 a, vec3 b, vec3 c, vec3 inside) {
   return plane;
 }
 
-/* Finds the pyramid (or beam) of the eye's rays, out to a depth beyond all content. */
+/* Finds the corners and the side planes of the space that the eye's rays fill, out to a depth beyond all
+ * content: a pyramid, or a beam for parallel rays. */
 static void frustum(const view *eye, double depth, vec3 near[4], vec3 far[4], half_space planes[4]) {
   vec3 middle_start, middle_way;
   hl_view_ray(eye, eye->width / 2.0, eye->height / 2.0, &middle_start, &middle_way);

@@ -29,14 +29,14 @@ typedef struct frame {
   vec3 eye_direction;  /* e: unit, from the eye towards the content */
   double pixel;        /* edge of an image pixel where the content is nearest, frame units */
   double middle_pixel; /* edge of an image pixel at the content's middle, frame units */
-  double spacing;      /* ds, frame units */
+  double spacing;      /* ds: the distance of sheets, frame units */
   frame_content content;
   light_sectors sectors; /* the sectors of lights within the content */
-  light_source *lights;  /* [light_count]; owned by the caller; sectors of a light follow each other */
+  light_source *lights;  /* [light_count]; owned by the caller; the sectors of one light follow each other */
   int light_count;
   const surfaces *surfaces;    /* surfaces of the scene's meshes; null: none */
-  const surface_tree *contact; /* the tree of surfaces behind which shadow buffers leave light
-                                * (render/late/) */
+  const surface_tree *contact; /* the tree of the surfaces close behind which shadow buffers leave light that
+                                * does not belong there (render/late/) */
 } frame;
 
 /* The eye's view in width x height pixels. */

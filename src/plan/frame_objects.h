@@ -43,9 +43,9 @@ typedef struct frame_light {
                            * sky; else 0 */
   bool is_wide;           /* the light has an extent, or its rays have several directions at a point */
   bool is_inverse_square; /* samples receive the intensity divided by the square of their distance */
-  bool has_image;         /* the light projects a picture, or shows one */
-  bool has_colored_image; /* the light shows a picture whose colours come from different places on the
-                           * light */
+  bool has_image;         /* the light projects a picture, or shows a picture on its surface */
+  bool has_colored_image; /* the light shows a picture on its surface, whose colours come from different
+                           * places on the light */
   double color[HL_CHANNELS], intensity; /* frame space */
 } frame_light;
 

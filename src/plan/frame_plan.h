@@ -19,7 +19,7 @@
 #include "scatter/scatter.h"
 #include "shadow/shadow_method.h"
 
-/* The picture, and the part of it that is made. */
+/* The picture of the plan, and the part of this picture that is made. */
 typedef struct plan_picture {
   int width, height;       /* pixels */
   int tiles_x;             /* number of the frame's tiles in a row of tiles */
@@ -39,7 +39,7 @@ typedef struct plan_volumes {
   bool splat; /* densities are splatted; else they are gathered */
 } plan_volumes;
 
-/* Light that does not travel along the sheets. */
+/* Light that is found on grids of its own, not sheet by sheet. */
 typedef struct plan_fields {
   bool scatters;                  /* media scatter light more than once */
   const scatter_field *scattered; /* borrowed; the light that they scatter; null: none */
@@ -73,17 +73,17 @@ typedef struct plan_sweeps {
 typedef struct frame_plan {
   hl_render_settings settings; /* settings of the scene; its texts are not used */
   plan_picture picture;
-  double unit;                 /* world length of 1 in frame space */
+  double unit;                 /* the length in the world of one unit of frame space */
   double ambient[HL_CHANNELS]; /* light from everywhere, R, G, B */
   frame frame;                 /* the eye, the lights, the surfaces; its arrays are the plan's own */
-  frame_light *lights;         /* owned; [light_count]; a light_source names one by its `row` */
+  frame_light *lights; /* owned; [light_count]; the `row` of a light_source is an index into this list */
   int light_count;
   frame_mesh *meshes; /* owned; [mesh_count] */
   int mesh_count;
   plan_volumes volumes;
   plan_fields fields;
   plan_sweeps sweeps;
-  int channels; /* number of channels of light attenuation: 1 or 3 */
+  int channels; /* number of channels in which light is attenuated: 1 or 3 */
   vec3 *seen;   /* owned; [seen_count]; corners of the content that the eye sees */
   int seen_count;
 } frame_plan;
@@ -107,7 +107,7 @@ hl_status hl_plan_lights(hl_context *context, frame_plan *plan, hl_error *error)
 
 /* ---- what light reaches ---- */
 
-/* Whether a slab lies beyond the light, on the side that its rays travel to in this sweep. */
+/* Whether a slab lies beyond the light, on the side to which the light's rays travel in this sweep. */
 static inline bool hl_is_beyond(const sheet_stack *sheets, const light_source *source, int sheet) {
   return source->parallel || hl_sheet_height(sheets, sheet - 1) >= vec3_dot(sheets->normal, source->position);
 }

@@ -71,7 +71,7 @@ static void move_cut(const hl_frame_space *space, hl_cut *cut) {
   cut->radius /= space->unit;
 }
 
-/* Moves the cuts that are in the world. cuts: room for the volume's. */
+/* Brings cuts whose lengths are in the world to frame space. cuts: room for the volume's cuts. */
 static void move_cuts(const hl_frame_space *space, hl_scene_volume *volume, hl_cut *cuts) {
   if (volume->cut_count == 0) return;
   memcpy(cuts, volume->cuts, volume->cut_count * sizeof *cuts);

@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "scene/scene.h"
 
-/* Its lights, volumes and meshes stand in the order of frames (scene/order.h). */
+/* A scene in frame space. Its lights, volumes and meshes stand in the order of frames (scene/order.h). */
 typedef struct framed_scene {
   hl_scene_description
       scene; /* in frame space; voxels, images and texts are borrowed from the scene in the world */
@@ -17,16 +17,16 @@ typedef struct framed_scene {
   hl_scene_mesh *meshes;       /* owned; [mesh_count], with room for the volumes' isosurfaces */
   int *mesh_objects;           /* owned; [mesh_count], with room for the volumes' isosurfaces; numbers of
                                 * the meshes in the layer of objects */
-  const scene_order *order;    /* borrowed; the places of volumes, lights and meshes in the world's lists */
+  const scene_order *order;    /* borrowed; the place of each thing in the lists of the world's scene */
   double (*vertices)[3];       /* owned; of all polygons */
-  hl_opacity_point *gradients; /* owned; of all volumes' gradient opacity */
+  hl_opacity_point *gradients; /* owned; the points of gradient opacity, of all volumes */
   hl_cut *cuts;                /* owned; the cuts of the volumes */
   double *sun_parts;     /* owned; [light_count]; the fraction of a light that a medium takes, where the light
                           * is a sun of the sky; else 0 */
-  uint64_t *plane_marks; /* owned; [volume_count]; marks that tell the content of functions of two numbers
-                          * apart */
-  double unit; /* the length in the world of 1 in frame space; the smallest voxel edge is 1 to 2 long in
-                * frame space */
+  uint64_t *plane_marks; /* owned; [volume_count]; functions of two numbers with different contents have
+                          * different marks */
+  double unit; /* the length in the world of one unit of frame space; the smallest voxel edge is 1 to 2 such
+                * units long */
 } framed_scene;
 
 /* scene: borrowed. */

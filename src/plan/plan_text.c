@@ -40,7 +40,7 @@ static json_t *whole_light_of(const frame_light *light) {
                    light->is_wide, "image", light->has_image);
 }
 
-/* placed: the same mesh among the frame's surfaces. */
+/* Makes the JSON of a mesh. placed: the same mesh among the frame's surfaces. */
 static json_t *mesh_of(const frame_mesh *mesh, const surface_mesh *placed) {
   json_t *made = json_pack("{s: i, s: f, s: b, s: b}", "object", mesh->object, "opacity", mesh->look.opacity,
                            "visible", mesh->look.visible, "casts_shadow", mesh->look.casts_shadow);

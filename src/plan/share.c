@@ -8,7 +8,7 @@
 #include "grid/relevant.h"
 #include "shadow/shadow_method.h"
 
-/* A cell while cells are put in order. */
+/* A cell of the picture while the cells are put in order. */
 typedef struct share_cell {
   double key;    /* rises from band to band */
   double weight; /* how much matter lies under it */
@@ -18,12 +18,14 @@ typedef struct share_cell {
 /* MOST_BANDS: number of bands of a part, at most. DEPTHS: number of depths that are told apart. */
 enum { MOST_BANDS = 3, DEPTHS = 32 };
 
-/* The arrays that a picture is cut in. */
+/* The arrays that are used while a picture is cut into parts. */
 typedef struct share_arrays {
   share_cell *cells;        /* [cells] */
   double *each;             /* owned; [cells], by the cell's index; the weight of each brick under a cell */
-  int32_t *cut[MOST_BANDS]; /* [cells], by index; parts of 1, 2, ... bands */
-  double (*depths[MOST_BANDS])[DEPTHS]; /* [parts]; the weight of such parts at each depth */
+  int32_t *cut[MOST_BANDS]; /* [cells], by the cell's index; the number of the cell's part, where a part has
+                             * 1, 2, ... bands */
+  double (*depths[MOST_BANDS])[DEPTHS]; /* for parts of 1, 2, ... bands: [parts][DEPTHS]; the weight of each
+                                         * part at each depth */
 } share_arrays;
 
 static size_t cells_of(const picture_share *share) { return (size_t)share->cells_x * (size_t)share->cells_y; }
@@ -88,7 +90,7 @@ static light_image image_of(const view *eye, const light_source *source) {
   return (light_image){at[0], at[1], at[2]};
 }
 
-/* The direction of the line through a pixel and the light's image, to either side. */
+/* The direction of the line through the pixel (u, v) and the light's image; it may point to either side. */
 static void line_through(const light_image *image, double u, double v, double way[2]) {
   way[0] = image->w * u - image->u;
   way[1] = image->w * v - image->v;
@@ -139,8 +141,9 @@ static void set_keys(const share_content *content, const picture_share *share, s
 enum { SHARE_BRICKS = 1 << 18 };
 static const double LEAST_WEIGHT = 0.1;
 
-/* A function that is called for each visible brick, with the cell that the brick lies over. height: of the
- * brick's centre, along the sheets' normal. */
+/* A function that is called for each visible brick, with the cell of the picture over which the brick lies.
+ * height: the height of the brick's centre along the sheets' normal. bricks: the number of bricks for which
+ * this brick counts. */
 typedef void brick_action(const share_content *content, const picture_share *share, share_arrays *arrays,
                           size_t cell, double height, double bricks);
 
@@ -154,9 +157,9 @@ static bool cell_of(const frame *frame, const picture_share *share, vec3 point, 
   return true;
 }
 
-/* Acts on the visible bricks of a grid. Of all bricks, one in `step` is looked at, and counts for `step`
- * bricks. The grid's list of bricks does not serve here: where voxels are in pages, the list depends on a
- * process's memory. */
+/* Calls `act` for the visible bricks of a grid. Of all bricks, one in `step` is looked at, and counts for
+ * `step` bricks. The grid's list of bricks does not serve here: where voxels are in pages, the list depends
+ * on a process's memory. */
 static void visit_grid(const share_content *content, const picture_share *share, const grid *grid,
                        size_t step, brick_action *act, share_arrays *arrays) {
   size_t bricks = grid->relevant_count > 0 ? hl_grid_bricks(grid) : 0, cell;
@@ -176,7 +179,8 @@ static void visit_bricks(const share_content *content, const picture_share *shar
                          share_arrays *arrays) {
   size_t bricks = 0;
   for (int g = 0; g < content->grid_count; g++) bricks += hl_grid_bricks(&content->grids[g]);
-  for (int g = 0; g < content->grid_count; g++) /* an odd step visits several columns of bricks */
+  /* An odd step visits several columns of bricks. */
+  for (int g = 0; g < content->grid_count; g++)
     visit_grid(content, share, &content->grids[g], bricks / SHARE_BRICKS | 1, act, arrays);
 }
 
@@ -186,7 +190,8 @@ static void count_brick(const share_content *content, const picture_share *share
   arrays->cells[cell].weight += bricks;
 }
 
-/* Before the cells are put in order. */
+/* Finds the weights of the cells. Call it while each cell still lies at its index, before the cells are put
+ * in order. */
 static void weigh_cells(const share_content *content, const picture_share *share, share_arrays *arrays) {
   share_cell *cells = arrays->cells;
   double sum = 0;
@@ -209,9 +214,9 @@ static int compare_cells(const void *a, const void *b) {
   return first->index < second->index ? -1 : 1;
 }
 
-/* Gives each cell, in their order, to the band in which the middle of its weight lies. Then gives bands to
- * parts, forwards and backwards by turns. So the last part has two neighbouring bands, and where a part has
- * three bands, the first part has two of them, too. */
+/* Cuts the ordered cells into bands of equal weight: a cell belongs to the band in which the middle of the
+ * cell's weight lies. Then gives bands to parts, forwards and backwards by turns. So the last part has two
+ * neighbouring bands, and where a part has three bands, the first part has two of them, too. */
 static void cut_bands(const picture_share *share, const share_cell *cells, int bands, int32_t *part_of) {
   double sum = 0, before = 0;
   const int parts = share->parts;
@@ -225,7 +230,8 @@ static void cut_bands(const picture_share *share, const share_cell *cells, int b
 
 /* ---- how many bands ---- */
 
-/* Adds a brick's weight to the sums of the parts that it lies over, at the brick's depth. */
+/* Adds a brick's weight, at the brick's depth, to the part over which the brick lies, for each number of
+ * bands. */
 static void place_brick(const share_content *content, const picture_share *share, share_arrays *arrays,
                         size_t cell, double height, double bricks) {
   (void)share;

@@ -18,15 +18,15 @@
 /* A picture's division into parts. A cell has as many pixels of the picture as a tile has of the frame:
  * `oversampling` tiles a side. */
 typedef struct picture_share {
-  int part, parts;                /* this renderer's part; how many there are */
-  const light_exchange *exchange; /* borrowed; exchange with the other parts; null: they cannot be asked */
+  int part, parts;                /* the number of this renderer's part, and the number of parts */
+  const light_exchange *exchange; /* borrowed; exchange of light with the other parts; null: there is none */
   int cells_x, cells_y;           /* number of cells of the whole picture */
-  int oversampling;               /* tiles of the frame along a cell's side */
+  int oversampling;               /* number of the frame's tiles along a side of a cell */
   unsigned char *memory;          /* owned; holds part_of; null: the picture is not shared */
   int32_t *part_of;               /* [cells_y][cells_x] */
 } picture_share;
 
-/* What the picture shows. */
+/* What the picture shows, as far as its division into parts depends on it. */
 typedef struct share_content {
   const frame *frame;        /* the frame, whose eye and lights must be set up */
   const frame_light *lights; /* the frame's lights, which its light sources name by row */

@@ -13,12 +13,13 @@ static const double LEAST_END = 1e-3, ROUNDINGS = 8;
 
 enum { BISECTIONS = 30 };
 
-/* A volume's transfer function, as a function of the coordinates of the classifier's table. */
+/* The input of the search: a volume's transfer function, and what brings the coordinates of the classifier's
+ * table to data values. */
 typedef struct shown_values {
   const hl_transfer_function *function; /* borrowed */
   double low, step; /* data values: the value of coordinate 0, and the step from one coordinate to the next */
   double nothing;   /* data value below which there is no matter */
-  double end;       /* number of entries by which ends are moved */
+  double end;       /* distance in entries of the table by which the ends of ranges are moved */
 } shown_values;
 
 static bool shows(const shown_values *values, double from, double to) {

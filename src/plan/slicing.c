@@ -183,7 +183,8 @@ static vec3 sum_of_directions(const frame *frame, const sweep_sheets *sweep) {
   return vec3_normalise(sum);
 }
 
-/* Adds the light to the sweep if one axis serves all of its lights. */
+/* Adds a light to a sweep, if one slicing axis serves the sweep's lights and this one. Returns whether it
+ * does. */
 static bool try_light(const frame *frame, const hl_render_settings *settings, sweep_sheets *sweep,
                       int light) {
   if (sweep->light_count == FRAME_LIGHTS || sweep->of_sectors) return false;
@@ -219,7 +220,7 @@ static void place_sheets(const frame *frame, sheet_stack *sheets) {
   sheets->first = (low + high) / 2 - (sheets->count - 1) * 0.5 * sheets->spacing;
 }
 
-/* Puts a sector into the sweep of the same sectors of other lights. */
+/* Adds a sector of a light to the sweep that has sectors of the same direction, or to a new sweep. */
 static void add_sector(const frame *frame, int light, sweep_sheets *sweeps, int *count) {
   vec3 axis = frame->lights[light].direction;
   int s = 0;
@@ -253,7 +254,7 @@ void hl_frame_add_eye_sweep(const frame *frame, sweep_sheets *sweeps, int *count
 }
 
 /* Adds a light without shadows to any sweep with room, else to a new sweep whose sheets are parallel to the
- * picture. light -1: adds only the sweep. */
+ * picture. light -1: a sweep is made ready, and no light is added. */
 static void add_plain_light(const frame *frame, int light, sweep_sheets *sweeps, int *count) {
   int s = 0;
   while (s < *count && sweeps[s].light_count == FRAME_LIGHTS) s++;

@@ -10,10 +10,10 @@
 /* One pass over the sheets, with the lights that one slicing direction serves. */
 typedef struct sweep_sheets {
   sheet_stack sheets;
-  bool back_to_front;      /* the eye meets the sheets from the last to the first; light always travels
-                            * from the first to the last */
-  bool of_sectors;         /* the sweep's lights are sectors of lights, and the slicing direction is chosen
-                            * for the sectors */
+  bool back_to_front; /* the eye's rays meet the sheets from the last to the first; the lights' rays always
+                       * meet them from the first to the last */
+  bool of_sectors;    /* the sweep's lights are sectors of lights, and the slicing direction is chosen
+                       * for the sectors */
   int light[FRAME_LIGHTS]; /* indices into frame lights */
   int light_count;
 } sweep_sheets;

@@ -5,11 +5,11 @@
 #include "core/memory.h"
 #include "reference/reference.h"
 
-/* The brick at a point, and the four weights, or their slopes, along each axis. */
+/* The brick at a point, and the weights of the four coefficients along each axis with their slopes. */
 typedef struct brick_place {
   const hl_brick_entry *entry;
-  const float *first; /* the coefficient with the first weight along each axis */
-  size_t row, slice;  /* floats from row to row and from slice to slice */
+  const float *first; /* the first of the 4 x 4 x 4 coefficients */
+  size_t row, slice;  /* number of floats from one row to the next, and from one slice to the next */
   double weight[3][4], slope[3][4];
 } brick_place;
 
@@ -36,7 +36,8 @@ static void find_place(const reference_volume *volume, vec3 point, brick_place *
   found->first = bricks->pool + (size_t)found->entry->slot * found->slice * found->row;
   const size_t stride[3] = {1, found->row, found->slice};
   for (int axis = 0; axis < 3; axis++) {
-    /* the brick begins at a multiple of its length; its first coefficient is a spacing before that */
+    /* the brick begins at a multiple of its length; its first coefficient lies one spacing before this
+     * multiple */
     double begin = floor((double)block[axis] / spacing) * (double)side;
     double at = x[axis] / spacing - begin, cell = fmin(floor(at), (double)side - 1);
     found->first += (size_t)cell * stride[axis];

@@ -19,7 +19,8 @@ static void bounds_of(const hl_scene_volume *other, affine3 world_to_index, doub
   }
 }
 
-/* Leaves out the faces that touch the other volume's box, beyond which matter goes on. */
+/* Removes those of the volume's faces that touch the other volume's box, because matter goes on beyond them.
+ */
 static void join(const hl_scene_volume *other, reference_volume *volume) {
   double low[3], high[3];
   bounds_of(other, volume->world_to_index, low, high);

@@ -9,7 +9,7 @@ typedef struct height {
   vec3 rise;   /* the height's gradient, a unit vector of the file's world */
 } height;
 
-/* Maps index space to the world in which a cut is given. */
+/* The map from index space to the world in whose coordinates a cut is given. */
 static affine3 world_of(const reference_volume *volume, const hl_cut *cut) {
   return cut->world ? volume->index_to_world : volume->grid->index_to_world;
 }
@@ -91,7 +91,8 @@ double hl_reference_next_face(const reference_volume *volume, vec3 origin, vec3 
   return next;
 }
 
-/* The normal of a cut's face. With the placement M, a height h rises in the world by |(M^-1)^T grad h|. */
+/* The normal of a cut's face, in the world. Of all cuts, the one with the nearest face to the point counts.
+ * Where M is the volume's placement, a height h rises by |(M^-1)^T grad h| per world unit. */
 vec3 hl_reference_cut_normal(const reference_volume *volume, vec3 point) {
   const hl_scene_volume *described = volume->described;
   vec3 face = {0, 0, 0};
@@ -107,8 +108,9 @@ vec3 hl_reference_cut_normal(const reference_volume *volume, vec3 point) {
   return face;
 }
 
-/* The length from a point that is left to where a ray meets removed matter. hl_reference_next_face() treats a
- * box's faces as endless planes. direction: a unit vector of the world, by index coordinates. */
+/* The distance along a ray from a point that cuts leave to the place where the ray meets removed matter.
+ * (hl_reference_next_face() treats the faces of a box as endless planes, so the ray may meet some without
+ * meeting removed matter.) direction: a unit vector of the world, by index coordinates. */
 static double way_to_removed(const reference_volume *volume, vec3 point, vec3 direction) {
   const double beyond = 1e-4 * volume->smallest_edge;
   double way = 0;

@@ -117,7 +117,8 @@ static inline void find_taps(const reference_volume *volume, vec3 point, bool sl
   }
 }
 
-/* The sum over 64 voxels with one weight per tap and axis. storage: a constant at every call. */
+/* The sum over 64 voxels with one weight per tap and axis. storage: each call gives a constant, so that the
+ * compiler makes a loop for each storage. */
 static inline double weigh_stored(const reference_volume *volume, hl_storage storage,
                                   const size_t voxel[3][4], const double *x, const double *y,
                                   const double *z) {
@@ -213,7 +214,7 @@ static void brick_voxels(size_t brick, size_t n, size_t *first, size_t *last) {
   *last = least(corner + BRICK_CELLS, n - 1);
 }
 
-/* Whether the field may take one of the isosurfaces' values. */
+/* Whether the value of some isosurface lies from low to high. */
 static bool holds_iso(const hl_scene_volume *volume, double low, double high) {
   for (size_t i = 0; i < volume->iso_count; i++)
     if (volume->iso[i].value >= low && volume->iso[i].value <= high) return true;
@@ -299,7 +300,7 @@ static hl_status create_bricks(hl_context *context, reference_volume *volume, hl
                                hl_error *error) {
   size_t count = 1;
   for (int axis = 0; axis < 3; axis++) {
-    /* cells 0 .. n stand for floor(p) from -1 to n-1 */
+    /* bricks hold cells 0 .. n, which stand for floor(p) from -1 to n-1 */
     volume->bricks[axis] = volume->grid->dimension[axis] / BRICK_CELLS + 1;
     count *= volume->bricks[axis];
   }

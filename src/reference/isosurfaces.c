@@ -2,7 +2,7 @@
  * field along the ray, and at the faces of the volume's box and cuts where they end the surface's inside. */
 #include "reference/reference.h"
 
-/* A stretch of a ray in which the field passes from one side of the value to the other. */
+/* A stretch of a ray at whose ends the field lies on different sides of an isosurface's value. */
 typedef struct bracket {
   double from, to; /* distances along the ray */
   bool rises;
@@ -23,7 +23,8 @@ static double bisect(const crossing *part, double value, bracket b) {
   return (b.from + b.to) / 2;
 }
 
-/* The first root of any of the volume's values between two distances, at which the field is a and b. */
+/* Finds the first place between two distances at which the field has the value of one of the volume's
+ * isosurfaces. a, b: the field at the two distances. */
 static void find_roots(const crossing *part, double from, double to, double a, double b, reference_hit *hit) {
   const hl_scene_volume *described = part->volume->described;
   for (size_t i = 0; i < described->iso_count; i++) {
@@ -52,7 +53,7 @@ static void meet_volume(const reference *all, const crossing *part, reference_hi
   }
 }
 
-/* Whether the box and the cuts leave a point of the ray. */
+/* Whether a point of the ray lies in the box, and no cut removes it. */
 static bool is_there(const crossing *part, double distance) {
   const vec3 here = vec3_add(part->origin, vec3_scale(part->direction, distance));
   const double at[3] = {here.x, here.y, here.z};

@@ -94,8 +94,8 @@ static vec3 point_of_disk(vec3 centre, vec3 normal, double radius, size_t i, siz
   return vec3_add(centre, vec3_add(vec3_scale(u_axis, radius * u), vec3_scale(v_axis, radius * v)));
 }
 
-/* Fills the points of a rectangle: one point in each of n strips along the first edge, golden sections apart
- * along the second. */
+/* Fills the points of a rectangle: one point in each of n strips across the first edge. Along the second
+ * edge, consecutive points are a golden section apart. */
 static void fill_rect(const hl_light *light, vec3 centre, size_t n, vec3 *points) {
   vec3 edge1 = vec3_of(light->edge1), edge2 = vec3_of(light->edge2);
   for (size_t i = 0; i < n; i++) {
@@ -184,7 +184,8 @@ static bool has_extent(const hl_light *light) {
   }
 }
 
-/* The offset of a light's point from the light's centre; for a directional light, at distance 1. */
+/* The offset of a light's point from the light's centre; for a directional light, the offset at distance 1
+ * from the direction to the light. */
 static vec3 offset_of(const reference_light *light, vec3 light_point) {
   if (!light->directional) return vec3_subtract(light_point, light->centre);
   vec3 at_distance_1 = vec3_scale(light_point, 1 / vec3_dot(light_point, light->towards));
@@ -362,7 +363,7 @@ void hl_reference_light_reach(const reference *all, const reference_light *light
   }
   for (size_t i = 0; i < count && !hl_pool_stops(all->pool, worker->number); i++) {
     vec3 light_point = casts ? light->points[i] : centre;
-    if (light->sphere) /* a sphere shows its disk to the point */
+    if (light->sphere) /* as seen from `point`, a sphere is the disk that faces the point */
       light_point = point_of_disk(light->centre, facing, light->described->radius, i, count);
     double pattern[3], passing[3] = {1, 1, 1};
     if (!find_pattern(light, extended ? &plane : NULL, light_point, point, pattern)) continue;

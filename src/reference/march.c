@@ -50,8 +50,7 @@ static double next_face(const crossing *part, double after) {
   return part->uncut ? INFINITY : hl_reference_next_face(part->volume, part->origin, part->direction, after);
 }
 
-/* Leaves only the volumes active that the cuts leave between the faces of the stretch. Returns whether any is
- * left. */
+/* Ends the activity of volumes that cuts remove in this stretch. Returns whether any volume stays active. */
 static bool leave_uncut(march *walk) {
   double middle = (walk->start + walk->end) / 2;
   bool inside = false;
@@ -107,8 +106,8 @@ bool hl_reference_march_next(march *walk) {
     double clear = hl_reference_march_place(walk, walk->start + (walk->next + 0.5) * walk->length);
     walk->next++;
     if (clear <= 0) return true;
-    /* skips the samples strictly inside the empty stretch; the margin keeps rounding from skipping one too
-     * many */
+    /* jumps over the samples that lie strictly inside the empty stretch; the margin keeps rounding from
+     * jumping over one sample too many */
     walk->next += floor(fmax(clear / walk->length - 1e-6, 0));
   }
 }

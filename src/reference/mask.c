@@ -9,8 +9,8 @@ typedef struct mask_voxels {
   double share[8];
 } mask_voxels;
 
-/* Finds the voxels around p, which is in the lattice's index space. False outside the lattice; the voxels are
- * then voxels at its border. */
+/* Finds the voxels around p, which is in the lattice's index space. False where p lies outside the lattice;
+ * the found voxels then lie at the lattice's border. */
 static bool find_voxels_at(const hl_volume *mask, const double p[3], mask_voxels *found) {
   bool inside = true;
   for (int corner = 0; corner < 8; corner++) {
@@ -51,8 +51,8 @@ double hl_reference_mask_factor(const reference_volume *volume, vec3 point) {
   return factor_of(mask->volume, &found);
 }
 
-/* Differences over two voxels of the lattice. They are linear between the lattice's points, as the factor
- * is. */
+/* The slope of the mask's factor, by differences over two voxels of the lattice. These differences are
+ * interpolated linearly between the lattice's points, as the factor is. */
 vec3 hl_reference_mask_slope(const reference_volume *volume, vec3 point) {
   const hl_mask *mask = &volume->described->mask;
   double slope[3];

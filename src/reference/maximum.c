@@ -70,7 +70,8 @@ static double greatest_between(const crossing *part, double step) {
     double at = part->enter + next * length;
     double clear = hl_reference_clearance(
         part->volume, vec3_add(part->origin, vec3_scale(part->direction, at)), part->direction);
-    next += floor(fmax(clear / length - 1e-6, 0)); /* skips the samples in empty bricks */
+    /* Jumps over the samples in empty bricks. */
+    next += floor(fmax(clear / length - 1e-6, 0));
     bool shown = clear <= 0 && ask(&found, at);
     if (shown && !before) ask_at_end(&found, at, at - length);
     if (before && !shown) ask_at_end(&found, at - length, at);

@@ -35,8 +35,8 @@ void hl_reference_transmittance(const reference *all, const reference_ray *ray, 
 
 /* ---- where surfaces begin ---- */
 
-/* The optical depth of matter of this value in a unit distance; for a function of two numbers, the
- * greatest. */
+/* The optical depth, in one unit of distance, of matter with this value. For a function of two numbers it is
+ * the greatest depth with any second number. */
 static double extinction_at(const reference_volume *volume, double value) {
   if (value < volume->transparent_below) return 0;
   double opacity = hl_transfer_function_opacity(&volume->described->transfer_function, value);
@@ -52,12 +52,12 @@ static int index_of_value(const reference_volume *volume, double value) {
   return (int)fmin(fmax(place, 0), HL_REFERENCE_FEET - 1);
 }
 
-/* The value at which the surface of a value begins. */
+/* The value at which the surface begins to which matter with this value belongs. */
 static double foot_of(const reference_volume *volume, double value) {
   return volume->feet[index_of_value(volume, value)];
 }
 
-/* The integral of extinction over values, up to a value, in steps. */
+/* The integral of extinction over values, from feet_low up to a value. It is tabulated in steps of values. */
 static double depth_to(const reference_volume *volume, double value) {
   double place = (value - volume->feet_low) / (volume->feet_high - volume->feet_low) * HL_REFERENCE_FEET;
   place = fmin(fmax(place, 0), HL_REFERENCE_FEET);
@@ -120,11 +120,12 @@ typedef struct kept_light {
   bool second;
 } kept_light;
 
-/* k to the power 1 - skin: products over steps do not depend on the steps' length. */
+/* Raises a kept fraction towards 1 by the skin of a face: kept to the power 1 - skin. Powers are used so that
+ * products over steps do not depend on the steps' length. */
 static double kept_in_skin(double kept, double skin) { return skin > 0 ? pow(kept, 1 - skin) : kept; }
 
-/* The light kept in a step. from, to: the values at the step's ends, in the direction of light. skin: how
- * much visible matter there belongs to a face that cuts it, 0 to 1. */
+/* The fractions of the taken light that a step keeps. from, to: the values at the step's ends, in the
+ * direction of light. skin: how much visible matter there belongs to a face that cuts it, 0 to 1. */
 static kept_light kept_of_step(const reference_volume *volume, double from, double to, double length,
                                double skin) {
   double foot_from = foot_of(volume, from), foot_to = foot_of(volume, to), deep = to - foot_to,
@@ -140,12 +141,13 @@ static kept_light kept_of_step(const reference_volume *volume, double from, doub
   return (kept_light){0, enters ? 1 : 0, enters && extinction_at(volume, from) > 0};
 }
 
-/* A surface that is the second one behind another. It is not yet known whether the other surface is a layer
- * of its own. */
+/* The state after the ray, on its way to the light, has left the point's surface for another surface in front
+ * of it. It is not yet known whether that other surface is a layer of its own. */
 typedef struct pending_layer {
   bool any;
-  double depth, rise, ramp; /* depth: the layer's optical depth so far. rise: the second surface's values
-                             * per length. ramp: the depth that a straight ramp would have, times `rise` */
+  /* depth: the other surface's optical depth so far. rise: the values' change per length where the ray left
+   * the point's surface. ramp: the depth of a straight ramp, times `rise`. */
+  double depth, rise, ramp;
 } pending_layer;
 
 /* The factors by which all steps between here and the point multiply the light and the light taken by the
@@ -173,7 +175,7 @@ static void settle(light_factors *all, pending_layer *layer) {
 }
 
 /* Adds a step to the factors. depth: the depth of all volumes in the step, in each channel. kept: the mean of
- * their kept light. */
+ * the fractions that the volumes keep. */
 static void add_step(light_factors *all, pending_layer *layer, const double depth[3], kept_light kept) {
   if (layer->any && kept.before == 0) settle(all, layer);
   for (int c = 0; c < 3; c++) {

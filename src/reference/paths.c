@@ -95,13 +95,13 @@ static vec3 turn(vec3 way, double g, uint64_t *random) {
       vec3_scale(way, cosine), vec3_add(vec3_scale(u, sine * cos(angle)), vec3_scale(v, sine * sin(angle)))));
 }
 
-/* Adds the light that the lights send to a collision, by one random point of each light. way: the direction
- * of the path from the eye, a unit vector. */
+/* Adds the light that the scene's lights send to a collision, and that is scattered there onto the path. One
+ * random point stands for each light. way: the path's direction, away from the eye; a unit vector. */
 static void add_lights(const reference *all, const collision *met, vec3 way, const double weight[3],
                        reference_worker *worker, uint64_t *random, double sum[3]) {
   for (size_t l = 0; l < all->scene->light_count; l++) {
     reference_light one = all->lights[l];
-    if (one.points == NULL) continue; /* a light without shadows is scattered only once */
+    if (one.points == NULL) continue; /* only the first scattering counts lights without shadows */
     vec3 point = one.points[(size_t)(uniform(random) * (double)one.point_count)];
     if (!one.sphere) one.points = &point, one.point_count = 1;
     arrival arrived;
@@ -114,7 +114,7 @@ static void add_lights(const reference *all, const collision *met, vec3 way, con
   }
 }
 
-/* Adds the light that the sky sends to a collision, by one random cell. */
+/* Adds the light that the sky sends to a collision. One random cell stands for the sky. */
 static void add_sky(const reference *all, const collision *met, vec3 way, const double weight[3],
                     reference_worker *worker, uint64_t *random, double sum[3]) {
   if (all->sky.count == 0) return;

@@ -5,7 +5,8 @@
  * (docs/decisions.md); one ray through its centre would give another picture. */
 #include "reference/reference.h"
 
-enum { BRICK_CELLS = 4, LONGEST_SIDE = 4096, SURFACE_RAYS = 4 }; /* SURFACE_RAYS is for the edges of meshes */
+/* SURFACE_RAYS: rays along each side of a pixel where a scene has meshes, for their edges. */
+enum { BRICK_CELLS = 4, LONGEST_SIDE = 4096, SURFACE_RAYS = 4 };
 
 /* The box around the visible bricks, within the volume's box, in index space. Bricks at the borders reach
  * half a voxel beyond the grid. False if no brick is visible. */
@@ -35,8 +36,8 @@ static bool shown_box(const reference_volume *volume, double low[3], double high
   return any;
 }
 
-/* The corners, in the world, of the boxes around visible bricks: their sum, their number, and their least
- * depth. */
+/* The corners, in the world, of the boxes around visible bricks: the sum of their positions, the depth of the
+ * nearest one, and their number. */
 typedef struct content {
   vec3 sum;
   double nearest;

@@ -55,8 +55,8 @@ static eye_rays eye_rays_of(const hl_scene_description *scene) {
   return eye;
 }
 
-/* Ray (x, y) of the picture, counted in rays; a pixel has rays x rays of them. The direction is a unit
- * vector. */
+/* Finds ray (x, y) of the picture. Rays are numbered across the whole picture; a pixel has rays x rays of
+ * them. *direction: a unit vector. */
 static void eye_ray(const picture *all, size_t x, size_t y, vec3 *origin, vec3 *direction) {
   const eye_rays *eye = &all->eye;
   double across = 2 * ((double)x + 0.5) / ((double)all->all->scene->width * all->all->rays) - 1;
@@ -117,9 +117,9 @@ static double first_within(double before, double extinction, double start) {
   return start + log((1 - before) / (1 - FIRST_OPACITY)) / extinction;
 }
 
-/* Marches along a part of a camera ray. Every step is cut into pieces that add no more than most_opacity
- * each, judged by the extinction of the piece before. Adds to the ray's contributions in the worker. Sets
- * *first to the first depth if it lies in this part. */
+/* Marches along a part of a camera ray. Every step is cut into pieces, so that no piece adds more opacity
+ * than most_opacity; the extinction of the piece before tells how long a piece may be. Adds the contributions
+ * of the part's samples to worker->ray. Sets *first to the first depth if it lies in this part. */
 static void trace_part(const reference *all, const reference_ray *way, reference_worker *worker,
                        double *first) {
   march walk;

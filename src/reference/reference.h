@@ -50,22 +50,22 @@ typedef struct reference_volume {
                                      * goes on */
   double empty_value;               /* data value of voxels that are not finite */
   double empty_stored;              /* data value of voxels that are not finite, as a stored value */
-  double transparent_below;         /* data values below this are empty space; -infinity if there are no such
-                                     * values */
-  double surface_gradient;          /* least gradient of a surface, data value per world unit */
-  double smallest_edge;             /* shortest edge of a voxel, world units */
-  size_t bricks[3];                 /* number of bricks along i, j, k */
-  double *coefficients;   /* owned; [k][j][i], stored values; the coefficients that the interpolating kernel
-                           * sums in place of voxels; null for other kernels */
-  double least, greatest; /* with coefficients: the range of values; values beyond the range count as its
-                           * ends */
-  double (*ranges)[2];    /* owned; [slots]; the least and greatest coefficient of each brick of a field in
-                           * bricks; null where there are voxels */
-  double *feet; /* owned; [HL_REFERENCE_FEET]; for equal steps of values from feet_low to feet_high, the value
-                 * at which their surface begins */
+  double transparent_below; /* there is no matter where the data value is below this; -infinity: no value
+                             * means this */
+  double surface_gradient;  /* least gradient of a surface, data value per world unit */
+  double smallest_edge;     /* shortest edge of a voxel, world units */
+  size_t bricks[3];         /* number of bricks along i, j, k */
+  double *coefficients;     /* owned; [k][j][i], stored values; the coefficients that the interpolating kernel
+                             * sums in place of voxels; null for other kernels */
+  double least, greatest;   /* with coefficients: the range of values; values beyond the range count as its
+                             * ends */
+  double (*ranges)[2];      /* owned; [slots]; the least and greatest coefficient of each brick of a field in
+                             * bricks; null where there are voxels */
+  double *feet; /* owned; [HL_REFERENCE_FEET]; the values from feet_low to feet_high are divided into equal
+                 * steps; for each step, the value at which the surface of its values begins */
   double feet_low, feet_high;
-  double *depths; /* owned; [HL_REFERENCE_FEET + 1]; the integrals of extinction over values, from feet_low to
-                   * the ends of these steps */
+  double *depths; /* owned; [HL_REFERENCE_FEET + 1]; the integral of extinction over values, from feet_low to
+                   * each end of these steps */
   const struct reference_volume *second; /* the other volume of a function of two numbers, else null */
   affine3 index_to_second;               /* maps the volume's index space to the second volume's */
   affine3 index_to_mask;    /* maps the volume's index space to its mask's index space, if it has a mask */
@@ -73,7 +73,8 @@ typedef struct reference_volume {
                              * in bricks (chessboard metric) to the nearest such brick, at most 255 */
 } reference_volume;
 
-/* One light. points: [point_count]; positions in the world, or unit directions to a directional light. */
+/* One light. points: [point_count]; points of the light as positions in the world; for a directional light,
+ * unit vectors towards it. */
 typedef struct reference_light {
   const hl_light *described;
   bool directional;
@@ -96,7 +97,8 @@ enum { EXTENT_POINTS = 256 };
 
 /* A triangle or a sphere of a mesh, in the world. */
 typedef struct reference_triangle {
-  vec3 corner[3]; /* for a sphere: two opposite corners of the box around it, and its centre */
+  vec3 corner[3]; /* the corners of a triangle; for a sphere, two opposite corners of the box around it, and
+                   * its centre */
   double radius;  /* 0 for a triangle */
   const hl_scene_mesh *mesh;
   size_t index; /* number among the mesh's triangles, or its spheres */
@@ -120,9 +122,10 @@ typedef struct reference_surfaces {
 
 /* A part of the sky. */
 typedef struct reference_sky_cell {
-  vec3 direction, mean; /* world: the unit vector to the cell's middle, and the mean of all unit vectors to
-                         * the cell. In a cell of an image both are weighted by the image's light */
-  double radiance[3];   /* the cell's mean radiance */
+  /* World: the unit vector to the cell's middle, and the mean of the unit vectors to all points of the cell.
+   * Where the sky is an image, both are weighted by the image's light. */
+  vec3 direction, mean;
+  double radiance[3]; /* the cell's mean radiance */
 } reference_sky_cell;
 
 typedef struct reference_sky {
@@ -157,11 +160,11 @@ typedef struct reference_ray {
 /* A ray's passage through one volume's box. */
 typedef struct crossing {
   const reference_volume *volume;
-  vec3 origin, direction;     /* index space; distances along the ray in world units */
+  vec3 origin, direction;     /* in index space; distances along the ray are in world units */
   double enter, leave;        /* distances; enter >= leave if the ray misses the box */
   bool uncut;                 /* whether the volume's cuts are ignored */
   bool active;                /* whether the ray is now inside the part of the box that cuts leave */
-  bool occupied;              /* active, and the brick may be visible */
+  bool occupied;              /* whether the crossing is active and the brick at `here` may be visible */
   vec3 here;                  /* index space; the current sample, where active */
   double last_at, last_value; /* for hl_reference_outside(): the last distance at which the volume was met,
                                * and the value there; NaN: not known */
@@ -174,7 +177,7 @@ typedef struct march {
   double longest_step;
   double start, end;  /* the current stretch */
   double length;      /* length of a step */
-  double next, steps; /* whole numbers: the next step, the number of steps */
+  double next, steps; /* whole numbers: the number of the next step, and the number of steps */
   double at;          /* distance of the current sample */
 } march;
 
@@ -190,11 +193,12 @@ typedef struct reference_receiver {
 typedef struct arrival {
   vec3 towards;       /* unit vector to the light's centre */
   double incoming[3]; /* brightness before light texture and attenuation; eq. (1) */
-  double pattern[3];  /* mean colour of the light texture or emission image over the light's points; 1 without
-                         either; eq. (2) */
-  double shadowed[3]; /* mean of the pattern times transmittance over the light's points */
-  double outside[3];  /* the mean of the pattern times transmittance, at the outside of the surface in
-                       * which the sample lies */
+  double pattern[3];  /* mean colour of the light texture or emission image over the light's points; 1 if the
+                       * light has neither; eq. (2) */
+  double shadowed[3]; /* mean over the light's points of the pattern times the transmittance from the point to
+                       * the sample */
+  double outside[3];  /* the same mean for light that goes to the outside of the surface in which the sample
+                       * lies */
   bool pattern_known, shadowed_known, outside_known;
 } arrival;
 
@@ -205,10 +209,10 @@ typedef struct light_part {
 
 /* The contributions to a sample or to a ray: sums weighted by extinction (sample) or by opacity (ray). */
 typedef struct reference_parts {
-  double weight;   /* sum of the weights; for a ray: alpha */
-  int object;      /* for a sample: the object of the greatest weight; for a ray: the object where alpha first
-                    * reaches 0.01 */
-  double greatest; /* for a sample: the greatest weight */
+  double weight; /* sum of the weights; for a ray: alpha */
+  int object;    /* for a sample: the object with the greatest weight; for a ray: the object that is met where
+                  * alpha first reaches 0.01 */
+  double greatest; /* for a sample: the greatest weight of an object so far */
   double ambient[3], emission[3], sky[3];
   double sky_reaching[3], sky_open[3]; /* for white matter: the sky's light that reaches it, and the sky's
                                         * light that would reach it if nothing hid it */
@@ -260,13 +264,13 @@ double hl_reference_next_face(const reference_volume *volume, vec3 origin, vec3 
  * the face, falling to 0 away from it. */
 double hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *normal,
                              double *surface);
-/* How much matter at a point belongs to the face that light comes through last before it: 1 at the face, 0
+/* How much matter at a point belongs to the face through which light comes to it last: 1 at the face, 0
  * two voxels behind it. to_light: a unit vector of the world. uncut: only the box's faces count, not the
  * cuts'. */
 double hl_reference_lit_face(const reference_volume *volume, vec3 point, vec3 to_light, bool uncut);
 
-/* The weights of the four taps around a point at t from 0 to 1 after the second, and their slopes (may be
- * null). */
+/* Finds the weights of the four taps along an axis, and their slopes (slope may be null). The point lies
+ * between the second and the third tap, at the distance t (0 to 1) after the second. */
 void hl_reference_weights(hl_kernel kernel, double t, double weight[4], double slope[4]);
 
 /* A field in bricks at a point of the volume's index space: its value, and its derivative by the coordinates.
@@ -305,7 +309,7 @@ double hl_reference_leaves_box(const reference_volume *volume, vec3 point, vec3 
 /* The extinction sigma at a point, 1 / world length: sigma(f) = -ln(1 - alpha(f)) / u, times gradient
  * opacity. value: the value at the point. */
 double hl_reference_extinction(const reference_volume *volume, double value, vec3 point);
-/* A function of two numbers at a point. */
+/* The sums of a function of two numbers at a point. */
 plane_sum hl_reference_plane_sum(const reference_volume *volume, double value, vec3 point);
 /* The colour of the transfer function, linear RGB. */
 void hl_reference_color(const reference_volume *volume, double value, vec3 point, double color[3]);
@@ -368,8 +372,8 @@ typedef struct reference_sky_receiver {
   bool receives_shadow;
 } reference_sky_receiver;
 
-/* The sky's light at a receiver: all light, the light that reaches the receiver, and the light that the
- * receiver sends on. An even sky of radiance 1 gives 1. */
+/* The sky's light at a receiver: all of the sky's light, the part of it that reaches the receiver, and the
+ * light that the receiver sends on. An even sky of radiance 1 gives 1. */
 typedef struct reference_sky_light {
   double open[3], reaching[3], sent[3];
 } reference_sky_light;
@@ -430,8 +434,8 @@ void hl_reference_surface_shade(const reference *all, const reference_hit *hit, 
 /* A ray that begins on a surface does not meet it again within this fraction of a step. */
 #define LEAST_GAP 1e-3
 
-/* Contributions (layers.c). clear() sets them to zero. add() adds others, times `scale`. write() writes the
- * caller's layers of one pixel. */
+/* Contributions to samples and rays (layers.c). clear() sets them to zero. add() adds other contributions,
+ * times `scale`. write() writes one pixel of the caller's layers. */
 void hl_reference_parts_clear(reference_parts *parts, size_t light_count);
 void hl_reference_parts_add(reference_parts *parts, const reference_parts *other, double scale,
                             size_t light_count);

@@ -12,8 +12,8 @@
 
 #include "reference/reference.h"
 
-/* The light that reaches a point is computed at the first request only: it is by far the costliest part of a
- * sample. */
+/* The fraction of a light that reaches a sample. It is computed at the first request and kept in
+ * worker->arrivals, because it is by far the costliest part of a sample. */
 static const double *light_reach(const reference *all, const reference_sample *at, size_t light, bool surface,
                                  reference_worker *worker) {
   arrival *arrived = &worker->arrivals[light];
@@ -79,8 +79,8 @@ double hl_reference_phase(double g, vec3 to_eye, vec3 towards) {
   return (1 - g * g) / pow(1 + g * g + 2 * g * vec3_dot(to_eye, towards), 1.5);
 }
 
-/* Adds the fraction of a light that reaches a sample, or its outside if the sample is on a surface that faces
- * the light. */
+/* Adds, to a shadow layer, the fraction of a light that reaches a sample. Where the sample is on a surface
+ * that faces the light, the fraction at the surface's outside counts. */
 static void add_shadow(const reference *all, const reference_sample *at, const surface *here, size_t light,
                        reference_worker *worker, double shadow[3]) {
   bool faces = vec3_dot(here->normal, worker->arrivals[light].towards) > 0;
@@ -136,7 +136,7 @@ static vec3 outside_of_surface(const reference_sample *at, const surface *here, 
   return vec3_add(at->point, vec3_scale(here->normal, way * here->amount * (1 - behind_face)));
 }
 
-/* Adds the sky's light; on a surface, the light at its outside. */
+/* Adds the sky's light that a sample sends to the eye. A surface is lit by the light at its outside. */
 static void shade_sky(const reference *all, const reference_sample *at, const surface *here,
                       reference_worker *worker, reference_parts *sample) {
   const hl_scene_volume *described = at->volume->described;

@@ -91,7 +91,8 @@ static void add_sky(const reference *all, const reference_surface_point *at, ref
   }
 }
 
-/* Finds the normal and the colour where the ray meets a triangle. Returns whether the ray meets the back. */
+/* Finds the normal and the colour where the ray meets a triangle. Returns whether the ray meets the
+ * triangle's back. */
 static bool find_mesh_point(const reference *all, const reference_hit *hit, reference_surface_point *at) {
   const hl_scene_mesh *mesh = hit->triangle->mesh;
   vec3 flat = flat_normal(hit, at->point);

@@ -26,7 +26,8 @@ static double middle_of(const reference_triangle *triangle, int axis) {
   return sum / 3;
 }
 
-/* Moves the triangles whose middle lies below `at` to the front. Returns their number. */
+/* Moves the triangles whose middles lie below `at` along an axis to the front of the array. Returns the
+ * number of these triangles. */
 static size_t part_triangles(reference_triangle *triangles, size_t count, int axis, double at) {
   size_t below = 0;
   for (size_t t = 0; t < count; t++) {
@@ -218,7 +219,7 @@ static bool takes_part(const reference_triangle *triangle, reference_role role) 
   return role == REFERENCE_SEEN ? triangle->mesh->visible : triangle->mesh->casts_shadow;
 }
 
-/* Visits the leaves that a ray may meet. */
+/* Finds the next hit by walking the tree: visits the leaves whose boxes the ray meets. */
 bool hl_reference_surface_next(const reference *all, reference_role role, const reference_ray *ray,
                                double after, reference_hit *hit) {
   const reference_surfaces *surfaces = &all->surfaces;
