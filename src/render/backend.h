@@ -11,14 +11,15 @@
 #include "render/target.h"
 
 typedef struct backend {
-  /* Makes ready for a plan's frame. Where this fails, another back end makes the frame, and the error says
-   * why. */
+  /* Makes ready for the frame of a plan. After a failure another back end makes the frame, and the error says
+   * why this one cannot. */
   hl_status (*prepare)(hl_renderer *renderer, const frame_plan *plan, const frame_target *target,
                        hl_error *error);
-  /* Makes a sweep of the plan. Sweeps come in their order, each once. */
+  /* Makes one sweep of the plan. It is called once for each sweep, in the order of the sweeps. */
   hl_status (*run)(hl_renderer *renderer, const frame_plan *plan, int sweep, frame_target *target,
                    hl_render_statistics *statistics, hl_error *error);
-  /* Brings all pixels of the picture to the target after the last sweep. Null: the sweeps put them there. */
+  /* Brings all pixels of the picture to the target after the last sweep. Null: the sweeps themselves put the
+   * pixels there. */
   hl_status (*read)(hl_renderer *renderer, const frame_plan *plan, frame_target *target,
                     hl_render_statistics *statistics, hl_error *error);
 } backend;

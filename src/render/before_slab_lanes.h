@@ -15,8 +15,9 @@
  * four pixels stand for all of them. They lie as far from the sample as the buffers' pixels do on average. */
 enum { NEAR_PIXELS = 4 };
 typedef struct near_pixels {
-  lanes u[NEAR_PIXELS], v[NEAR_PIXELS]; /* from the sample to each pixel; in pixels */
-  lanes3 along_u, along_v;              /* steps of one pixel along u and along v on the sheet; frame space */
+  /* The distance from the sample to each near pixel along u and along v; in pixels. */
+  lanes u[NEAR_PIXELS], v[NEAR_PIXELS];
+  lanes3 along_u, along_v; /* the ways on the sheet by which u, or v, grows by one pixel; frame space */
 } near_pixels;
 
 /* A light as a slab's samples see it. */
@@ -74,8 +75,8 @@ LANES_INLINE near_pixels pixels_of_sublights(void) {
   return near;
 }
 
-/* Shortens a way from a point towards the light to the part next to the point that cuts leave. enter,
- * leave: distances from the point. */
+/* Shortens a way from a point towards the light: keeps the part that begins next to the point and that no cut
+ * removes. enter, leave: distances from the point to the ends of the way. */
 LANES_INLINE void shorten_way(const shade_volume *volume, lanes3 from, lanes3 towards, lanes *enter,
                               lanes *leave) {
   for (int i = 0; i < volume->light_cut_count; i++) {
@@ -91,7 +92,7 @@ LANES_INLINE void shorten_way(const shade_volume *volume, lanes3 from, lanes3 to
   }
 }
 
-/* The length of a way from a point towards the light that cuts leave. */
+/* The length of those parts of a way from a point towards the light that no cut removes. */
 LANES_INLINE lanes way_left(const shade_volume *volume, lanes3 from, lanes3 towards, lanes enter,
                             lanes leave) {
   lanes removed = lanes_set(0);
@@ -116,9 +117,10 @@ typedef struct ways_before {
   lanes first, last, near[NEAR_PIXELS];
 } ways_before;
 
-/* The two faces of a box across one axis: the distances from the lit position, towards the light, to the
- * face ahead and to the face behind. u, v: how much both distances shrink with a step of one pixel along u
- * or v. along: how much both shrink when the lit position moves through the whole slab along the eye's ray.
+/* The two faces of a box across one axis. ahead, behind: the distances from the lit position, towards the
+ * light, to the face ahead and to the face behind. u, v: by how much both distances shrink with a step of one
+ * pixel along u or v. along: by how much both distances shrink when the lit position moves through the whole
+ * slab along the eye's ray.
  */
 typedef struct faces_of_axis {
   lanes ahead, behind, u, v, along;
@@ -130,8 +132,8 @@ typedef struct faces_of_axis {
  * box by another face, far away. */
 static const float ALONG_FACE = 0.5f;
 
-/* Does for a cut what find_faces() does for a box: the face ahead is a plane where the light's ray meets the
- * cut. */
+/* Finds for a cut the number that find_faces() returns for a box. The face ahead counts as the plane that
+ * touches the cut's shape where the light's ray meets it. */
 LANES_INLINE lanes face_of_cut(const shade_cut *cut, lanes3 position, lanes3 towards, const near_pixels *near,
                                lanes through) {
   ray_section way = cross_cut(cut, position, towards);
@@ -184,13 +186,14 @@ LANES_INLINE lanes find_faces(const shade_volume *volume, const block_geometry *
   return likely;
 }
 
-/* A point beside a sample. u, v, along: steps from the sample to the point. within: the light's way from the
- * slab's first sheet to the point. */
+/* A point near a sample. u, v: the steps of a pixel along u and v from the sample to the point. along: the
+ * fraction of the slab through which the eye's ray goes from the sample to the point. within: the length of
+ * the light's way from the slab's first sheet to the point. */
 typedef struct point_beside {
   lanes u, v, along, within;
 } point_beside;
 
-/* The light's way within the box before the slab. */
+/* The length of the light's way to a point within the volume's box before the slab. */
 LANES_INLINE lanes way_before(const shade_volume *volume, const faces_of_axis faces[3],
                               const block_geometry *g, const seen_light *light, point_beside point) {
   lanes leave = lanes_set(1e30f), enter = point.within;

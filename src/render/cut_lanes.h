@@ -12,8 +12,8 @@ LANES_INLINE lanes3 point_in_cut(const shade_cut *cut, lanes3 p) {
                   row_of_point(cut->rows[2], p)};
 }
 
-/* A speed, or a tiny number in place of 0: a ray that runs along a face then crosses it far away, on the
- * right side. */
+/* A ray's speed across a face, or a tiny number in place of 0. So a ray that runs along a face meets it far
+ * away, on the right side. */
 LANES_INLINE lanes some_speed(lanes speed) {
   return lanes_select(lanes_abs(speed) < 1e-12f, lanes_set(1e-12f), speed);
 }

@@ -41,7 +41,7 @@ bool hl_device_choose(hl_renderer *renderer, const char *device) {
   return true;
 }
 
-/* Opens the device that is wanted, and tries it, once. */
+/* Opens the device that the renderer wants, and tries it. This happens once. */
 static void open_device(hl_renderer *renderer) {
   const char *wanted = wanted_device(renderer);
   char problem[GPU_PROBLEM_BYTES] = "";
@@ -98,8 +98,8 @@ static hl_status run(hl_renderer *renderer, const frame_plan *plan, int index, f
                              hl_hot_functions(context->options.instruction_set)};
   const sweep_plan *of = &plan->sweeps.list[index];
   float *pixels = hl_frame_target_pixels(target, plan, index);
-  const uint64_t samples = statistics->samples_shaded; /* the samples of the search for hidden matter, which
-                                                        * the processors made */
+  /* The processors search for hidden matter; their samples are not counted as the device's. */
+  const uint64_t samples = statistics->samples_shaded;
   planned_sweep planned = {0};
   int32_t *shown_from = NULL;
   hl_status status = hl_find_hidden(&means, plan, of, pixels, &shown_from, statistics, error);

@@ -58,7 +58,8 @@ static bool is_soft(const frame_plan *plan) {
   return false;
 }
 
-/* Matter that gradient opacity hides ends surfaces for all pixels of a block (shadow/attenuate_lanes.h).
+/* Whether cut surfaces with gradient opacity cast shadows. A device cannot make these as the processors do.
+ * Matter that gradient opacity hides ends surfaces for all pixels of a block (shadow/attenuate_lanes.h).
  * Behind a cut, the processors leave out whole blocks, of which a pixel of a device knows nothing. */
 static bool hides_cut_surfaces(const frame_plan *plan) {
   bool shadows = false;
@@ -116,8 +117,8 @@ static int storage_of(const grid *grid) {
   return grid->storage == HL_STORAGE_U8 ? 0 : grid->storage == HL_STORAGE_U16 ? 1 : 2;
 }
 
-/* The bits of the grid's cells. Null where all cells are visible; then the processors do not read the bits,
- * either. */
+/* The grid's bits that say which cells are visible. Null where all cells are visible; the processors do not
+ * read the bits then, either. */
 static const uint64_t *bits_of_cells(const grid *grid) {
   return grid->cell_bits_tell ? grid->cell_bits : NULL;
 }
@@ -251,7 +252,7 @@ static void plan_brightness(const shade_light *shade, plan_light *light) {
   light->sector_least = shade->sector.least;
 }
 
-/* A sweep while it is described for a device. */
+/* The state while a sweep is described for a device. */
 typedef struct sweep_task {
   const frame_plan *frame_plan;
   const sweep_plan *plan;

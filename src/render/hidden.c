@@ -7,7 +7,7 @@
 #include "core/memory.h"
 #include "render/sweep.h"
 
-/* The same sheets in reverse order. */
+/* The same sheets in reverse order, for a sweep that goes from front to back. */
 static sweep_sheets turned_round(const sheet_stack *sheets) {
   sweep_sheets turned = {.sheets = *sheets};
   turned.sheets.normal = vec3_scale(sheets->normal, -1);
@@ -15,14 +15,15 @@ static sweep_sheets turned_round(const sheet_stack *sheets) {
   return turned;
 }
 
-/* The first visible slab, counted from the light, of a block that is opaque after slab k, counted from the
- * eye. Derived: between n sheets there are n - 1 slabs; the k nearest to the eye are the last k, from slab n
- * - k on. */
+/* A block has become opaque in the preparatory sweep, after slab k as counted from the eye. Returns the
+ * number, counted from the light, of the first slab of the block that is visible. Derived: between n sheets
+ * there are n - 1 slabs; the k slabs nearest to the eye are the last k, from slab n - k on. */
 static int32_t first_shown(const sweep *sweep, int slab) { return sweep->geometry->sheets.count - slab; }
 
 /* The data of the tile action. */
 typedef struct hidden_search {
-  int32_t *shown_from; /* [tiles][16]; first visible slab; 0: the block is not covered yet */
+  int32_t *shown_from; /* [tiles][16]; the number of the first visible slab of each block; 0: no opaque matter
+                        * covers the block so far */
   bool trying; /* blocks stay open after they are opaque, so that the pixels which they cover are counted */
 } hidden_search;
 
@@ -54,9 +55,9 @@ static bool is_tried(const sweep *sweep, size_t tile) {
   return (hl_tile_x(sweep, tile) + hl_tile_y(sweep, tile) * 11) % 32 == 0;
 }
 
-/* The search pays where, for each pixel that is seen, more pixels than this are covered. A seen pixel costs
- * the search about half of the time that lighting a covered one takes (measured); the number is higher than
- * that, because a few tried tiles are no sure sign. */
+/* The search goes on beyond the tried tiles if it finds more covered pixels for each seen pixel than this
+ * number. To search a seen pixel takes about half as long as to light a covered pixel (measured), so 0.5
+ * would pay; the number is higher because a few tried tiles are no sure sign. */
 static const double COVERED_PER_SEEN = 0.75;
 
 static hl_status is_worth_while(const sweep *front, bool *worth, hl_error *error) {
@@ -128,7 +129,7 @@ hl_status hl_find_hidden(const sweep_means *means, const frame_plan *frame_plan,
   if (status == HL_OK) status = search_tiles(&front, &search, error);
   if (status == HL_OK) hl_sweep_count(&front, statistics);
   hl_sweep_end(&front);
-  /* removes the opacities that the search left */
+  /* sets the opacities to zero that the search left in the pixels */
   hl_pool_clear(means->pool, pixels, tiles * TILE_PIXELS * 4 * sizeof *pixels);
   return status;
 }

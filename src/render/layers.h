@@ -21,10 +21,10 @@
 typedef struct light_pixels {
   float *picture, *shadow; /* R G B A */
   size_t light_index;      /* the light's index in the scene; a light in sectors has several entries */
-  bool of_sky;             /* A sun of the sky: its picture is part of the sky's picture. It has no shadow
-                            * layer, and the next two arrays instead. */
-  float *reaching, *open;  /* R G B A; the sky's pictures of white matter, of this sun's light that arrives
-                            * and of its light with nothing in the way */
+  bool of_sky; /* the light is a sun of the sky: its picture is a part of the sky's picture. A sun has no
+                * shadow layer; it has the next two arrays instead */
+  float *reaching, *open; /* R G B A; the sun's share of two pictures of white matter: `reaching` by the light
+                           * that arrives, `open` by the light that would arrive if nothing were in the way */
 } light_pixels;
 
 enum { COLORS = 4 }; /* R G B A */
@@ -47,7 +47,7 @@ hl_status hl_layer_pixels_create(hl_context *context, hl_pool *pool, const hl_la
 void hl_layer_pixels_count(const hl_layers *wanted, const frame *frame, size_t tiles, hl_layout *layout);
 void hl_layer_pixels_release(hl_context *context, layer_pixels *pixels);
 
-/* The wanted layers that a light of the frame is part of. */
+/* Which of the wanted layers a light of the frame adds to. */
 hl_light_layers hl_layers_of_light(const hl_layers *wanted, const light_source *light);
 
 /* How pixels of the frame become pixels of the picture: oversampling x oversampling are averaged. */

@@ -12,7 +12,7 @@ typedef struct color_lanes {
   lanes c[3];
 } color_lanes;
 
-/* exp(-x), also of negative x. An x below -40 counts as -40. */
+/* exp(-x); x may be negative, and below -40 it counts as -40. */
 LANES_INLINE lanes exp_of_depth(lanes x) { return lanes_exp_negative(lanes_max(x, lanes_set(-40.0f))); }
 
 /* phi(x) = (1 - exp(-x)) / x, the mean of exp(-x s) over s in [0,1], as numerator (over) and denominator
@@ -40,8 +40,9 @@ LANES_INLINE lanes own_transmittance(lanes e, lanes left, lanes enter, lanes mor
   return seen * exp_of_depth(enter + lanes_min(sum, lanes_set(0)));
 }
 
-/* Lengths of the light's way within a volume's box, to where a section of the eye's ray begins and ends. In
- * ways_of_light(), `path` holds the two lengths measured from the slab's first sheet, whatever the box. */
+/* Lengths of the light's way within a volume's box, to the two points where a section of the eye's ray begins
+ * and ends. path, in ways_of_light(): the lengths of the ways to these points from the slab's first sheet,
+ * whether in the box or not. */
 typedef struct ways_in_box {
   lanes first, last;
 } ways_in_box;
@@ -119,25 +120,26 @@ LANES_INLINE ways_in_box find_ways(const block_slab *slab, block_density *densit
 
 /* Optical depths of the slab for one light, from its first sheet on. */
 typedef struct light_depths {
-  lanes enter[HL_CHANNELS], more[HL_CHANNELS]; /* where the eye's rays enter the matter, and what the depth
-                                                  gains until they leave it */
-  lanes near[HL_CHANNELS][NEAR_PIXELS]; /* near a face: optical depths from the face to the near pixels on the
-                                           first sheet */
-  lanes_int face;                       /* lanes near a face of a box */
-  lanes beside;                         /* near a face: how much the face counts, 0 to 1 */
+  /* enter: the optical depth to the point where the eye's ray enters the matter. more: what the depth gains
+   * until the eye's ray leaves the matter. */
+  lanes enter[HL_CHANNELS], more[HL_CHANNELS];
+  /* Near a face: optical depths from the face to the near pixels on the first sheet. */
+  lanes near[HL_CHANNELS][NEAR_PIXELS];
+  lanes_int face; /* lanes near a face of a box */
+  lanes beside;   /* near a face: how much the face counts, 0 to 1 */
   /* Near a face: optical depths like `enter` and `more`, but of the light's way before the slab. */
   lanes before_enter[HL_CHANNELS], before_more[HL_CHANNELS];
 } light_depths;
 
-/* The greatest optical depth: hardly any light is left, and floats still hold exp(-depth). */
+/* The greatest optical depth that is used: it leaves hardly any light, and exp(-depth) is still a float. */
 static const float DEEPEST = 80;
 
 /* Where the optical depths of the near pixels, from the faces to the slab, differ by less than this, the
  * buffer is read as if there were no face; where they differ by twice as much, the face counts fully. */
 static const float EVEN_LIGHT = 0.1f;
 
-/* Near a box's face: adds the optical depth of a volume's matter between the face and the slab. `before`
- * receives the depths at the near pixels. */
+/* Near a face of a volume's box: adds the optical depth of the volume's matter between the face and the slab.
+ * The depths at the near pixels are added to `before`. */
 LANES_INLINE void add_face(const shade_job *job, const block_slab *slab, const block_density *d,
                            const seen_light *light, lanes before[HL_CHANNELS][NEAR_PIXELS],
                            light_depths *depths) {
@@ -165,8 +167,8 @@ LANES_INLINE void add_face(const shade_job *job, const block_slab *slab, const b
   }
 }
 
-/* Adds to `near` the depths between the faces and the slab, weakened where they hardly differ from pixel to
- * pixel. before: these depths at the near pixels, all volumes together. */
+/* Adds to depths->near the optical depths between the faces and the slab. They are weakened where they hardly
+ * differ from pixel to pixel. before: these depths at the near pixels, all volumes together. */
 LANES_INLINE void add_before(int channels, lanes before[HL_CHANNELS][NEAR_PIXELS], light_depths *depths) {
   lanes spread = lanes_set(0);
   for (int c = 0; c < channels; c++) {
@@ -188,7 +190,8 @@ LANES_INLINE void add_before(int channels, lanes before[HL_CHANNELS][NEAR_PIXELS
   }
 }
 
-/* light->near is null where no face of a box can be near. */
+/* Finds the optical depths of a slab for one light. light->near is null where no face of a box can be near.
+ */
 LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_slab *slab,
                                           block_density *densities, int count, const seen_light *light) {
   const lanes3 towards = light->towards;

@@ -31,15 +31,15 @@ static const double SECTOR_SPARE = 1e-3;
 typedef struct read_buffer {
   const light_source *source;
   double rows[3][4]; /* frame space -> (w, w u, w v) of the buffer */
-  double length[3];  /* of the rows, without their last numbers */
+  double length[3];  /* the length of each row without its last number */
   int32_t *until;    /* [tiles_y][tiles_x] */
   int tiles_x, tiles_y;
-  const struct read_buffer *moves; /* The buffer whose pixels measure how far look-ups at surfaces move
+  const struct read_buffer *moves; /* the buffer whose pixels measure how far look-ups at surfaces move
                                     * away from the surfaces: the light's first one. Null: there are no
                                     * surfaces. */
 } read_buffer;
 
-/* The place (w, w u, w v) of a point in a buffer. */
+/* The position of a point in a buffer, as homogeneous coordinates (w, w u, w v). */
 static vec3 place_in(const read_buffer *buffer, vec3 point) {
   double place[3];
   for (int i = 0; i < 3; i++)
@@ -48,7 +48,7 @@ static vec3 place_in(const read_buffer *buffer, vec3 point) {
   return vec3_of(place);
 }
 
-/* The rectangle of pixels that some points lie on. */
+/* A rectangle of pixels around the images of some points. */
 typedef struct read_bounds {
   double low[2], high[2];
   double nearest; /* the least w */
@@ -114,9 +114,10 @@ static void read_hull(const read_buffer *buffer, const vec3 *points, int count, 
     }
 }
 
-/* Points around the samples of a tile between two heights. They are eight points, or fewer points and the
- * eye where the eye lies between the heights or beyond them. There are no points where a ray beside the
- * picture does not cross the sheets in the direction of the rays within the picture. */
+/* Finds points whose convex hull holds the samples of a tile between two heights. There are eight points;
+ * where the eye lies between the heights or beyond them, there are fewer points, and the eye. There are no
+ * points where a ray beside the picture does not cross the sheets in the direction of the rays within the
+ * picture. */
 static int hull_of(const sweep *sweep, size_t tile, double low, double high, vec3 points[9]) {
   const view *eye = &sweep->frame->eye;
   vec3 normal = sweep->geometry->sheets.normal;
@@ -234,7 +235,8 @@ static void lay_out_light(const sweep *sweep, sweep_light *light, hl_layout *lay
   if (is_exchanged(sweep, &light->shadow)) light->owned = hl_layout_take(layout, tiles, sizeof *light->owned);
 }
 
-/* Lays out the buffers of the lights of which only those pixels are made that samples may read. */
+/* Lists the buffers of lights whose pixels are made only where samples may read them, and lays the list out.
+ */
 static read_buffer *lay_out_buffers(const sweep *sweep, hl_layout *layout) {
   size_t count = 0;
   for (int i = 0; i < sweep->geometry->light_count; i++)

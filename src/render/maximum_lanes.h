@@ -7,8 +7,8 @@
 #include "render/slab_lanes.h"
 #include "simd/gathers.h"
 
-/* The greatest value from low to high that the transfer function shows; all values are coordinates. The
- * result is below 0 where no value is shown. */
+/* The greatest of the values from low to high that the transfer function shows. All values are coordinates in
+ * the volume's table; below 0: no value is shown. */
 LANES_INLINE lanes greatest_shown(const float (*shown)[4], lanes low, lanes high) {
   lanes of_entry[3], of_next[3];
   lanes_gather_row_pairs(&shown[0][0], split_coordinate(high).entry, of_entry, of_next);

@@ -5,8 +5,8 @@
 #include "render/shade_lanes.h"
 #include "render/slab_lanes.h"
 
-/* The mean of the volumes' normals. The weights are the volumes' extinction, and how much each is a
- * surface. */
+/* The mean of the volumes' normals. A normal's weight is the volume's extinction times the fraction by which
+ * the volume is a surface. */
 LANES_INLINE lanes3 normal_of_block(const block_slab *slab, const block_density *densities, int count) {
   lanes inverse = 1.0f / lanes_max(slab->total, lanes_set(1e-30f));
   lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
@@ -24,7 +24,7 @@ LANES_INLINE lanes depth_of(const shade_job *job, const block_slab *slab, lanes3
   return -dot3(way, slab->geometry.towards_eye);
 }
 
-/* The object that takes most of the slab's light. */
+/* The number of the object that takes most of the slab's light. */
 LANES_INLINE lanes object_of_block(const block_density *densities, int count) {
   lanes most = lanes_set(0), object = lanes_set(0);
   for (int i = 0; i < count; i++) {

@@ -20,8 +20,8 @@ typedef struct packed_tile {
   packed_block blocks[TILE_BLOCKS];
 } packed_tile;
 
-/* [1 + TILE_BLOCKS][patches]: the volumes of a block before the block is packed, followed by the volumes of
- * the packed slabs. */
+/* A patch's scratch holds the volume of a block before the block is packed, followed by the volume of each
+ * packed slab: [1 + TILE_BLOCKS][patches] for all patches. */
 _Static_assert((1 + TILE_BLOCKS) * sizeof(block_density) <= SHADE_SCRATCH_BYTES,
                "a volume's scratch holds its slabs");
 
@@ -35,7 +35,7 @@ LANES_INLINE int add_slab(packed_tile *tile, int patch_count, block_density *den
   return s;
 }
 
-/* The first slab with at least lanes_wanted free lanes. */
+/* Finds the first packed slab with at least lanes_wanted free lanes; where there is none, adds a slab. */
 LANES_INLINE int slab_with_room(packed_tile *tile, int lanes_wanted, int patch_count,
                                 block_density *densities) {
   for (int s = 0; s < tile->slab_count; s++)

@@ -15,7 +15,7 @@ LANES_INLINE lanes phase(float g, lanes turn) {
   return lanes_set(1 - g * g) / (squared * lanes_sqrt(squared));
 }
 
-/* A coordinate in the angles of a phase table, and the phase function p at the angle. */
+/* The position of an angle in the columns of a phase table, and the phase function p at the angle. */
 typedef struct phase_angle {
   lanes_int column;
   lanes fraction; /* from the column to the next one */
@@ -33,8 +33,8 @@ LANES_INLINE phase_angle phase_angle_at(float g, lanes turn) {
   return angle;
 }
 
-/* The row of a phase table for a cap of light; it may lie between two rows. ratio: the cap's s^2 divided by
- * the least s^2 of the table. */
+/* The row of a phase table for a cap of light, as a fraction between two rows. ratio: the cap's s^2 divided
+ * by the least s^2 of the table. */
 LANES_INLINE lanes row_of_ratio(const phase_table *table, lanes ratio) {
   lanes row = lanes_log2(lanes_max(ratio, lanes_set(1.0f))) * table->rows_per_log2;
   return lanes_clamp(row, 0, PHASE_CAPS - 1 - 1e-3f);
@@ -52,7 +52,8 @@ LANES_INLINE lanes mean_in_table(const phase_table *table, lanes row, const phas
   return lanes_fma(far - near, angle->fraction, near) * angle->phase;
 }
 
-/* The row for a cap seen along `way`, which need not have unit length. inverse: 1 / |way|^2. */
+/* The row of a phase table for a light's cap as seen along `way`, which need not have unit length. inverse: 1
+ * / |way|^2. */
 LANES_INLINE lanes row_of_cap(const phase_table *table, float size, const light_cap *cap, lanes3 way,
                               lanes inverse) {
   const float *spread = cap->spread;

@@ -62,8 +62,9 @@ static hl_status add_surfaces(hl_renderer *renderer, const framed_scene *framed,
   return HL_OK;
 }
 
-/* The grid that the frame uses. A volume that neither shows nor casts a shadow may still be the second number
- * of another volume's function; frames do not fill its samples. */
+/* The grid of a volume as the frame uses it. A volume that is neither visible nor casts a shadow may still
+ * give the second number of another volume's function. The grid of such a volume has no relevant bricks, so
+ * that the frame does not fill its samples. */
 static grid grid_of_frame(const hl_scene_volume *volume, const prepared_volume *prepared) {
   grid grid = prepared->grid;
   if (!volume->visible && !volume->casts_shadow) grid.relevant_count = 0;
@@ -197,10 +198,10 @@ static hl_status place_eye_and_lights(const framed_scene *framed, frame_plan *pl
   frame *frame = &plan->frame;
   hl_status status = hl_frame_set_up_eye(frame, scene, error);
   if (status != HL_OK) return status;
+  /* The spacing is at most the margin by which volumes continue beyond their faces. */
   frame->spacing = fmin(scene->render.sheet_spacing,
                         hl_is_maximum(&scene->render) ? MAXIMUM_SPACING : GRID_MARGIN) *
-                   frame->content.voxel; /* the spacing is at most the margin by which volumes continue
-                                          * beyond their faces */
+                   frame->content.voxel;
   hl_frame_set_up_lights(frame, framed);
   for (int i = 0; i < plan->volumes.count; i++)
     if (rays_start_inside(frame, &plan->volumes.grids[i])) plan->volumes.grids[i].cut = true;

@@ -32,7 +32,7 @@ static bool same_clip(const prepared_volume *prepared, const hl_scene_volume *sc
                              memcmp(prepared->clip + 3, scene->clip_max, sizeof scene->clip_max) == 0);
 }
 
-/* The shape of a cut in the grid's index space. */
+/* The shape of a cut in the index space of the grid, which may be shifted from the volume's. */
 static cut_shape cut_in_grid(const hl_scene_volume *scene, size_t cut, const grid *grid) {
   cut_shape shape = hl_cut_shape(scene, cut);
   const vec3 shift = mat3_apply(shape.to_shape.linear, vec3_of(grid->shift));
@@ -68,7 +68,7 @@ static hl_status keep_cuts(hl_context *context, prepared_volume *prepared, const
   return HL_OK;
 }
 
-/* Room for a copy of a transfer function's points. */
+/* Memory into which a transfer function's points are copied. */
 typedef struct function_points {
   hl_opacity_point *opacity; /* owns the block */
   hl_color_point *color;
@@ -188,7 +188,8 @@ static bool same_second(const prepared_volume *prepared, const hl_scene_volume *
   return prepared->second == second->volume && prepared->second_empty == hl_scene_volume_empty_value(second);
 }
 
-/* Keeps the second volume, retained for the same reason as the mask. */
+/* Keeps the second volume of a function of two numbers. It is retained for the same reason as the mask: no
+ * other volume can get its address. */
 static void hold_second(prepared_volume *prepared, const hl_scene_volume *second) {
   hl_volume *volume = second != NULL ? second->volume : NULL;
   hl_volume_retain(volume);
@@ -278,7 +279,7 @@ static const prepared_iso *known_iso(const prepared_volume *prepared, const prep
   return NULL;
 }
 
-/* grid: the prepared grid, with open faces. */
+/* Prepares the isosurfaces of a volume. grid: the prepared grid, with open faces. */
 static hl_status prepare_iso(hl_context *context, hl_pool *pool, const hl_scene_volume *scene,
                              const grid *grid, prepared_volume *prepared, hl_error *error) {
   prepared_iso *made = hl_allocate_zeroed(context, scene->iso_count, sizeof *made);

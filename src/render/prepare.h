@@ -29,12 +29,12 @@ typedef struct prepared_volume {
   classifier classifier;
   double empty;                  /* data value */
   hl_kernel kernel;              /* the kernel for which the grid's cells are bounded */
-  hl_transfer_function function; /* The function from which the classifier was made; its points are owned. */
+  hl_transfer_function function; /* the function from which the classifier was made; its points are owned */
   uint64_t plane_mark;           /* identifies the content of the function of two numbers; 0: there is none */
   double clip[6];
   int clipped;
-  uint64_t version, tables_version; /* Versions of the grid's voxels, and of everything that follows from the
-                                     * transfer function. They rise with each change, from 0 on. */
+  uint64_t version, tables_version; /* versions of the grid's voxels, and of everything that follows from the
+                                     * transfer function; they rise with each change, from 0 on */
   cut_shape *cuts;                  /* owned; the grid's cuts */
   prepared_iso *iso;                /* owned; [iso_count] */
   size_t iso_count;

@@ -20,7 +20,8 @@ static uint64_t kept_buffers(const frame_cache *cache) {
   return bytes;
 }
 
-/* Refuses a frame whose sweeps cannot fit, before the first sheet. The picture is allocated already. */
+/* Refuses, before the first sheet, a frame whose sweeps cannot fit into memory. The picture's memory is
+ * allocated already. */
 static hl_status prepare(hl_renderer *renderer, const frame_plan *plan, const frame_target *target,
                          hl_error *error) {
   const sweep_means means = means_of(renderer);

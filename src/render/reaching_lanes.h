@@ -17,7 +17,8 @@ LANES_INLINE shadow_taps taps_of_position(const shade_light *light, const shadow
                           lanes_select(ahead, place[2] / safe, outside));
 }
 
-/* The mean over the sub-lights of their transmittance, or of the light at the outside of surfaces. */
+/* The mean, over all sub-lights of a light, of the transmittance from the sub-light, or of its light at the
+ * outside of surfaces (outside: 1). */
 LANES_INLINE color_lanes mean_of_sublights(const shade_light *light, lanes3 position, uint32_t active,
                                            int outside) {
   color_lanes sum = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
@@ -34,7 +35,8 @@ LANES_INLINE color_lanes mean_of_sublights(const shade_light *light, lanes3 posi
   return sum;
 }
 
-/* Interpolates between the buffers of the previous chunk (older) and of this one (younger). */
+/* Interpolates between the light in the buffer of the previous chunk (older) and in the buffer of this chunk
+ * (younger). */
 LANES_INLINE lanes between_chunks(const shadow_lookup *lookup, lanes older, lanes younger) {
   return lanes_add_scaled(older, younger - older, lookup->young);
 }
@@ -44,7 +46,7 @@ LANES_INLINE lanes look_up_plane(const shadow_lookup *lookup, const shadow_taps 
   return cubic ? look_up_cubic(&lookup->map, taps, plane) : look_up(&lookup->map, taps, plane);
 }
 
-/* A channel of the buffer, interpolated. */
+/* The interpolated transmittance of one channel of the buffer. */
 LANES_INLINE lanes interpolated(const shadow_lookup *lookup, const shadow_taps *taps, int cubic,
                                 int channel) {
   lanes light = look_up_plane(lookup, taps, cubic, lookup->transmittance[channel]);
@@ -104,7 +106,7 @@ LANES_INLINE void correct_faces(light_depths *depths, int channels, color_lanes 
   }
 }
 
-/* The place at which a slab's samples look up a light, on the first sheet of the slab. */
+/* Where a slab's samples look up a light in the shadow buffer: positions on the first sheet of the slab. */
 typedef struct light_place {
   const shade_light *light;
   const shadow_lookup *lookup; /* the look-up on this sheet */
@@ -170,11 +172,11 @@ LANES_INLINE color_lanes passing_to_media(const shade_job *job, const light_plac
 /* Where the light's way to a volume's sample begins, at the slab's first sheet: coordinates of the
  * classifier's tables. */
 typedef struct way_begin {
-  lanes start, change; /* the table coordinate of the value at the way's begin, and its change per unit of
-                        * the way */
-  lanes first, foot;   /* coordinates where the surface to which the first value belongs begins, and where
-                        * the sample's own surface begins */
-  lanes_int there; /* lanes in which the volume's matter is visible at the way's begin, or may be visible */
+  lanes start, change; /* the table coordinate of the value where the way begins, and the coordinate's change
+                        * per unit of the way */
+  lanes first, foot; /* the coordinate where the surface begins to which the value at the way's begin belongs,
+                      * and the coordinate where the sample's own surface begins */
+  lanes_int there;   /* lanes in which some of the volume's matter may be visible where the way begins */
 } way_begin;
 
 /* Finds the value where the light's way begins. If values rise so little from it that they cannot have
@@ -189,7 +191,8 @@ LANES_INLINE way_begin find_begin(const block_density *d, lanes3 towards, lanes 
   lanes side = lanes_select(seen >= foot, lanes_set(1.0f), lanes_set(-1.0f));
   lanes below = lanes_gather(classifier->outside,
                              lanes_truncate(lanes_clamp(foot - side * 0.5f, 0, CLASSIFIER_ENTRIES)));
-  lanes_int layer = lanes_abs(below - foot) > 1.0f; /* matter below the foot is visible */
+  /* Matter just below the foot is visible: it is a layer of its own. */
+  lanes_int layer = lanes_abs(below - foot) > 1.0f;
   lanes_int beyond = layer & ((start - below) * side < 0.0f);
   start = lanes_select(beyond, below, start);
   lanes_int entry = lanes_truncate(start);
@@ -199,7 +202,7 @@ LANES_INLINE way_begin find_begin(const block_density *d, lanes3 towards, lanes 
 
 /* How much of the light at the slab's first sheet lights a sample's surface. */
 typedef struct own_surface {
-  lanes kept;    /* the fraction of the light that was taken before the slab but still lights the sample's
+  lanes kept;    /* of the light that was taken before the slab, the fraction that still lights the sample's
                   * surface */
   lanes passing; /* of the light that was not taken before the slab, the fraction that reaches the surface
                   * within the slab */

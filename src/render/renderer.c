@@ -31,8 +31,8 @@ hl_status hl_renderer_create(hl_context *context, hl_renderer **renderer, hl_err
   return HL_OK;
 }
 
-/* Takes the renderer for one frame. False where a frame is under way: a callback of that frame, or another
- * thread, wants another frame. */
+/* Takes the renderer for one frame. False where a frame is under way already; then a callback of that frame,
+ * or another thread, has asked for another frame. */
 static bool take(hl_renderer *renderer) { return !atomic_exchange(&renderer->busy, true); }
 
 static hl_status fail_busy(const char *caller, hl_error *error) {

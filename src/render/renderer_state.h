@@ -19,14 +19,12 @@ typedef struct frame_cache {
   shadow_buffer *buffers; /* [buffer_count]; LIGHT_SECTORS buffers for each of the scene's lights */
   size_t buffer_count;
   shadow_memory shadow_memory[FRAME_LIGHTS]; /* memory of the lights of a sweep */
-  surfaces surfaces;                         /* the last frame's meshes; kept while they stay where they
-                                              * are */
-  surface_tree contact;                      /* the tree of these surfaces */
-  scatter_field scattered;                   /* kept while the scene's matter and lights stay the same */
-  sky_field sky;                             /* the light of the scene's sky */
-  phase_tables phases;                       /* the phase functions of the scene's media, averaged over its
-                                              * lights */
-  hl_reserve reserve;                        /* blocks that frames and sweeps have returned */
+  surfaces surfaces;       /* the meshes of the last frame; kept while the meshes stay where they are */
+  surface_tree contact;    /* the tree of these surfaces */
+  scatter_field scattered; /* kept while the scene's matter and lights stay the same */
+  sky_field sky;           /* the light of the scene's sky */
+  phase_tables phases;     /* means of the media's phase functions over the scene's lights */
+  hl_reserve reserve;      /* blocks of memory that frames and sweeps have returned, for later frames */
 } frame_cache;
 
 /* The device that makes a renderer's frames. */
@@ -52,7 +50,7 @@ struct hl_renderer {
   uint64_t estimate; /* bytes; see render/estimate.h */
 };
 
-/* What the caller wants: a picture of a scene, and its layers. */
+/* A caller's request for a frame: a picture of a scene, and its layers. */
 typedef struct frame_request {
   const hl_scene *scene;   /* borrowed until the frame ends */
   const hl_layers *layers; /* null: none */

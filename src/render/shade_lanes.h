@@ -13,7 +13,7 @@
 /* The light that arrives from one light, with its direction (step 14 and the first half of step 15; eqs. 1
  * and 2). */
 typedef struct arriving_light {
-  int dark;               /* the light lights nothing here; the other fields are not set */
+  int dark;               /* no light arrives here, or it lights nothing; the other members are not set */
   lanes3 towards;         /* unit */
   color_lanes full;       /* the light without attenuation */
   color_lanes shadowed;   /* the light with attenuation, as media receive it */
@@ -26,7 +26,8 @@ LANES_INLINE lanes within_cone(const light_cone *cone, lanes3 towards) {
   return x * x * lanes_line(x, -2.0f, 3.0f);
 }
 
-/* The fraction of a position's light that comes from a light's sector (light_source.h). */
+/* The fraction of the light at a position that the sector of a light gives (light_source.h); the other
+ * sectors give the rest. */
 LANES_INLINE lanes fraction_of_sector(const sector_fraction *sector, lanes3 towards) {
   lanes own = lanes_set(0), sum = lanes_set(1e-30f);
   for (int i = 0; i < sector->count; i++) {
@@ -41,7 +42,8 @@ LANES_INLINE int is_dark(const color_lanes *light) {
   return lanes_bits((light->c[0] > 0.0f) | (light->c[1] > 0.0f) | (light->c[2] > 0.0f)) == 0;
 }
 
-/* Whether light from this direction can light anything visible: a medium, or a surface that faces it. */
+/* Whether light from this direction can light anything that is visible in the lanes `seen`: a medium, a
+ * surface that faces the light, or a surface that sends on light from any angle (even). */
 LANES_INLINE int is_faced(const block_density *densities, int count, lanes_int seen, lanes3 towards) {
   lanes_int faced = lanes_set_int(0);
   for (int i = 0; i < count; i++) {
@@ -85,7 +87,8 @@ LANES_INLINE void find_full_light(const shade_light *light, lanes3 position, arr
   for (int c = 0; c < 3; c++) arriving->full.c[c] = arriving->full.c[c] * pattern[c];
 }
 
-/* Multiplies a light by the fraction that surfaces close before a slab's samples let through. */
+/* Multiplies the light that arrives by the fraction that passes the surfaces close before a slab's samples.
+ */
 LANES_INLINE void pass_near_surfaces(const shade_job *job, const shade_light *light, const block_slab *slab,
                                      color_lanes *passing) {
   lanes_int column = lanes_truncate(lanes_clamp(slab->u - job->near_u, 0, TILE - 1)),
@@ -95,7 +98,7 @@ LANES_INLINE void pass_near_surfaces(const shade_job *job, const shade_light *li
                     lanes_gather(job->near_passing[light->number * job->channels + c], row * TILE + column);
 }
 
-/* Multiplies a light by the fraction that everything before a slab's samples lets through. */
+/* Multiplies the light that arrives by the fraction that passes everything before a slab's samples. */
 LANES_INLINE void attenuate_light(const shade_job *job, const shade_light *light, const block_slab *slab,
                                   color_lanes *passing, color_lanes *arriving) {
   lanes transmittance = lanes_set(1.0f);
@@ -106,7 +109,7 @@ LANES_INLINE void attenuate_light(const shade_job *job, const shade_light *light
   }
 }
 
-/* Whether a slab's visible volumes are media, surfaces, or both in some lane. */
+/* Whether some lane of a slab's visible volumes has a medium, and whether some lane has a surface. */
 typedef struct receivers {
   int media, surfaces;
 } receivers;
@@ -279,7 +282,7 @@ LANES_INLINE color_lanes color_of_matter(const block_density *d, lanes3 position
   return color;
 }
 
-/* The lit colours of the volumes, averaged with their extinction as weights. */
+/* The lit colour of a block: the mean of the volumes' lit colours, weighted by their extinctions. */
 LANES_INLINE color_lanes color_of_block(const shade_job *job, const block_slab *slab,
                                         const arriving_light *lights, const block_density *densities,
                                         int count, lanes total) {
@@ -294,7 +297,7 @@ LANES_INLINE color_lanes color_of_block(const shade_job *job, const block_slab *
       color_lanes sky = sky_of_volume(job, slab, d, &color);
       for (int c = 0; c < 3; c++) lit.c[c] = lanes_fma(sky.c[c], color.c[c], lit.c[c]);
     }
-    if (count == 1) return lit; /* with one volume, its extinction is the total */
+    if (count == 1) return lit; /* a single volume has all of the extinction */
     lanes weight = lanes_select(d->extinction == total, lanes_set(1.0f), d->extinction * inverse);
     for (int c = 0; c < 3; c++) sum.c[c] = lanes_fma(lit.c[c], weight, sum.c[c]);
   }
@@ -366,7 +369,7 @@ LANES_INLINE int composite_packed(const shade_job *job, const packed_block *bloc
  * packed slab share voxels. */
 static const unsigned char NEAR_EACH_OTHER[TILE_BLOCKS] = {0,  1,  4,  5,  2, 3, 6,  7,
                                                            10, 11, 14, 15, 8, 9, 12, 13};
-/* The rank of each block in NEAR_EACH_OTHER. */
+/* The place of each block in NEAR_EACH_OTHER. */
 static const unsigned char RANK_OF_BLOCK[TILE_BLOCKS] = {0,  1,  4, 5, 2,  3,  6,  7,
                                                          12, 13, 8, 9, 14, 15, 10, 11};
 
@@ -420,8 +423,8 @@ LANES_INLINE uint32_t shade_patches(const shade_job *job, const tile_slab *tile,
   return open;
 }
 
-/* The function is compiled a second time for one volume, the usual case, which needs no loops over
- * volumes. */
+/* Shades a tile. The code for one volume, the usual case, is compiled separately, because it needs no loops
+ * over volumes. */
 static uint32_t shade_tile(const shade_job *job, const tile_slab *tile, float *pixels, uint64_t *samples) {
   if (tile->patch_count == 1) return shade_patches(job, tile, 1, pixels, samples);
   return shade_patches(job, tile, tile->patch_count, pixels, samples);

@@ -17,7 +17,7 @@ static const double MOST_CELLS = 1200000;
 /* ---- the key ---- */
 
 static void add_volume(hl_key *key, const prepared_volume *prepared, const grid *grid) {
-  /* the prepared volume keeps the voxels */
+  /* the address of the voxels may be in the key, because the prepared volume keeps the voxels */
   hl_matter_key_add(key, prepared->scene, prepared->plane_mark, grid, &prepared->classifier);
   hl_key_add_whole(key, 2 * (int64_t)prepared->kernel + (prepared->scene->visible != 0));
 }

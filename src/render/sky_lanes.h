@@ -16,12 +16,12 @@
  * < 1 (derived). */
 static const float HALF_CELL = 0.6107f;
 
-/* Voxels by which a sample is at most moved to the outside of its surface. */
+/* The greatest distance, in voxels, by which a sample is moved to the outside of its surface. */
 static const float MOST_TO_OUTSIDE = 8.0f;
 
-/* The way along the normal from a volume's samples to the outside of their surface; frame units. Derived: the
- * values fall by the gradient's length in each unit of the way. Behind the face of a cut there is no such
- * way: the matter outside of the face, which the gradient describes, is cut away. */
+/* The length of the way along the normal from a volume's samples to the outside of their surface; frame
+ * units. Derived: along this way the values fall by the gradient's length per unit. Behind the face of a cut
+ * there is no such way: the gradient describes matter outside of the face, which is cut away. */
 LANES_INLINE lanes way_to_outside(const block_density *d) {
   const shade_volume *volume = d->patch->volume;
   const classifier *classifier = volume->classifier;
@@ -56,13 +56,13 @@ LANES_INLINE lanes sent_on(const shade_volume *volume, const sky_parts *parts, l
   return lanes_fma(medium, 1.0f - surface, on_surface);
 }
 
-/* Finds the positions at which the sky's light is looked up for a slab's samples. For surfaces they lie
- * outside of the surface. */
+/* Finds the positions at which the sky's light is looked up for a slab's samples. A surface's samples are
+ * looked up outside of the surface. */
 LANES_INLINE void place_sky(const shade_job *job, const block_slab *slab, block_density *densities,
                             int count) {
   for (int i = 0; i < count; i++) {
     block_density *d = &densities[i];
-    if (!d->there) continue; /* a volume that is not there has no patch, either */
+    if (!d->there) continue; /* a volume without density in the tile has no patch, either */
     const shade_volume *volume = d->patch->volume;
     if (!volume->visible || !volume->lit || !volume->receives_shadow) continue;
     d->outside = slab->geometry.position;
@@ -72,7 +72,7 @@ LANES_INLINE void place_sky(const shade_job *job, const block_slab *slab, block_
   }
 }
 
-/* Finds the light that arrives at a volume's samples. */
+/* Finds the sky's light that arrives at a volume's samples. */
 LANES_INLINE void find_arriving_sky(const shade_job *job, const block_slab *slab, const block_density *d,
                                     sky_parts *parts) {
   const sky_light *sky = job->sky;

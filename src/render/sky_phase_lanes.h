@@ -10,7 +10,7 @@
 #include "field/lookup_lanes.h"
 #include "render/phase_lanes.h"
 
-/* Light of one brightness, and more within a cap of directions. */
+/* A model of the sky's light: even light from all directions, and more light from a cap of directions. */
 typedef struct sky_cap {
   lanes even, more; /* means over all directions: of the even light, and of the light that the cap adds */
   lanes cosine;     /* cosine of the angle from the cap's middle to its edge */

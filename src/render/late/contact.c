@@ -9,8 +9,9 @@
 #include "surface/primitive.h"
 #include "surface/triangle.h"
 
-/* The buffer is late by at most CLOSE times the sum of its pixel and the distance of sheets; its pixel is at
- * most three quarters of a voxel. The factor of two is for slanted rays. */
+/* A buffer takes surfaces into account late by at most CLOSE times the sum of the edge of its pixels and the
+ * distance of sheets. The pixels' edge is at most three quarters of a voxel's. The factor of two is for
+ * slanted rays. */
 double hl_contact_distance(const frame *frame) {
   return 2 * CLOSE * (0.75 * frame->content.voxel + frame->spacing);
 }
@@ -30,15 +31,16 @@ void hl_contact_points(const light_source *source, light_points *points) {
 
 /* ---- one ray ---- */
 
-/* A sample for which rays towards the points of a light are cast, and how much of the light passes. */
+/* A sample from which rays are cast towards the points of a light, and the fraction of the light that passes
+ * along each ray. */
 typedef struct contact_ray {
   const surfaces *all;
-  const surface_mesh *mesh;       /* the sample's mesh */
-  uint32_t primitive;             /* the sample's primitive */
-  vec3 point, normal;             /* the sample's place, and the primitive's normal towards the eye */
-  vec3 plane;                     /* a point of the primitive's plane */
-  vec3 smooth;                    /* the sample's normal */
-  double close;                   /* a surface whose plane is nearer to the sample is close; frame units */
+  const surface_mesh *mesh; /* the sample's mesh */
+  uint32_t primitive;       /* the sample's primitive */
+  vec3 point, normal;       /* the sample's place, and the primitive's normal towards the eye */
+  vec3 plane;               /* a point of the primitive's plane */
+  vec3 smooth;              /* the sample's normal */
+  double close; /* a surface counts as close if its plane is nearer to the sample than this; frame units */
   double (*passing)[HL_CHANNELS]; /* [points of the light] */
 } contact_ray;
 
@@ -51,8 +53,9 @@ static bool are_neighbours(const surfaces *all, uint32_t a, uint32_t b) {
   return false;
 }
 
-/* Takes the light that a surface hides, if the surface is close to the sample. A neighbouring triangle that
- * continues the sample's own rounded surface hides nothing. */
+/* Lowers the fraction of light that passes along the ray by the part that a surface absorbs, if this surface
+ * is close to the sample. A neighbouring triangle that continues the sample's own rounded surface absorbs
+ * nothing. */
 static void meet(void *data, const surface_hit *hit) {
   contact_ray *ray = data;
   double distance;
@@ -70,7 +73,7 @@ static void meet(void *data, const surface_hit *hit) {
 
 /* ---- one light ---- */
 
-/* A light as samples look for it. */
+/* A light, with the data by which samples search for surfaces that hide it. */
 typedef struct contact_light {
   const light_source *source;
   const light_shadow *shadow;
@@ -111,7 +114,8 @@ static bool may_find(const sweep *sweep, const contact_light *light, const conta
   for (int i = 0; i < count; i++) {
     vec3 way = way_to(light->source, rays[i].point, (vec3){0, 0, 0});
     double facing = vec3_dot(way, rays[i].smooth), pixel = pixel_at(light, rays[i].point);
-    if (vec3_dot(way, rays[i].normal) * facing <= 0) continue; /* the triangle's other side is lit */
+    /* By its normal the sample faces the light, by its triangle it does not, or the other way round. */
+    if (vec3_dot(way, rays[i].normal) * facing <= 0) continue;
     if (facing < 0 && sweep->layers.pass_count == 0) continue; /* the sample faces away, and no layer asks */
     least = fmin(least, RAY_START * pixel);
     balls[balls_count++] = (hull_ball){rays[i].point, 0};

@@ -30,7 +30,7 @@ double hl_surface_delay(const light_shadow *shadow);
  * needs neither buffers nor sheets. */
 double hl_contact_distance(const frame *frame);
 
-/* The points that stand for a light. */
+/* Finds the points that stand for a light in this room. */
 void hl_contact_points(const light_source *source, light_points *points);
 
 /* Finds the fraction of each light that passes the surfaces close before the batch's samples, whose positions
@@ -42,11 +42,12 @@ bool hl_contact_find(const sweep *sweep, const tile_slab *slab, const surface_ba
 
 /* The part of a slab that each pixel of a tile shades, as heights above the first sheet. */
 typedef struct slab_piece {
-  const float *from, *to; /* [256], block-major; null: the whole slab */
+  const float *from, *to; /* [256], block-major; the heights of the ends of each pixel's piece; null: the
+                           * piece is the whole slab */
 } slab_piece;
 
-/* The fragments in a slab and in the few slabs before it: `seen` of visible meshes, at which the slabs are
- * cut, and `unseen` of meshes that are not visible. */
+/* The fragments in a slab and in the few slabs before it: `seen` of visible meshes, which cut the slabs into
+ * pieces, and `unseen` of meshes that are not visible. */
 typedef struct near_fragments {
   fragment_range seen, unseen;
 } near_fragments;

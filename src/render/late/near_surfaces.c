@@ -15,7 +15,7 @@ double hl_surface_delay(const light_shadow *shadow) {
 /* A sample of a volume, close to a surface that the eye sees in the same pixel. */
 typedef struct near_sample {
   const fragment *fragment;
-  vec3 point, met;  /* the place of the sample, and of the surface */
+  vec3 point, met;  /* the position of the sample, and the position where the eye's ray meets the surface */
   double low, high; /* heights at which the pixel's piece of the slab begins and ends; the sample is its
                      * middle */
   bool cut;         /* the piece ends at the surface */
@@ -53,7 +53,8 @@ static double part_missed(const sweep *sweep, int light, const near_sample *samp
   return height + delay > (slab - 1 - LEAST_DELAY) * sheets->spacing ? fmin(part, 1) : 0;
 }
 
-/* Takes the light that a fragment absorbs. part: the fraction of the piece that lies behind the fragment. */
+/* Lowers the light of a sample by the light that a fragment absorbs. part: the fraction of the sample's piece
+ * of the slab that lies behind the fragment. */
 static void take(const sweep *sweep, const near_sample *sample, int light, double part,
                  float (*passing)[TILE_PIXELS]) {
   const fragment *f = sample->fragment;
