@@ -32,7 +32,7 @@ typedef struct shade_volume {
   const grid *grid;
   const kernel *kernel;
   int phong, visible, receives_shadow;
-  int lit;     /* 0: the volume is shaded flat, and no light changes it */
+  int lit;     /* 0: the volume is shaded flat: its colour is the same in any light */
   int even;    /* surfaces reflect all light that arrives, from whatever angle it comes; set for the shadow
                 * layer of a light */
   float voxel; /* the smallest edge of a voxel; frame units */
@@ -41,9 +41,11 @@ typedef struct shade_volume {
   float cast[HL_CHANNELS];                     /* factors of the extinction towards the lights over the
                                                 * extinction towards the eye; 0: the volume casts no shadow */
   float to_index[3][4], low[3], high[3];       /* frame space to index space, and the volume's box there */
-  int32_t face_cuts[3][2]; /* [axis][low, high]: -1 where the face of the box cuts visible matter, else 0 */
+  int32_t face_cuts[3][2]; /* [axis][low, high]: -1 where this face of the volume's box cuts visible matter,
+                            * else 0 */
   int any_face;            /* some face of the box cuts visible matter */
-  const float (*shown)[4]; /* in a maximum projection: SHOWN_FROM and so on, per table entry; else null */
+  const float (*shown)[4]; /* [table entries]; in a maximum projection, the rows of shown values (SHOWN_FROM
+                            * and so on); else null */
   int rank;                /* among the visible volumes */
   float anisotropy;        /* g of the phase function */
   const phase_table *phase_once, *phase_twice; /* phase functions for g and for g^2; null where g is 0, or no
@@ -53,31 +55,32 @@ typedef struct shade_volume {
   int absorbs;                                 /* some channel of the albedo is not 1 */
   int multiple;                                /* light scattered more than once lights the volume */
   const shade_cut *cuts;                       /* [cut_count] */
-  int cut_count, light_cut_count;              /* number of cuts that count for the eye, and number of cuts
-                                                * that count for lights: the same number, or 0 where the
-                                                * removed matter still casts shadows */
-  int cut_shading;                             /* hl_cut_shading */
-  int mask_faces;                              /* normals turn to the faces that the mask leaves */
-  voxel_colors tints;                          /* the mask's colours; the matter's colours are mixed with
-                                                * them, by the weights of the mask's voxels */
-  int object;                                  /* its number in the layer of objects */
+  int cut_count, light_cut_count; /* number of the cuts that remove matter from the eye's view, and number of
+                                   * those that remove matter from the lights' views: the same number, or 0
+                                   * where removed matter still casts shadows */
+  int cut_shading;                /* hl_cut_shading */
+  int mask_faces;                 /* where the mask leaves faces, normals turn to these faces */
+  voxel_colors tints;             /* the mask's colours; the matter's colours are mixed with
+                                   * them, by the weights of the mask's voxels */
+  int object;                     /* the volume's number in the layer of objects */
 } shade_volume;
 
-/* One volume's densities in a tile. Each patch has cache lines of its own, because each thread writes its own
- * patches. */
+/* The densities of one volume in a tile, on the two sheets of a slab. Each patch has cache lines of its own,
+ * because each thread writes its own patches. */
 typedef struct shade_patch {
   _Alignas(64) const shade_volume *volume;
-  const float *before, *current; /* [256], block-major; on sheets k-1 and k */
+  const float *before, *current; /* [256], block-major; densities on sheet k-1 and on sheet k */
   uint32_t blocks;               /* blocks with density on either sheet */
-  const float *enter, *leave;    /* [256], block-major; null: the box does not cut anything visible */
-  int uncut;                     /* the box cuts neither the slab in this tile nor the ways of light through
-                                  * it */
+  const float *enter, *leave; /* [256], block-major; where each pixel's ray enters the volume's box and leaves
+                               * it; null: the box cuts nothing visible */
+  int uncut;                  /* the box cuts neither the slab in this tile nor the ways of light through
+                               * it */
 } shade_patch;
 
 typedef struct shade_light {
   int parallel;
-  float towards[3];  /* parallel: unit direction to the light; frame space */
-  float position[3]; /* not parallel: the light's centre; frame space */
+  float towards[3];  /* for a parallel light: unit direction to the light; frame space */
+  float position[3]; /* for a light that is not parallel: its centre; frame space */
   float color[3];    /* color * intensity */
   float of_sky;      /* the fraction of this light that a medium takes, where the light is a sun of the sky,
                       * which makes no highlights; else 0 */
@@ -95,22 +98,23 @@ typedef struct shade_light {
   light_cone cone;        /* the cone of a spot light */
   sector_fraction sector; /* the sector of a light within the content */
   light_caps caps;        /* the caps of a wide light that is not parallel */
-  int parallel_row;       /* the row in phase tables of a wide parallel light; else -1 */
+  int parallel_row;       /* for a wide parallel light: its row in the phase tables; for other lights -1 */
   int number;             /* the light's number among the sweep's lights */
   int nearest, cubic;     /* nearest: the look-up takes the nearest pixel; cubic: it interpolates by cubic
                            * convolution (never for sub-lights); else it interpolates bilinearly */
 } shade_light;
 
 typedef struct shade_job {
-  sheet_rays rays;      /* image pixels -> frame space, in the middle between the two sheets */
-  float through[3];     /* parallel rays: the step from one sheet to the next along the eye's rays */
-  float towards_eye[3]; /* parallel: unit direction to the eye */
-  float eye[3];         /* frame space; parallel: where depth is 0 */
-  float normal[3];      /* h */
-  float path; /* length of the eye's ray through the slab. For parallel rays it is the sheet spacing /
-               * |w.h|. With perspective it is the sheet spacing, which each pixel divides by its own |w.h| */
-  int sheet;  /* k: the slab lies between sheets k-1 and k */
-  int plane;  /* plane in the lights' rings that keeps the light which reaches sheet k-1 */
+  sheet_rays rays; /* the rays through the image's pixels: positions in frame space, in the middle between the
+                    * two sheets */
+  float through[3];     /* for parallel rays: the step from one sheet to the next along a ray of the eye */
+  float towards_eye[3]; /* for parallel rays: unit direction to the eye */
+  float eye[3];    /* the eye's position in frame space; for parallel rays, a position where depth is 0 */
+  float normal[3]; /* h */
+  float path; /* length of the eye's ray through the slab. For parallel rays it is the sheet spacing / |w.h|.
+               * For a perspective eye it is the sheet spacing, and each pixel divides it by its own |w.h| */
+  int sheet;  /* k, the number of the slab's last sheet: the slab lies between sheets k-1 and k */
+  int plane;  /* the plane, in the rings of the lights' buffers, that has the light which reaches sheet k-1 */
   float height, spacing; /* height of sheet k above the first sheet, and distance to sheet k-1; frame units */
   int back_to_front;
   const shade_light *lights;
@@ -131,14 +135,14 @@ typedef struct shade_job {
  * packed (pack_lanes.h). */
 enum { SHADE_SCRATCH_BYTES = 17 * 1920 };
 
-/* A slab, which ends at the current sheet, in one tile. */
+/* One slab in one tile. The slab ends at the current sheet. */
 typedef struct tile_slab {
   const shade_job *job;       /* the job of the slab */
   size_t tile;                /* index of the tile */
   int x, y;                   /* column and row of the tile */
   const shade_patch *patches; /* [patch_count]; patches of the volumes with density */
   int patch_count;
-  uint32_t blocks; /* open blocks with density, one bit each */
+  uint32_t blocks; /* one bit for each block that has density and is not opaque yet */
   int worker;      /* number of the thread */
   void *scratch;   /* [patch_count][SHADE_SCRATCH_BYTES], aligned to 64; belongs to the thread */
 } tile_slab;

@@ -18,7 +18,7 @@
  * exact digits. */
 static const float LEAST_PART_OF_SHOWN = 0x1p-12f;
 
-/* Looks up K for red, green and blue, and T, in that order, at a coordinate of the tables. */
+/* Looks up the integrals K (red, green, blue) and T, in this order, at a coordinate of the tables. */
 LANES_INLINE void shown_below(const classifier *classifier, lanes x, lanes sums[4]) {
   table_coordinate at = split_coordinate(x);
   lanes a[4], b[4];
@@ -27,7 +27,7 @@ LANES_INLINE void shown_below(const classifier *classifier, lanes x, lanes sums[
   for (int i = 0; i < 4; i++) sums[i] = lanes_fma(b[i] - a[i], at.fraction, a[i]);
 }
 
-/* Lanes in which the colour bends between the slab's ends. */
+/* Lanes in which the colour changes its slope somewhere between the slab's ends. */
 LANES_INLINE lanes_int is_color_bent(const classifier *classifier, const block_density *d) {
   lanes bent = lanes_gather(classifier->bent, lanes_truncate(d->after)) -
                lanes_gather(classifier->bent, lanes_truncate(d->before));

@@ -10,11 +10,11 @@
 #include "render/slab.h"
 #include "shadow/attenuate_lanes.h"
 
-/* The geometry of the pixels' rays, the same for all volumes. */
+/* The rays of the eye through sixteen pixels, within a slab. They are the same for all volumes. */
 typedef struct block_geometry {
-  lanes3 position;    /* frame space, in the slab: where it is lit */
+  lanes3 position;    /* the position in the slab at which it is lit; frame space */
   lanes3 start;       /* where the ray enters the slab */
-  lanes3 step_sheet;  /* to the next sheet along the ray */
+  lanes3 step_sheet;  /* the step along the ray from one sheet to the next */
   lanes3 towards_eye; /* unit */
   lanes path;         /* length of the eye's ray through the slab; 0 behind the eye */
 } block_geometry;
@@ -46,8 +46,8 @@ LANES_INLINE lanes3 gradient(const shade_volume *volume, lanes3 point, uint32_t 
   return gradient_in_frame(volume->grid, volume->kernel, volume->to_index, point, active, starts);
 }
 
-/* One volume's way through the slab: its densities on the two sheets, and the part of the way that is in its
- * box. */
+/* A ray's way through the slab in one volume: the densities on the two sheets, and the part of the way that
+ * lies in the volume's box. */
 typedef struct block_way {
   lanes first, last;
   covered_span part;
@@ -57,16 +57,16 @@ typedef struct block_density {
   const shade_patch *patch;
   int there; /* the volume may be visible in some of the pixels */
   block_way way;
-  lanes before, after; /* table coordinates of the densities where the slab's covered part starts and ends */
-  way_sums sums;       /* sums between the two coordinates */
-  lanes extinction;    /* extinction averaged over the whole slab, where it counts as 0 outside the box */
+  lanes before, after; /* table coordinates of the densities at the two ends of the slab's covered part */
+  way_sums sums;       /* sums of extinction, from one of these coordinates to the other */
+  lanes extinction;    /* extinction averaged over the whole slab; outside of the box it counts as 0 */
   lanes centre;        /* in joined lanes: the centre of gravity of the extinction, as a fraction of the
                         * slab, 0 to 1 */
   lanes factor;        /* with gradient opacity, a mask or a function of two numbers: the factor by which
                         * extinction and the sums were multiplied */
-  lanes row;    /* row of the table for the second number, with a function of two numbers (plane_lanes.h) */
-  lanes seen;   /* where the matter is seen, as a fraction of the way through the slab's covered part */
-  lanes evenly; /* where the matter would be seen if its extinction were even */
+  lanes row;  /* with a function of two numbers: the row of the table for the second number (plane_lanes.h) */
+  lanes seen; /* where the matter is seen: the fraction of the way through the slab's covered part */
+  lanes evenly;     /* where the matter would be seen if the extinction were the same on the whole way */
   lanes_int sloped; /* lanes in which the gradient is known */
   lanes3 slope;     /* the gradient where the matter is seen; elsewhere 0 */
   lanes3 normal;    /* unit, away from the matter */
@@ -74,9 +74,10 @@ typedef struct block_density {
                      * no normal */
   lanes skin;       /* how much matter belongs to the face of a cut that is shaded: 1 at the face, 0 two
                      * voxels behind it */
-  lanes3 outside;   /* where the sky's light is looked up; set with a sky that volumes hide from each other */
-  lanes light_first, light_last; /* the light's way within the volume's box to where the slab's covered part
-                                  * starts and ends */
+  lanes3 outside; /* the position at which the sky's light is looked up; set where there is a sky that volumes
+                   * hide from each other */
+  lanes light_first, light_last; /* lengths of the light's way within the volume's box, to the start and to
+                                  * the end of the slab's covered part */
 } block_density;
 
 /* Optical depth below which the gradient hardly changes how much light a slab absorbs. */
@@ -90,7 +91,7 @@ LANES_INLINE lanes_int visible_in_patch(const shade_patch *patch, int block) {
                         coordinate_of_density(classifier, lanes_load(patch->current + block * BLOCK_PIXELS)));
 }
 
-/* A block's way through one volume. */
+/* Loads the densities of a block in one volume, and the part of the slab in the volume's box. */
 LANES_INLINE block_way way_of_block(const shade_job *job, const shade_patch *patch, int block) {
   block_way way;
   way.first = lanes_load(patch->before + block * BLOCK_PIXELS);
@@ -111,7 +112,8 @@ LANES_INLINE void classify_way(block_density *d, covered_span part) {
   d->sums = sums_of_way(classifier, a, b);
 }
 
-/* The extinction's centre of gravity on the way: 0 at `before`, 1 at `after`. */
+/* The centre of gravity of the extinction on the way, as a fraction of the way: 0 at `before`, 1 at `after`.
+ */
 LANES_INLINE lanes centre_of_way(const block_density *d) {
   way_means m = means_of_way(d->before, d->after, &d->sums);
   return m.from_a / (m.from_a + m.from_b);
@@ -129,7 +131,7 @@ LANES_INLINE lanes seen_part(lanes e, lanes left) {
   return lanes_select(thin, lanes_line(e, -1.0f / 12, 0.5f), part);
 }
 
-/* Sixteen pixels' rays through the slab: their geometry, opacity and where the slab is seen. */
+/* Sixteen pixels in a slab: their rays, the slab's opacity, and the place where the slab is seen. */
 typedef struct block_slab {
   lanes u, v;              /* coordinates of the pixels */
   lanes_int open;          /* the pixels that can still show something */
@@ -137,13 +139,13 @@ typedef struct block_slab {
   block_geometry geometry; /* the rays, and the position where the slab is seen on average and is lit */
   covered_span part;       /* from the place where the first visible volume begins to the place where the last
                             * one ends */
-  lanes place;             /* where in the slab the position lies, 0 (first sheet) to 1 */
-  lanes_int joined;        /* lanes where one of several volumes fills less than `part` */
-  lanes centre;            /* in joined lanes: the centre of gravity of all volumes' extinction, as a
-                            * fraction of the slab, 0 to 1 */
-  lanes total, depth;      /* extinction averaged over the slab; optical depth */
-  lanes left;              /* exp(-depth) */
-  lanes opacity;           /* 0 where nothing is seen */
+  lanes place;        /* the fraction of the slab in front of geometry.position, from 0 (first sheet) to 1 */
+  lanes_int joined;   /* lanes where one of several volumes fills less than `part` */
+  lanes centre;       /* in joined lanes: the centre of gravity of all volumes' extinction, as a
+                       * fraction of the slab, 0 to 1 */
+  lanes total, depth; /* extinction averaged over the slab; optical depth */
+  lanes left;         /* exp(-depth) */
+  lanes opacity;      /* 0 where nothing is seen */
   lanes_int seen;
 } block_slab;
 
@@ -199,7 +201,7 @@ LANES_INLINE lanes3 slope_of_block(const block_density *d) {
   return (lanes3){lanes_set(0), lanes_set(0), lanes_set(0)};
 }
 
-/* Where a volume's matter is seen; frame space. */
+/* The position in frame space at which a volume's matter is seen. */
 LANES_INLINE lanes3 seen_position(const block_slab *slab, const block_density *d) {
   const block_geometry *g = &slab->geometry;
   return add_scaled3(g->start, g->step_sheet, lanes_fma(slab->part.length, d->seen, slab->part.begin));
@@ -248,9 +250,9 @@ LANES_INLINE void find_normal(const block_slab *slab, block_density *d) {
   d->normal = scale3(slope, outward / lanes_max(steepness, lanes_set(1e-18f)));
 }
 
-/* The last face of a box or a cut through which the eye's ray passes before it meets a point of a volume. */
+/* The face of a box or a cut through which the eye's ray passes last before it meets a point of a volume. */
 typedef struct cut_face {
-  lanes way;      /* from the point back to the face; frame units */
+  lanes way;      /* the distance from the point back to the face; frame units */
   lanes3 outward; /* the face's unit normal */
   lanes_int cuts; /* lanes in which the face cuts matter: no other volume goes on there, and visible matter
                    * touches the face of a box */

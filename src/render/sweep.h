@@ -23,11 +23,11 @@ typedef struct sweep_light {
   view_sheets sheets;       /* the sheets of the shadow buffer's view */
   light_texture texture;    /* the picture that the light projects */
   void *reads;              /* owned; holds the next three arrays (light_reads.h) */
-  int32_t *needed_until;    /* [tiles of the buffer]; the last slab that needs the tile, 0: no slab needs it;
-                             * null: all slabs need all tiles */
-  int32_t *sublights_until; /* as in light_shadow */
-  unsigned char *owned; /* [tiles of the buffer]; 1 where this part of a shared picture sends the tile to the
-                         * other parts; null: it sends nothing */
+  int32_t *needed_until;    /* [tiles of the buffer]; the last slab that needs each tile; 0: no slab needs it.
+                             * Null: all slabs need all tiles */
+  int32_t *sublights_until; /* the same for the buffers of sub-lights; as in light_shadow */
+  unsigned char *owned; /* [tiles of the buffer]; 1 for tiles whose light this part of a shared picture sends
+                         * to the other parts; null: this part sends nothing */
 } sweep_light;
 
 static inline bool hl_light_needs(const sweep_light *light, size_t tile, int slab) {
@@ -37,26 +37,27 @@ static inline bool hl_light_needs(const sweep_light *light, size_t tile, int sla
 /* The sweep advances in stretches of slabs: a tile is taken through all slabs of a stretch by one thread. The
  * lights are a stretch ahead of the picture, and both share the threads (sweep_loop.c). */
 typedef struct slab_stretch {
-  int first, end; /* the slabs before the sheets from `first` to `end` - 1; no slabs where the two are
-                   * equal */
+  int first, end; /* the stretch has the slabs that end at sheets `first` to `end` - 1; it is empty where the
+                   * two are equal */
 } slab_stretch;
 
-/* One thread's counts, on cache lines of its own. */
+/* What one thread has counted and timed, on cache lines of its own. */
 typedef struct sweep_counts {
   _Alignas(64) uint64_t samples, filled_image, filled_light, skipped_image,
-      skipped_light; /* number of pixels shaded; number of tiles */
+      skipped_light; /* `samples` is a number of pixels that were shaded; the others are numbers of tiles */
   uint64_t pixels_image, pixels_light, pixels_skipped_image, pixels_skipped_light;
-  uint64_t pixels_seen, pixels_covered; /* counted only by the sweep of hidden.c */
+  uint64_t pixels_seen, pixels_covered; /* pixels that are seen, and pixels that opaque matter covers; counted
+                                         * only by the sweep of hidden.c */
   double seconds_fill, seconds_shade;   /* of the image stage */
   double seconds_light;                 /* of the light stage */
   double seconds_composite;             /* of the compositing in the light stage */
 } sweep_counts;
 
-/* The matter that a pass shades: the scene's own matter; white matter that sends on light from any angle;
- * white matter; white matter that receives no shadow. */
+/* The matter that a pass shades. In this order: the scene's own matter; white matter whose surfaces send on
+ * light from any angle; white matter; white matter that receives no shadow. */
 typedef enum layer_matter { MATTER_OWN, MATTER_EVEN, MATTER_WHITE, MATTER_OPEN } layer_matter;
 
-/* A further shading of the sweep's tiles, for a layer. */
+/* A pass: the sweep's tiles are shaded once more, for a layer. */
 typedef struct layer_pass {
   shade_tile_function *shade;
   const shade_light *lights; /* [light_count] */
@@ -92,16 +93,18 @@ typedef struct light_points {
   double reach;                                       /* the greatest length of an offset */
 } light_points;
 
-/* The surfaces of the sweep's views; zeros where there are none. */
+/* Fragments and surfaces of the sweep's views; all zeros where the frame has no surfaces. */
 typedef struct surface_state {
   fragments image, lights[FRAME_LIGHTS];
-  fragments unseen;              /* fragments, in the eye's view, of meshes that are not visible and shade
-                                  * volumes */
-  void *memory;                  /* owned; holds all arrays below */
-  shade_patch *patches;          /* [threads][volumes] */
-  float (*cuts)[TILE_PIXELS];    /* [threads][volumes][2]; where the pieces of slabs begin and end in boxes */
-  float (*bounds)[TILE_PIXELS];  /* [threads][2]; where they begin and end */
-  float (*passing)[TILE_PIXELS]; /* [threads][lights][channels]; the result of hl_near_surfaces_find() */
+  fragments unseen;             /* fragments, in the eye's view, of meshes that are not visible and shade
+                                 * volumes */
+  void *memory;                 /* owned; holds all arrays below */
+  shade_patch *patches;         /* [threads][volumes] */
+  float (*cuts)[TILE_PIXELS];   /* [threads][volumes][2]; for each pixel, where a piece of the slab enters and
+                                 * leaves a volume's box */
+  float (*bounds)[TILE_PIXELS]; /* [threads][2]; for each pixel, the heights at which a piece of the slab
+                                 * begins and ends */
+  float (*passing)[TILE_PIXELS];     /* [threads][lights][channels]; the result of hl_near_surfaces_find() */
   float (*contact)[SURFACE_SAMPLES]; /* [threads][lights][channels]; the result of hl_contact_find() */
   light_points *points;              /* [lights] */
 } surface_state;
@@ -128,13 +131,13 @@ typedef struct loop_arrays {
 /* What a sweep took. */
 typedef struct sweep_times {
   double seconds_sort, seconds_tiles, seconds_soften;
-  uint64_t waits; /* how often all threads have waited for each other */
+  uint64_t waits; /* number of times that all threads have waited for each other */
 } sweep_times;
 
 /* The loop over the sheets. */
 typedef struct sweep_loop {
-  int ring; /* number of sheets whose light a buffer keeps; 1: picture and lights are worked on by turns,
-             * slab by slab */
+  int ring; /* number of sheets whose light a buffer keeps; 1: the picture and the lights take turns, slab by
+             * slab */
   slab_stretch picture_stretch, light_stretch;
   int task_start[FRAME_LIGHTS + 2]; /* index of the picture's first task, of each light's first task, and one
                                      * past the last task */
@@ -146,8 +149,8 @@ typedef struct sweep_target {
   float *pixels;                 /* [tiles][16][4][16]; the sweep's own */
   const int32_t *shown_from;     /* [tiles][16]; first visible slab of each block; null: nothing is hidden */
   const layer_pixels *layers;    /* pixels of the layers; null: none */
-  const maximum_values *maximum; /* values of a maximum projection; null, or with null values: matter is
-                                  * lit */
+  const maximum_values *maximum; /* values of a maximum projection; null, or a struct with null values: the
+                                  * picture shows lit matter */
 } sweep_target;
 
 /* The purpose of a sweep: to make a picture, or to search for hidden matter before the picture is made; a
@@ -157,8 +160,8 @@ typedef enum sweep_purpose { SWEEP_PICTURE, SWEEP_SEARCH } sweep_purpose;
 /* The purpose of a sweep, and what it does with a tile. */
 typedef struct sweep_act {
   sweep_purpose purpose;
-  tile_action *run; /* steps 12 to 16, or what replaces them */
-  void *data;       /* of `run`; the caller's */
+  tile_action *run; /* what the sweep does with a tile: steps 12 to 16, or what replaces them */
+  void *data;       /* the caller's data for `run` */
 } sweep_act;
 
 struct sweep {

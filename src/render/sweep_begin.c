@@ -91,7 +91,7 @@ void hl_sweep_set_up(sweep *sweep, const sweep_means *means, const frame_plan *f
 
 /* ---- memory ---- */
 
-/* Counts what begin_light() takes. */
+/* Counts the memory that begin_light() takes. */
 static void count_light(sweep *sweep, int index, sweeps_memory *memory) {
   const light_shadow *shadow = &sweep->lights[index].shadow;
   hl_layout *passing = &memory->passing;
@@ -190,8 +190,8 @@ static void connect_light(sweep *sweep, int index) {
 /* A light whose rays climb by less than this fraction of their length counts as running along the sheets. */
 static const double LEAST_CLIMB = 0.05;
 
-/* The least rise of a light's rays per length, within the content. Directions within some angle of the normal
- * form a cone, so the least is at one of the content's corners. */
+/* The least rise of a light's rays, within the content, per unit of their length. Directions within some
+ * angle of the normal form a cone, so the ray to one of the content's corners has the least rise. */
 static double least_climb(const sweep *sweep, const light_source *source) {
   vec3 normal = sweep->geometry->sheets.normal;
   if (source->parallel) return vec3_dot(source->direction, normal);
@@ -211,7 +211,8 @@ static double longest_way(const sweep *sweep) {
   return least < LEAST_CLIMB ? INFINITY : sweep->geometry->sheets.spacing / least;
 }
 
-/* The distance from the faces that cut volumes within which the lights' surfaces depend on these faces. */
+/* The distance from the faces that cut volumes up to which these faces change what is a surface for the
+ * lights. */
 static double reach_of_faces(const sweep *sweep) {
   double greatest = 0;
   for (int g = 0; g < sweep->content.volume_count; g++)

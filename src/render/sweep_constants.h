@@ -11,7 +11,7 @@ typedef struct sweep_constants {
   shade_volume *volumes; /* [volumes] */
   shade_cut *cuts;       /* cuts of all volumes, one volume after the other */
   float *srgb_decode;    /* [256]: the linear values of sRGB's codes, for voxels with colours */
-  float *tint_decode;    /* [256]: the linear values of a mask's codes: the squares of the codes */
+  float *tint_decode;    /* [256]: the linear values of a mask's codes, which are their squares */
   shade_light lights[FRAME_LIGHTS];
   attenuate_job attenuate[FRAME_LIGHTS];
   shade_job shade;

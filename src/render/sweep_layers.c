@@ -38,14 +38,15 @@ static void set_up_white_light(const shade_light *from, shade_light *white) {
   for (int c = 0; c < 3; c++) white->color[c] = 1;
 }
 
-/* The passes are ambient light, emission, the sky, its two pictures of white volumes, and measures. */
+/* At most these passes beside those of lights: ambient light, emission, the sky, the sky's two pictures of
+ * white volumes, and measures. */
 enum { MOST_OTHER_PASSES = 6 };
 
 static bool wants_layers(const sweep *sweep) {
   return sweep->target.layers != NULL && sweep->target.layers->wanted != NULL;
 }
 
-/* Lays out all arrays. The passes begin the block. */
+/* Lays out all arrays of the layers in one block. The passes come first in it. */
 static void lay_out(sweep *sweep, hl_layout *layout) {
   sweep_layers *layers = &sweep->layers;
   const size_t lights = (size_t)sweep->geometry->light_count, volumes = (size_t)sweep->content.volume_count,
@@ -132,7 +133,7 @@ hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error) {
 
 void hl_sweep_layers_end(sweep *sweep) { hl_release(sweep->content.context, sweep->layers.passes); }
 
-/* The tile's patches, with the pass's own volumes. */
+/* The tile's patches, but with the volumes that have the pass's matter. */
 static const shade_patch *patches_of(const sweep *sweep, const tile_slab *slab, layer_matter matter) {
   const shade_volume *volumes = matter == MATTER_EVEN    ? sweep->layers.even_volumes
                                 : matter == MATTER_WHITE ? sweep->layers.white_volumes
@@ -145,7 +146,7 @@ static const shade_patch *patches_of(const sweep *sweep, const tile_slab *slab, 
   return patches;
 }
 
-/* The slab's job with the pass's own lights, ambient light, sky and emission. */
+/* The slab's job, but with the lights, the ambient light, the sky and the emission of the pass. */
 static shade_job job_of_pass(const layer_pass *pass, const shade_job *slab) {
   shade_job job = *slab;
   job.lights = pass->lights;
@@ -164,14 +165,14 @@ void hl_sweep_layers_tile(const sweep *sweep, const tile_slab *slab) {
     const shade_job job = job_of_pass(pass, slab->job);
     tile_slab own = *slab;
     if (pass->matter != MATTER_OWN) own.patches = patches_of(sweep, slab, pass->matter);
-    uint64_t samples = 0; /* statistics count only the samples of the picture itself */
+    uint64_t samples = 0; /* the samples of passes are counted here, and left out of the statistics */
     (void)pass->shade(&job, &own, pass->pixels + slab->tile * pass->tile_floats, &samples);
   }
 }
 
 /* ---- surfaces ---- */
 
-/* Gives samples the matter of the pass. */
+/* Gives samples of surfaces the matter of a pass. */
 static void change_matter(layer_matter matter, surface_samples *samples) {
   if (matter == MATTER_OWN) return;
   for (int c = 0; c < 3; c++)

@@ -17,7 +17,8 @@
 /* The number of tiles in a task. A tile in a single slab is little work, so two tiles are one task then. */
 static int tiles_a_task(const sweep *sweep) { return sweep->content.stretch == 1 ? 2 : 1; }
 
-/* The tiles that the sheets of a stretch may touch, among the tiles of one word of bits. */
+/* The tiles that the sheets of a stretch may touch: one bit for each tile, of the 64 tiles of word number
+ * `word`. */
 static uint64_t touched_tiles(const occupancy *occupancy, slab_stretch stretch, size_t word) {
   uint64_t bits = 0;
   for (int sheet = stretch.first - 1; sheet < stretch.end; sheet++)
@@ -25,7 +26,8 @@ static uint64_t touched_tiles(const occupancy *occupancy, slab_stretch stretch, 
   return bits;
 }
 
-/* The tiles that must be carried to the sheets of a stretch, among the tiles of one word of bits. */
+/* The tiles of a light's buffer that must be carried on to the sheets of a stretch: one bit for each tile, of
+ * the 64 tiles of word number `word`. */
 static uint64_t carried_tiles(const shadow_buffer *buffer, slab_stretch stretch, size_t word) {
   size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y, end = word * 64 + 64;
   uint64_t bits = 0;
@@ -126,8 +128,8 @@ static void reach_light(sweep *sweep, int index) {
     reach_light_slab(sweep, index, sheet, &jobs[sheet - stretch.first]);
 }
 
-/* Sets how the picture looks up the light before the slabs of a stretch. The lights have reached the
- * stretch's first slab. */
+/* Sets how the picture looks up light before the slabs of a stretch. Call it when the lights' buffers have
+ * the light that reaches the stretch's first slab. */
 static void prepare_lookups(sweep *sweep, slab_stretch stretch) {
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     light_shadow *shadow = &sweep->lights[i].shadow;
@@ -139,9 +141,9 @@ static void prepare_lookups(sweep *sweep, slab_stretch stretch) {
 
 /* ---- stretches ---- */
 
-/* Takes the picture and the lights through a stretch each; either stretch may be empty. offers: until
- * finish_picture(), threads work on the picture only while they wait for others; used in stretches of several
- * slabs only. */
+/* Takes the picture through one stretch and the lights through another; either stretch may be empty. offers:
+ * the picture's tasks are only offered, until finish_picture(): threads work on them while they wait for
+ * other threads. It is used only where stretches have several slabs. */
 static void run_stretches(sweep *sweep, slab_stretch picture, slab_stretch light, bool offers) {
   hl_pool *pool = sweep->content.pool;
   double start = hl_clock_seconds();

@@ -4,8 +4,8 @@
 #include "render/sweep_layers.h"
 #include "render/sweep_surfaces.h"
 
-/* The clock is read at one tile in 32, at other tiles on each sheet. This is enough to measure how a stage's
- * time divides. */
+/* Whether the clock is read at a tile on a sheet. It is read at one tile in 32, on each sheet at other tiles.
+ * This is enough to measure how a stage's time divides. */
 static bool is_timed(size_t tile, int sheet) {
   return ((tile * 11 + (tile >> 5) + (size_t)sheet * 5) & 31) == 0;
 }
@@ -19,7 +19,7 @@ static void fetch_opacities(const float *pixels, uint32_t blocks) {
     __builtin_prefetch(pixels + (__builtin_ctz(blocks) * 4 + 3) * BLOCK_PIXELS, 1);
 }
 
-/* The blocks of a tile in which a slab is not hidden. */
+/* The blocks of a tile in which no opaque matter hides a slab from the eye. */
 static uint32_t shown_blocks(const sweep *sweep, size_t tile, int slab) {
   if (sweep->target.shown_from == NULL) return ALL_BLOCKS;
   const int32_t *shown_from = sweep->target.shown_from + tile * TILE_BLOCKS;
@@ -28,10 +28,12 @@ static uint32_t shown_blocks(const sweep *sweep, size_t tile, int slab) {
   return shown;
 }
 
-/* The last slab of a run. Sheets are filled for one run of slabs at a time. */
+/* The number of the last slab of the run to which a slab belongs. Sheets are filled for one run of slabs at a
+ * time. */
 static int last_of_run(int slab) { return (slab - 1) / RUN_SLABS * RUN_SLABS + RUN_SLABS; }
 
-/* Does steps 6 and 8 to 11 for one tile: finds its patches with density in the needed blocks. */
+/* Does steps 6 and 8 to 11 for one tile: finds those of its patches that have density in the needed blocks.
+ */
 static int fill_image_tile(sweep *sweep, slab_place place, uint32_t need, int worker, shade_patch *patches,
                            uint32_t *blocks) {
   size_t tile = place.tile;
@@ -105,7 +107,8 @@ void hl_sweep_shade(sweep *sweep, const shade_job *job, size_t tile, int worker)
 
 /* ---- the lights ---- */
 
-/* Whether faces that cut a volume's visible matter are surfaces, and a face of the volume is near. */
+/* Whether a face that cuts a volume's visible matter is lit as a surface, and such a face is near the slab.
+ */
 static bool faces_are_lit(const shade_volume *volume, const patch_slab *slab) {
   return volume->phong && volume->cut_shading == HL_CUT_SHADING_FACE &&
          (volume->any_face || volume->light_cut_count > 0) && slab->enter != NULL && !slab->uncut;

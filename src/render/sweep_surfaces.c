@@ -32,7 +32,7 @@ static hl_status make_fragments(sweep *sweep, const view *view, const sweep_ligh
   return hl_fragments_create(&source, made, error);
 }
 
-/* The number of arrays in passing for a thread: one for each light and channel. */
+/* The number of arrays that a thread has in surfaces.passing: one for each light and channel. */
 static size_t passings(const sweep *sweep) {
   return (size_t)sweep->geometry->light_count * (size_t)sweep->frame_plan->channels;
 }
@@ -149,7 +149,8 @@ static size_t fragments_of_round(fragment_range range, int round, fragment *list
   return count;
 }
 
-/* Does steps 12 to 16 for fragments, and composites them in their order. */
+/* Does steps 12 to 16 for the fragments of a slab in a tile, and composites them in the order of their
+ * heights. */
 static void shade_fragments(const sweep *sweep, const tile_slab *slab, uint32_t blocks,
                             fragment_range range) {
   surface_batch batch;
@@ -166,8 +167,8 @@ static void shade_fragments(const sweep *sweep, const tile_slab *slab, uint32_t 
   shade_batch(sweep, slab, &batch);
 }
 
-/* Does the sweep's steps for a slab, or for a piece of a slab, whose light may be hidden by fragments of this
- * slab and the few slabs before it. */
+/* Does the sweep's action (steps 12 to 16) for a slab, or for a piece of a slab. Fragments of this slab and
+ * of the few slabs before it may hide light from it. */
 static uint32_t act_behind(const sweep *sweep, const tile_slab *slab, slab_piece piece) {
   float(*passing)[TILE_PIXELS] = sweep->surfaces.passing + (size_t)slab->worker * passings(sweep);
   int first = slab->job->sheet - NEAR_SLABS;
@@ -188,7 +189,7 @@ uint32_t hl_sweep_surfaces_beside(const sweep *sweep, const tile_slab *slab) {
   return act_behind(sweep, slab, (slab_piece){NULL, NULL});
 }
 
-/* Shades the piece of each pixel's slab between two heights. */
+/* Shades, in each pixel, the piece of the slab between two heights. from, to: [256]. */
 static uint32_t shade_piece(const sweep *sweep, const tile_slab *slab, const float *from, const float *to) {
   const surface_state *state = &sweep->surfaces;
   size_t place = (size_t)slab->worker * (size_t)sweep->content.volume_count;
@@ -227,7 +228,8 @@ static uint32_t open_blocks(const sweep *sweep, const tile_slab *slab, uint32_t 
 /* Heights beyond all sheets. */
 static const float BELOW = -1e30f, ABOVE = 1e30f;
 
-/* Shades the slab of a tile with density. The slab is cut at the fragments of one round after the other. */
+/* Shades the slab of a tile that has density. The slab is cut into pieces at the fragments: first at each
+ * pixel's lowest fragment, then at the next one, and so on. */
 static void shade_cut_slab(const sweep *sweep, const tile_slab *slab, uint32_t blocks, fragment_range range) {
   fragment list[TILE_PIXELS];
   float *from = sweep->surfaces.bounds[slab->worker * 2], *to = sweep->surfaces.bounds[slab->worker * 2 + 1];
@@ -239,8 +241,8 @@ static void shade_cut_slab(const sweep *sweep, const tile_slab *slab, uint32_t b
     (void)shade_piece(sweep, slab, from, to);
     if (count == 0) return;
     shade_fragments(sweep, slab, blocks, (fragment_range){list, count});
-    for (int i = 0; i < TILE_PIXELS; i++)
-      from[i] = to[i]; /* the height is above all sheets where the slab was shaded to its end */
+    /* Where the slab was shaded to its end, this height is above all sheets. */
+    for (int i = 0; i < TILE_PIXELS; i++) from[i] = to[i];
   }
 }
 

@@ -8,9 +8,9 @@
 /* Whether the frame has meshes that are not visible and shade its volumes. */
 bool hl_sweep_has_unseen(const sweep *sweep);
 
-/* Makes the surfaces of the picture, after the sweep's views and lights have begun. The second function makes
- * the surfaces of the lights, when it is known which tiles of their buffers are needed. Both do nothing where
- * the frame has no surfaces. */
+/* hl_sweep_surfaces_begin() makes the surfaces of the picture. Call it after the sweep's views and lights
+ * have begun. hl_sweep_surfaces_begin_lights() makes the surfaces of the lights. Call it when it is known
+ * which tiles of the lights' buffers are needed. Both do nothing where the frame has no surfaces. */
 hl_status hl_sweep_surfaces_begin(sweep *sweep, hl_error *error);
 hl_status hl_sweep_surfaces_begin_lights(sweep *sweep, hl_error *error);
 void hl_sweep_surfaces_end(sweep *sweep);
@@ -18,7 +18,7 @@ void hl_sweep_surfaces_end(sweep *sweep);
  * are planned. Sets no pointers. */
 void hl_sweep_surfaces_count(sweep *sweep, hl_layout *layout);
 
-/* The fragments of the eye's view in a slab of a tile. Ask for each slab once, in rising order. */
+/* Finds the fragments of the eye's view in a slab of a tile. Call it once for each slab, in rising order. */
 fragment_range hl_sweep_surfaces_reach(const sweep *sweep, size_t tile, int slab);
 
 /* Steps 12 to 16 for a tile with fragments: each pixel's slab is cut at its fragments, and its pieces and the

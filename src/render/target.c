@@ -30,8 +30,8 @@ static hl_status take_pixels(hl_renderer *renderer, const frame_request *request
   return HL_OK;
 }
 
-/* Whether sweeps composite into the caller's pixels. They do where one sweep fills these pixels exactly, in
- * whole tiles. */
+/* Whether the sweep composites right into the caller's pixels. It does where there is one sweep, and the
+ * tiles fill these pixels exactly. */
 static bool is_in_place(const frame_request *request, const frame_plan *plan) {
   const bool whole = plan->picture.width % TILE == 0 && plan->picture.height % TILE == 0 &&
                      request->row_stride == 4 * (size_t)plan->picture.width;
@@ -47,7 +47,7 @@ hl_status hl_frame_target_create(hl_renderer *renderer, const frame_request *req
   lay_out_pixels(renderer, plan, target, &counted);
   hl_layer_pixels_count(plan->picture.layers, &plan->frame, plan->picture.tiles, &counted);
   hl_maximum_count(plan, &counted);
-  /* a block that one of several sweeps returns rarely fits the next sweep */
+  /* several sweeps take blocks of different sizes, so a returned block rarely fits the next sweep */
   reserve->keeps = plan->sweeps.count == 1;
   if (!reserve->keeps) hl_reserve_release(reserve);
   hl_status status = hl_renderer_check_room(renderer, counted.most, error);

@@ -12,9 +12,9 @@ typedef struct frame_target {
   float *pixels; /* [sweeps][tiles][16][4][16]; zeros at the start; the target's own, or the caller's if
                     in_place */
   bool in_place;
-  float *tile_rows; /* in_place: [threads][tiles_x][16][4][16] */
+  float *tile_rows; /* where in_place is true: [threads][tiles_x][16][4][16]; room to reorder rows of tiles */
   layer_pixels layers;
-  maximum_values maximum; /* with null values: matter is lit */
+  maximum_values maximum; /* a struct with null values: the picture shows lit matter */
 } frame_target;
 
 /* Makes a frame's target. target: must be zeros before, and must be released after an error, too. */

@@ -7,7 +7,8 @@ enum { INTERVAL_FLOATS = 2 * TILE_PIXELS };
 
 #define NO_ENTRY UINT32_MAX
 
-/* Whether some box cuts visible matter: rays must then know where they enter and leave the box. */
+/* Whether the box of some volume cuts visible matter. If so, the places where rays enter and leave boxes are
+ * needed. */
 static bool any_cut(const sheet_content *content) {
   bool any = false;
   for (int g = 0; g < content->volume_count; g++) any = any || content->grids[g].cut;
@@ -16,13 +17,13 @@ static bool any_cut(const sheet_content *content) {
 
 /* ---- cuts ---- */
 
-/* The cuts of a grid that count in a view. */
+/* The number of a grid's cuts that count in a view. */
 static size_t cuts_of(const view_sheets *sheets, int grid) {
   const struct grid *of = &sheets->content->grids[grid];
   return sheets->of_light && of->cut_casts_shadow ? 0 : of->cut_count;
 }
 
-/* The number of cuts of all grids before this one; for grid = volume_count, of all grids. */
+/* The number of cuts that count, of all grids before this one; for grid = volume_count, of all grids. */
 static size_t cuts_before(const view_sheets *sheets, int grid) {
   size_t count = 0;
   for (int g = 0; g < grid; g++) count += cuts_of(sheets, g);
@@ -42,7 +43,7 @@ static size_t most_removed(const view_sheets *sheets) {
 
 void hl_view_cut(const view *view, const sheet_stack *stack, const grid *grid, const cut_shape *shape,
                  run_cut *cut, box_rays *rays) {
-  /* a plane's inside is a box without other faces */
+  /* the inside of a plane's shape counts as a box whose other faces are very far away */
   const double edge = 1e15, plane_low[3] = {0, -edge, -edge}, plane_high[3] = {edge, edge, edge};
   const double box_low[3] = {-1, -1, -1}, box_high[3] = {1, 1, 1};
   bool plane = shape->type == HL_CUT_PLANE;
@@ -87,8 +88,9 @@ static void enter_cuts(const view_sheets *sheets, slab_place place, float *enter
   }
 }
 
-/* A patch's entries: where its rays enter and leave the box. One task at a time uses a patch. Rows of
- * entries are handed out in order, so that memory beyond the requested rows is never touched. */
+/* The row of a patch's entries, which say where the patch's rays enter and leave the box. One task at a time
+ * uses a patch. Rows of entries are handed out in order, so that memory beyond the requested rows is never
+ * touched. */
 static float *entries_of(view_sheets *sheets, slab_place place) {
   uint32_t *entry = &sheets->entry_of[place.patch];
   if (*entry != NO_ENTRY) return sheets->entries + *entry * sheets->entry_floats;
@@ -112,7 +114,8 @@ static void remove_section(float from, float to, float *enter, float *leave) {
   else *leave = *enter;
 }
 
-/* Where a patch's rays enter and leave the part of a slab that cuts leave; null: see entries_of(). */
+/* The places where a patch's rays enter and leave the part of a slab that no cut removes; null as for
+ * entries_of(). */
 static const float *entries_of_slab(view_sheets *sheets, slab_place place) {
   float *enter = entries_of(sheets, place), *here = enter + INTERVAL_FLOATS,
         *removed = here + INTERVAL_FLOATS;
@@ -222,7 +225,7 @@ static slab_run *run_of_grid(const view_sheets *sheets, int first, int grid) {
   return &sheets->runs[run * sheets->content->volume_count + grid];
 }
 
-/* Whether slabs that a grid touches have some of the sheets from first to last. */
+/* Whether a grid touches slabs that end or begin at one of the sheets from `first` to `last`. */
 static bool reaches_sheets(const view_sheets *sheets, int grid, int first, int last) {
   const sheet_range *range = &sheets->occupancy.sheets_of[grid];
   return last >= range->first - 1 && first <= range->last + 1;
@@ -306,7 +309,8 @@ void hl_view_sheets_end(view_sheets *sheets) {
   hl_occupancy_release(content->context, &sheets->occupancy);
 }
 
-/* The kept densities of a patch on a sheet. They are emptied if they belong to another sheet. */
+/* Returns the densities that are kept for a patch on a sheet. If the place holds another sheet's densities,
+ * they are dropped. */
 static kept_patch *patch_on_sheet(const view_sheets *sheets, size_t patch, int sheet) {
   kept_patch *kept = &sheets->kept[patch * (size_t)sheets->ring + (size_t)(sheet % sheets->ring)];
   if (kept->sheet != sheet) *kept = (kept_patch){.sheet = sheet};
@@ -342,8 +346,8 @@ static float *density_on_sheet(const view_sheets *sheets, size_t patch, int shee
   return sheets->density + (patch * (size_t)sheets->ring + (size_t)(sheet % sheets->ring)) * TILE_PIXELS;
 }
 
-/* A patch while it is filled on the sheets of a bundle. Sheets are numbered from the one before the
- * bundle. */
+/* A patch while its densities are filled on the sheets of a bundle. A sheet's number i counts from the sheet
+ * before the bundle, which has 0. */
 typedef struct patch_bundle {
   const view_sheets *sheets;
   size_t tile, patch;
@@ -352,7 +356,7 @@ typedef struct patch_bundle {
   uint64_t pixels;              /* number of filled pixels */
 } patch_bundle;
 
-/* The filled blocks of a sheet that show something. */
+/* The blocks of the bundle's sheet i that are filled and show something. */
 static uint32_t visible_on(const patch_bundle *b, int i) {
   return i < 0 || i > b->slabs ? 0 : patch_on_sheet(b->sheets, b->patch, b->first + i)->blocks;
 }

@@ -19,8 +19,8 @@ typedef struct sheet_content {
   const grid *grids;           /* [volume_count], the frame's */
   int volume_count;
   const kernel *kernel;
-  bool splat;  /* densities are splatted; else they are gathered */
-  int stretch; /* the most slabs of a view that are reached in one call */
+  bool splat;  /* true: densities are splatted; false: densities are gathered */
+  int stretch; /* the greatest number of slabs of a view that one call reaches */
 } sheet_content;
 
 /* A patch's densities on one sheet, kept for the next slab. */
@@ -30,7 +30,7 @@ typedef struct kept_patch {
   uint16_t blocks; /* filled blocks with density */
 } kept_patch;
 
-/* A run of RUN_SLABS slabs in one patch: where the patch may show anything. */
+/* A run of RUN_SLABS slabs in one patch, and the blocks in which the run may show something. */
 typedef struct patch_run {
   int32_t first;             /* the sheet before the run; -1: no run yet */
   int32_t end;               /* one past the last sheet of the last requested bundle */
@@ -59,22 +59,23 @@ typedef struct view_sheets {
   void *memory;   /* borrowed from the reserve; holds all arrays below */
   float *density; /* [patches][ring][256], block-major */
   kept_patch *kept; /* [patches][ring]; says which densities are in `density` */
-  int reached;      /* number of sheets whose sources are kept: the sheets of a stretch and of its bundles */
+  int reached; /* number of sheets for which `sources` are kept: the sheets of a stretch and of its bundles */
   fill_source *sources; /* [reached][grids]; the source of sheet k lies in row k % reached */
   slab_run
       *runs; /* [run_count][grids]; the runs of slabs that a stretch touches; run k is in row k % run_count */
   int run_count;
   patch_run *patch_runs; /* [patches] */
-  slab_row *rows;        /* [patches]; no slab from the last requested one up to the row touches the row's
-                          * patch */
+  slab_row *rows; /* [patches]; the next row of slabs that touch the patch: no slab between the last requested
+                   * one and this row touches it */
   /* the next two arrays exist only where a box cuts visible matter; else they are null */
   uint32_t *entry_of; /* [patches]; the number of the patch's row of entries; NO_ENTRY where no row was
                        * requested */
   box_rays *box_rays; /* [grids] */
   float *entries; /* [patches][entry_floats], used up to entry_count: where rays enter a box and leave it */
   uint32_t entry_count; /* atomic */
-  /* Floats of a row: [2][256] for the box and cuts that keep an inside. Where cuts keep an outside, [2][256]
-   * more for the current slab, and [2][256] for each of these cuts. */
+  /* The number of floats in a row of entries: [2][256] for the box and the cuts that keep an inside. If some
+   * cuts keep an outside, there are [2][256] more for the current slab, and [2][256] for each of these cuts.
+   */
   size_t entry_floats;
   /* the next two arrays: the cuts of all grids, one grid after the other; null where no cut counts in this
    * view */
@@ -82,8 +83,9 @@ typedef struct view_sheets {
   box_rays *cut_rays;
 } view_sheets;
 
-/* content and view are borrowed until the end. of_light: cuts that leave shadows do not count. spare: as for
- * hl_occupancy_build(). After a failure, too, hl_view_sheets_end() must be called. */
+/* content and view are borrowed until the end. of_light: the view is a light's; cuts whose removed matter
+ * casts shadows do not count in it. spare: as for hl_occupancy_build(). After a failure, too,
+ * hl_view_sheets_end() must be called. */
 hl_status hl_view_sheets_begin(const sheet_content *content, const view *view, bool of_light, double spare,
                                view_sheets *sheets, hl_error *error);
 void hl_view_sheets_end(view_sheets *sheets);

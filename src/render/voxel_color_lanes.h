@@ -7,7 +7,7 @@
 #include "simd/gathers.h"
 #include "view/rays_lanes.h"
 
-/* Sums over the corners of sixteen cells. */
+/* Sums of colours and weights over the corners of the cells around sixteen positions. */
 typedef struct color_sums {
   lanes color[3], weight;
 } color_sums;
