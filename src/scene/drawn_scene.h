@@ -21,9 +21,10 @@ typedef struct drawn_scene {
   hl_scene_description description; /* the placed description, in which volumes of occupancy replace label
                                      * maps, and lattices (label/mask.h) replace masks */
   drawn_labels labels;              /* the volumes of occupancy and the lattices */
-  scene_order order;                /* in which frames take the description's lists */
-  uint64_t *plane_marks; /* owned; [volume_count]; numbers that identify the content of functions of two
-                          * numbers, 0 where there is none; they are parts of the keys of kept results */
+  scene_order order;                /* the order in which frames take the lists of the description */
+  /* Owned; [volume_count]; for each function of two numbers, a number that identifies its content; 0 for
+   * other functions. The numbers are parts of the keys of kept results. */
+  uint64_t *plane_marks;
 } drawn_scene;
 
 /* Makes an empty drawn scene, which hl_drawn_scene_make() fills; owned by the caller

@@ -145,8 +145,8 @@ typedef struct sort_kind {
   const void *items;
   size_t count, size;
   hl_key_write *write;
-  int (*compare)(const void *a, const void *b); /* compares things with equal keys; null: keys hold
-                                                 * everything */
+  /* Compares things whose keys are equal; null: keys hold everything that counts. */
+  int (*compare)(const void *a, const void *b);
 } sort_kind;
 
 static int compare(const sort_kind *kind, const hl_key *keys, int a, int b) {
@@ -159,7 +159,7 @@ static int compare(const sort_kind *kind, const hl_key *keys, int a, int b) {
   return kind->compare(items + (size_t)a * kind->size, items + (size_t)b * kind->size);
 }
 
-/* Sorts the first `kind->count` places of an order of that many. */
+/* Sorts the first `kind->count` numbers of an order. */
 static hl_status sort(hl_context *context, const sort_kind *kind, int *order, hl_error *error) {
   if (kind->count < 2) return HL_OK;
   hl_key *keys = hl_allocate_zeroed(context, kind->count, sizeof *keys);

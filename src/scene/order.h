@@ -13,7 +13,8 @@
 /* The order of a scene's things. Each array holds the numbers that things have in the placed description's
  * list, in the order of frames. */
 typedef struct scene_order {
-  int *lights;  /* owned; [light_count]; the suns of the sky come last, as in the list */
+  int *lights;  /* owned; [light_count]; the numbers of lights; the suns of the sky come last, as in the
+                 * description's list */
   int *volumes; /* owned; [volume_count] */
   int *meshes;  /* owned; [mesh_count] */
 } scene_order;

@@ -63,7 +63,7 @@ static const levels *levels_of(const hl_preview *preview, const hl_volume *volum
   return NULL;
 }
 
-/* Adds a volume with its copies, if it can have any and has none yet. */
+/* Makes the copies of a volume, if the volume can have copies and has none yet. */
 static hl_status add_levels(hl_preview *preview, hl_volume *volume, hl_coarser_kind kind, hl_error *error) {
   if (!can_be_coarser(volume, kind) || levels_of(preview, volume, kind) != NULL) return HL_OK;
   levels *l = &preview->volumes[preview->count++];
@@ -96,7 +96,7 @@ hl_status hl_preview_create(hl_context *context, const hl_scene *scene, hl_previ
   return status;
 }
 
-/* The smallest edge of a map's voxels in the scene, where the map lies as the volume does. */
+/* The smallest voxel edge of a map in the scene's world. The map is placed as the scene's volume is. */
 static double edge_of(const hl_scene_volume *volume, hl_volume *map) {
   hl_scene_volume placed = *volume;
   hl_scene_description alone;
@@ -108,7 +108,7 @@ static double edge_of(const hl_scene_volume *volume, hl_volume *map) {
 }
 
 /* The coarsest copy of a volume or of its mask whose voxels are about as long as the sheets are apart; null:
- * it stays as it is. */
+ * no copy is used. */
 static hl_volume *copy_for(const hl_preview *preview, const hl_scene_volume *volume, const hl_volume *map,
                            hl_coarser_kind kind, double apart) {
   const levels *l = levels_of(preview, map, kind);

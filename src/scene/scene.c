@@ -320,13 +320,14 @@ static hl_status copy_sky(hl_scene *scene, const hl_sky *from, hl_error *error) 
                       &to->pixels, &to->file, error);
 }
 
-/* Whether bright spots of the sky's image become lights of the scene (suns). They need shadows. */
+/* Whether bright spots of the sky's image become lights of the scene (suns). They do so only where the scene
+ * has shadows. */
 static bool has_suns(const hl_scene_description *d) {
   return d->sky.suns && d->sky.strength > 0 && d->render.shadows != HL_SHADOWS_OFF &&
          d->render.slicing == HL_SLICING_HALF_VECTOR && d->render.compositing == HL_COMPOSITING_LIGHT;
 }
 
-/* The camera's up, or another where it lies along the line of sight. */
+/* Gives the camera another up vector where its own lies along the line of sight. */
 static void mend_up(hl_camera *camera) {
   vec3 right, up, forward;
   if (hl_camera_basis(camera, &right, &up, &forward)) return;

@@ -21,8 +21,8 @@ struct hl_scene {
   hl_scene_description placed;      /* the description with all lights in the world, followed by the suns
                                      * of the sky, whose image lacks them, and with the scene's cuts in its
                                      * volumes; owns its array of lights */
-  sky_suns suns;      /* suns of the sky; where placed.sky.suns is set, they are lights of `placed` */
-  placed_cuts cut;    /* the placed description's volumes, where the scene has cuts */
+  sky_suns suns;      /* the suns of the sky; they are lights of `placed` where placed.sky.suns is set */
+  placed_cuts cut;    /* the volumes of `placed`, where the scene has cuts of its own */
   drawn_scene *drawn; /* owned; what frames draw of the scene; null until a frame asks for it */
   char *field_errors; /* owned; JSON that says how much the volumes' fields differ from their files
                        * (field_errors.c); null if this is known of no volume */

@@ -16,7 +16,7 @@ const void *hl_setting_field_const(const hl_setting *setting, const void *object
 /* The value of a field of type FLAG, WHOLE or CHOICE. */
 int hl_setting_whole(const hl_setting *setting, const void *object);
 
-/* True if lights or cameras of this type have the row's key. For other kinds type is 0. */
+/* True if lights or cameras of this type have the row's key. type: 0 for kinds of objects without types. */
 bool hl_setting_is_for(const hl_setting *setting, int type);
 
 /* True if the field equals the row's default. */
@@ -37,7 +37,7 @@ void hl_setting_mend(const hl_setting *setting, char *text, size_t size);
 /* Checks a field's value; place: the JSON pointer of the object ("/render"). */
 hl_status hl_setting_check(const hl_setting *setting, const void *object, const char *place, hl_error *error);
 
-/* The same for one key of a table. */
+/* Checks one key of a table as hl_setting_check() checks a row. */
 hl_status hl_settings_check_key(hl_setting_kind kind, const char *key, const void *object, const char *place,
                                 hl_error *error);
 

@@ -49,7 +49,8 @@ static hl_status check_brightness(const hl_checker *check, const hl_light *light
                  light->falloff == HL_FALLOFF_INVERSE_SQUARE ? " at the distance of a voxel's edge" : "");
 }
 
-/* Positions in camera axes are measured from the camera's target, which was checked itself. */
+/* Checks the places and lengths of one light. Positions in camera axes are measured from the camera's target,
+ * which was checked itself. */
 static hl_status check_light_reach(const hl_light *light, size_t index, const hl_frame_space *world,
                                    hl_error *error) {
   const hl_frame_space beside = {{0, 0, 0}, world->unit},

@@ -16,7 +16,8 @@ typedef struct hl_checker {
 /* Fails with "PLACE/KEY: PROBLEM". */
 hl_status hl_check_refuse(const hl_checker *check, const char *key, const char *problem);
 
-/* Check one setting, and all settings that an object of this type has (type 0 for kinds without types). */
+/* hl_check_key() checks one setting. hl_check_settings() checks all settings that an object of this type has
+ * (type 0 for kinds without types). */
 hl_status hl_check_key(const hl_checker *check, hl_setting_kind kind, const char *key, const void *object);
 hl_status hl_check_settings(const hl_checker *check, hl_setting_kind kind, const void *object, int type);
 
@@ -24,7 +25,8 @@ hl_status hl_check_settings(const hl_checker *check, hl_setting_kind kind, const
 hl_status hl_check_range(const hl_checker *check, const char *key, double value, double low, double high,
                          const char *mend);
 
-/* Check that coordinates are within HL_LIMIT_LENGTH, and that a direction is not zero. */
+/* hl_check_point() checks that coordinates are within HL_LIMIT_LENGTH, and hl_check_direction() that a
+ * direction is not zero. */
 hl_status hl_check_point(const hl_checker *check, const char *key, const double v[3]);
 hl_status hl_check_direction(const hl_checker *check, const char *key, const double v[3]);
 

@@ -13,7 +13,7 @@
 
 /* ---- weights ---- */
 
-/* The integral of a box's weight along an axis, up to x. */
+/* The integral, along one axis, of the weight of a box with soft edges, from the box's low end to x. */
 static double weight_up_to(double low, double high, double edge, double x) {
   if (x <= low) return 0;
   if (x >= high) return high - low - edge;
@@ -27,7 +27,7 @@ static double gaussian_up_to(double middle, double deviation, double x) {
   return deviation * sqrt(HL_PI / 2) * erf((x - middle) / (deviation * sqrt(2)));
 }
 
-/* The mean of a box's Gaussian along an axis, over from..to. */
+/* The mean, along one axis from `from` to `to`, of the Gaussian that a box stands for. */
 static double gaussian_along(const hl_function_box *box, int axis, double from, double to) {
   double low = box->low[axis], high = box->high[axis], middle = (low + high) / 2,
          deviation = box->sigma * (high - low), begin = fmax(from, low), end = fmin(to, high);
@@ -174,7 +174,8 @@ bool hl_plane_bounds(const hl_function_plane *plane, plane_box *bounds) {
 
 enum { OUTLINE_COLUMNS = 257 };
 
-/* The greatest opacity among shapes in a column of the plane, and sums of colours times opacity. */
+/* A column of the plane: the greatest opacity that a shape has in it, and sums over shapes of opacity and of
+ * colour times opacity. */
 typedef struct column {
   double greatest, opacity, color[3];
 } column;
@@ -221,7 +222,8 @@ static column column_between(const hl_function_plane *plane, double from, double
   return found;
 }
 
-/* The outline holds beyond `low` and `high` where the shapes go on there; else it falls to 0. */
+/* Beyond `low` and `high` the outline keeps the opacity that it has there if shapes go on; otherwise it falls
+ * to 0. */
 hl_status hl_plane_outline(hl_context *context, double low, double high, hl_transfer_function *function,
                            hl_error *error) {
   plane_box bounds;

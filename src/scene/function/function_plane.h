@@ -16,7 +16,7 @@ static inline double hl_plane_second_scale(const hl_function_plane *plane) {
   return plane->second_scale == 0 ? 1 : plane->second_scale;
 }
 
-/* The keys of the two axes' ranges: "value" and "second". */
+/* The keys under which a scene file has the ranges of the two axes: "value" and "second". */
 extern const char *const hl_plane_range_keys[2];
 
 /* A part of the plane: [value, second number]. */
@@ -27,7 +27,7 @@ typedef struct plane_box {
 /* The box around all shapes; false where there are none. */
 bool hl_plane_bounds(const hl_function_plane *plane, plane_box *bounds);
 
-/* Sums over all shapes, each a mean over a part of the plane. */
+/* Sums over all shapes of the function. Each shape adds its mean over a part of the plane. */
 typedef struct plane_sum {
   double extinction; /* per world unit */
   double color[3];   /* linear RGB, times extinction */

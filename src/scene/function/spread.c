@@ -46,7 +46,7 @@ typedef struct rows {
   size_t made;
 } rows;
 
-/* Appends the row a + f (b - a), with the place t of the old range for its value. */
+/* Appends the row a + f (b - a). The row's value becomes t, a place in the old range. */
 static void add_row(rows *r, const double *a, const double *b, double f, double t) {
   double *row = r->to + r->made++ * r->width;
   row[0] = t;
@@ -60,8 +60,8 @@ static double place_of(const double *row, const double old[2]) {
   return fabs(t * PIECES - whole) < 1e-9 ? whole / PIECES : t;
 }
 
-/* Appends the points of the line from row a to the next row, without the line's end, as far as t lies from
- * 0 to 1. */
+/* Appends points of the line from row a to the next row, where t is from 0 to 1. The line's last point is
+ * left out, because the next line begins with it. */
 static void add_line(rows *r, size_t a, const double old[2]) {
   const double *row = r->from + a * r->width, *next = row + r->width;
   double start = place_of(row, old), end = place_of(next, old);
@@ -72,7 +72,7 @@ static void add_line(rows *r, size_t a, const double old[2]) {
   }
 }
 
-/* Appends all rows where t is from 0 to 1, divided; at least one. */
+/* Appends all lines where t is from 0 to 1, divided into pieces. At least one row is appended. */
 static void divide_rows(rows *r, const double old[2]) {
   const double *first = r->from, *last = r->from + (r->count - 1) * r->width;
   double start = place_of(first, old), end = place_of(last, old);

@@ -24,7 +24,7 @@ static size_t count_not_above(const void *points, size_t count, size_t stride, d
   return low;
 }
 
-/* points: there must be at least one. */
+/* The opacity at a value, linear between points. There must be at least one point. */
 static double opacity_between(const hl_opacity_point *points, size_t count, double value) {
   size_t after = count_not_above(points, count, sizeof *points, value);
   if (after == 0) return points[0].opacity;
@@ -67,8 +67,8 @@ int hl_transfer_function_visible(const hl_transfer_function *function, double lo
   if (!(low <= high)) return 0;
   if (hl_transfer_function_opacity(function, low) > 0 || hl_transfer_function_opacity(function, high) > 0)
     return 1;
-  /* Both ends are transparent: linear pieces between can only rise at a point inside, both points of a step
-   * counted. */
+  /* both ends are transparent, and the function is linear between points: it can only rise above 0 at a point
+   * between the ends (of a step, both points count) */
   for (size_t p = count_not_above(points, function->opacity_count, sizeof *points, low);
        p < function->opacity_count && points[p].value <= high; p++)
     if (points[p].opacity > 0) return 1;

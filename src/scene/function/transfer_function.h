@@ -28,7 +28,7 @@ bool hl_transfer_function_transparent(const hl_transfer_function *function, doub
 hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_function *from,
                                     hl_transfer_function *to, hl_error *error);
 
-#define HL_COLORMAP_POINTS 65 /* colour points that a colormap is made of */
+#define HL_COLORMAP_POINTS 65 /* number of colour points into which a colormap is divided */
 
 static inline bool hl_is_grey(const double color[3]) { return color[0] == color[1] && color[1] == color[2]; }
 

@@ -7,12 +7,14 @@
 #include "core/door.h"
 #include "volume/volume.h"
 
-/* Degrees; views steeper than this lie too near the view's up direction to give the camera its up. */
+/* Degrees. In a view with a steeper elevation, the view's up is too close to the line of sight to serve as
+ * the camera's up. */
 #define STEEP 89.5
-#define LEVEL 1e-6 /* sine of an angle: a horizon is level if it leans by no more */
+#define LEVEL 1e-6 /* a horizon is level if it leans by at most this; the sine of the angle */
 /* Angles that are found from a camera's rounded coordinates are rounded to this many steps of a degree. */
 #define ANGLE_STEPS 1e9
-#define OBLIQUE     0.9 /* a cosine: an axis that is closer than this to up cannot be the front */
+/* An axis cannot be the front if the cosine of its angle to `up` is greater than this. */
+#define OBLIQUE 0.9
 
 bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forward) {
   vec3 sight = vec3_subtract(vec3_of(camera->target), vec3_of(camera->position));
@@ -54,8 +56,8 @@ void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elev
   memcpy(direction, &way, sizeof way);
 }
 
-/* The first volume that tells its space; null: there is none. Anatomy holds while a volume is not turned in
- * the scene. */
+/* The first volume that tells its space; null: there is none. A volume that the scene turns counts as one
+ * that does not tell it. */
 static const hl_volume *first_in_space(const hl_scene_description *description) {
   for (size_t v = 0; v < description->volume_count; v++)
     if (description->volumes[v].volume->space != HL_SPACE_UNKNOWN &&
@@ -91,7 +93,7 @@ void hl_view_about(const hl_scene_description *description, vec3 given_up, hl_vi
                     .elevation_deg = HL_VIEW_ELEVATION};
 }
 
-/* The view's right, as seen by someone who looks at its front. */
+/* The direction to the right for an eye at the view's front (azimuth 0). */
 static vec3 right_of_front(const hl_view *view) {
   return vec3_cross(vec3_of(view->up), vec3_of(view->front));
 }

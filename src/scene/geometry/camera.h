@@ -25,11 +25,11 @@ bool hl_view_is_possible(const hl_view *view);
 /* Places the camera at this distance from the target, in the view's direction. */
 void hl_camera_place(const hl_view *view, vec3 target, double distance, hl_camera *camera);
 
-/* The three-quarter view with this direction, of any length, up. Where a volume has anatomy, its front is the
- * patient's. */
+/* The three-quarter view in which a direction (of any length) is up. Where a volume tells the anatomy, the
+ * front of the view is the patient's. */
 void hl_view_about(const hl_scene_description *description, vec3 up, hl_view *view);
 
-/* The anatomy of the first volume that has one and is not turned in the scene. */
+/* The anatomical space that the first volume tells which tells one and is not turned in the scene. */
 hl_space hl_scene_space(const hl_scene_description *description);
 /* Whether hl_scene_space() is known to tell the anatomy, as in files of DICOM and NIfTI: bodies then stand
  * upright along z. */

@@ -35,7 +35,7 @@ void hl_add_scene_cuts(const hl_scene_description *scene, hl_scene_volume *volum
  * scene has no cuts. */
 typedef struct placed_cuts {
   hl_scene_volume *volumes; /* owned; the arrays in them belong to the scene */
-  hl_cut *cuts;             /* owned; of all volumes */
+  hl_cut *cuts;             /* owned; the cuts of all volumes */
 } placed_cuts;
 
 /* Replaces the volumes of a placed description by those of `made`, where the scene has cuts. After a failure,
@@ -50,7 +50,7 @@ void hl_cuts_key_add(hl_key *key, const cut_shape *cuts, size_t count);
 /* Whether two shapes are the same. */
 bool hl_cut_same(const cut_shape *a, const cut_shape *b);
 
-/* Whether a point of the shapes' space is left by all cuts. */
+/* Whether no cut removes a point of the shapes' space. */
 bool hl_cuts_leave(const cut_shape *cuts, size_t count, vec3 point);
 
 /* Whether a box along the axes of the shapes' space is surely cut away: some cut removes all of it. */

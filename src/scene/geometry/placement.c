@@ -82,8 +82,8 @@ void hl_scene_volume_box(const hl_scene_volume *volume, double low[3], double hi
   }
 }
 
-/* A value that voxels of this histogram bin may really have: a whole number for integers, the extreme values
- * in the outermost bins. */
+/* A value that stands for a histogram bin, and that voxels may really have: a whole number for integers, the
+ * extreme values in the outermost bins. */
 static double typical_value(const hl_volume *volume, int bin) {
   double width = (volume->maximum - volume->minimum) / HL_HISTOGRAM_BINS;
   if (bin == 0) return volume->minimum;
@@ -240,8 +240,7 @@ hl_status hl_lights_place(hl_context *context, const hl_scene_description *from,
   }
   for (int i = 0; i < suns->count; i++)
     *(hl_light *)&to->lights[to->light_count++] = hl_sun_light(&from->sky, &suns->suns[i]);
-  to->sky.suns = suns->count > 0; /* the sky changes where it has suns, because the image that is left
-                                   * lacks them */
+  to->sky.suns = suns->count > 0; /* a sky with suns has another image, from which their light is taken */
   if (suns->count > 0) to->sky.pixels = suns->rest;
   return HL_OK;
 }

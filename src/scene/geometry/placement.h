@@ -14,7 +14,8 @@ double hl_scene_volume_scale(const hl_scene_volume *volume, int axis);
 /* Index space of scene volume -> world: the volume's own placement, then scale, rotate, translate. */
 affine3 hl_scene_volume_index_to_world(const hl_scene_volume *volume);
 
-/* The same for the volume's mask. */
+/* Index space of the volume's mask -> world: the mask's own placement, then the volume's scale, rotation and
+ * translation. */
 affine3 hl_scene_mask_index_to_world(const hl_scene_volume *volume);
 
 /* A mesh's own space -> world: scale, rotate, translate. */
@@ -39,7 +40,7 @@ typedef struct hl_frame_space {
 /* The distance, in frame units, below which a light with falloff gets no brighter. */
 #define HL_LEAST_LIGHT_DISTANCE 1e-3
 
-/* The description has at least one volume or mesh. */
+/* Finds frame space. The description must have at least one volume or mesh. */
 hl_frame_space hl_scene_frame_space(const hl_scene_description *scene);
 
 /* The empty value, which the volume's surroundings and voxels that are not finite have: the most frequent

@@ -30,7 +30,8 @@ hl_status hl_labels_function(hl_context *context, const hl_scene_volume *volume,
     hl_transfer_function_release(context, function);
     return hl_fail_memory(error, OPACITY_A_LABEL * labels * sizeof *opacity, "a transfer function");
   }
-  double end = -INFINITY, last = 0; /* where the label before ends, and its opacity */
+  /* The value at which the points of the label before end, and their opacity there. */
+  double end = -INFINITY, last = 0;
   if (labels > 0) opacity[opacity_count++] = (hl_opacity_point){(double)volume->labels[0].value - 1, 0};
   for (size_t n = 0; n < labels; n++) {
     const hl_label *label = &volume->labels[n];
@@ -113,7 +114,7 @@ static size_t count_drawn(const hl_scene_volume *volume) {
   return skins + (solids > 0);
 }
 
-/* Adds a drawn label; takes the occupancy over. */
+/* Adds a volume that draws a label, or several solid ones. The volume owns the occupancy from now on. */
 static void add_drawn(hl_scene_description *placed, const hl_scene_volume *map, const hl_label *label,
                       hl_volume *occupancy, drawn_points **points) {
   if (occupancy == NULL) return;
@@ -125,7 +126,8 @@ static void add_drawn(hl_scene_description *placed, const hl_scene_volume *map, 
   set_function(label, drawn, (*points)++);
 }
 
-/* Adds the labels that are solid together. Where they have colours of their own, these multiply white. */
+/* Draws all solid labels as one volume. If they have colours of their own, its own colour is white, which
+ * these multiply. */
 static hl_status draw_solids(hl_context *context, hl_scene_description *placed, const hl_scene_volume *map,
                              drawn_points **points, hl_error *error) {
   size_t count = 0;

@@ -17,9 +17,9 @@ static inline hl_kernel hl_kernel_of_volume(const hl_scene_volume *volume, hl_ke
 
 /* The volumes that draw a scene's label maps; all null where there are neither label maps nor masks. */
 typedef struct drawn_labels {
-  hl_scene_volume *volumes; /* owned, with a reference to each volume and lattice; the array of the placed
-                             * description's volumes */
-  void *points;             /* owned; the volumes' transfer functions */
+  hl_scene_volume *volumes; /* owned, with a reference to each volume and lattice; the placed description's
+                             * list of volumes is this array */
+  void *points;             /* owned; the points of the volumes' transfer functions */
 } drawn_labels;
 
 /* A transfer function over a label map's own values: it shows each visible label, from half a number below it

@@ -41,7 +41,8 @@ static hl_status fail_value(double value, hl_error *error) {
                  value);
 }
 
-/* Labels come in runs: only a value that differs from the voxel before is looked up. */
+/* Collects the values of a map's voxels. Equal labels stand side by side in a row, so only a value that
+ * differs from the voxel before is looked up. */
 static hl_status find_values(const hl_volume *map, found_labels *found, hl_error *error) {
   for (size_t k = 0; k < map->dimension[2]; k++)
     for (size_t j = 0; j < map->dimension[1]; j++) {

@@ -148,7 +148,7 @@ static bool read_row(const word *words, int count, const columns *at, hl_label *
 static int by_value(const void *a, const void *b) {
   const hl_label *x = a, *y = b;
   if (x->value != y->value) return x->value < y->value ? -1 : 1;
-  return x->name < y->name ? -1 : x->name > y->name; /* names lie in the order of lines */
+  return x->name < y->name ? -1 : x->name > y->name; /* the later name stands in the later line */
 }
 
 static hl_status fail_line(const char *name, size_t line, const char *what, hl_error *error) {
@@ -254,7 +254,9 @@ void hl_label_distinct_color(int64_t value, double linear[3]) {
   double hue = 6 * (double)((uint64_t)value * GOLDEN >> 11) * 0x1p-53;
   double strength = strengths[(value < 0 ? 0 - (uint64_t)value : (uint64_t)value) % 3];
   for (int c = 0; c < 3; c++) {
-    double away = fabs(fmod(hue + 6 - 2 * c, 6) - 3); /* 3: this channel's own hue is opposite */
+    /* away: the distance of the hue from the one opposite to this channel's own hue; 3: it is this channel's
+     * own. */
+    double away = fabs(fmod(hue + 6 - 2 * c, 6) - 3);
     double pure = fmin(fmax(away - 1, 0), 1);
     linear[c] = hl_srgb_decode(0.92 * (1 - strength * (1 - pure)));
   }

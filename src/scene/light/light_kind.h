@@ -17,31 +17,32 @@
 struct light_kind {
   /* ---- what it is ---- */
   bool parallel;      /* the light is infinitely far away, and has a direction instead of a position */
-  bool sphere;        /* the light looks like the disk that faces the observer */
+  bool sphere;        /* the light looks like a disk that faces the observer */
   bool cone;          /* the light shines only within a cone around `direction` */
-  bool outline;       /* `vertices` say its shape and its place */
-  bool parallelogram; /* the unit square lies along edge1 and edge2 */
-  double deviations;  /* the factor from the standard deviation of the light's points to the light's extent */
+  bool outline;       /* the members `vertices` of the light give its shape and its place */
+  bool parallelogram; /* the unit square, from which points are taken, is spanned along edge1 and edge2 */
+  double deviations;  /* the light's extent is this many times the standard deviation of its points */
 
   /* ---- checks; settings are in their ranges already ---- */
   hl_status (*check)(const hl_checker *check,
-                     const hl_light *light); /* null: nothing more is to be checked */
+                     const hl_light *light); /* null: there is nothing more to check */
   /* Checks that floats hold the light's places and lengths beside the scene's voxels. */
   hl_status (*check_reach)(const hl_checker *check, const hl_light *light, const hl_frame_space *space);
 
   /* ---- its shape ---- */
-  /* Makes the shape of the settings. `kind` and `image_up` are set by hl_light_shape(). */
+  /* Makes the light's shape from its settings. hl_light_shape() sets `kind` and `image_up` afterwards. */
   light_shape (*shape)(const hl_light *light);
   /* The mean of x x' over all points of the light, where x is a point's offset: a rect has (e1 e1' + e2
    * e2') / 12, a disk r^2/4 (1 - n n'). Spheres, and the directions of parallel light, count as the disk
    * perpendicular to `facing`. */
   mat3 (*spread)(const light_shape *shape, vec3 facing);
-  /* The offset of the point for (a, b) of the unit square: equal areas to equal areas. */
+  /* The offset of the light's point that belongs to (a, b) of the unit square. Equal areas of the square
+   * belong to equal areas of the light. */
   vec3 (*point)(const light_shape *shape, vec3 facing, double a, double b);
-  /* The plane of the image on its surface. */
+  /* The plane of the emission image on the light's surface. */
   emission_plane (*plane)(const light_shape *shape, vec3 facing);
-  /* How long the two sides of the unit square look along a unit vector, in units of length; infinite: not
-   * known. The function is null for types that are parallel. */
+  /* The apparent lengths of the two sides of the unit square as seen along a unit vector, in units of length;
+   * infinite: a length is not known. The function is null for types that are parallel. */
   void (*apparent_lengths)(const light_shape *shape, vec3 along, double length[2]);
 };
 

@@ -15,7 +15,7 @@ enum light_settings {
   LIGHT_CONE = 64
 };
 
-/* KIND: a macro of four arguments; `with` is passed on to it. */
+/* Calls a macro for each type of light. KIND: a macro of four arguments, of which the first one is `with`. */
 /* clang-format off */
 #define HL_LIGHT_KINDS(KIND, with)                                                           \
   KIND(with, HL_LIGHT_DIRECTIONAL, directional, LIGHT_DIRECTION | LIGHT_ANGULAR_DIAMETER)    \

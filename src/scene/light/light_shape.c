@@ -61,7 +61,8 @@ double hl_polygon_unevenness(const polygon_shape *shape, const double (*vertices
   return greatest;
 }
 
-/* Twice the signed area of the triangle a, b, c as seen along the normal. */
+/* Twice the area of the triangle a, b, c, as seen along the normal. It is negative where the corners run the
+ * other way round. */
 static double side_of(vec3 normal, vec3 a, vec3 b, vec3 c) {
   return vec3_dot(normal, vec3_cross(vec3_subtract(b, a), vec3_subtract(c, a)));
 }
@@ -126,8 +127,8 @@ void hl_upright(vec3 normal, vec3 wanted_up, vec3 *right, vec3 *up) {
   *up = vec3_cross(normal, *right);
 }
 
-/* offset = middle + s right + t up: right and up need not be perpendicular (derived, by their cross
- * products). */
+/* Solves offset = middle + s right + t up for s and t. The vectors right and up need not be perpendicular
+ * (derived, by their cross products). */
 void hl_emission_place(const emission_plane *plane, vec3 offset, double *s, double *t) {
   vec3 on_plane = vec3_subtract(offset, plane->middle), normal = vec3_cross(plane->right, plane->up);
   double area = vec3_dot(normal, normal);

@@ -25,13 +25,13 @@ typedef struct light_shape {
   size_t vertex_count;
   vec3 image_up;    /* the direction in which the top of an image on the light's surface lies */
   bool is_wide;     /* the light is more than a point, or than one direction */
-  bool has_surface; /* an image can be on it */
+  bool has_surface; /* the light has a surface on which an image can be */
 } light_shape;
 
 typedef struct polygon_shape {
   vec3 normal; /* unit; zero where there is no area */
   double area;
-  double diameter; /* the greatest side of the vertices' bounds */
+  double diameter; /* greatest side of the box around the vertices */
   vec3 centre;     /* centre of the area */
   mat3 spread;     /* mean of (x - centre)(x - centre)' over the area */
 } polygon_shape;
@@ -46,11 +46,11 @@ double hl_polygon_unevenness(const polygon_shape *shape, const double (*vertices
 /* Whether two edges cross each other (touching is not crossing). */
 bool hl_polygon_crosses_itself(const polygon_shape *shape, const double (*vertices)[3], size_t count);
 
-/* The plane of a light's emission image: offsets from the light's centre, or for parallel light from the
- * direction towards it, at distance 1. */
+/* The plane of a light's emission image: positions in it are offsets from the light's centre, or for parallel
+ * light from the direction towards it, at distance 1. */
 typedef struct emission_plane {
   vec3 middle;    /* middle of the image */
-  vec3 right, up; /* vectors from there to the middles of its right and top edges */
+  vec3 right, up; /* vectors from `middle` to the middles of the image's right and top edges */
 } emission_plane;
 
 /* Unit vectors to the right and upwards, as seen by someone who looks against a unit normal. */

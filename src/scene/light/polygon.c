@@ -110,8 +110,9 @@ static double height_of_part(const flat_polygon *polygon, double x, double b) {
   return count > 0 ? crossing[count - 1] : 0;
 }
 
-/* The point for (a, b): the fraction a of the area lies left of its x, and the fraction b of the polygon's
- * line at x lies below its y. */
+/* The point that belongs to (a, b) of the unit square: the fraction a of the polygon's area lies left of the
+ * point's x, and on the vertical line at x the fraction b of the line within the polygon lies below the
+ * point's y. */
 static vec3 point(const light_shape *shape, vec3 facing, double a, double b) {
   (void)facing;
   flat_polygon polygon = flatten(shape);

@@ -12,8 +12,8 @@
 #include "scene/light/sky.h"
 #include "scene/scene.h"
 
-/* How a camera looks through its pixels; spans are half the picture's width and height in units of forward.
- */
+/* A camera's axes, and half of the picture's width (across) and height (down) where `forward` is one unit
+ * long. */
 typedef struct eye {
   vec3 right, up, forward;
   double across, down;

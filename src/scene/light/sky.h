@@ -19,7 +19,8 @@ sky_axes hl_sky_axes(const hl_sky *sky);
  * hemisphere, and for no sky. */
 void hl_sky_radiance(const hl_sky *sky, const sky_axes *axes, vec3 direction, double radiance[3]);
 
-/* Adds all that the radiance depends on. mark: of the image's pixels (hl_scene.sky_mark). */
+/* Adds everything on which the radiance depends to a key. mark: the number that identifies the image's pixels
+ * (hl_scene.sky_mark). */
 void hl_sky_key_add(hl_key *key, const hl_sky *sky, uint64_t mark);
 
 hl_status hl_sky_check(const hl_sky *sky, hl_error *error);

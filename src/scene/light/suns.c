@@ -27,7 +27,7 @@ static const double RING = 1.2, RING_ROWS = 1.5;
 static const double FAR_ABOVE = 8;
 /* A sun sends at least this fraction of the image's light. */
 static const double LEAST_SHARE = 0.05;
-/* What surrounds a sun has at most this fraction of its brightest pixel. */
+/* What surrounds a sun has at most this fraction of the brightness of the sun's brightest pixel. */
 static const double MOST_AROUND = 0.5;
 
 enum { TRIES = 64 /* spots that are looked at */, STEPS = 16 /* steps towards the middle of a spot */ };
@@ -47,8 +47,8 @@ static const double NODES[5] = {-0.906179845938664, -0.538469310105683, 0, 0.538
                     WEIGHTS[5] = {0.236926885056189, 0.478628670499366, 0.568888888888889, 0.478628670499366,
                                   0.236926885056189};
 
-/* Adds to the integrals the piece from `from` to `to`, cut off at `last`. The tent is 0 at `foot` and 1 at
- * `top`; where these are the same it is 1 throughout. */
+/* Adds to the integrals the part of a tent from `from` to `to`, cut off at `last`. The tent rises linearly
+ * from 0 at `foot` to 1 at `top`; where these are the same it is 1 everywhere. */
 static void add_piece(double from, double to, double last, double foot, double top, row_integrals *sum) {
   to = fmin(to, last);
   for (int i = 0; i < 5 && to > from; i++) {
@@ -86,11 +86,12 @@ typedef struct search {
   const float *pixels;  /* [height][width][3]; the image without the suns found so far */
   row_integrals *rows;  /* [height] */
   double (*columns)[2]; /* [width]: sine and cosine of the angle to the middle column */
-  brightest *peaks;     /* [height]: outside of the caps that are left out */
-  double wide, bend;    /* integrals over a column's tent: of 1, and of the cosine to its middle */
-  cap left_out[TRIES];  /* no sun begins there */
+  brightest *peaks;     /* [height]; the brightest pixel of each row outside of the caps that are left out */
+  double wide, bend;   /* two integrals over the tent of a column: of 1, and of the cosine of the angle to the
+                        * column's middle */
+  cap left_out[TRIES]; /* caps in which no sun begins any more */
   int left_out_count;
-  double mean, total; /* brightness of the whole image: mean, and integral */
+  double mean, total; /* brightness of the whole image: its mean, and its integral over all directions */
 } search;
 
 static float brightness_of(const float *pixel) { return pixel[0] + pixel[1] + pixel[2]; }
@@ -159,8 +160,8 @@ static int columns_of_cap(const search *all, const cap *of, int row) {
   return (int)fmin(ceil(turn / (2 * HL_PI) * all->sky->width + 1), all->sky->width / 2 + 1.0);
 }
 
-/* Visits the pixels whose middles are farther than `nearest` from the cap's middle, but within the cap.
- * nearest below 0: all of it. */
+/* Visits the pixels whose middles lie within a cap, and farther than `nearest` from the cap's middle. nearest
+ * below 0: all pixels of the cap. */
 static void visit_cap(const search *all, const cap *of, double nearest, visit_pixel *visit, void *data) {
   int first, end, width = all->sky->width;
   rows_of_cap(all, of, &first, &end);
@@ -192,8 +193,8 @@ static void add_to_center(const search *all, int row, int column, void *data) {
                        vec3_scale(direction_of(all, row, column), all->rows[row].area * (double)brightness));
 }
 
-/* The middle of the spot around a pixel: the mean over pixels at least half as bright, within a cap about
- * this middle. */
+/* The middle of the spot around a pixel. It is the mean direction of those pixels, in a cap around this
+ * middle, that are at least half as bright as the pixel. */
 static vec3 find_middle(const search *all, int row, int column, double radius) {
   cap around = {direction_of(all, row, column), radius};
   for (int i = 0; i < STEPS; i++) {
@@ -206,12 +207,12 @@ static vec3 find_middle(const search *all, int row, int column, double radius) {
   return around.middle;
 }
 
-/* What a cap has beyond its surroundings. */
+/* A spot: a cap, and the light in it that exceeds the cap's surroundings. */
 typedef struct spot {
   cap cap;
-  float around[3];      /* the greatest of the ring around it */
-  double irradiance[3]; /* irradiance of the light beyond the ring */
-  double brightness;    /* the sum of these */
+  float around[3];      /* R, G, B: the greatest values in the ring around the cap */
+  double irradiance[3]; /* irradiance of the light that exceeds these values */
+  double brightness;    /* the sum of the irradiance's channels */
   vec3 moment;          /* integral of brightness times unit vectors */
 } spot;
 

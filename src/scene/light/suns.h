@@ -17,13 +17,13 @@ enum { HL_MOST_SUNS = 4 };
  * direction. */
 typedef struct sky_sun {
   vec3 towards;         /* unit; x right, y middle, z up: the sky's own axes (scene/light/sky.h) */
-  double half_angle;    /* radians, from the middle to the rim */
-  double straight;      /* the length of the mean of the unit vectors to the sun, below 1 */
+  double half_angle;    /* angle from the sun's middle to its rim, radians */
+  double straight;      /* length of the mean of all unit vectors towards the sun; below 1 */
   double irradiance[3]; /* integral of the sun's radiance over its directions, without the sky's strength */
 } sky_sun;
 
 typedef struct sky_suns {
-  sky_sun suns[HL_MOST_SUNS]; /* in the order of their spots' brightest pixels */
+  sky_sun suns[HL_MOST_SUNS]; /* the sun whose spot has the brightest pixel comes first */
   int count;
   float *rest; /* owned; [height][width][3]: the image without the suns; null where there are none */
 } sky_suns;
