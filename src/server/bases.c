@@ -17,7 +17,8 @@ void base_forget(server_page *page) {
 }
 
 void base_keep(server *s, server_page *page, const frame_request *request) {
-  char *text = malloc(request->length + 1); /* a body has no zero byte at its end */
+  /* One byte is added for a zero at the end, which a request's body does not have. */
+  char *text = malloc(request->length + 1);
   if (text != NULL) text[request->length] = '\0';
   if (text != NULL && request->length > 0) memcpy(text, request->text, request->length);
   pthread_mutex_lock(&s->pages_lock);
@@ -33,7 +34,8 @@ void base_keep(server *s, server_page *page, const frame_request *request) {
 
 static json_t *changed(json_t *from, json_t *part);
 
-/* Changes an element in place. False: there is no such element, or the difference is malformed. */
+/* Applies a difference to one member of an object, or to one element of an array. False: there is no such
+ * element, or the difference is malformed. */
 static bool change_element(json_t *whole, const char *key, json_t *part) {
   if (json_is_array(whole)) {
     char *end;

@@ -96,9 +96,8 @@ void connection_changed(void *user_data, struct MHD_Connection *connection, void
     *place = NULL;
   }
   pthread_mutex_unlock(&table->lock);
-  if (crowded)
-    nanosleep(&moment, NULL); /* the sleep keeps other connections out, because this thread lets
-                               * connections in */
+  /* The sleep keeps other connections out, because this thread lets connections in. */
+  if (crowded) nanosleep(&moment, NULL);
 }
 
 /* Changes a connection's state, unless the connection is ending. */

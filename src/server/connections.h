@@ -10,17 +10,16 @@
 #include <microhttpd.h>
 
 enum {
-  MOST_CONNECTIONS = 256,          /* the most connections at once */
-  MOST_WAITING = 128,              /* the most connections that wait for a request */
-  IDLE_SECONDS = 20,               /* seconds that a request may take to come, and that a connection may be
-                                    * silent */
-  LEAST_BYTES_PER_SECOND = 1 << 14 /* least speed of a body after IDLE_SECONDS */
+  MOST_CONNECTIONS = 256, /* the most connections at once */
+  MOST_WAITING = 128,     /* the most connections that wait for a request */
+  IDLE_SECONDS = 20,      /* seconds that a request may take to arrive, and that a connection may be silent */
+  LEAST_BYTES_PER_SECOND = 1 << 14 /* least speed at which a body must arrive after IDLE_SECONDS */
 };
 
 /* A connection of a browser, or of anybody else on this machine. */
 typedef struct connection_place {
   int socket;
-  int state;         /* connections.c; 0: the place is free */
+  int state;         /* one of the states in connections.c; 0: this place is free */
   double since;      /* time at which the state began, by server_seconds() */
   uint64_t received; /* number of bytes of the body that have come */
 } connection_place;
@@ -28,8 +27,8 @@ typedef struct connection_place {
 typedef struct connection_table {
   pthread_mutex_t lock;
   connection_place places[MOST_CONNECTIONS]; /* guarded by `lock` */
-  unsigned long long turned_away;            /* number of connections that ended for others; guarded by
-                                              * `lock` */
+  /* Number of connections that were ended to make room for others; guarded by `lock`. */
+  unsigned long long turned_away;
 } connection_table;
 
 /* Seconds since a fixed time in the past. */
@@ -43,8 +42,9 @@ void connections_end(connection_table *table);
 void connection_changed(void *user_data, struct MHD_Connection *connection, void **place,
                         enum MHD_ConnectionNotificationCode code);
 
-/* connection_sends(): the connection has shown the token, and the body of its request follows.
- * connection_is_answered(): all of the body is there. connection_is_idle(): the request has ended. */
+/* Tell the table what a connection does now. connection_sends(): the connection has shown the token, and the
+ * body of its request follows. connection_is_answered(): all of the body has arrived. connection_is_idle():
+ * the request has ended. */
 void connection_sends(connection_table *table, struct MHD_Connection *connection);
 void connection_is_answered(connection_table *table, struct MHD_Connection *connection);
 void connection_is_idle(connection_table *table, struct MHD_Connection *connection);

@@ -84,8 +84,8 @@ bool folder_find(const server *s, const char *inside, char path[PATH_BYTES], ser
   return hl_context_confine(s->below, slash > below ? below : "", &file->confined, NULL) == HL_OK;
 }
 
-/* How the list shows an entry of a folder: 'd': as a folder; 'f': as a file that can be opened; 0: not at
- * all. */
+/* How the list of a folder's content shows an entry. 'd': as a folder; 'f': as a file that can be opened; 0:
+ * the list leaves it out. */
 static char kind_of(const server *s, const char *at, const char *name, off_t *bytes) {
   char inside[PATH_BYTES], path[PATH_BYTES];
   struct stat about;

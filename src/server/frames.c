@@ -15,13 +15,13 @@
 #include "parts.h"
 #include "start/joined.h"
 
-/* The frame that this thread works on. */
+/* The work of this thread: a frame that it renders, or a file that it opens. */
 static _Thread_local struct {
   server *server;
   int socket;        /* socket of the client that has asked for the frame */
   server_page *page; /* null: there is no page */
   unsigned long long number;
-  const server_opened *opened; /* the scene for which a preview is made; null: none is made */
+  const server_opened *opened; /* the open scene whose preview this thread makes; null: it makes none */
   bool opening;                /* a file is being opened */
 } current;
 
@@ -89,7 +89,7 @@ void pages_end(server *s) {
 
 /* ---- pages ---- */
 
-/* The page with this name, or the idle page whose place it takes; null: all pages are busy. */
+/* Finds the page with this name, or an idle page whose place the new page takes; null: all pages are busy. */
 static server_page *find_page(server *s, const char *name) {
   server_page *best = NULL;
   for (int p = 0; p < MOST_PAGES; p++) {
@@ -106,13 +106,13 @@ static void release_page(server *s, server_page *page) {
   forget_renderers(page);
   base_forget(page);
   page->name[0] = '\0';
-  page->last_use = 0; /* set to 0, so that the next new page takes this place, and not the place of an idle
-                       * page */
+  /* With 0 here, the next new page takes this place, and not the place of an idle page. */
+  page->last_use = 0;
   page->leaving = false;
   atomic_store(&page->newest, 0);
 }
 
-/* The page with this name, in use until leave_page(); null: all pages are busy. */
+/* Finds the page with this name, and holds it until leave_page(). Null: all pages are busy. */
 static server_page *enter_page(server *s, const char *name, unsigned long long number) {
   pthread_mutex_lock(&s->pages_lock);
   server_page *page = find_page(s, name);
@@ -215,7 +215,8 @@ void refuse_line(server_answer *answer, unsigned status, const char *line) {
   snprintf(answer->problem, sizeof answer->problem, "%s", line);
 }
 
-/* Refuses with status 410 where the scene that a page has opened is closed; the page then opens it again. */
+/* Refuses a request with status 410 if the scene that its page has opened is closed by now. The page then
+ * opens the scene again. */
 static bool refuse_closed(server *s, long long number, server_answer *answer) {
   server_opened *opened = opened_enter(s, number);
   if (opened != NULL) opened_leave(s, opened);
@@ -342,8 +343,8 @@ static hl_status make_frame(server *s, server_page *page, const frame_request *r
   return status;
 }
 
-/* Completes a request so that its scene is whole; false: the request is refused. *text: owned by the caller
- * (free()), or null. */
+/* Puts the whole scene's text into a request whose text is a difference. A whole scene becomes the page's
+ * base. False: the request is refused. *text: owned by the caller (free()), or null. */
 static bool complete_request(server *s, server_page *page, frame_request *request, char **text,
                              server_answer *answer) {
   *text = NULL;

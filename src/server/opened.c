@@ -100,7 +100,7 @@ static void wait_for_previews(server *s) {
   while (atomic_load(&s->preparing) > 0) nanosleep(&moment, NULL);
 }
 
-/* The place for another scene; null: requests hold all places. */
+/* Finds a place for another scene, and closes the scene that is in it. Null: requests hold all places. */
 static server_opened *make_room(server *s) {
   server_opened *best = NULL;
   for (int o = 0; o < MOST_OPENED; o++) {

@@ -32,7 +32,7 @@ enum {
   MOST_QUALITY = 100 /* the greatest quality of a JPEG */
 };
 
-#define MOST_NUMBER 1000000000000LL /* the greatest number of a page's frames */
+#define MOST_NUMBER 1000000000000LL /* the greatest number that a page may give a frame */
 
 /* A file of the page, embedded when the program is built (embed.py). */
 typedef struct server_asset {
@@ -60,17 +60,18 @@ typedef struct server_page {
   hl_renderer *renderer;                 /* owned; guarded by `rendering`; null: not made yet */
   quick_renderer quick[QUICK_RENDERERS]; /* guarded by `rendering` */
   atomic_ullong newest;                  /* the highest number of a requested frame */
-  atomic_int frame_part;                 /* finished thousandths of the stage of the frame that is rendered */
-  atomic_bool prepares;                  /* this stage makes what the frame's picture needs: smooth labels */
-  atomic_int film_done, film_frames;     /* numbers of frames of the film that the page renders, finished
-                                          * and in all; 0 frames in all: there is no film */
-  int users;                             /* number of requests that hold the page; guarded by
-                                          * server.pages_lock */
-  bool leaving;                          /* the page's place becomes free when the last request ends; guarded
-                                          * by server.pages_lock */
-  unsigned long long last_use;           /* guarded by server.pages_lock */
-  double last_seen;                      /* when the page last asked for something, by server_seconds();
-                                          * guarded by server.pages_lock */
+  atomic_int frame_part; /* how much of the current stage of the frame is finished, in thousandths */
+  atomic_bool prepares;  /* the current stage comes before the picture: it makes the smooth labels that the
+                          * picture needs */
+  atomic_int film_done, film_frames; /* of the film that the page renders: number of finished frames, and
+                                      * number of all frames; 0 frames in all: there is no film */
+  int users;                         /* number of requests that hold the page; guarded by
+                                      * server.pages_lock */
+  bool leaving; /* the page was closed: its place becomes free when the last request that holds it ends;
+                 * guarded by server.pages_lock */
+  unsigned long long last_use; /* guarded by server.pages_lock */
+  double last_seen;            /* when the page last asked for something, by server_seconds();
+                                * guarded by server.pages_lock */
   char *base; /* owned; the text of the newest scene that came as a whole, or null; guarded by
                * server.pages_lock */
   unsigned long long base_number; /* number of the frame of `base`; guarded by server.pages_lock */
@@ -78,9 +79,9 @@ typedef struct server_page {
 
 /* A scene that is open. */
 typedef struct server_opened {
-  long long number;              /* number by which pages name the scene; 0: the program's input */
-  hl_scene *scene;               /* owned; null: the place is free */
-  char *start;                   /* owned; the text of its start.json */
+  long long number; /* the number by which pages name the scene; 0: the scene is the program's input */
+  hl_scene *scene;  /* owned; null: the place is free */
+  char *start;      /* owned; the text of the scene's start.json */
   _Atomic(hl_preview *) preview; /* owned; null until the preview is made, and where it cannot be made */
   atomic_bool prepared;          /* the preview is made, or cannot be made */
   int users;                     /* number of requests that use the scene; guarded by server.pages_lock */
@@ -94,11 +95,11 @@ typedef struct server {
   hl_context *below;  /* owned; opens files below the server's folder; null: there is no such folder */
   char token[TOKEN_DIGITS + 1];
   server_opened opened[MOST_OPENED];
-  long long next_opened;   /* guarded by pages_lock */
-  atomic_bool announced;   /* options.ready has returned */
-  atomic_bool visited;     /* options.visited was called */
-  atomic_bool released;    /* renderers or scenes were released after freed memory was last given back to
-                            * the system */
+  long long next_opened; /* guarded by pages_lock */
+  atomic_bool announced; /* options.ready has returned */
+  atomic_bool visited;   /* options.visited was called */
+  atomic_bool
+      released; /* renderers or scenes were released since freed memory was last given back to the system */
   atomic_int opening_part; /* finished thousandths of the volume that is being read */
   atomic_int preparing;    /* number of threads that make previews */
   pthread_mutex_t pages_lock;
@@ -117,28 +118,28 @@ typedef struct server_answer {
   char *text;                 /* owned, hl_text_release(); or null */
   unsigned char *from_malloc; /* owned, free(); or null */
   char problem[1000];         /* an error line, where the answer has neither bytes nor a text */
-  double seconds_read, seconds_render,
-      seconds_encode;  /* seconds that the steps of a frame took; all 0: the answer is no frame */
-  double seconds_once; /* the part of these seconds that the next frames will not need: the time of
-                        * preparing a new renderer, and of waiting for coarser volumes */
+  double seconds_read, seconds_render, seconds_encode; /* seconds that reading, rendering and encoding a frame
+                                                        * took; all 0: the answer is no frame */
+  double seconds_once; /* the part of these seconds that later frames will not need again: for preparing a new
+                        * renderer, and for waiting for coarser volumes */
 } server_answer;
 
 /* The parameters of a request for a frame. */
 typedef struct frame_request {
   const char *page;
   unsigned long long number;
-  long long opened;      /* number of the open scene whose volumes the request's scene has */
-  const char *format;    /* "jpeg", "png", "exr" or "npy"; in place of a picture, "depth": the depth at the
-                          * picture's middle; "overlay": a PNG of what is drawn over the picture */
-  int quality;           /* quality of a JPEG */
-  int depth;             /* bits of a PNG's channels: 8 or 16 */
-  int metadata;          /* 1: a PNG carries its scene; 0: it does not */
+  long long opened;   /* the number of the open scene from which the scene in the request takes its volumes */
+  const char *format; /* "jpeg", "png", "exr" or "npy"; in place of a picture, "depth": the depth at the
+                       * picture's middle; "overlay": a PNG of what is drawn over the picture */
+  int quality;        /* quality of a JPEG */
+  int depth;          /* bits of a PNG's channels: 8 or 16 */
+  int metadata;       /* 1: a PNG carries its scene; 0: it does not */
   int scale_bar, legend; /* 1: drawn over a PNG of 8 bits */
-  int axes;              /* an hl_axes, which is drawn so, too */
-  const char *unit;      /* unit of lengths, where the scene's files tell none; null: it is not known */
+  int axes;              /* an hl_axes; axes are drawn over a PNG of 8 bits, too */
+  const char *unit; /* unit of lengths, used where the scene's files tell none; null: there is no such unit */
   int moving;     /* 1: a quick frame, of coarser volumes where the sheets are wide; 0: the scene as it is */
-  long long base; /* number of the page's frame from whose scene the text gives the difference; 0: the text is
-                   * a whole scene */
+  long long base; /* 0: `text` is a whole scene; else `text` is a difference, from the scene of the page's
+                   * frame with this number */
   const char *text; /* the scene */
   size_t length;
 } frame_request;
@@ -170,16 +171,17 @@ typedef struct server_upload {
 /* frames.c */
 bool pages_begin(server *s);
 void pages_end(server *s);
-/* Between work_begin() and work_end() the thread works for the client at the other end of the socket. Its
+/* Between work_begin() and work_end() this thread works for the client at the other end of the socket. Its
  * work is cancelled when the client has gone. */
 void work_begin(server *s, int socket);
 void work_end(void);
-/* The thread works for an open scene. Its work is cancelled when the scene's page has gone. */
+/* This thread works for an open scene from now on. Its work is cancelled when the scene's page was closed. */
 void work_begin_for(server *s, const server_opened *opened);
-/* A page was closed: ends its frames, the frames of its lanes (NAME-...), and their renderers. */
+/* Call it when a page was closed. It ends the page's frames, the frames of its lanes (NAME-...), and their
+ * renderers. */
 void page_is_gone(server *s, const char *name);
-void pages_expire(server *s); /* ends the renderers of pages that have asked for nothing for long; call it now
-                               * and then */
+void pages_expire(server *s); /* ends the renderers of pages that have asked for nothing for long; it must be
+                               * called now and then */
 /* Counts of the pages of a server and their work. */
 typedef struct pages_state {
   int pages;     /* number of pages that may hold a renderer */
@@ -188,9 +190,9 @@ typedef struct pages_state {
 } pages_state;
 
 pages_state pages_count(server *s);
-/* The progress of the page's frame, in thousandths of its stage. *prepares: it is the stage before the
- * picture, which smooths labels. *others: the number of other pages, and of
- * lanes of this page, that have frames under way. */
+/* The progress of the page's frame, in thousandths of its stage. *prepares: whether it is the stage before
+ * the picture, in which labels are smoothed. *others: the number of other pages, and of lanes of this page,
+ * that have frames under way. */
 int page_progress(server *s, const char *name, bool *prepares, int *others);
 /* Answers with a frame. film: null for a picture. */
 void answer_frame(server *s, const frame_request *request, const film_request *film, server_answer *answer);

@@ -8,7 +8,8 @@ struct MHD_Connection;
 
 /* The text of a parameter, which lives as long as the request; null: it is absent. */
 const char *query_text(struct MHD_Connection *connection, const char *name);
-/* A whole number, from low to high; `standard` if it is absent, -1 if it is anything else. */
+/* Reads a whole number from low to high. The result is `standard` if the parameter is absent, and -1 if it is
+ * anything else. */
 long long query_number(struct MHD_Connection *connection, const char *name, long long low, long long high,
                        long long standard);
 bool is_page_name(const char *name);
@@ -18,7 +19,7 @@ bool is_film_format(const char *format);
 /* Reads the parameters of a frame, of the scene that the body holds. Numbers and choices that cannot be read
  * become -1; `number` becomes 0 or more than MOST_NUMBER. body: [length]; it is borrowed. */
 frame_request query_frame(struct MHD_Connection *connection, const char *body, size_t length);
-/* Whether a frame's page has a name, and the frame a number. */
+/* Whether a request for a frame names a page and has a number. */
 bool names_page(const frame_request *wanted);
 /* Whether the parameters of the overlays could be read. */
 bool names_overlay(const frame_request *wanted);

@@ -453,8 +453,8 @@ static enum MHD_Result on_request(void *user_data, struct MHD_Connection *connec
     bool taken = !r->refused && (r->uploads ? upload_add(&r->upload, upload, *upload_size)
                                             : collect(r, upload, *upload_size));
     *upload_size = 0;
-    return taken ? MHD_YES : MHD_NO; /* if the body is larger than its header announced, the connection
-                                      * ends */
+    /* If the body is larger than its header announced, the connection ends. */
+    return taken ? MHD_YES : MHD_NO;
   }
   r->path = path_after_token(url, s->token);
   if (r->refused || r->path == NULL) return MHD_NO;

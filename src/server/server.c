@@ -111,8 +111,9 @@ bool server_run(const server_options *options, char *problem, size_t problem_siz
     server_opened *first = opened_add(s, options->scene, options->title);
     good = first != NULL;
     if (good) opened_leave(s, first);
-    s->next_opened = (long long)time(
-        NULL); /* pages that were opened with an earlier viewer ask for none of these files */
+    /* Numbers begin with the time, so that pages that were opened with an earlier viewer ask for none of
+     * these files. */
+    s->next_opened = (long long)time(NULL);
   }
   if (!good) snprintf(problem, problem_size, "out of memory for the viewer");
   if (good) listening = listen_on(options->port, problem, problem_size);

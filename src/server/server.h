@@ -39,9 +39,9 @@
 /* A file that a page opens. */
 typedef struct server_file {
   hl_context *confined; /* opens files in the file's folder, or in the file itself where it is a folder */
-  const char *name;     /* name in this folder; "." where the file is a folder */
-  const char *folder;   /* its absolute path, by which the scene names files; null: the file was dropped, and
-                         * its scene can be saved beside it */
+  const char *name;     /* the file's name in that folder; "." where the file is a folder */
+  const char *folder;   /* the folder's absolute path, by which the scene names files; null: the file was
+                         * dropped on the page, and its scene can be saved beside it */
 } server_file;
 
 typedef struct server_options {
@@ -53,9 +53,9 @@ typedef struct server_options {
   void *files_data;                        /* data for `open` */
   uint64_t most_upload_bytes;              /* the most bytes of a dropped file; 0: no limit */
   int port;                                /* 0: any free port */
-  bool (*token)(int port, char token[33]); /* sets the token of the URL, 32 hexadecimal digits, to the one
-                                            * that was kept for this port; called once the server has the
-                                            * port. Where it is null or returns false, the token is random */
+  bool (*token)(int port, char token[33]); /* sets the URL's token, 32 hexadecimal digits, to the token that
+                                            * was kept for this port. It is called when the server has the
+                                            * port. If it is null or returns false, the token is random */
   bool (*stopped)(void);                   /* called some times a second; true ends server_run() */
   void *user_data;
   void (*ready)(void *user_data, const char *url); /* called once, as soon as the server answers requests */

@@ -4,7 +4,7 @@
 
 #include <halflight/compose.h>
 
-/* The choices of a page. Null: none. */
+/* What a page has chosen by name for its scene. A null text: no choice. */
 typedef struct composed_choices {
   const char *look; /* as the option "look" of hl_scene_compose() */
   const char *rig;  /* as the option "light-rig" */

@@ -37,8 +37,8 @@ static hl_status add_meshes(hl_context *context, const hl_scene_mesh *added, siz
   return HL_OK;
 }
 
-/* Makes a scene for meshes without a volume: one triangle takes their place, with the default camera and
- * light. */
+/* Makes a scene to which meshes are added where there is no volume. It has the default camera and light, and
+ * one triangle, which the meshes replace. */
 static hl_status begin_scene(hl_context *context, hl_scene **scene, hl_error *error) {
   static const char text[] =
       "{\"halflight\": 1, \"meshes\": [{\"vertices\": [[0, 0, 0], [1, 0, 0], [0, 1, 1]], "

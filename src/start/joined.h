@@ -11,12 +11,13 @@
 hl_status load_mesh(hl_context *context, const char *path, size_t index, hl_scene_mesh *mesh,
                     hl_error *error);
 
-/* Adds meshes to a scene; where *scene is null, makes a scene for them. bare: the camera frames the meshes,
- * too. */
+/* Adds meshes to a scene; where *scene is null, makes a scene for them. bare: whether the camera is to frame
+ * the meshes, too. */
 hl_status join_meshes(hl_context *context, const hl_scene_mesh *added, size_t count, bool bare,
                       hl_scene **scene, hl_error *error);
 
-/* Moves the camera along its direction and zooms so that all that there is now fits into the picture. */
+/* Moves the camera along its direction and zooms so that everything in the scene now fits into the picture.
+ */
 hl_status frame_anew(hl_scene_description *description, hl_error *error);
 
 /* Makes one scene of two: the volumes and meshes of the first scene, and after them the volumes and meshes

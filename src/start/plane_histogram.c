@@ -10,7 +10,7 @@
 
 enum { VALUES = 64, GRADIENTS = 48, FINE = 4096 };
 
-/* Voxels that are looked at, about. */
+/* Approximate number of voxels that are looked at. */
 static const double SAMPLES = 200000;
 /* The fraction of voxels whose gradients are within the drawing. */
 static const double WITHIN = 0.9995;
@@ -59,7 +59,7 @@ static int bin_of(double x, double most, int bins) {
   return bin < 0 ? 0 : bin < bins ? bin : bins - 1;
 }
 
-/* The gradient that nearly all samples lie below. */
+/* The gradient below which the fraction WITHIN of the sampled gradients lies. */
 static double greatest_drawn(const sampling *of) {
   size_t counts[FINE] = {0}, within = 0;
   double most = 0;

@@ -63,7 +63,7 @@ char *web_text(size_t bytes) {
 /* ---- the beginning ---- */
 
 int web_fuses(void) {
-  /* (1 + 2^-12)^2 - 1 needs 25 bits: a product that is rounded before the sum loses 2^-24. */
+  /* (1 + 2^-12)^2 - 1 needs 25 bits: an engine that rounds the product before the sum loses the term 2^-24 */
   volatile float factor = 1.0f + 0x1p-12f, addend = -1.0f;
   lanes sum = lanes_fma(lanes_set(factor), lanes_set(factor), lanes_set(addend));
   for (int lane = 0; lane < LANES; lane++)
@@ -283,8 +283,8 @@ int web_frame(size_t length, const char *format, int depth, int metadata, int mo
   hl_renderer **renderer = coarser ? &web.quick : &web.renderer;
   const hl_scene *rendered = coarser ? quick : scene;
   if (status == HL_OK) status = render(renderer, rendered, format, depth, metadata != 0, &error);
-  if (status == HL_ERROR_MEMORY) { /* once more, after the renderers have released what they hold of
-                                    * earlier frames */
+  /* The picture is tried once more, after the renderers have released what they hold of earlier frames. */
+  if (status == HL_ERROR_MEMORY) {
     forget_renderers();
     status = render(renderer, rendered, format, depth, metadata != 0, &error);
   }
@@ -348,8 +348,8 @@ int web_depth(size_t length) {
   hl_status status = read_scene(length, &scene, &error);
   if (status != HL_OK) return answer_error(status, &error);
   status = find_depth(scene, &text, &error);
-  if (status == HL_ERROR_MEMORY) { /* once more, after the renderers have released what they hold of
-                                    * earlier frames */
+  /* The depth is looked for once more, after the renderers have released what they hold of earlier frames. */
+  if (status == HL_ERROR_MEMORY) {
     forget_renderers();
     status = find_depth(scene, &text, &error);
   }

@@ -16,17 +16,18 @@ int web_fuses(void);
 /* Makes the context, before all other calls. mebibytes: of memory at most; threads: of a picture at most. */
 int web_begin(uint32_t mebibytes, int threads);
 
-/* Of a file that is linked for several threads: a helper's worker says that it is there, 1 if it has a number
- * from 0 on that the library knows, and then serves the library and does not return
- * (platform/wasi/threads.h). */
+/* For a file that is linked for several threads. web_helper_arrive(): a helper's worker tells its number,
+ * from 0 on; returns 1 if the library knows this number. web_helper_serve(): the worker serves the library;
+ * the function does not return (platform/wasi/threads.h). */
 int web_helper_arrive(int number);
 void web_helper_serve(int number);
 
-/* Room for the page, such as a helper's stack; null: no memory. */
+/* Allocates memory for the page, such as a helper's stack; null: there is no memory. */
 void *web_room(size_t bytes);
 void web_release(void *room);
 
-/* Room for a text of the caller, until the next call of this function; null: no memory. */
+/* Memory into which the caller writes a text. It holds until the next call of this function; null: there is
+ * no memory. */
 char *web_text(size_t bytes);
 
 /* Opens the file, folder or scene that the text names, in place of what is open, if it can. Answer:
@@ -57,15 +58,15 @@ int web_slice(int number, int of_mask, int blend, int interpolate);
  * it. */
 int web_depth(size_t length);
 
-/* Owned by this side, until the next call that can fail. */
+/* The answer of the last call. The library owns it, until the next call that can fail. */
 const unsigned char *web_answer(void);
 size_t web_answer_bytes(void);
 
 /* Bytes held for what is open. */
 double web_memory_held(void);
 
-/* Functions that the page gives: the first says whether the running call is no longer wanted, the second
- * takes how much of a file has been read. */
+/* Functions that the page gives. web_cancelled() says whether the running call is no longer wanted.
+ * web_progress() receives the fraction of a file that has been read. */
 __attribute__((import_module("page"), import_name("cancelled"))) int web_cancelled(void);
 __attribute__((import_module("page"), import_name("progress"))) void web_progress(double fraction);
 
