@@ -98,8 +98,8 @@ typedef struct server {
   long long next_opened; /* guarded by pages_lock */
   atomic_bool announced; /* options.ready has returned */
   atomic_bool visited;   /* options.visited was called */
-  atomic_bool
-      released; /* renderers or scenes were released since freed memory was last given back to the system */
+  /* Renderers or scenes were released since freed memory was last given back to the system. */
+  atomic_bool released;
   atomic_int opening_part; /* finished thousandths of the volume that is being read */
   atomic_int preparing;    /* number of threads that make previews */
   pthread_mutex_t pages_lock;
