@@ -20,7 +20,7 @@
 enum {
   FIELD_LANES = 16,
   FIELD_HARMONICS = 9,   /* spherical harmonics up to the second degree */
-  FIELD_DIRECTIONS = 36, /* number of directions about one end of an axis */
+  FIELD_DIRECTIONS = 36, /* number of directions into which the light from one end of an axis is divided */
   FIELD_SAMPLES = 4      /* the most samples along an edge of a cell */
 };
 
@@ -63,13 +63,13 @@ typedef struct field_matter {
 /* How much light is lost in each cell, for each axis along which light crosses the cell. */
 typedef struct opacity_field {
   field_lattice lattice;
-  float *depth[3]; /* [slices][rows][3][stride]; optical depths, as powers of 1/2, of light that crosses
-                    * the cell along the slices' axis, across and down */
+  float *depth[3]; /* [slices][rows][3][stride]; the optical depth d of the cell for light along the slices'
+                    * axis, across and down; the cell lets 2^-d of the light through */
   unsigned char
       /* [slices][rows][stride / FIELD_LANES]; FIELD_MATTER and FIELD_RECEIVES for a block of cells;
        * FIELD_RECEIVES is set only in slabs whose light this process finds (field_share.h). */
       *flags[3];
-  unsigned char *seen; /* [z][y][x]; 1 for cells in which something may be visible, or near which it may */
+  unsigned char *seen; /* [z][y][x]; 1 for each cell in which, or near which, something may be visible */
 } opacity_field;
 
 enum { FIELD_MATTER = 1, FIELD_RECEIVES = 2 };
@@ -77,8 +77,8 @@ enum { FIELD_MATTER = 1, FIELD_RECEIVES = 2 };
 /* A cell is linked with nine cells of the slice before and with nine of the slice after. */
 enum { FIELD_LINKS = 9 };
 
-/* Flags of a block of FIELD_LANES cells: some link to the slice before is cut; some link to the slice after
- * is cut. */
+/* Flags of a block of FIELD_LANES cells. LINKS_BEFORE: a surface cuts some link from the block to the slice
+ * before. LINKS_AFTER: a surface cuts some link from the block to the slice after. */
 enum { LINKS_BEFORE = 1, LINKS_AFTER = 2 };
 
 /* ---- the functions of this room that are compiled for each instruction set ---- */
@@ -93,21 +93,23 @@ typedef struct field_block {
   const uint32_t *cells; /* [count]; the cells that a volume's bricks reach, one bit each */
 } field_block;
 
-/* Finds the optical depths of the block's cells along x, y and z, in powers of 1/2. */
+/* Finds the optical depth d of each cell of the block along x, y and z; the cell lets 2^-d of the light
+ * through. */
 typedef void field_opacity_function(const field_block *block, float depth[3][FIELD_LANES]);
 
 /* A direction of the sky, as the slices at one end of an axis see it. */
 typedef struct sky_direction {
-  int32_t offset;  /* offset, in floats, from a cell to the first of the four cells of the slice before that
-                    * its  light comes from */
-  float weight[4]; /* weights of this cell of the slice before, of the next one across, and of the two
-                    * below them */
-  int link;        /* the number of the link to the first of the four cells: 3 (1 + down) + 1 + across */
-  float across, down; /* how far the light moves across and down in a slice, in cells, squared */
-  int slope; /* the number of the first direction with the same `across` and `down`; directions that mirror
-              * each other pass the same matter */
-  const float *basis; /* [channels x FIELD_HARMONICS]; the integrals over the direction of radiance times
-                       * each harmonic */
+  int32_t offset;     /* A cell gets this direction's light from four cells of the slice before. This is the
+                       * offset, in floats, from the cell to the first of the four */
+  float weight[4];    /* weights of the first of the four cells, of the next one across, and of the two below
+                       * these */
+  int link;           /* the number of the link to the first of the four cells: 3 (1 + down) + 1 + across */
+  float across, down; /* squares of the distances, in cells, by which the light moves across and down while it
+                       * crosses a slice */
+  int slope; /* the number of the first direction with the same `across` and `down`. The two are mirror images
+              * of each other, so a cell has one transmittance for both */
+  const float *basis; /* [channels x FIELD_HARMONICS]; for each channel and harmonic, the integral of the
+                       * sky's radiance times the harmonic over the solid angle of this direction */
 } sky_direction;
 
 typedef struct sky_slice {
@@ -128,8 +130,8 @@ typedef struct sky_slice {
   float *field;        /* the slice's first cell */
   size_t across, down; /* numbers of floats from a cell to the next cell in its row, and to the cell in the
                         * next row */
-  int passing; /* the place, among a cell's numbers, of its transmittance; a third of the transmittance
-                * along this axis is added there; 0: nothing is added */
+  int passing; /* index, among a cell's floats, of the cell's transmittance. A third of the transmittance
+                * along the slices' axis is added there; 0: nothing is added */
   const unsigned char *cut; /* [rows][stride / FIELD_LANES]; null: there are no surfaces */
   unsigned char cut_here;   /* LINKS_BEFORE or LINKS_AFTER: the side from which the light comes through
                              * links */
@@ -138,7 +140,8 @@ typedef struct sky_slice {
 } sky_slice;
 
 /* Moves the light of all directions to the next slice, in one row, and adds it to those cells near which
- * something is visible. Light below SKY_FAINT in all cells of a block is nothing, and is not moved on. */
+ * something is visible. Where the light of a direction is below SKY_FAINT in all cells of a block, it counts
+ * as 0 and is not moved on. */
 typedef void sky_row_function(const sky_slice *slice, int32_t row);
 
 typedef struct field_functions {

@@ -1,4 +1,5 @@
-/* field/field_planes.h - planes of numbers of a slice's cells, with a border around them. */
+/* field/field_planes.h - planes that hold one number for each cell of a slice, with a border around the
+ * cells. */
 #ifndef HL_FIELD_FIELD_PLANES_H
 #define HL_FIELD_FIELD_PLANES_H
 

@@ -10,8 +10,8 @@
 #include "field/sky_field.h"
 #include "simd/lanes.h"
 
-/* The light that reaches sixteen samples, as harmonics in the field's units. The caller divides them by the
- * sum of the weights of the cells around the sample. */
+/* The light that reaches sixteen samples, as sums of harmonics over the cells around each sample, in the
+ * field's units. The caller divides each sum by the sum of the cells' weights. */
 typedef struct sky_rows {
   float of[LANES][2 * LANES]; /* [lane][FIELD_HARMONICS][channels]; set for the active lanes */
   lanes unit;                 /* 1 over the sum of the weights */
@@ -27,12 +27,14 @@ LANES_INLINE lanes place_between_cells(const sky_light *sky, int axis, lanes pos
   return whole;
 }
 
-/* The least weight of the cell on the position's own side of all surfaces. */
+/* The least factor on a cell's trilinear weight. It is also the least weight of the cell that no surface
+ * separates from the position. */
 static const float LEAST_COUNTED = 1.0f / 1024;
 
-/* The weight of a cell among the cells around a position. It is the trilinear weight times the cell's
- * transmittance; On a volume's surface (surface: 1) it is the trilinear weight times the sixth power of the
- * transmittance, so that cells half filled with matter do not darken the outside of the surface. */
+/* The weight of a cell among the cells around a position. In media and on meshes (surface: 0) it is the
+ * trilinear weight times the cell's transmittance. On a volume's surface (surface: 1) it is the trilinear
+ * weight times the sixth power of the transmittance, so that cells half filled with matter do not darken the
+ * outside of the surface. */
 LANES_INLINE lanes weight_of_cell(lanes trilinear, lanes_int stored, lanes surface) {
   lanes passing = lanes_from_int(stored) * (1.0f / SKY_MOST), squared = passing * passing,
         counted = passing * lanes_fma(surface, squared * squared * passing - 1.0f, lanes_set(1.0f));
@@ -45,8 +47,8 @@ typedef struct sky_cells {
   lanes fraction[3];                   /* fraction of the way to the next cell along each axis */
 } sky_cells;
 
-/* The distance, in numbers of 16 bits, from a lane's first cell to the cell in the next row, in the next
- * slice, and in both. */
+/* The distances, in numbers of 16 bits, from the first of a lane's eight cells to the first cell of each
+ * pair: in the same row, in the next row, in the next slice, and in the next row of the next slice. */
 typedef struct sky_steps {
   size_t to_pair[4];
 } sky_steps;
@@ -65,9 +67,10 @@ LANES_INLINE size_t step_to_cell(const sky_steps *steps, int corner) {
   return steps->to_pair[corner >> 1] + (corner & 1 ? SKY_CELL : 0);
 }
 
-/* Finds one of eight cells that no surface separates from a position. Derived: where a flat surface cuts the
- * ways from a cell to its three neighbours at d[i], the position e lies on the cell's side if the sum of e[i]
- * / d[i] is below 1. */
+/* Finds a cell, among the eight around a position, that no surface separates from the position. Derived: let
+ * a flat surface cut the ways from a cell to its three neighbours at the fractions d[i] of the ways. A
+ * position at the fractions e[i] lies on the cell's side of the surface if the sum of e[i] / d[i] is below
+ * 1. */
 static int cell_on_side(const int16_t *cell, const sky_steps *steps, const float fraction[3]) {
   int corner = (fraction[0] >= 0.5f) + 2 * (fraction[1] >= 0.5f) + 4 * (fraction[2] >= 0.5f);
   for (int step = 0; step < 3; step++) {
@@ -88,9 +91,9 @@ static int cell_on_side(const int16_t *cell, const sky_steps *steps, const float
   return corner;
 }
 
-/* Finds which of eight cells are joined to one of them by ways that no surface cuts; one bit for each cell.
- * open: for each axis, bits of its four ways between neighbouring cells that no surface cuts, each at the
- * way's first cell. */
+/* Finds which of eight cells can be reached from cell number `corner` by ways that no surface cuts; one bit
+ * for each cell. open: for each axis, the ways along it that no surface cuts; the bit of a way is the bit of
+ * its first cell. */
 static uint32_t cells_from(int corner, const uint32_t open[3]) {
   uint32_t reached = 1u << corner, before = 0;
   while (reached != before) {
@@ -101,8 +104,8 @@ static uint32_t cells_from(int corner, const uint32_t open[3]) {
   return reached;
 }
 
-/* Sets the weight to 0 for those of a lane's eight cells that surfaces separate from the position. weight:
- * [8], LANES apart. */
+/* Finds which of a lane's eight cells surfaces separate from the position, and sets the weights of these
+ * cells to 0. weight: the weights of the eight cells, LANES floats apart. */
 static void weigh_parted_cells(const sky_light *sky, const int16_t *cell, const float fraction[3],
                                float *weight) {
   static const uint32_t first[3] = {0x55, 0x33, 0x0f};
@@ -120,7 +123,8 @@ static void weigh_parted_cells(const sky_light *sky, const int16_t *cell, const 
   if (weight[own * LANES] < LEAST_COUNTED) weight[own * LANES] = LEAST_COUNTED;
 }
 
-/* The trilinear weights of eight cells, in pairs along x. */
+/* Finds the trilinear weights of the eight cells around positions. Two weights that follow each other belong
+ * to two neighbouring cells along x. */
 LANES_INLINE void weigh_evenly(const lanes fraction[3], lanes weight[8]) {
   for (int pair = 0; pair < 4; pair++) {
     lanes across = (pair & 1 ? fraction[1] : 1.0f - fraction[1]) *
@@ -131,7 +135,7 @@ LANES_INLINE void weigh_evenly(const lanes fraction[3], lanes weight[8]) {
   }
 }
 
-/* Finds the weights where surfaces may separate cells from the positions. */
+/* Sets the weights of cells that surfaces separate from the active lanes' positions to 0. */
 LANES_INLINE void weigh_on_one_side(const sky_light *sky, const sky_cells *cells, uint32_t active,
                                     lanes weight[8]) {
   float of[8][LANES], fraction[3][LANES];
@@ -245,7 +249,8 @@ LANES_INLINE void look_up_sky(const sky_light *sky, lanes3 position, lanes surfa
   else add_cells(sky, &cells, pairs, 1, found);
 }
 
-/* Brings a harmonic to lanes; inactive lanes get 0. */
+/* Gives each active lane one harmonic of the light in one channel, divided by the sum of the weights.
+ * Inactive lanes get 0. */
 LANES_INLINE lanes harmonic_of_rows(const sky_light *sky, const sky_rows *rows, int channel, int k) {
   float column[LANES] = {0};
   for (uint32_t left = rows->active; left != 0; left &= left - 1) {
@@ -310,7 +315,8 @@ LANES_INLINE void light_of_surface(const sky_light *sky, const sky_rows *rows, l
     light[c] = lanes_max(lanes_load(sums[c]) * (rows->unit * sky->stored_unit[c]), lanes_set(0));
 }
 
-/* Does the same for light that nothing hides. */
+/* The light that a surface receives where nothing hides the sky: 1 / pi times the integral of light and
+ * cosine, in each channel of the field. */
 LANES_INLINE void open_light_of_surface(const sky_light *sky, lanes3 normal, lanes light[3]) {
   lanes factors[FIELD_HARMONICS];
   factors_of_surface(normal, factors);

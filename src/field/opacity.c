@@ -52,7 +52,8 @@ typedef struct opacity_job {
   const field_content *content;
   const field_functions *functions;
   int samples;
-  const float (*reach)[3]; /* [count]; half the box around a cell, in each volume's index space */
+  const float (*reach)[3]; /* [count]; for each volume, half the extent of the box around a cell along each
+                            * axis of the volume's index space */
   field_share *share;
   int32_t first, end; /* the slabs that this process samples */
 } opacity_job;
@@ -171,8 +172,8 @@ static void weigh_slab(void *data, size_t index, int worker) {
   job->share->weights[index] = weight;
 }
 
-/* Spreads the depths of a slab that another process has sampled. The third of the field's arrays holds
- * them; they are copied to the other two. */
+/* Copies the optical depths of a slab that another process has sampled from the third of the field's arrays
+ * to the other two. */
 static void spread_depths(void *data, size_t index, int worker) {
   const opacity_job *job = data;
   opacity_field *field = job->field;

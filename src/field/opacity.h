@@ -1,4 +1,4 @@
-/* field/opacity.h - how much light each cell takes. */
+/* field/opacity.h - how much light the volumes absorb in each cell of a lattice. */
 #ifndef HL_FIELD_OPACITY_H
 #define HL_FIELD_OPACITY_H
 

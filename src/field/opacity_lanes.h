@@ -32,9 +32,10 @@ typedef struct voxel_window {
   double voxels[WINDOW_VOXELS]; /* [size[2]][size[1]][size[0]] */
 } voxel_window;
 
-/* Fills the window between two corners of index space. before: the number of voxels below a position that its
- * value depends on; as many lie above it, with one more. It stays empty where samples that look up their own
- * voxels read no more of them. */
+/* Fills the window with the voxels on which values between two corners depend; index space. before: a value
+ * depends, along each axis, on the voxel at or below its position, on `before` voxels below that one, and on
+ * before + 1 above it. The window stays empty where the voxels do not fit into it, or where samples read no
+ * more voxels when each looks up its own. */
 LANES_INLINE void fill_window(const grid *grid, const float low[3], const float high[3], int32_t before,
                               int samples, voxel_window *window) {
   const int64_t side = 2 * before + 2;

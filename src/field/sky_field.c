@@ -27,11 +27,11 @@ enum { SIDE = 6, ENDS = 6, SIDE_SAMPLES = 64 };
 
 _Static_assert(SIDE *SIDE == FIELD_DIRECTIONS, "room for a cube's face");
 
-/* The directions about one end of an axis. */
+/* The directions of the light that comes from one end of an axis. */
 typedef struct sky_end {
   sky_direction directions[FIELD_DIRECTIONS];
   float basis[FIELD_DIRECTIONS][3 * FIELD_HARMONICS];
-  int count; /* number of directions that shine */
+  int count; /* number of directions from which the sky sends light */
 } sky_end;
 
 /* ---- radiance ---- */
@@ -91,14 +91,16 @@ static void set_taps(double u, double v, int32_t light_stride, sky_direction *di
   direction->down = (float)(v * v);
 }
 
-/* The number of the first direction that moves as far aside as the direction that was added last. */
+/* The number of the first direction whose light moves as far across and down in a slice as the light of the
+ * direction that was added last. */
 static int find_slope(const sky_end *end) {
   const sky_direction *last = &end->directions[end->count - 1], *direction = end->directions;
   while (direction->across != last->across || direction->down != last->down) direction++;
   return (int)(direction - end->directions);
 }
 
-/* first: the channel of the field's first harmonics. */
+/* Finds the directions in which the sky sends light from one end of an axis. first: the sky's channel from
+ * which the first channel of the harmonics is made. */
 static void set_up_end(const sky_content *content, int end_index, int first, int channels,
                        int32_t light_stride, sky_end *end) {
   field_slices s = hl_field_slices(&content->lattice, end_index / 2);
@@ -137,11 +139,11 @@ static void move_row(void *data, size_t row, int worker) {
   rows->functions->sky_row(&rows->slice, (int32_t)row);
 }
 
-/* The number of floats of the light of all directions in one slice, with a border of cells whose light
- * nothing hides. */
+/* The number of floats that hold the light of all directions in one slice. They include a border around the
+ * slice, where nothing hides the light. */
 static size_t light_of_slice(const field_slices *s) { return FIELD_DIRECTIONS * hl_field_planes(s).plane; }
 
-/* The number of floats of the light of one slice, along the axis with the largest slices. */
+/* The number of floats that hold the light of one slice of the axis whose slices are the largest. */
 static size_t most_light(const sky_content *content) {
   size_t most = 0;
   for (int a = 0; a < 3; a++) {
@@ -165,7 +167,8 @@ static void lay_out_light(const sky_content *content, moving_light *moving, hl_l
   }
 }
 
-/* Makes a number of directions shine everywhere. */
+/* Begins a sweep: sets all light in both slices and in their borders to 1, and marks the first `directions`
+ * directions as lit. */
 static void open_light(const moving_light *moving, const field_slices *s, int directions, hl_pool *pool) {
   const size_t floats = light_of_slice(s);
   for (int i = 0; i < 2; i++) {
@@ -181,8 +184,9 @@ typedef struct sky_target {
   size_t step[3]; /* floats from cell to cell */
 } sky_target;
 
-/* Sets the links through which light comes to a slice. Links to the slice after are stored with that slice,
- * so they are read there from their other ends. rising: the light comes from the slice before. */
+/* Sets the links through which light comes to a slice. rising: the light comes from the slice before; else it
+ * comes from the slice after. A link is stored with the later of its two slices, so links to the slice after
+ * are read with that slice, from their other ends. */
 static void set_links(const surface_links *links, const field_slices *s, size_t slice, bool rising,
                       sky_slice *of) {
   const field_planes planes = hl_field_planes(s);
@@ -196,8 +200,8 @@ static void set_links(const surface_links *links, const field_slices *s, size_t 
   }
 }
 
-/* Sweeps the light of one end of an axis through all slices. moving: memory for it. links: the links along
- * the end's axis; null: there are no surfaces. */
+/* Sweeps the light of one end of an axis through all slices. moving: memory for the light of two slices.
+ * links: the links along the end's axis; null: there are no surfaces. */
 static void sweep_end(const sky_content *content, const opacity_field *opacity, const surface_links *links,
                       const moving_light *moving, const sky_target *target, int end_index, int first,
                       int channels, const field_functions *functions, hl_pool *pool) {
@@ -235,8 +239,8 @@ static void sweep_end(const sky_content *content, const opacity_field *opacity, 
 
 /* ---- memory ---- */
 
-/* The number of floats of a cell while its light is added up. Afterwards SKY_CELL numbers of 16 bits take
- * their place. */
+/* The number of floats of a cell while its light is added up. Afterwards SKY_CELL numbers of 16 bits replace
+ * the floats. */
 static size_t cell_floats(const sky_content *content) {
   if (content->channels == 1) return 16;
   return FIELD_HARMONICS * (size_t)content->channels + 1 + (content->content.surfaces != NULL ? 3 : 0);
@@ -291,8 +295,8 @@ static bool attenuates_in_color(const sky_content *content) {
   return false;
 }
 
-/* Finds the links along an axis. The places where surfaces cut the links go to the last three floats of the
- * cells. Returns null where there are no surfaces. */
+/* Finds the links along an axis. Stores, in one of each cell's last three floats, where a surface cuts the
+ * way to the next cell along the axis. Returns null where there are no surfaces. */
 static const surface_links *find_links(const sky_content *content, const surface_links *links,
                                        const sky_target *target, float *field, int axis, hl_pool *pool) {
   const field_content *of = &content->content;
@@ -329,8 +333,9 @@ static void make(const sky_content *content, passing_arrays *arrays, const field
     hl_field_share_complete(&arrays->share, false, field, count[2], target.step[2] * sizeof *field);
 }
 
-/* Finds the light that nothing hides, and a bound of each channel's harmonics: matter can only lessen the
- * share of each direction. */
+/* Finds the harmonics of the light where nothing hides the sky, and for each channel a bound of the harmonics
+ * in all cells. The bound is a sum of magnitudes over the directions, because matter can only lessen what
+ * each direction adds. */
 static void find_open(const sky_content *content, sky_light *light) {
   double sum[3][FIELD_HARMONICS] = {{0}}, bound[3][FIELD_HARMONICS] = {{0}};
   for (int end = 0; end < ENDS; end++) {
@@ -385,15 +390,15 @@ static void store_cell(const store_rows *rows, const float *cell, int16_t number
   for (size_t i = 0; i < rows->used && i < MOST_FLOATS; i++) numbers[rows->place[i]] = (int16_t)whole[i];
 }
 
-/* Stores a row of cells along x. A cell's numbers take the memory of floats that were stored before them,
- * and never overwrite floats that are still needed. Most cells are dark: their numbers are zero already,
- * unless floats of a brighter cell were there. */
+/* Stores a row of cells along x. A cell's numbers overwrite floats of this cell and of cells before it, which
+ * have been converted already. Most cells are dark. Where their numbers go, memory is zero already, unless it
+ * held the floats of a cell with light. */
 static void store_row(void *data, size_t row, int worker) {
   const store_rows *rows = data;
   const size_t size = rows->cell_floats;
   float *cells = rows->field + row * rows->row_floats;
   int16_t *at = (int16_t *)cells;
-  size_t written = 0; /* the end of the memory that floats have made non-zero, counted in numbers */
+  size_t written = 0; /* the end of the floats of the last cell with light, counted in numbers of 16 bits */
   (void)worker;
   for (size_t x = 0; x < rows->columns; x++, at += SKY_CELL) {
     const float *cell = cells + x * size;
@@ -442,7 +447,8 @@ hl_status hl_sky_make(hl_context *context, hl_pool *pool, const sky_content *con
   light->lift = (float)(LIFT_CELLS * content->lattice.cell);
   light->inverse_cell = (float)(1 / content->lattice.cell);
   memcpy(light->count, content->lattice.count, sizeof light->count);
-  if (content->channels == 1) { /* with one channel, the light is the light of a white sky */
+  if (content->channels == 1) { /* with one channel, the field is made for a white sky, and `color` holds the
+                                 * sky's colour */
     for (int c = 0; c < 3; c++) {
       light->color[c] = (float)(white.color[c] * white.strength);
       white.color[c] = 1;

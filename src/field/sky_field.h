@@ -8,16 +8,17 @@
 #include "field/opacity.h"
 #include "scene/scene.h"
 
-/* The greatest amount of a number of 16 bits. */
+/* The greatest magnitude of a stored number, which has 16 bits. */
 enum { SKY_MOST = 32767 };
 
 /* A cell is SKY_CELL numbers of 16 bits. lanes_unpack_shorts() joins the numbers of two cells, and changes
- * their order. hl_sky_place() gives the place at which a harmonic must stand to become number `harmonic` of
- * the sums. At SKY_PASSING, where no harmonic stands, are the transmittances of the cell and of the next
- * cell along x; SKY_MOST stands for 1. */
+ * their order. hl_sky_place() gives the index at which a harmonic must be stored so that it becomes number
+ * `harmonic` of the sums. The indices SKY_PASSING and SKY_PASSING + 1 hold no harmonic, but the
+ * transmittances of the cell and of the next cell along x; SKY_MOST stands for 1. */
 enum { SKY_CELL = 32, SKY_PASSING = 28 };
-/* The places, where no harmonic stands, of three numbers of a cell: the fractions of the way to the next
- * cell along x, y and z at which a surface cuts the way; 0: no surface does. */
+/* The indices, among a cell's numbers, of three more numbers that are no harmonics: the fractions of the ways
+ * to the next cell along x, y and z at which a surface cuts the ways; SKY_MOST stands for 1, and 0 for no
+ * surface. */
 static const int SKY_CUTS[3] = {23, 30, 31};
 static inline int hl_sky_place(int harmonic) {
   int low = harmonic < 16, i = low ? harmonic : harmonic - 16;
@@ -36,10 +37,11 @@ typedef struct sky_light {
   float lift; /* distance by which look-ups are moved off a surface, along its normal; frame units */
   int channels;
   int cut;                        /* surfaces may cut the ways between cells (SKY_CUTS) */
-  float stored_unit[3];           /* [channels]; the light that the number 1 stands for */
+  float stored_unit[3];           /* [channels]; the amount of light for which the number 1 in a cell
+                                   * stands */
   float color[3];                 /* a factor on the field's light */
-  float open[3][FIELD_HARMONICS]; /* [channels]; harmonics of the light that arrives where nothing hides
-                                   * the sky, without the scale factor */
+  float open[3][FIELD_HARMONICS]; /* [channels]; harmonics of the light that arrives where nothing hides the
+                                   * sky; they are not in units of stored_unit */
 } sky_light;
 
 typedef struct sky_field {
@@ -62,7 +64,8 @@ typedef struct sky_content {
       *exchange; /* exchange with processes that each find a part of the field; null: there are none */
 } sky_content;
 
-/* Counts the memory that hl_sky_make() takes in addition to the memory of the field from the frame before. */
+/* Counts the memory that hl_sky_make() takes in addition to the memory of `held`, the field of the frame
+ * before. */
 void hl_sky_count(const sky_content *content, const sky_field *held, hl_layout *layout);
 
 /* Makes the field anew. */

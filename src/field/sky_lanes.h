@@ -1,18 +1,19 @@
 /* field/sky_lanes.h - the sky's light moved from slice to slice (derived).
  *
- * Light of one direction that reaches a cell's middle left four cells of the slice before: it is
- * interpolated between them. What the cell itself absorbs is subtracted from the light that goes to the
- * next slice. Surfaces take their part of the light from each of the four cells. Beyond the lattice nothing
- * hides the light. Behind matter and within it most blocks of cells are dark for most directions; these
- * directions are left out there. */
+ * The light of one direction that reaches a cell's middle is interpolated between four cells of the slice
+ * before. The cell's own matter attenuates only the light that goes on to the next slice. Surfaces absorb a
+ * part of the light that comes from each of the four cells. Beyond the lattice nothing hides the light.
+ * Behind matter and within it most blocks of cells are dark for most directions; these directions are left
+ * out there. */
 #ifndef HL_FIELD_SKY_LANES_H
 #define HL_FIELD_SKY_LANES_H
 
 #include "field/field.h"
 #include "simd/lanes.h"
 
-/* Light that is less than this part of a direction's open light in all sixteen cells is nothing. Samples look
- * up sums over the directions, in steps of 1 / SKY_MOST (sky_field.h) of the open light or more. */
+/* Where the light of a direction is below this fraction of its unhidden light in all sixteen cells of a
+ * block, it counts as 0. Samples look up sums over the directions, whose steps are 1 / SKY_MOST (sky_field.h)
+ * of the unhidden light or more. */
 static const float SKY_FAINT = 1.0f / 65536;
 
 /* The light of the directions that reach sixteen cells. */
@@ -45,7 +46,7 @@ LANES_INLINE void add_harmonics(const sky_slice *slice, const sky_reaching *reac
     for (int k = 0; k < count; k++) cells[(size_t)lane * slice->across + (size_t)k] += sums[k][lane];
 }
 
-/* Adds a third of sixteen cells' transmittance along the axis. */
+/* Adds a third of the transmittance of each of sixteen cells along the slices' axis to the cell's floats. */
 LANES_INLINE void add_passing(const sky_slice *slice, lanes depth, int32_t column, float *cells) {
   float passing[FIELD_LANES];
   lanes_store(passing, lanes_exp2(lanes_max(-depth, lanes_set(-100.0f))) * (1.0f / 3));
@@ -55,16 +56,17 @@ LANES_INLINE void add_passing(const sky_slice *slice, lanes depth, int32_t colum
 
 /* The transmittance of cells for light that moves by u across and v down while it crosses a slice: its depth
  * is sqrt(d^2 + u^2 a^2 + v^2 b^2), where d, a and b are the depths along the axis, across and down. Derived:
- * even matter has one depth d along all axes, and light passes sqrt(1 + u^2 + v^2) cells of it. A surface at
- * a right angle to `down` has only the depth b. Light stays in its cells for 1 / v slices, and passes the
- * depth v b in each of them. */
+ * even matter has one depth d along all axes, and light passes sqrt(1 + u^2 + v^2) cells of it. A sheet of
+ * matter at a right angle to `down` has only the depth b. Light stays in the sheet's cells for 1 / v slices,
+ * and is attenuated by the depth v b in each of these slices. */
 LANES_INLINE lanes passing_cells(const lanes squared[3], const sky_direction *direction) {
   lanes depth = lanes_add_scaled(lanes_add_scaled(squared[0], squared[1], direction->across), squared[2],
                                  direction->down);
   return lanes_exp2(lanes_max(-lanes_sqrt(depth), lanes_set(-100.0f)));
 }
 
-/* The fractions of light that pass the links of sixteen cells; at: the first cell's place in a plane. */
+/* Finds the fraction of light that passes each link of sixteen cells. at: the first cell's index in a
+ * plane. */
 LANES_INLINE void find_open_links(const sky_slice *slice, size_t at, lanes open[FIELD_LINKS]) {
   for (int k = 0; k < FIELD_LINKS; k++) {
     float passing[FIELD_LANES];
@@ -74,8 +76,8 @@ LANES_INLINE void find_open_links(const sky_slice *slice, size_t at, lanes open[
   }
 }
 
-/* The light of a direction that comes to sixteen cells. from: the cells of the slice before, where the
- * light comes from. */
+/* The light of a direction that reaches sixteen cells. from: the light of that direction in the slice before,
+ * at the first of the four cells that give light to the first of the sixteen. */
 LANES_INLINE lanes light_from(const float *from, int32_t stride, const sky_direction *direction) {
   lanes light = lanes_load(from) * direction->weight[0];
   light = lanes_add_scaled(light, lanes_load(from + 1), direction->weight[1]);
@@ -83,7 +85,7 @@ LANES_INLINE lanes light_from(const float *from, int32_t stride, const sky_direc
   return lanes_add_scaled(light, lanes_load(from + stride + 1), direction->weight[3]);
 }
 
-/* The same light where surfaces cut links. */
+/* The light of a direction that reaches sixteen cells where surfaces cut links. from: as in light_from(). */
 LANES_INLINE lanes light_past_surfaces(const float *from, int32_t stride, const sky_direction *direction,
                                        const lanes open[FIELD_LINKS]) {
   const lanes *link = open + direction->link;
@@ -119,7 +121,8 @@ LANES_INLINE void move_light(const sky_slice *slice, size_t block, size_t at, co
                              const lanes *open, sky_reaching *reaching) {
   const int32_t row = FIELD_DIRECTIONS * slice->light_stride;
   lanes passing[FIELD_DIRECTIONS];
-  uint64_t known = 0, leaving = 0; /* known: slopes whose transmittance has been found */
+  uint64_t known = 0, leaving = 0; /* known: one bit for each slope (sky_direction) whose transmittance has
+                                    * been found */
   reaching->count = 0;
   for (uint64_t left = lit_around(slice, block); left != 0; left &= left - 1) {
     const int d = __builtin_ctzll(left);

@@ -57,7 +57,8 @@ static void mark_block(const link_lines *lines, int32_t slice, int32_t row, int3
   __atomic_fetch_or(&lines->links->cut[at / FIELD_LANES], mark, __ATOMIC_RELAXED);
 }
 
-/* Takes a part of the light of the link that lies at a given height of a line. */
+/* Cuts the link of a line in which a given height lies: the link loses the fraction `opacity` of its
+ * light. */
 static void cut_link(const link_lines *lines, int32_t across, int32_t down, double height, double opacity) {
   const field_slices *s = &lines->slices;
   if (!(height > -1 && height < s->slices)) return;
@@ -80,7 +81,7 @@ static void cut_link(const link_lines *lines, int32_t across, int32_t down, doub
   if (*place == 0 || way < *place) *place = way;
 }
 
-/* Whether the mesh's cuts leave a point of a line. */
+/* Whether the cuts of the mesh do not remove the mesh at a point of a line. */
 static bool is_left(const link_lines *of, int32_t column, int32_t row, double height) {
   const lattice_lines *lines = &of->lines;
   double at[3];
@@ -99,7 +100,7 @@ static void meet_line(const void *data, int32_t column, int32_t row, double heig
 
 /* ---- all links along an axis ---- */
 
-/* Finds the links of one kind; each kind is a task. */
+/* Cuts the links of one kind. Each of the FIELD_LINKS kinds is a task. */
 static void find_kind(void *data, size_t kind, int worker) {
   link_lines lines = *(const link_lines *)data;
   (void)worker;

@@ -14,23 +14,25 @@
 /* The links along one axis. */
 typedef struct surface_links {
   unsigned char
-      /* [slices + 1][FIELD_LINKS][rows + 2][stride + 2 FIELD_LANES]; the part, in 255ths, that surfaces take
-       * of the light from the slice before. A slice has its own links; the last slice has none. */
+      /* [slices + 1][FIELD_LINKS][rows + 2][stride + 2 FIELD_LANES]; the part, in 255ths, that surfaces
+       * absorb of the light that goes along each link from the slice before. The links of slice s lead to
+       * slice s - 1. The links of slice number `slices`, beyond the last slice, are never cut. */
       *taken;
   unsigned char *cut; /* [slices][rows][stride / FIELD_LANES]; LINKS_BEFORE and LINKS_AFTER */
 } surface_links;
 
-/* Takes the arrays, which have room for the links along any axis. */
+/* Takes the memory of the arrays from a layout; they have room for the links along any axis. */
 void hl_surface_links_lay_out(const field_lattice *lattice, surface_links *links, hl_layout *layout);
 
 /* The places where links that join neighbours along an axis are cut. */
 typedef struct link_places {
-  float *first;   /* the number of the first cell */
+  float *first;   /* the float of the first cell */
   size_t step[3]; /* floats from cell to cell along x, y and z */
 } link_places;
 
-/* Finds the links along an axis. places: for each cell, the fraction (above 0) of the way to the next cell
- * along the axis at which the first surface lies. Places without a surface are not changed. */
+/* Finds which links along an axis surfaces cut. places: receives, for each cell, the fraction (above 0) of
+ * the way to the next cell along the axis at which the first surface lies. Where no surface cuts the way, the
+ * cell's float stays as it is. */
 void hl_surface_links_find(const surfaces *all, const field_lattice *lattice, int axis,
                            const surface_links *links, const link_places *places, hl_pool *pool);
 
