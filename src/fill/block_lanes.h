@@ -17,7 +17,8 @@ typedef struct block_points {
   lanes_int inside;  /* lanes whose point lies in the grid or at most GRID_MARGIN outside */
 } block_points;
 
-/* The lanes whose density may be visible: it is not below every visible density. */
+/* The lanes whose density is above all densities that come before the first visible one, and so may be
+ * visible. */
 LANES_INLINE lanes_int may_show(const fill_source *source, lanes density) {
   const classifier *classifier = source->classifier;
   if (classifier == NULL) return lanes_set_int(-1);
@@ -33,8 +34,8 @@ LANES_INLINE block_points find_points(const fill_source *source, int x, int y) {
   for (int a = 0; a < 3; a++) {
     float count = (float)grid->dimension[a];
     points.inside &= (axis[a] > -0.5f - GRID_MARGIN) & (axis[a] < count - 0.5f + GRID_MARGIN);
-    /* outside the grid, densities continue the border's values smoothly; they are constant below -1 and above
-     * n */
+    /* outside the grid, the values at the border continue smoothly; below -1 and above n densities are
+     * constant */
     axis[a] = lanes_clamp(axis[a], -1.0f, count * (1 - 1e-6f));
     points.cell[a] = lanes_floor(axis[a]);
   }
@@ -71,7 +72,7 @@ LANES_INLINE void lowest_of_block(const lanes_int cell[3], int32_t low[3]) {
 }
 
 /* Whether the taps of all pixels of a tile lie in the grid, with room for rounding. The area of the sheet
- * that a tile covers has straight edges: all of the tile's points lie between the points at its corners,
+ * that a tile covers has straight edges. So all of the tile's points lie between the points at its corners,
  * unless some points lie behind the view. */
 LANES_INLINE int tile_is_inside(const fill_source *source, int x, int y) {
   const sheet_rays *rays = &source->rays;
@@ -104,7 +105,8 @@ LANES_INLINE lanes_int bit_of_cell(lanes_int x, lanes_int y, lanes_int z) {
   return lanes_set_int(1) << ((x & 3) | (y & 3) << 2 | (z & 1) << 4);
 }
 
-/* Looks cells up in any bricks: loads a word for each point. */
+/* Whether the bit of any cell is set, wherever the bricks of the cells lie. It loads one word of bits for
+ * each cell. */
 static __attribute__((noinline)) int cells_visible_anywhere(const grid *grid, const lanes_int cell[3]) {
   lanes_int x = cell[0] + 1, y = cell[1] + 1, z = cell[2] + 1;
   lanes_int brick = ((z >> 2) * grid->brick_count[1] + (y >> 2)) * grid->brick_count[0] + (x >> 2);
@@ -113,10 +115,10 @@ static __attribute__((noinline)) int cells_visible_anywhere(const grid *grid, co
 }
 
 #if defined(__AVX2__) && !defined(__AVX512F__)
-/* Whether the bit of any cell in the 2x2x2 bricks from `first_brick` on is set. within: the cells'
- * coordinates counted from the first cell of these bricks, a byte each. The bits of two bricks side by side
- * are sixteen bytes; a byte holds four cells along x and two along y. The byte of each cell is looked up
- * among the sixteen. */
+/* Whether the bit of any of sixteen cells is set; all of them lie in the 2x2x2 bricks from `first_brick` on.
+ * within: the cells' coordinates counted from the first cell of these bricks, a byte each. The bits of two
+ * neighbouring bricks along x are sixteen bytes; a byte holds the bits of four cells along x and two along y.
+ * The byte of each cell is looked up among the sixteen. */
 LANES_INLINE int cells_visible_in_bricks(const grid *grid, size_t first_brick, const __m128i within[3]) {
   size_t row = (size_t)grid->brick_count[0], layer = row * (size_t)grid->brick_count[1];
   const uint64_t *bits = grid->cell_bits + first_brick;
@@ -130,15 +132,16 @@ LANES_INLINE int cells_visible_in_bricks(const grid *grid, size_t first_brick, c
   for (int i = 0; i < 4; i++)
     found[i] = _mm_shuffle_epi8(_mm_loadu_si128((const __m128i *)(const void *)(bits + bricks_on[i])), byte);
   __m128i below = _mm_slli_epi16(y, 5),
-          behind = _mm_slli_epi16(z, 5); /* the highest bit chooses the second brick along y or z */
+          behind = _mm_slli_epi16(z, 5); /* the highest bits of their bytes are set where a cell lies in the
+                                          * second brick along y, or along z */
   __m128i word = _mm_blendv_epi8(_mm_blendv_epi8(found[0], found[1], below),
                                  _mm_blendv_epi8(found[2], found[3], below), behind);
   const __m128i bit_of = _mm_setr_epi8(1, 2, 4, 8, 16, 32, 64, (char)128, 0, 0, 0, 0, 0, 0, 0, 0);
   return !_mm_testz_si128(word, _mm_shuffle_epi8(bit_of, bit));
 }
 
-/* Whether all cells of a block lie in 2x2x2 bricks: false where some cell lies outside the 2x2x2 bricks
- * that begin at the cell `first`. */
+/* Whether all cells of a block lie in the 2x2x2 bricks whose first cell is `first`. Sets `within` to the
+ * cells' coordinates counted from `first`, a byte each. */
 LANES_INLINE int cells_in_bricks(const lanes_int cell[3], const int32_t first[3], __m128i within[3]) {
   for (int axis = 0; axis < 3; axis++) within[axis] = narrow_bytes(cell[axis] - first[axis]);
   __m128i all = _mm_or_si128(_mm_or_si128(within[0], within[1]), within[2]);
@@ -146,7 +149,8 @@ LANES_INLINE int cells_in_bricks(const lanes_int cell[3], const int32_t first[3]
 }
 typedef __m128i cell_offsets;
 #else
-/* The bits of eight bricks as 32-bit words. Brick (x, y, z) has word 2 x + 4 y + 8 z and the next word. */
+/* The bits of the cells of 2x2x2 bricks as 32-bit words. The bits of brick (x, y, z) are in words 2 x + 4 y +
+ * 8 z and 2 x + 4 y + 8 z + 1. */
 LANES_INLINE lanes_int bits_of_bricks(const grid *grid, size_t first_brick) {
   size_t row = (size_t)grid->brick_count[0], layer = row * (size_t)grid->brick_count[1];
   const uint64_t *bits = grid->cell_bits + first_brick;
@@ -172,9 +176,9 @@ LANES_INLINE int cells_in_bricks(const lanes_int cell[3], const int32_t first[3]
 typedef lanes_int cell_offsets;
 #endif
 
-/* Whether any of a block's points lies in a cell that may show something. cell: floors of the points,
- * clamped as in find_points(). low: the least cell along each axis. Usually all cells lie in the 2x2x2
- * bricks that begin with the brick of the least cell. */
+/* Whether any of a block's points lies in a cell that may show something. cell: the floors of the points'
+ * coordinates, clamped as in find_points(). low: the least floor along each axis. Usually all cells lie in
+ * the 2x2x2 bricks that begin with the brick of the least cell. */
 LANES_INLINE int cells_visible(const grid *grid, const lanes_int cell[3], const int32_t low[3]) {
   int32_t first_cell[3];
   cell_offsets within[3];
@@ -192,7 +196,8 @@ LANES_INLINE int cells_visible(const grid *grid, const lanes_int cell[3], const 
 
 /* ---- samples of several blocks in one vector ---- */
 
-/* The active lanes without the lanes of the last block. starts: the first lane of each block. */
+/* The active lanes, except those of the last block that has any. starts: the first lane of each block, one
+ * bit each. */
 LANES_INLINE uint32_t drop_last_block(uint32_t active, uint32_t starts) {
   /* the bits up to and including the last active lane */
   uint32_t below = (2u << (31 - __builtin_clz(active))) - 1;

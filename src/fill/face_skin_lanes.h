@@ -1,6 +1,7 @@
 /* fill/face_skin_lanes.h - how much the matter that a light's rays reach belongs to a face that cuts it: a
- * face of the volume's box, or of a cut. In: a run's rays, box and cuts (fill.h). Out: 1 at a face and up to
- * a voxel behind it, 0 from FACE_VOXELS behind it on. Only faces that light comes in through count. */
+ * face of the volume's box, or of a cut. In: a run's rays, box and cuts (fill.h). Out: a number from 0 to 1,
+ * the skin. It is 1 at a face and up to a voxel behind the face, and 0 from FACE_VOXELS behind the face on.
+ * Only faces through which light comes in count. */
 #ifndef HL_FILL_FACE_SKIN_LANES_H
 #define HL_FILL_FACE_SKIN_LANES_H
 
@@ -37,8 +38,9 @@ LANES_INLINE lanes distance_to_shape(const run_cut *cut, lanes3 at, const float 
                    (lanes_abs(at.z) - 1.0f) * scale[2]);
 }
 
-/* Tests all faces of a cut that may be near. Into a box whose inside is left, light may come through one face
- * close to another one, so that the nearest face is not enough. */
+/* How much matter belongs to a face of a cut (its skin). In a box whose inside is left, light may come in
+ * through one face close to another face. So all faces of such a box are tested, and not only the nearest
+ * one. */
 LANES_INLINE lanes skin_of_cut(const run_cut *cut, lanes3 from, lanes3 to, float voxel) {
   const float scale[3] = {1.0f / (cut->size[0] * voxel), 1.0f / (cut->size[1] * voxel),
                           1.0f / (cut->size[2] * voxel)};

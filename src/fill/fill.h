@@ -33,8 +33,8 @@ typedef filled_blocks fill_tile_function(const fill_source *source, int tile_x, 
 /* A cut of a grid, in the units of a view. */
 typedef struct run_cut {
   const cut_shape *shape;
-  float rows[3][4]; /* maps index space to the space of the cut's shape */
-  float size[3];    /* the lengths of these rows in frame space */
+  float rows[3][4]; /* maps index space to the shape's own space */
+  float size[3];    /* the lengths of the rows of the map from frame space to the shape's own space */
 } run_cut;
 
 /* A run: up to RUN_SLABS consecutive slabs of one grid, and the sheets around them. */
@@ -42,7 +42,7 @@ enum { RUN_SLABS = 4 };
 typedef struct slab_run {
   const grid *grid;
   sheet_rays rays[RUN_SLABS + 1]; /* map pixels to index space, one for each sheet */
-  float low[3], high[3];          /* in index space: between low and high the volume's box cuts nothing */
+  float low[3], high[3];          /* corners in index space; between them the volume's box cuts nothing */
   const run_cut *cuts;            /* [cut_count] */
   int cut_count;
   float beside;   /* the distance beside the slabs up to which cuts count; frame units */
@@ -50,15 +50,15 @@ typedef struct slab_run {
   float steps[3]; /* the distances between voxels along the axes, in units of `voxel` */
 } slab_run;
 
-/* The needed blocks of a tile in which a slab may hold something visible, for each slab. Also whether the
- * volume's box cuts none of these blocks. */
+/* For each slab of a run: the needed blocks of a tile in which the slab may hold something visible, and
+ * whether neither the volume's box nor a cut cuts any visible block of the tile. */
 typedef struct relevant_blocks {
   uint16_t blocks[RUN_SLABS];
   uint16_t uncut; /* one bit for each slab */
 } relevant_blocks;
 
-/* Sets `found` for the slabs whose bits are set. Other slabs stay as they are. need: the blocks of
- * interest. */
+/* Sets the members of `found` for those slabs whose bits are set in `slabs`; the members for other slabs stay
+ * as they are. need: the blocks that the caller needs. */
 typedef void relevant_blocks_function(const slab_run *run, int tile_x, int tile_y, uint32_t slabs,
                                       uint32_t need, relevant_blocks *found);
 

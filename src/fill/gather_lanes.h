@@ -11,7 +11,7 @@
 #include "fill/windows_lanes.h"
 #include "simd/gathers.h"
 
-/* The addresses of every lane's 64 taps; all lie in the grid. */
+/* The addresses of the 64 taps of every lane. All taps lie in the grid. */
 typedef struct tap_window {
   const unsigned char *voxels;
   lanes_offsets offsets; /* bytes from `voxels` to each lane's tap (0,0,0) */
@@ -80,9 +80,9 @@ static __attribute__((noinline)) lanes sum_in_thin_grid(const grid *grid, const 
   return sums;
 }
 
-/* Moves taps that lie outside the border into the grid. The border's values continue outside: the weights of
- * taps outside are added to the border voxel's weight, and the four taps move inside. The cells -1, 0, n-2
- * and n-1 have taps outside. Returns the moved cells. */
+/* Moves taps that lie outside the grid into it, along one axis. Outside the grid the values at the border
+ * continue. So the weights of outside taps are added to the border voxel's weight, and the four taps move
+ * inside. The cells -1, 0, n-2 and n-1 have taps outside. Returns the moved cells. */
 LANES_INLINE lanes_int fold_border(lanes_int cell, int32_t count, lanes weight[4]) {
   lanes zero = lanes_set(0);
   lanes_int first = cell == -1, second = cell == 0, last_but_one = cell == count - 2,
@@ -144,8 +144,8 @@ LANES_INLINE lanes sum_in_memory(const grid *grid, const lanes_int cell[3], cons
   return sum_f32(grid, &window, weight);
 }
 
-/* Makes a grid of the page that holds the first active lane's taps. Returns the active lanes whose taps lie
- * in this page. cell: tap 0 is at cell - 1. */
+/* Makes *view, a grid of the page that holds the taps of the first active lane. Returns the active lanes
+ * whose taps lie in this page, one bit each. cell: tap 0 is at cell - 1. */
 LANES_INLINE uint32_t lanes_in_page(const grid *grid, const lanes_int cell[3], uint32_t active,
                                     struct grid *view, hl_page_reading *reading) {
   int first = __builtin_ctz(active);
@@ -160,8 +160,8 @@ LANES_INLINE uint32_t lanes_in_page(const grid *grid, const lanes_int cell[3], u
   return lanes_bits(same);
 }
 
-/* The sums over voxels in pages, page by page. They are the sums of sum_in_memory(), as lanes do not depend
- * on each other. */
+/* The sums over voxels in pages, page by page. The sums are the same as if the voxels were in memory, because
+ * no lane's sum depends on another lane. */
 static __attribute__((noinline)) lanes sum_in_pages(const grid *grid, const lanes_int cell[3],
                                                     uint32_t active, const lanes weight[3][4]) {
   lanes sum = lanes_set(0);
@@ -179,18 +179,19 @@ static __attribute__((noinline)) lanes sum_in_pages(const grid *grid, const lane
 
 /* ---- fields in bricks ---- */
 
-/* The lanes whose points lie in one brick, and where in it. */
+/* The lanes whose points lie in one brick, and the points' places in the brick. */
 typedef struct brick_lanes {
   const hl_brick_entry *entry;
   uint32_t bits;
   lanes_int cell[3]; /* cells of the brick's level, counted from its first cell, plus 1: tap 0 is at cell - 1
                       * of the coefficients that the brick stores */
   lanes part[3];     /* the point's place between the cell's corners, 0 to 1 */
-  float step;        /* cells of the brick's level in one of level 0 */
+  float step;        /* number of cells of the brick's level along a cell of level 0: 1 or a fraction */
 } brick_lanes;
 
-/* Finds the brick that holds the point of the first of the lanes `left`, and all lanes of `left` whose
- * points lie in this brick. cell, part: cells of level 0 of the lattice, and places in them. */
+/* Finds the brick that holds the point of the first of the lanes `left`, and all lanes of `left` whose points
+ * lie in this brick. cell, part: the cells of level 0 in which the lanes' points lie, and the points' places
+ * in these cells. */
 LANES_INLINE void lanes_in_brick(const hl_bricks *bricks, const lanes_int cell[3], const lanes part[3],
                                  uint32_t left, brick_lanes *found) {
   int first = __builtin_ctz(left);
@@ -199,7 +200,8 @@ LANES_INLINE void lanes_in_brick(const hl_bricks *bricks, const lanes_int cell[3
     int32_t at = cell[a][first] >> bricks->shift, last = (int32_t)bricks->directory_size[a] - 1;
     at = at < 0      ? 0
          : at > last ? last
-                     : at; /* whatever a ray's numbers are, the place is limited to the directory */
+                     : at; /* whatever a ray's numbers are, the entry lies in the
+                            * directory */
     block = block * bricks->directory_size[a] + (size_t)at;
   }
   found->entry = &bricks->directory[block];
@@ -216,7 +218,8 @@ LANES_INLINE void lanes_in_brick(const hl_bricks *bricks, const lanes_int cell[3
   found->bits = lanes_bits(same);
 }
 
-/* Makes a grid of the coefficients of a brick, for sum_in_memory(): only the members that it reads are set.
+/* Makes *view, a grid of a brick's coefficients, for sum_in_memory(). Sets only the members that
+ * sum_in_memory() reads.
  */
 LANES_INLINE void grid_of_brick(const hl_bricks *bricks, const hl_brick_entry *entry, struct grid *view) {
   size_t width = ((size_t)1 << bricks->shift) + BRICK_MARGIN;
@@ -319,8 +322,9 @@ LANES_INLINE block_points points_in_tile(const fill_source *source, int tile_x, 
   return points;
 }
 
-/* Decides first which of the other blocks show something, and then sums them. Taking turns would make the
- * processor mispredict branches and begin sums in vain. inside: the result of tile_is_inside(). */
+/* Fills the blocks in `need`, and those in `others` whose cells may show something. It tests all cells before
+ * it fills any block. If tests and sums took turns, the processor would mispredict branches and begin sums in
+ * vain. inside: the result of tile_is_inside(). */
 LANES_INLINE filled_blocks gather_blocks(const fill_source *source, int tile_x, int tile_y, uint32_t need,
                                          uint32_t others, int inside, float *density) {
   block_points points[TILE_BLOCKS];

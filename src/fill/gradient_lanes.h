@@ -55,8 +55,8 @@ static lanes3 slopes_of_taps(const grid *grid, const lanes_int cell[3], uint32_t
   return slopes_f32(grid, &window, w);
 }
 
-/* Whether 32 bits hold the offset between any two voxels. In larger grids 32 bits hold the offsets within a
- * block. */
+/* Whether 32 bits hold the offset between any two voxels of a grid. In larger grids they still hold the
+ * offsets between the voxels that the points of one block of pixels need. */
 LANES_INLINE int fits_offsets(const grid *grid) {
   return (uint64_t)grid->dimension[2] * grid->slice_bytes <= INT32_MAX;
 }

@@ -6,13 +6,14 @@
 #include "simd/gathers.h"
 #include "view/rays_lanes.h"
 
-/* The lattice's cells around sixteen points, and the points' positions within the cells. */
+/* The lattice's cells in which sixteen points lie, and the points' places within these cells. */
 typedef struct mask_places {
   lanes_int cell[3], outside;
   lanes part[3];
 } mask_places;
 
-/* Places points of frame space in the lattice. Points outside are moved to the border. */
+/* Finds the cells of the lattice in which points of frame space lie. Points outside the lattice are moved to
+ * its border. */
 LANES_INLINE mask_places places_in_mask(const mask_lattice *lattice, lanes3 point) {
   mask_places p = {.outside = lanes_set_int(0)};
   for (int a = 0; a < 3; a++) {
@@ -26,7 +27,8 @@ LANES_INLINE mask_places places_in_mask(const mask_lattice *lattice, lanes3 poin
   return p;
 }
 
-/* The lattice points before and behind the places along each axis, counted in points from the first. */
+/* Finds, along each axis, the lattice's points before and after the places, as offsets in points from the
+ * lattice's first point. */
 LANES_INLINE void points_of_places(const mask_lattice *lattice, const mask_places *p, lanes_int near[3],
                                    lanes_int far[3]) {
   for (int a = 0; a < 3; a++) {
@@ -43,7 +45,8 @@ LANES_INLINE lanes_int bricks_of_places(const mask_lattice *lattice, const mask_
   return at * (int32_t)sizeof *lattice->bricks;
 }
 
-/* The first or the second word of bricks. */
+/* The first (word: 0) or the second (word: 1) 32-bit word of each lane's brick. bricks: the bricks' offsets
+ * in bytes. */
 LANES_INLINE lanes_int words_of_bricks(const mask_lattice *lattice, lanes_int bricks, int word) {
   return lanes_gather_bytes((const unsigned char *)&lattice->bricks[0][word], bricks);
 }
@@ -56,7 +59,7 @@ LANES_INLINE lanes steps_between_points(const mask_lattice *lattice, const mask_
   for (int k = 0; k < 2; k++) {
     lanes line[2];
     for (int j = 0; j < 2; j++) {
-      lanes_int a, b; /* where the lattice ends, b is any number and has the weight 0 */
+      lanes_int a, b; /* at the lattice's end, b is an arbitrary number with the weight 0 */
       lanes_gather_short_pairs(lattice->factors, near[0] + (j ? far[1] : near[1]) + (k ? far[2] : near[2]),
                                &a, &b);
       line[j] = lanes_fma(lanes_from_int(b - a), p->part[0], lanes_from_int(a));

@@ -9,7 +9,8 @@
 
 /* ---- another volume's value ---- */
 
-/* Sums over voxels in memory, for lanes of any blocks, with the parameters of slopes_in_memory(). */
+/* The weighted sums over voxels in memory, for lanes that may belong to several blocks of pixels. The
+ * parameters are those of slopes_in_memory(). */
 LANES_INLINE lanes values_in_memory(const grid *grid, const lanes_int cell[3], uint32_t active,
                                     uint32_t starts, const lanes weight[3][4]) {
   lanes sum = lanes_set(0);
@@ -92,7 +93,8 @@ LANES_INLINE lanes column_of(const plane_table *table, lanes coordinate) {
   return lanes_line(coordinate, table->column_scale, table->column_offset);
 }
 
-/* The lanes in which the function depends on the second number between two coordinates. */
+/* The lanes in which the function depends on the second number somewhere on the way from one coordinate in
+ * the classifier's tables to another. */
 LANES_INLINE lanes_int depends_on_row(const plane_table *table, lanes from, lanes to) {
   return lanes_max(column_of(table, from), column_of(table, to)) >= table->even_before;
 }
@@ -103,7 +105,8 @@ LANES_INLINE lanes_int depends_on_row(const plane_table *table, lanes from, lane
 LANES_INLINE void sums_at_column(const plane_table *table, plane_row row, lanes column, lanes sums[2]) {
   lanes_int whole = lanes_truncate(column);
   lanes part = column - lanes_from_int(whole), of_row[2][2];
-  lanes here[4], next[4]; /* extinction and integral at two columns, in the row and in the next row */
+  lanes here[4], next[4]; /* at a column and at the next one: extinction and its integral in the row, then
+                           * both in the next row */
   lanes_gather_quad_pairs(&table->sums[0][0], row.start + whole, here, next);
   for (int r = 0; r < 2; r++) {
     lanes rise = next[2 * r] - here[2 * r];
@@ -153,7 +156,8 @@ LANES_INLINE void colors_between(const plane_table *table, plane_row row, lanes 
   for (int i = 0; i < 4; i++) sums[i] = high[i] - low[i];
 }
 
-/* With a smaller sum of opacities over columns, the colour is the mean over the whole way. */
+/* The least sum of opacities over columns from which the part that shows gets a colour of its own. Where the
+ * sum is smaller, the colour is the mean over the whole way. */
 static const float SOME_OPACITY = 1e-4f;
 
 /* The colour in a row where matter shows, in linear RGB: the mean over the part of a way that shows and one

@@ -14,7 +14,7 @@ typedef struct lanes_box {
 
 /* The box of a block's points on a sheet. Derived: on the sheet at base + P / H, the next pixel's point lies
  * (Pu - (Hu / H) P) / H further. The pixels' centres are at most 3/2 pixels from the block's middle in either
- * direction; a little more is allowed for, as H changes within the block. */
+ * direction. The box is made a little larger than that, because H changes within the block. */
 LANES_INLINE lanes_box box_on_sheet(const sheet_rays *rays, lanes u, lanes v) {
   const float reach = 1.5f * 1.02f;
   lanes3 p = rays_linear(rays->p0, rays->pu, rays->pv, u, v);
@@ -137,7 +137,7 @@ static void relevant_blocks_tile(const slab_run *run, int tile_x, int tile_y, ui
     lanes_box box = box_of_slab(&on_sheet[slab], &on_sheet[slab + 1]);
     uint32_t visible = visible_boxes(run->grid, &box), whole = uncut_blocks(run, &box);
     apply_cuts(run, &box, &visible, &whole);
-    /* an eye within the slab cuts blocks, too, as its rays begin there */
+    /* blocks are also cut where the slab contains the eye, because the rays begin within the slab */
     int uncut = rays[0].step * rays[1].step > 0 && (visible & ~whole) == 0;
     found->uncut = (uint16_t)((found->uncut & ~(1u << slab)) | (uint32_t)uncut << slab);
     found->blocks[slab] = (uint16_t)(visible & need);

@@ -7,11 +7,11 @@
 
 /* ---- weights as integers ---- */
 
-/* Weights along x of u8 and u16 voxels are integers, so that the sum of four taps is exact on every
- * instruction set. It is at most 255 * 32766 for u8, which a float holds exactly, and 65535 * 32766 for u16,
- * which 32 bits hold. A weight is never negative and fits a signed 16-bit number. A slope, which is a
- * weight's derivative, fits one, too: the slopes of all kernels and their sums stay below 1.08 in
- * magnitude. */
+/* Weights along x of u8 and u16 voxels are integers, so that the weighted sum of four taps is exact on every
+ * instruction set. The sum is at most 255 * 32766 for u8, which a float holds exactly, and 65535 * 32766 for
+ * u16, which 32 bits hold. A weight is never negative and fits a signed 16-bit number. A slope is the
+ * derivative of a weight. It fits a signed 16-bit number, too, because the slopes of all kernels and the sums
+ * of slopes are below 1.08 in magnitude. */
 enum { WEIGHT_UNITS = 32766, SLOPE_UNITS = 30000 };
 static const float WEIGHT_INVERSE = 1.0f / WEIGHT_UNITS, SLOPE_INVERSE = 1.0f / SLOPE_UNITS;
 
@@ -48,8 +48,10 @@ LANES_INLINE void round_to_weights(lanes weight[4]) {
 #if defined(__AVX512VBMI__) && defined(__AVX512VBMI2__) && defined(__AVX512VNNI__)
 #define HL_PERMUTES_BYTES 1
 
-/* A lane's four weights as two bytes each, the higher bytes first. The processor multiplies unsigned bytes by
- * signed ones: weights are multiplied by voxels less 128, and voxels by slopes. */
+/* Each weight or slope of a lane is two bytes: digit[0] holds the higher bytes of the lane's four numbers,
+ * digit[1] the lower bytes. The processor multiplies unsigned bytes by signed bytes. Weights are unsigned,
+ * and are multiplied by voxels less 128, which are signed. Slopes are signed, and are multiplied by unsigned
+ * voxels. */
 typedef struct byte_weights {
   __m512i digit[2];
 } byte_weights;
@@ -76,7 +78,8 @@ LANES_INLINE byte_weights split_weights(const integer_weights *integers) {
   return (byte_weights){{higher_bytes(even, odd), lower_bytes(even, odd)}};
 }
 
-/* Splits slopes. A slope is d0 * 256 + d1, both signed; where d1 is negative, d0 is one more. */
+/* Splits slopes into bytes. A slope is d0 * 256 + d1, where both bytes are signed; where d1 is negative, d0
+ * is the slope's higher byte plus 1. */
 LANES_INLINE byte_slopes split_slopes(const integer_weights *integers) {
   const __m512i sign = _mm512_set1_epi16((short)0x8080);
   __m512i even = _mm512_add_epi16(two_words(integers->tap[0], integers->tap[2]), sign);
@@ -159,8 +162,8 @@ LANES_INLINE short_weights pair_weights(const integer_weights *integers) {
 }
 LANES_INLINE short_slopes pair_slopes(const integer_weights *integers) { return pair_weights(integers); }
 
-/* The weighted sum of slopes for voxels less 32768. The four slopes add up to 0, so that the 32768
- * cancels. */
+/* The sum of a lane's four voxels, each multiplied by its slope. The voxels are given less 32768. The four
+ * slopes add up to 0, so the sum is the same as without this subtraction. */
 LANES_INLINE lanes_int slope_of_signed(lanes_int low, lanes_int high, const short_slopes *slopes) {
   return lanes_multiply_shorts(low, slopes->pair[0]) + lanes_multiply_shorts(high, slopes->pair[1]);
 }
@@ -184,7 +187,8 @@ LANES_INLINE lanes_int weigh_shorts(lanes_int low, lanes_int high, const short_w
   return ((low & 65535) * weights->tap[0] + ((low >> 16) & 65535) * weights->tap[1]) +
          ((high & 65535) * weights->tap[2] + ((high >> 16) & 65535) * weights->tap[3]);
 }
-/* Voxels are read less 32768, so that all sums fit 32 bits. */
+/* 32768 is subtracted from the voxels, so that all sums fit 32 bits. The result is the same, because the four
+ * slopes add up to 0. */
 LANES_INLINE lanes_int slope_of_shorts(lanes_int low, lanes_int high, const short_slopes *slopes) {
   return (((low & 65535) - 32768) * slopes->tap[0] + (((low >> 16) & 65535) - 32768) * slopes->tap[1]) +
          (((high & 65535) - 32768) * slopes->tap[2] + (((high >> 16) & 65535) - 32768) * slopes->tap[3]);
@@ -197,7 +201,8 @@ LANES_INLINE lanes weigh_floats(lanes a, lanes b, lanes c, lanes d, const lanes 
   return lanes_fma(a, weight[0], b * weight[1]) + lanes_fma(c, weight[2], d * weight[3]);
 }
 
-/* Weights of the 64 taps and their derivatives, along each axis. */
+/* The weights of four taps along each axis, and the weights' derivatives. A tap's weight is the product of
+ * three weights. */
 typedef struct tap_slope_weights {
   lanes weight[3][4], slope[3][4];
 } tap_slope_weights;

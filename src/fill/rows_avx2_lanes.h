@@ -16,8 +16,8 @@ typedef struct pair_of_taps {
   const unsigned char *first, *second;
 } pair_of_taps;
 
-/* Sums along x of eight lanes' rows, in units of weights. Element [slice][k] holds four rows of lane k and
- * four rows of lane k + 4. */
+/* Sums along x of the tap rows of eight lanes, in units of weights. Element [slice][k] holds the sums of four
+ * rows of lane k and of four rows of lane k + 4. */
 typedef struct sums_of_rows {
   __m256i of_two[4][4];
 } sums_of_rows;
@@ -117,8 +117,8 @@ LANES_INLINE short_slice short_slice_of_two(const pair_of_taps *taps, size_t at,
                        short_rows_of_two(taps, at + 2 * row_bytes, row_bytes)};
 }
 
-/* The weights, or slopes, of two lanes. Each lane's four weights fill a quarter of the register, and stand
- * there twice, once for each row. */
+/* The weights along x, or the slopes, of two lanes for two rows of taps. Each lane's four numbers are in the
+ * register twice, once for each row. */
 LANES_INLINE __m256i short_weights_of_pair(const short_weights *weights, int half, int k) {
   __m256i low = _mm256_loadu_si256((const __m256i *)(const void *)&weights->pair[0] + half);
   __m256i high = _mm256_loadu_si256((const __m256i *)(const void *)&weights->pair[1] + half);

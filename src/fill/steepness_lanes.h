@@ -1,5 +1,5 @@
-/* fill/steepness_lanes.h - the factor on a volume's extinction that the length of its gradient, its mask and
- * the second number of its transfer function give. */
+/* fill/steepness_lanes.h - the factor on a volume's extinction that follows from the length of the volume's
+ * gradient, from its mask, and from the second number of its transfer function. */
 #ifndef HL_FILL_STEEPNESS_LANES_H
 #define HL_FILL_STEEPNESS_LANES_H
 
@@ -33,11 +33,12 @@ typedef struct matter_way {
   const kernel *kernel;
   const classifier *classifier;
   const float (*to_index)[4]; /* maps frame space to index space */
-  lanes3 point;               /* the point where the matter is seen, as the value alone places it; frame
-                               * space */
+  lanes3 point;               /* the point where the matter is seen if extinction depends on the value alone;
+                               * frame space */
   lanes from, to;             /* coordinates in the tables where a sample's part of the ray begins and ends */
-  lanes extinction;           /* the mean extinction that the value alone gives */
-  uint32_t active, starts;    /* lanes with extinction, at least one; the first lane of each block */
+  lanes extinction;           /* the mean extinction on the way if extinction depends on the value alone */
+  uint32_t active, starts;    /* active: the lanes with extinction, at least one; starts: the first lane of
+                               * each block; one bit each */
   int wants_slope;            /* whether the caller reads the slope, even where the factor does not depend on
                                * it */
 } matter_way;

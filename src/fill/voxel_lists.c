@@ -15,7 +15,8 @@ typedef struct sort_job {
   footprint_map map;
   double support; /* the kernel's radius in voxels */
   voxel_lists *lists;
-  uint32_t *cursor; /* [tiles * buckets + 1]; at first counts, later the place of the next entry */
+  uint32_t *cursor; /* [tiles * buckets + 1]; at first the number of entries of each bucket, later the index
+                     * of the bucket's next entry */
   bool writing;     /* if false, voxels are only counted */
 } sort_job;
 
@@ -23,8 +24,8 @@ static int32_t clamp_brick(int32_t cell, int32_t cells) {
   return (cell < 0 ? 0 : cell > cells ? cells : cell) / HL_BRICK_CELLS;
 }
 
-/* Whether voxel i contributes to a relevant cell. It contributes to points with floor(p) in i-2 .. i+1, and
- * so to the cells i-1 .. i+2. */
+/* Whether a voxel contributes to a cell of a relevant brick. Along each axis, voxel i contributes to points
+ * with floor(p) in i-2 .. i+1, and so to the cells i-1 .. i+2. */
 static bool voxel_relevant(const grid *grid, const int32_t v[3]) {
   int32_t first[3], last[3];
   for (int axis = 0; axis < 3; axis++) {
@@ -43,8 +44,9 @@ static int clamp_tile(double pixel, int tiles) {
   return pixel < 0 ? 0 : pixel >= (double)tiles * TILE ? tiles - 1 : (int)(pixel / TILE);
 }
 
-/* Half edges of the box of points to which a voxel contributes. Points outside the grid take the border's
- * density, so that voxels at the border reach through the margin. */
+/* Finds the box of the points to which a voxel contributes, as half the box's length along each axis. Points
+ * outside the grid get the density at the border, so voxels at the border contribute to points in the margin,
+ * too. */
 static void footprint_half(const sort_job *job, const int32_t v[3], double half[3]) {
   for (int axis = 0; axis < 3; axis++) {
     bool border = v[axis] < job->support || v[axis] >= job->grid->dimension[axis] - job->support;

@@ -8,8 +8,8 @@
 typedef struct voxel_lists {
   int tiles_x, tiles_y;
   int bucket_count; /* number of sheets + span - 1 */
-  int span; /* number of sheets that a kernel can touch. Sheet k reads buckets k .. k + span - 1. At the
-             * border, where values continue, voxels touch more sheets and are listed again every span
+  int span; /* number of sheets that a kernel can touch. Sheet k reads buckets k to k + span - 1. Voxels at
+             * the border, whose values continue outside, touch more sheets, and are listed again every `span`
              * sheets */
   uint32_t *start; /* owned; [tiles * bucket_count + 1] */
   uint32_t *voxel; /* owned; [start[last]]; index in the grid padded by 2 voxels on every side */

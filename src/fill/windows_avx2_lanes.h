@@ -13,8 +13,8 @@
 enum {
   WINDOW_SIDE = GRID_COLUMN,       /* voxels */
   WINDOW_SPREAD = WINDOW_SIDE - 4, /* voxels: the greatest distance between lanes' first taps */
-  USUAL_SPREAD = 2,                /* few blocks need a greater distance; a constant for the usual one lets
-                                    * the compiler unroll loops */
+  USUAL_SPREAD = 2,                /* the greatest distance that most blocks need; because it is a constant,
+                                    * the compiler unrolls loops */
   USUAL_SLICES = 4 + USUAL_SPREAD
 };
 enum { COPY_BYTES = 4 * WINDOW_SIDE, SLICE_BYTES = (WINDOW_SPREAD + 1) * COPY_BYTES };

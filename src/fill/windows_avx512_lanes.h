@@ -36,7 +36,7 @@ LANES_INLINE __m512i window_index(hl_storage storage, const __m512i offset[3]) {
                                      : index_f32(offset[0], offset[1]);
 }
 
-/* Sets the place of the window's first voxel. */
+/* Sets the members that say where in memory the window begins. low: the window's first voxel. */
 LANES_INLINE void locate_window(const grid *grid, const int32_t low[3], voxel_window *window) {
   if (grid->storage == HL_STORAGE_U8) {
     int32_t within = low[0] % GRID_COLUMN;
@@ -100,9 +100,10 @@ LANES_INLINE window_slice slice_of_window(hl_storage storage, const voxel_window
 
 /* ---- u8 and u16: each lane's own four slices ---- */
 
-/* For each tap row y and tap slice z, the taps of all lanes are taken first and then weighted once. They come
- * from slice z of the window, or from one of up to `spread` later slices for lanes whose first tap lies in a
- * later slice. This takes fewer sums than one sum for each slice of the window. */
+/* Slices of a window, from which each lane takes the taps of its own four slices. For each tap row y and tap
+ * slice z, the taps of all lanes are taken first and then weighted once. A lane whose first tap lies in the
+ * window's slice s takes them from slice s + z; s is at most `spread`. This needs fewer sums than a sum for
+ * each slice of the window would. */
 typedef struct own_slices {
   window_slice voxels[WINDOW_SIDE];
   window_lanes later[WINDOW_SPREAD + 1]; /* element s: the lanes whose first tap lies in slice s */
