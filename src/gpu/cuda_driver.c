@@ -71,7 +71,8 @@ typedef struct cuda_library {
 typedef struct cuda_device {
   const cuda_library *api;
   cuda_device_number number;
-  int architecture;                                        /* compute capability times 10: 90 is 9.0 */
+  int architecture;                                        /* ten times the device's compute capability: 90
+                                                            * stands for 9.0 */
   cuda_object context, streams[2], moments[2], reached[2]; /* reached: events, one for each stream */
   void *stage; /* owned; pinned memory through which downloads pass, because downloads into other memory are
                 * slow */

@@ -41,7 +41,8 @@ typedef struct plan_cut {
   float rows[3][4];     /* frame space to the shape's own space (scene/geometry/cut.h) */
   float in_index[3][4]; /* index space to the shape's own space */
   float scale[3];       /* voxels per unit of each axis of the shape's own space */
-  float margin[3];      /* of a light: as `margin` of plan_light, along the axes of the shape's own space */
+  float margin[3];      /* only in a light's view: as `margin` of plan_light, along the axes of the shape's
+                         * own space and in its units */
   plan_box rays;        /* rays in the shape */
 } plan_cut;
 
@@ -55,8 +56,8 @@ typedef struct plan_light {
   float towards[3];  /* parallel: unit direction to the light */
   float position[3]; /* not parallel: the light's centre */
   float color[3];    /* colour times intensity */
-  float of_sky;      /* fraction of the light that a medium takes, where the light is a sun of the sky;
-                      * else 0 */
+  float of_sky;      /* where the light is a sun of the sky: the fraction of its light that lights media; else
+                      * 0 */
   float path;        /* as in shade_light (render/slab.h) */
   float through[3];  /* as in attenuate_job (shadow/attenuate.h) */
   float cone_axis[3], cone_outer, cone_scale;
@@ -75,23 +76,24 @@ typedef struct plan_light {
   float map[3][4]; /* frame space to (w, w u, w v) of the buffer */
   float slab_path; /* as path in attenuate_job (shadow/attenuate.h) */
   plan_box box, content;
-  float margin[3]; /* in voxels: if a sample is farther than this from the box's faces, no light passes
-                    * beside the faces to the pixels around it */
+  float margin[3]; /* in voxels, along each axis. If a sample is farther than this from the box's faces, light
+                    * that passes beside the faces does not reach the pixels around the sample */
   int first_cut, cut_count; /* the cuts that count for the light, among the sweep's cuts */
 } plan_light;
 
 /* The brick of a field that covers a block of cells of level 0: the members of hl_brick_entry
  * (bricks/bricks.h). */
 typedef struct plan_brick {
-  int slot; /* index of the brick's coefficients; -1: all are `value` */
+  int slot; /* number of the brick among the bricks that have coefficients; -1: the field is `value` all over
+             * the brick */
   int level;
   float value;
 } plan_brick;
 
 typedef struct plan_volume {
   int dimension[3], brick_count[3];
-  /* For the device's voxels, or the coefficients of bricks: bytes from row to row, and number of rows of a
-   * slice. A brick has as many slices. */
+  /* The layout of the device's voxels, or of the coefficients of bricks: the bytes from row to row, and the
+   * number of rows of a slice. The number of slices of a brick equals its number of rows. */
   unsigned row_bytes, slice_rows;
   int brick_shift, directory_size[3]; /* of a field in bricks (hl_bricks) */
   float empty;                        /* stored units */
@@ -111,8 +113,8 @@ typedef struct plan_volume {
   int several_surfaces;
   float only_beginning;
   /* surfaces at the faces of the box and of cuts (shade_volume in render/slab.h) */
-  int any_face;   /* the eye sees faces that are no part of the data */
-  int faces_take; /* light enters surfaces through such faces */
+  int any_face;   /* the eye may see faces at which the box or a cut cuts visible matter */
+  int faces_take; /* such faces are surfaces for the light, too */
   int cut_shading, cut_count;
   int face_cuts[6]; /* [axis][low, high] */
   /* the material (shade_volume in render/slab.h) */
@@ -127,8 +129,8 @@ typedef struct plan_volume {
 
 /* One sweep: all slabs of one slicing direction. */
 typedef struct device_sweep {
-  int sheets, ring;                  /* number of sheets; number of planes that shadow buffers keep: sheet k's
-                                      * plane is k % ring */
+  int sheets, ring;                  /* number of sheets, and number of sheets whose planes a shadow buffer
+                                      * keeps: the planes of sheet k are number k % ring */
   int width, height, tiles_x, tiles; /* size of the picture */
   int light_count, light_tiles;
   float spacing, path;
@@ -156,8 +158,8 @@ typedef struct plan_variant {
   int channels; /* number of channels of light attenuation: 1 or 3 */
 } plan_variant;
 
-/* Number of entries of each table. The tables follow each other: sums, color and shown with four numbers for
- * each entry; outside, bent and steepness with one. */
+/* Number of entries of each table. The tables follow each other: first sums, color and shown, with four
+ * numbers for each entry, then outside, bent and steepness, with one number for each entry. */
 #define PLAN_ENTRIES      4096
 #define PLAN_TABLE_ROWS   (PLAN_ENTRIES + 2)
 #define PLAN_TABLE_FLOATS (PLAN_TABLE_ROWS * 15)

@@ -37,13 +37,14 @@ typedef struct gpu_buffer {
   size_t bytes;
 } gpu_buffer;
 
-/* A compiled program. binary: the bytes that the driver loads next time instead of compiling the text. */
+/* A program that the driver has loaded. */
 typedef struct gpu_program {
   void *module;
-  void *kernels[8]; /* kernels in the order of their names */
+  void *kernels[8]; /* the kernels, in the order of the names given to load_program() */
 } gpu_program;
 
-/* The bytes of a compiled program; released with free(). */
+/* The bytes of a compiled program, which the driver can load without compiling the text again; released with
+ * free(). */
 typedef struct gpu_binary {
   void *bytes;
   size_t size;
@@ -66,17 +67,17 @@ struct gpu_driver {
   /* library: borrowed while the device is open. */
   bool (*open)(void *library, int index, gpu_device *device);
   void (*close)(gpu_device *device);
-  /* Compiles the kernels. defines: [define_count], each "NAME=VALUE". names: [kernel_count], the names of
-   * kernels. */
+  /* Compiles the kernels. defines: [define_count], each "NAME=VALUE". */
   bool (*compile)(gpu_device *device, const char *text, const char *const *defines, int define_count,
                   gpu_binary *binary);
+  /* Loads a compiled program. names: [kernel_count], the names of its kernels. */
   bool (*load_program)(gpu_device *device, const gpu_binary *binary, const char *const *names,
                        int kernel_count, gpu_program *program);
   void (*release_program)(gpu_device *device, gpu_program *program);
   bool (*allocate)(gpu_device *device, size_t bytes, gpu_buffer *buffer);
   void (*release)(gpu_device *device, gpu_buffer *buffer);
-  /* Starts a copy to a buffer. The copy may go on after the return; the driver has its own copy of `from`
-   * then. */
+  /* Starts a copy to a buffer. The copy may still be going on when the function returns; the driver has then
+   * made its own copy of `from`. */
   bool (*upload)(gpu_device *device, const gpu_buffer *buffer, size_t offset, const void *from, size_t bytes);
   /* Waits for all earlier work, and copies a buffer to `to`. */
   bool (*download)(gpu_device *device, const gpu_buffer *buffer, size_t offset, void *to, size_t bytes);

@@ -33,7 +33,8 @@ enum buffer_use {
   BUFFER_RAYS,
   BUFFER_VOXELS,
   BUFFER_DISTANCES,
-  BUFFER_DISTANCES_MADE, /* distances half-way through the three passes */
+  BUFFER_DISTANCES_MADE, /* distances of bricks after the first and after the third pass; kernels read the
+                          * latter */
   BUFFER_CELL_BITS,
   BUFFER_TABLES,
   BUFFER_PIXELS,
@@ -62,11 +63,13 @@ struct hl_gpu {
   gpu_device device;
   const char *cache_folder;
   gpu_buffer buffers[BUFFERS];
-  uint64_t version, tables_version; /* versions of the volume on the device; 0: there is none */
+  uint64_t version, tables_version; /* versions of the voxels and of the tables on the device; 0: there are
+                                     * none */
   known_program programs[MOST_VARIANTS];
   int program_count, launches;
   int32_t brick_count[3];
-  bool has_distances; /* the buffer holds distances of bricks; else it holds which bricks are relevant */
+  bool has_distances; /* the distances of bricks are made; else BUFFER_DISTANCES holds which bricks are
+                       * relevant */
 };
 
 const gpu_device *hl_gpu_device(const hl_gpu *gpu) { return &gpu->device; }
@@ -94,7 +97,7 @@ static bool find_of_driver(const gpu_driver *driver, gpu_found *found, void *dat
   bool goes_on = true;
   for (int i = 0; i < driver->count(library) && goes_on; i++)
     if (driver->describe(library, i, &info)) goes_on = found(data, driver, library, i, &info);
-  if (goes_on) driver->unload(library); /* else the caller keeps the library open */
+  if (goes_on) driver->unload(library); /* otherwise the caller keeps the library open */
   return goes_on;
 }
 
@@ -185,7 +188,7 @@ void hl_gpu_close(hl_gpu *gpu) {
 
 /* ---- memory ---- */
 
-/* Makes a buffer large enough. Where the buffer grows, its content is lost. */
+/* Makes room for a number of bytes in a buffer. Where the buffer has to grow, its content is lost. */
 static bool reserve(hl_gpu *gpu, enum buffer_use use, size_t bytes) {
   gpu_buffer *buffer = &gpu->buffers[use];
   if (bytes < 64) bytes = 64;
@@ -218,7 +221,7 @@ size_t hl_gpu_row_bytes(const gpu_volume *volume) {
 /* The bytes that kernels may read behind the last voxel. */
 enum { READ_BEHIND = 16, STAGE_BYTES = 1 << 20 };
 
-/* Copies a row of the volume's voxels. number: counted through all slices. */
+/* Copies a row of the volume's voxels. number: the row's number, counted through all slices. */
 static void load_row(const gpu_volume *volume, size_t number, size_t packed, unsigned char *row) {
   const size_t rows = (size_t)volume->dimension[1];
   if (volume->load_row != NULL) volume->load_row(volume->pages, number % rows, number / rows, row);
@@ -246,7 +249,7 @@ static bool upload_voxels(hl_gpu *gpu, const gpu_volume *volume) {
   return done;
 }
 
-/* The coefficients of a field in bricks, and the directory. */
+/* Copies the coefficients and the directory of a field in bricks to the device. */
 static bool upload_bricks(hl_gpu *gpu, const gpu_volume *volume) {
   const size_t width = hl_gpu_row_bytes(volume) / sizeof(float),
                bytes = volume->slots * width * width * width * sizeof(float);
@@ -375,7 +378,7 @@ static bool launch(hl_gpu *gpu, const gpu_program *program, int kernel, int line
 
 static uint32_t groups_of(size_t members) { return (uint32_t)((members + GPU_GROUP - 1) / GPU_GROUP); }
 
-/* floats: the number of floats, a multiple of four. */
+/* Sets the first `floats` floats of a buffer to a value. floats: a multiple of four. */
 static bool fill(hl_gpu *gpu, const gpu_program *program, enum buffer_use use, size_t floats, float value) {
   uint32_t fours = (uint32_t)(floats / 4);
   const gpu_argument arguments[] = {memory(gpu, use), {.value = fours}, number_of_float(value)};
@@ -408,7 +411,8 @@ static size_t light_floats(const gpu_sweep *sweep) {
          (sweep->variant.outside ? 2 : 1);
 }
 
-/* The number of counters: counters of samples, and one for the list of each run; a multiple of four. */
+/* The number of counters of a sweep: counters of samples, and a counter for the list of each run. It is
+ * rounded up to a multiple of four. */
 static size_t counters_of(const gpu_sweep *sweep) {
   return SAMPLE_COUNTERS + ((size_t)(sweep->plan->sheets / sweep->slabs) + 4) / 4 * 4;
 }
@@ -437,7 +441,7 @@ static bool make_room(hl_gpu *gpu, const gpu_sweep *sweep) {
   return done;
 }
 
-/* Starts a sweep: with full light and an empty picture. */
+/* Starts a sweep: sets the lights' buffers to full light, the picture to empty, and the counters to 0. */
 static bool reset(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *program) {
   const device_sweep *plan = sweep->plan;
   bool done = fill(gpu, program, BUFFER_PIXELS, (size_t)plan->tiles * 1024, 0) &&
@@ -450,11 +454,11 @@ static bool reset(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *progra
   return done;
 }
 
-/* The lines of launches. LINE_PICTURE lights and composites samples; LINE_AHEAD finds them, and brings the
- * lights on. */
+/* The two lines of launches. LINE_AHEAD finds the samples of a run and takes the lights' buffers through the
+ * run's slabs; LINE_PICTURE lights and composites the samples. */
 enum { LINE_PICTURE, LINE_AHEAD };
 
-/* Number of members that light samples, which is enough to fill any device. */
+/* The greatest number of members that light samples of a run; it is enough to fill any device. */
 enum { SHADING_MEMBERS = 1 << 18 };
 
 /* A run of slabs. */
@@ -490,10 +494,10 @@ static bool launch_kernel(hl_gpu *gpu, const gpu_program *program, int kernel, s
                 groups_of(members), arguments, (int)(sizeof arguments / sizeof *arguments));
 }
 
-/* Launches a run. While the samples of a run are lit, the samples of the next run are found and the light is
- * brought on. The work ahead in run r writes other planes of the ring and other lists than the lighting of
- * run r - 1 reads, and begins after the lighting of run r - 2. A pixel may be found open although the run
- * before makes it opaque; its samples are then lit in vain. */
+/* Launches a run. While the samples of one run are lit, LINE_AHEAD works on the next run. Its work on run r
+ * begins after run r - 2 was lit, and writes planes of the ring and lists that the lighting of run r - 1 does
+ * not read. It may find samples of a pixel that run r - 1 makes opaque; these samples are then lit in
+ * vain. */
 static bool launch_run(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *program, device_run run) {
   const gpu_driver *driver = gpu->device.driver;
   const size_t pixels = (size_t)sweep->plan->tiles * 256,

@@ -14,8 +14,9 @@
 
 typedef struct hl_gpu hl_gpu;
 
-/* Calls `found` for each device of the system, until it returns false. driver: name of the driver that is
- * asked; null: all drivers are asked. problem: [GPU_PROBLEM_BYTES]; says why a driver offers no device. */
+/* Calls `found` for each device of the system, until `found` returns false. driver: name of the driver whose
+ * devices are listed; null: the devices of all drivers are listed. problem: [GPU_PROBLEM_BYTES]; says why a
+ * driver offers no device. */
 typedef bool gpu_found(void *data, const gpu_driver *driver, void *library, int index,
                        const gpu_device_info *info);
 void hl_gpu_find(const char *driver, gpu_found *found, void *data, char *problem);
@@ -32,7 +33,7 @@ const char *hl_gpu_problem(const hl_gpu *gpu);
 
 /* A volume as the renderer has prepared it; borrowed. */
 typedef struct gpu_volume {
-  uint64_t version, tables_version; /* versions of the voxels, and of everything that follows from the
+  uint64_t version, tables_version; /* version of the voxels, and version of everything that follows from the
                                      * transfer function */
   const void *voxels;               /* [z][y][x], rows packed; or, for a field in bricks, the coefficients
                                      * [slots][z][y][x] */
@@ -71,7 +72,8 @@ typedef struct gpu_sweep {
   const plan_rays *rays; /* [2 + 2 lights][sheets] (gpu/kernels/sweep.h) */
   const plan_cut *cuts;  /* [cut_count]; the cuts of all views, the eye's first; null: none */
   size_t cut_count;
-  const int32_t *shown_from; /* [tiles][16]; from back to front: the first visible slab; null: slab 1 */
+  const int32_t *shown_from; /* [tiles][16 blocks]; where slabs are composited from back to front: the first
+                              * visible slab of each block; null: slab 1 for all blocks */
   size_t plane_floats;       /* floats of the planes of all lights together */
   int slabs;                 /* number of slabs of a run */
 } gpu_sweep;
@@ -84,7 +86,8 @@ typedef struct gpu_times {
 } gpu_times;
 
 bool hl_gpu_run(hl_gpu *gpu, const gpu_sweep *sweep);
-/* Waits for the sweep's pixels. pixels: [tiles][16][4][16] floats. times: the sweep's times are added. */
+/* Waits for the sweep's pixels, and copies them to `pixels`, [tiles][16 blocks][R G B A][16] floats. times:
+ * the times of the sweep are added to it. */
 bool hl_gpu_read(hl_gpu *gpu, const gpu_sweep *sweep, float *pixels, gpu_times *times);
 
 #endif

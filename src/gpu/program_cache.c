@@ -1,7 +1,8 @@
-/* gpu/program_cache.c - see program_cache.h. A file holds the key's length, the key, a number of the
- * program's bytes and the program; it appears as a whole, by renaming. A driver crashes on a damaged program,
- * so a program whose number is wrong is not read. A driver trusts a program, so files that belong to other
- * users, or that they may write, are not read. */
+/* gpu/program_cache.c - see program_cache.h. A file holds the key's length, the key, a number made from the
+ * program's bytes, and the program. The file is written under another name and then renamed, so that it
+ * appears as a whole. A driver crashes on a damaged program, so a program whose number is wrong is not used.
+ * A driver trusts a program, so files are not read that belong to other users, or that other users may
+ * write. */
 #define _POSIX_C_SOURCE 200809L
 #include "gpu/program_cache.h"
 
@@ -90,8 +91,8 @@ static bool is_program(const char *name) {
   return length > suffix && strcmp(name + length - suffix, CACHE_SUFFIX) == 0;
 }
 
-/* Removes the oldest program of a folder that holds more bytes than `most`. Returns whether a program was
- * removed. */
+/* Removes the oldest program of a folder if the folder's programs have more than `most` bytes. Returns
+ * whether a program was removed. */
 static bool remove_oldest(const char *folder, uint64_t most) {
   char oldest[256] = "", path[4096];
   uint64_t bytes = 0;

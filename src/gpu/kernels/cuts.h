@@ -22,7 +22,7 @@ DEVICE heights_in_box heights_left(GLOBAL const plan_box *box, GLOBAL const plan
   return left;
 }
 
-/* Takes a removed section of a ray from the section of a slab, as remove_section() in
+/* Removes the section from `from` to `to` from a ray's section in a slab, as remove_section() in
  * render/view_sheets.c. */
 DEVICE void remove_section(float from, float to, heights_in_box *left) {
   if (!(from < to) || to <= left->enter || from >= left->leave) return;
@@ -52,7 +52,7 @@ DEVICE float row_size(GLOBAL const float *row) {
   return root(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
 }
 
-/* A speed, or a tiny number in place of 0. */
+/* The speed, or 1e-12 where its magnitude is less. */
 DEVICE float some_speed(float speed) { return magnitude(speed) < 1e-12f ? 1e-12f : speed; }
 
 DEVICE vector point_in_shape(GLOBAL const float rows[3][4], vector p) {
@@ -109,7 +109,8 @@ DEVICE vector gradient_over_cut(GLOBAL const plan_cut *cut, vector point) {
 
 /* ---- the light's ways ---- */
 
-/* Heights along a light's way between which matter is left. */
+/* The part of a way towards a light in which box and cuts leave matter: its begin and its end, as lengths
+ * along the way. */
 typedef struct way_left {
   float enter, leave;
 } way_left;
@@ -127,7 +128,8 @@ DEVICE void shorten_way(GLOBAL const plan_cut *cuts, int count, vector from, vec
   }
 }
 
-/* The length of a way from a point towards the light that cuts leave. */
+/* The length of the parts that cuts leave of a way from a point towards the light. left: the part of the way
+ * that is looked at. */
 DEVICE float length_left(GLOBAL const plan_cut *cuts, int count, vector from, vector towards, way_left left) {
   float removed = 0.0f;
   for (int i = 0; i < count; i++) {
@@ -145,8 +147,9 @@ DEVICE float length_left(GLOBAL const plan_cut *cuts, int count, vector from, ve
 }
 
 /* Whether a sample is so far from the faces of all cuts that no face changes the light's ways to it and to
- * the pixels around it. Only planes, and boxes whose inside is left, are tested: behind them the nearest face
- * is also the first one. step: the eye's ray through the slab. */
+ * the pixels around it. Only planes, and boxes whose inside is left, are tested, because behind them the
+ * nearest face is also the first face on the light's way. With any other cut the result is 0. step: the eye's
+ * ray through the slab. */
 DEVICE int is_far_from_cuts(GLOBAL const plan_cut *cuts, int count, vector position, vector step) {
   int far = 1;
   for (int i = 0; i < count && far; i++) {
@@ -172,7 +175,8 @@ DEVICE float skin_of_depth(float before, float depth) {
   return depth > before ? limited(FACE_VOXELS - middle, 0.0f, 1.0f) : 0.0f;
 }
 
-/* The skin of two opposite faces. scale: voxels per unit of the axis. */
+/* How much matter belongs to either of two opposite faces, at the places low and high of an axis. scale:
+ * voxels per unit of the axis. */
 DEVICE float skin_of_axis(float from, float to, float low, float high, float scale) {
   return greater(skin_of_depth((from - low) * scale, (to - low) * scale),
                  skin_of_depth((high - from) * scale, (high - to) * scale));

@@ -15,7 +15,7 @@
 
 #pragma OPENCL FP_CONTRACT OFF
 #define GLOBAL __global
-/* Marks a pointer to memory to which no other pointer of the kernel leads. */
+/* Marks a pointer: no other pointer of the kernel leads to the same memory. */
 #define APART       restrict
 #define DEVICE      static
 #define DEVICE_CALL static
@@ -35,9 +35,9 @@ typedef ulong wide;
 #define member_number() ((int)get_local_id(0))
 #define work_number()   ((int)get_global_id(0))
 #define work_count()    ((unsigned)get_global_size(0))
-/* The least number among the members that step together, and whether a condition holds for any of these
- * members. Here each member steps alone; where all members of a group must take the same steps, they step by
- * one. */
+/* A pack is the members that step together. least_of_pack() is the least of its members' numbers, and
+ * any_of_pack() tells whether a condition holds for any of its members. In OpenCL a pack is a single member,
+ * and where all members of a group must take the same steps, they step by one. */
 #define least_of_pack(value)   (value)
 #define any_of_pack(condition) (condition)
 #define least_of_group(value)  1

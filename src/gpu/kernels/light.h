@@ -26,11 +26,11 @@ typedef struct slab_sample {
   float before, after; /* coordinates in the tables */
   way_sums sums;
   float extinction, depth, left, opacity;
-  float seen, evenly; /* where the matter is seen, and would be seen with even extinction: fractions of the
-                       * way through the slab's covered part */
+  float seen, evenly; /* where the matter is seen, and where it would be seen if its extinction were even:
+                       * fractions of the way through the slab's covered part */
   int sloped;
   vector slope, normal;
-  float factor; /* of gradient opacity, by which extinction and the sums were multiplied */
+  float factor; /* the factor of gradient opacity by which extinction and the sums were multiplied */
   float surface;
   float skin; /* how much the matter belongs to a face that cuts it: 1 at the face, 0 two voxels behind it */
 } slab_sample;
@@ -64,8 +64,8 @@ DEVICE shadow_taps taps_of_position(GLOBAL const plan_light *light, vector posit
   return taps;
 }
 
-/* Interpolates between two pixels a b of a row and c d of the next row; outside the buffer the result is
- * 1. */
+/* Interpolates between four pixels: a and b in one row, c and d below them in the next row. Outside the
+ * buffer the result is 1. */
 DEVICE float between_taps(const shadow_taps *taps, float a, float b, float c, float d) {
   float top = fused(b - a, taps->fx, a), bottom = fused(d - c, taps->fx, c);
   return taps->inside ? fused(bottom - top, taps->fy, top) : 1.0f;
@@ -142,8 +142,9 @@ typedef struct light_ways {
   float first, last;
 } light_ways;
 
-/* Lengths of the light's way within what the volume's box and cuts leave, to where the slab's covered part
- * begins and ends. path: the lengths without a box. */
+/* The lengths of the light's ways, from the slab's first sheet, to the begin and to the end of the slab's
+ * covered part. Only those parts of the ways count that the volume's box and cuts leave. path: the lengths if
+ * the box and cuts cut nothing. */
 DEVICE light_ways ways_in_box(const volume_data *data, GLOBAL const plan_light *light, vector start,
                               vector way, vector towards, light_ways path) {
   GLOBAL const plan_volume *volume = data->plan;
@@ -202,10 +203,10 @@ DEVICE float extinction_towards(const volume_data *volume, const slab_sample *s,
 typedef struct light_depths {
   float enter[CHANNELS], more[CHANNELS];
 #if BOXED
-  float close[CHANNELS][NEAR_PIXELS]; /* the optical depths at the pixels around the sample, from the face
-                                       * on */
+  float close[CHANNELS][NEAR_PIXELS]; /* the optical depths from the face to each of the pixels around the
+                                       * sample */
   int face;                           /* the sample is near a face of the box */
-  float beside;                       /* how much the face counts, 0 to 1 */
+  float beside;                       /* how much the face changes the light at the sample, 0 to 1 */
   float before_enter[CHANNELS], before_more[CHANNELS];
 #endif
 } light_depths;
@@ -245,7 +246,8 @@ typedef struct faces_of_axis {
   float ahead, behind, u, v, along;
 } faces_of_axis;
 
-/* As find_faces() for a cut: the face ahead is a plane where the light's ray meets the cut. */
+/* Does for a cut the work of find_faces(), which gives the box's faces. The cut's face is taken to be flat,
+ * as it is where the light's ray meets it. */
 DEVICE float face_of_cut(GLOBAL const plan_cut *cut, vector position, vector towards,
                          const near_pixels *close_pixels, float through) {
   const ray_section way = cross_cut(cut, position, towards);
@@ -308,8 +310,9 @@ typedef struct ways_around {
   const near_pixels *close_pixels;
 } ways_around;
 
-/* The light's way within what the box and cuts leave before the slab, at a point that lies steps u, v and
- * along away. within: the light's way from the slab's first sheet to the point. */
+/* The length of the light's way to a point before the slab, as far as the box and cuts leave it. The point
+ * lies u and v pixels of the buffer and `along` sheets away from the sample. within: the length of the
+ * light's way from the slab's first sheet to the point. */
 DEVICE float way_before(const ways_around *around, float u, float v, float along, float within) {
   way_left left;
   left.leave = 1e30f;
@@ -391,8 +394,9 @@ DEVICE void add_face(const volume_data *data, GLOBAL const plan_light *light, co
   }
 }
 
-/* Finds the light's transmittance from the face to the slab. found: the transmittance in the buffer. own: the
- * transmittance if the box's matter were even and nothing else in the way. */
+/* Adds the optical depth from the face to the slab to the depths in the slab. found: the transmittance in the
+ * buffer. own: the transmittance if the matter behind the face were even and nothing else in the light's way.
+ * The ratio of the logarithms of the two scales the depth. */
 DEVICE void pass_face(light_depths *depths, int channel, float found, float own) {
   float ratio = 1.0f;
   if (own < 0.999f)
@@ -423,8 +427,8 @@ DEVICE float reaching_face(GLOBAL const plan_light *light, const shadow_taps *ta
 
 #endif
 
-/* The light's transmittance to the sample in each channel, averaged as the eye sees the slab. planes: the
- * planes of the sheet before the slab. */
+/* The light's transmittance to the sample in each channel, as a mean over the slab's matter in which matter
+ * counts as much as the eye sees of it. planes: the planes of the sheet before the slab. */
 DEVICE void passing_light(const volume_data *volume, vector normal, GLOBAL const plan_light *light,
                           const slab_sample *s, vector towards, float path, GLOBAL const float *planes,
                           float passing[CHANNELS]) {

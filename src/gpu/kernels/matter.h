@@ -32,7 +32,8 @@ DEVICE table_coordinate coordinate_of_density(GLOBAL const plan_volume *volume, 
 DEVICE GLOBAL const float *sums_table(GLOBAL const float *tables) { return tables; }
 DEVICE GLOBAL const float *color_table(GLOBAL const float *tables) { return tables + PLAN_TABLE_ROWS * 4; }
 DEVICE GLOBAL const float *shown_table(GLOBAL const float *tables) { return tables + PLAN_TABLE_ROWS * 8; }
-/* The integral of extinction up to the beginning of the surface of values from an entry to the next. */
+/* The integral of extinction from entry 0 to the coordinate at which a surface begins: the surface of the
+ * values from an entry to the next one. */
 DEVICE float beginning_at(GLOBAL const float *tables, int entry) { return sums_table(tables)[entry * 4 + 3]; }
 DEVICE GLOBAL const float *outside_table(GLOBAL const float *tables) { return tables + PLAN_TABLE_ROWS * 12; }
 DEVICE GLOBAL const float *bent_table(GLOBAL const float *tables) { return tables + PLAN_TABLE_ROWS * 13; }
@@ -96,7 +97,8 @@ DEVICE float factor_of_slope(const volume_data *volume, vector slope) {
   return fused(factor[1] - factor[0], at.fraction, factor[0]);
 }
 
-/* Moves a and b, on the slab's two sheets, to the ends of its covered part. */
+/* Moves a and b from the slab's two sheets to the ends of the slab's covered part. Coordinates run linearly
+ * between the sheets. */
 DEVICE void cut_way(covered_span span, table_coordinate *a, table_coordinate *b) {
   float from = a->x, way = b->x - a->x;
   *a = split_coordinate(fused(way, span.begin, from));

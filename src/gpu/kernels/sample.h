@@ -15,9 +15,9 @@ typedef struct volume_data {
   GLOBAL const plan_volume *plan;
   GLOBAL const byte *voxels;          /* or the coefficients of bricks, one brick after the other */
   GLOBAL const plan_brick *directory; /* [z][y][x] blocks of cells; read only where the volume is in bricks */
-  GLOBAL const byte *distances;       /* [bricks z][y][x]; number of bricks to the nearest brick that may show
-                                       * anything, counted along the axis where it is farthest; at most
-                                       * FARTHEST_BRICK */
+  GLOBAL const byte *distances;       /* [bricks z][y][x]; distance, in bricks, to the nearest brick that may
+                                       * show anything: the greatest of the distances along the three axes; at
+                                       * most FARTHEST_BRICK */
   GLOBAL const wide *cell_bits;       /* [bricks z][y][x]; read only where plan->has_cell_bits */
   GLOBAL const float *tables;
   GLOBAL const byte *colors;   /* [z][y][x][4]; read only where the voxels have colours */
@@ -63,8 +63,8 @@ DEVICE int cell_may_show(const volume_data *volume, const grid_point *point, flo
   return (int)(volume->cell_bits[brick] >> ((x & 3) | (y & 3) << 2 | (z & 3) << 4) & 1);
 }
 
-/* The taps around a point: the cell before which they begin, the place in it, and the length of the voxels'
- * edge in cells of the taps. even: the field has one value everywhere around the point. */
+/* The taps around a point. cell: tap 0 is at cell - 1. part: the point's place in this cell. step: the edge
+ * of a voxel, in cells of the taps. even: the field has one value, `value`, everywhere around the point. */
 typedef struct tap_place {
   int cell[3];
   float part[3], step, value;
@@ -72,7 +72,7 @@ typedef struct tap_place {
 } tap_place;
 
 /* Finds the taps around a point of index space; as lanes_in_brick() in fill/gather_lanes.h for a field in
- * bricks. The third cell counts from the first slice of all bricks. */
+ * bricks. There the third coordinate of the cell counts slices through the coefficients of all bricks. */
 DEVICE tap_place place_of_taps(const volume_data *volume, const float at[3]) {
   tap_place place;
   place.even = 0;
@@ -118,7 +118,7 @@ DEVICE GLOBAL const byte *first_row(const volume_data *volume, const int cell[3]
   return volume->voxels + row * plan->row_bytes + (unsigned)((cell[0] - 1) * voxel_bytes);
 }
 
-/* The weighted sum of a row; and with it, from the same voxels, the row's sum weighted by slopes. */
+/* The weighted sum of a row of four taps. */
 #if STORAGE == STORED_F32
 #define row_sum(row, shift, w) sum_row(row, &(w))
 #else

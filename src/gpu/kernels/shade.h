@@ -36,7 +36,8 @@ DEVICE float seen_part(float e, float left) {
   return divided(fused(-lesser(e, 100.0f), left, lost), greater(e, 0.05f) * lost);
 }
 
-/* The fraction of the way at which the fraction u of the optical depth is reached. */
+/* The fraction of the way through a slab after which its optical depth has reached the fraction u. from_a,
+ * from_b: the matter's mean distances from the way's ends. */
 DEVICE float way_of_depth(float from_a, float from_b, float u) {
   int rising = from_a >= from_b;
   float t = power_of_part(rising ? u : 1.0f - u, divided(lesser(from_a, from_b), greater(from_a, from_b)));
@@ -59,8 +60,9 @@ DEVICE void place_slab(GLOBAL const device_sweep *plan, GLOBAL const plan_rays *
   s->position = add_scaled(s->start, s->step_sheet, s->place);
 }
 
-/* Gradient opacity, after place_slab(): multiplies the extinction by the factor where the matter would be
- * seen without it, and places the slab again, as weigh_slab() in render/slab_lanes.h. */
+/* Applies gradient opacity after place_slab(), as weigh_slab() in render/slab_lanes.h. Finds the factor where
+ * the matter would be seen without gradient opacity, multiplies the extinction by it, and places the slab
+ * again. */
 DEVICE void weigh_slab(GLOBAL const device_sweep *plan, GLOBAL const plan_rays *rays, float u, float v,
                        const volume_data *volume, slab_sample *s) {
   s->slope = gradient_at(*volume, s->position);
@@ -160,8 +162,8 @@ DEVICE vector voxel_color_at(const volume_data *volume, vector position) {
 
 /* ---- lights ---- */
 
-/* Henyey and Greenstein's phase function times 4 pi. turn: minus the cosine of the angle between the light's
- * direction before and after. */
+/* Henyey and Greenstein's phase function times 4 pi. turn: minus the cosine of the angle by which scattering
+ * turns the light. */
 DEVICE float phase_of(float g, float turn) {
   float squared = fused(turn, 2 * g, 1 + g * g);
   return divided(1 - g * g, squared * root(squared));
@@ -210,8 +212,8 @@ typedef struct arriving_light {
   float on_medium[3], on_surface[3];
 } arriving_light;
 
-/* Takes from a light the part that matter before a sample absorbs. planes: planes of the light's buffer, at
- * the sheet before the slab. */
+/* Multiplies a light's `arriving` light by the transmittance of the matter on the light's way to a sample.
+ * planes: planes of the light's buffer, at the sheet before the slab. */
 DEVICE void shadow_sample(GLOBAL const device_sweep *plan, const volume_data *volume,
                           GLOBAL const plan_light *light, GLOBAL const float *planes, const slab_sample *s,
                           vector towards, float path, arriving_light *arriving) {

@@ -1,9 +1,8 @@
-/* gpu/kernels/surface.h - surfaces of a volume: how much a sample belongs to the face of a box that cuts
- * matter, and the light at the outside of surfaces, Y in shadow/attenuate.h.
+/* gpu/kernels/surface.h - surfaces of a volume: how much a sample belongs to a face at which the box or a cut
+ * cuts matter, and the light at the outside of surfaces, Y in shadow/attenuate.h.
  *
  * The functions here do for one pixel and one volume what render/slab_lanes.h, render/reaching_lanes.h,
- * grid/classifier_lanes.h and shadow/attenuate_lanes.h do for sixteen pixels.
- */
+ * grid/classifier_lanes.h and shadow/attenuate_lanes.h do for sixteen pixels. */
 #ifndef HL_GPU_SURFACE_H
 #define HL_GPU_SURFACE_H
 
@@ -37,14 +36,15 @@ DEVICE int is_near_face(GLOBAL const plan_volume *volume, vector point) {
   return close;
 }
 
-/* The last face through which the eye's ray comes before it meets a sample. */
+/* The face through which the eye's ray comes last before it meets a sample. */
 typedef struct cut_face {
   float way;      /* from the sample back to the face; frame units */
   vector outward; /* the face's unit normal */
   int cuts;       /* the face cuts matter */
 } cut_face;
 
-/* Takes the face of a cut where it is nearer. */
+/* Sets *nearest to the face of a cut through which the eye's ray comes to the sample, if this face is nearer.
+ * least: how far behind the sample, as the eye sees it, the face may lie; frame units. */
 DEVICE void find_cut(GLOBAL const plan_cut *cut, const slab_sample *s, float least, cut_face *nearest) {
   const ray_section section = cross_cut(cut, s->position, s->towards_eye);
   float way = cut->keep_inside ? section.last : section.first;
@@ -90,7 +90,8 @@ DEVICE float find_skin(const volume_data *volume, const slab_sample *s, vector *
   return limited(FACE_VOXELS - depth * divided(1.0f, plan->voxel), 0.0f, 1.0f);
 }
 
-/* Behind a face, turns the normal to the normal of the face, or makes the surface a medium. */
+/* Treats a sample behind a face that cuts matter: turns its normal towards the face's normal, or shades it
+ * more as a medium than as a surface. How much it does so is the sample's skin. */
 DEVICE void find_cut_face(const volume_data *volume, slab_sample *s) {
   vector outward;
   float skin = find_skin(volume, s, &outward), rest = 1.0f - skin;

@@ -18,9 +18,9 @@ KERNEL(8) try_arithmetic(GLOBAL const float *from, GLOBAL float *to, unsigned co
   for (int i = 0; i < TRIAL_RESULTS; i++) to[number * TRIAL_RESULTS + (unsigned)i] = result[i];
 }
 
-/* Finds how many bricks away the next brick lies that may show something: one pass of three, along one axis.
- * x, y, z: the numbers of bricks. relevant: this pass is the first one, and `from` holds 1 for bricks that
- * may show something, and no distances. */
+/* Finds, for each brick, the distance in bricks to the nearest brick that may show something. This takes
+ * three passes, one along each axis; a call makes one pass. x, y, z: the numbers of bricks. relevant: not 0
+ * in the first pass, in which `from` holds no distances yet, but 1 for each brick that may show something. */
 KERNEL(16)
 spread_distances(GLOBAL const byte *from, GLOBAL byte *to, unsigned x, unsigned y, unsigned z, unsigned axis,
                  unsigned relevant) {
@@ -47,7 +47,7 @@ spread_distances(GLOBAL const byte *from, GLOBAL byte *to, unsigned x, unsigned 
   to[number] = (byte)least;
 }
 
-/* The arguments of both kernels of slabs. */
+/* The arguments of the kernels that work on a run of slabs. */
 #define SWEEP_ARGUMENTS                                                                                 \
   GLOBAL const device_sweep *APART plan, GLOBAL const plan_rays *APART rays,                            \
       GLOBAL const byte *APART voxels, GLOBAL const byte *APART distances,                              \

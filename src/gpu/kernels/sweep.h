@@ -15,7 +15,8 @@
 /* A pixel's way through the sheets: the densities on the last two sheets, where they are known. */
 typedef struct sheet_way {
   int before_known, after_known;
-  int before_shows, after_shows; /* the density is known, and greater than densities that do not show */
+  int before_shows, after_shows; /* the density is known, and greater than the densities before the first
+                                  * visible one */
   float before, after;
 } sheet_way;
 
@@ -27,13 +28,13 @@ DEVICE sheet_way no_sheets(void) {
 }
 
 /* Finds the densities of a pixel on a sheet and on the sheet before, where they are needed. The sheet's own
- * density is needed where the cell may show something, and both are needed where one of the two shows
- * something. Where one member of a pack needs its density, all members of the pack find theirs. At the
- * call, the member `after` of *way belongs to the sheet before. starts: nothing is known of the sheet
- * before, and only this sheet's density is wanted. rays: the rays at the sheet. speed: voxels that the ray
- * advances from sheet to sheet, along the axis where it is fastest. Returns the number of sheets to the
- * next one at which the ray may meet anything. Two passes go through one piece of code, which computes the
- * sums. */
+ * density is needed where the point's cell may show something. Both densities are needed where one of the two
+ * shows something. Where one member of a pack needs its sheet's density, all members of the pack compute
+ * theirs. When the function is called, way->after is the density on the sheet before. starts: nothing is
+ * known of the sheet before, and only this sheet's density is wanted. rays: the rays at the sheet. speed:
+ * voxels that the ray advances from sheet to sheet, along the axis where it is fastest. Returns the number of
+ * sheets from this sheet to the next one at which the ray may meet anything. The sums are computed in a loop
+ * of two passes, so that their code exists once. */
 DEVICE int fill_way(const volume_data *volume, GLOBAL const plan_rays *rays, int perspective, float u,
                     float v, float speed, int starts, sheet_way *way) {
   GLOBAL const plan_volume *plan = volume->plan;
@@ -95,23 +96,26 @@ DEVICE float speed_of_ray(GLOBAL const plan_rays *rays, int perspective, float u
 /* The data that all members of a kernel read and write. */
 typedef struct sweep_data {
   GLOBAL const device_sweep *plan;
-  /* [2 + 2 lights][sheets]: the eye's rays to index space; the eye's rays to frame space, in the middle of
-   * the slab before each sheet; and both for each light. */
+  /* [2 + 2 lights][sheets]: the eye's rays in index space at each sheet; the eye's rays in frame space in the
+   * middle of the slab before each sheet; then for each light its rays in index space and in frame space at
+   * each sheet. */
   GLOBAL const plan_rays *rays;
   volume_data volume;
   GLOBAL float *pixels; /* [tiles][16 blocks][R G B A][16] */
   GLOBAL float *planes; /* planes of all lights */
-  GLOBAL float *light;  /* [light tiles][planes of a sheet][256]; at the last sheet that was reached */
-  GLOBAL int *changed;  /* [light tiles][256]; the last sheet at which it changed */
+  GLOBAL float *light;  /* [light tiles][planes of a sheet][256 pixels]; the light at the last sheet of the
+                         * run before */
+  GLOBAL int *changed;  /* [light tiles][256 pixels]; the last sheet at which the pixel's light changed */
   GLOBAL const int *shown_from; /* [tiles][16] */
-  GLOBAL unsigned *counts;      /* [256]: number of samples composited, tile t counts at t % 256; and [runs]:
-                                 * lengths of the lists */
-  /* Even and odd runs have a copy each of this array and of the next two. [slabs of a run][256 tiles][4];
-   * for a pixel's slab: the densities on its two sheets; later the light that it sends to the eye, and its
-   * opacity, -1 where nothing is seen. */
+  GLOBAL unsigned *counts;      /* [256]: numbers of composited samples; tile t adds its samples to number t %
+                                 * 256. Then [runs]: the lengths of the lists */
+  /* There are two copies of this array and of the next two: one for even runs, one for odd runs. [slabs of a
+   * run][256 * tiles pixels][4]: for each pixel and slab, first the densities on the slab's two sheets; later
+   * the light that the slab sends to the eye (R, G, B) and its opacity, which is -1 where nothing is seen. */
   GLOBAL float *slots;
-  GLOBAL unsigned *list;  /* [slabs of a run * 256 tiles]; the slots in use */
-  GLOBAL unsigned *masks; /* [256 tiles]; bit k: the pixel has a slot for the run's k-th slab */
+  GLOBAL unsigned *list;  /* [slabs of a run * 256 * tiles]; the numbers of the slots in use */
+  GLOBAL unsigned *masks; /* [256 * tiles]; bit k of a pixel's mask: the pixel uses its slot for the run's
+                           * k-th slab */
 } sweep_data;
 
 DEVICE int column_of(int member) { return (member >> 4 & 3) * 4 + (member & 3); }
@@ -196,7 +200,8 @@ DEVICE unsigned find_slabs(const sweep_data *sweep, int number, int run_first, i
 #endif
   slab_range slabs = slabs_with_content(&plan->content, pixel.u, pixel.v, plan->spacing, first, end);
   if (slabs.first >= slabs.end) return 0;
-  slabs.first = least_of_pack(slabs.first); /* a pack works on one sheet: slabs before `first` are left out */
+  slabs.first = least_of_pack(slabs.first); /* a pack works on one sheet at a time; each member leaves out
+                                             * slabs before its own `first` */
   const float speed = speed_of_ray(sweep->rays + slabs.first - 1, EYE_PERSPECTIVE, pixel.u, pixel.v);
   sheet_way way = no_sheets();
   unsigned mask = 0;
@@ -302,8 +307,8 @@ DEVICE float factor_in_slab(const sweep_data *sweep, GLOBAL const plan_light *li
   return factor_of_slope(&sweep->volume, gradient_at(sweep->volume, point));
 }
 
-/* What a slab does to the light of a pixel. SLAB_HIDES: it takes no light, but matter that gradient opacity
- * may hide ends the surfaces in the block. */
+/* What a slab does to the light of a pixel. SLAB_TAKES: it absorbs light. SLAB_HIDES: it absorbs no light,
+ * but surfaces of the pixel's block end there, because gradient opacity may hide matter. */
 #define SLAB_TAKES 1
 #define SLAB_HIDES (2 * STEEP)
 
@@ -346,7 +351,8 @@ DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *ligh
   return all > 0.0f ? SLAB_TAKES : 0;
 }
 
-/* Ends surfaces in a pixel whose slab takes no light, where the slab takes light in other pixels of the
+/* Ends the surface in a light's pixel: the light at the surface's outside becomes the transmittance. This is
+ * done where a slab absorbs no light in the pixel, but does something to the light of another pixel of the
  * block. */
 DEVICE void leave_surface(light_pixel *pixel) {
   for (int c = 0; c < PLANES_OF_SHEET - CHANNELS; c++)
@@ -359,7 +365,7 @@ DEVICE int is_lit(const light_pixel *pixel) {
   return lit;
 }
 
-/* The light that a tile belongs to. tile: its index among the tiles of all lights. */
+/* The number of the light to which a tile belongs. tile: index among the tiles of all lights. */
 DEVICE int light_of_tile(GLOBAL const device_sweep *plan, int tile) {
   int light = 0;
   for (int i = 0; i < plan->light_count; i++)

@@ -82,7 +82,8 @@ DEVICE int taps_inside(int cell, int count) { return cell >= 1 && cell < count -
 DEVICE int round_to_units(float x, int units) {
   return bits_of(fused(x, (float)units, 12582912.0f)) - bits_of(12582912.0f); /* 3 * 2^22 */
 }
-/* Rounds the sums of weights from the first tap on. total: the sum of all four weights. */
+/* Rounds weights to whole units, as round_weights() in fill/row_lanes.h: it rounds the sums of weights from
+ * the first tap on. total: the sum of all four weights. */
 DEVICE void round_weights(const float weight[4], int units, int total, int rounded[4]) {
   int first = round_to_units(weight[0], units), two = round_to_units(weight[0] + weight[1], units);
   int last = round_to_units(weight[3], units);
@@ -124,7 +125,8 @@ DEVICE float slope_row(GLOBAL const byte *row, const row_weights *w) { return su
 
 #if defined(__CUDACC_RTC__) || defined(__CUDACC__)
 #define DOTS 1
-/* The sum of c and products of bytes: bytes of `a` have no sign, bytes of `b` may have one. */
+/* The sum of c and of four products, each of a byte of `a` and the same byte of `b`. Bytes of `a` are
+ * unsigned; bytes of `b` are signed in the second function. */
 DEVICE int dot_bytes(unsigned a, unsigned b, int c) {
   asm("dp4a.u32.u32 %0, %1, %2, %0;" : "+r"(c) : "r"(a), "r"(b));
   return c;
@@ -133,8 +135,8 @@ DEVICE int dot_signed_bytes(unsigned a, unsigned b, int c) {
   asm("dp4a.u32.s32 %0, %1, %2, %0;" : "+r"(c) : "r"(a), "r"(b));
   return c;
 }
-/* The sum of c and products of the two numbers of 16 bits in a and two bytes of b: dot_low() takes the lower
- * bytes, dot_high() the higher ones. */
+/* The sum of c and of two products, each of one of the two 16-bit numbers in `a` and a byte of `b`. dot_low()
+ * uses the two lower bytes of `b`, dot_high() the two higher ones. */
 DEVICE int dot_low(unsigned a, unsigned b, int c) {
   asm("dp2a.lo.u32.u32 %0, %1, %2, %0;" : "+r"(c) : "r"(a), "r"(b));
   return c;
@@ -151,11 +153,11 @@ DEVICE int dot_signed_high(unsigned a, unsigned b, int c) {
   asm("dp2a.hi.u32.s32 %0, %1, %2, %0;" : "+r"(c) : "r"(a), "r"(b));
   return c;
 }
-/* The four bytes that begin `shift` bits into two words. */
+/* The 32 bits of two words, low and high, that begin at bit `shift` of the lower word. */
 DEVICE unsigned word_between(unsigned low, unsigned high, unsigned shift) {
   return __funnelshift_r(low, high, shift);
 }
-/* The lowest bytes of four numbers; the next function takes the next bytes. */
+/* first_bytes() joins the lowest bytes of four numbers in one word, second_bytes() the next higher bytes. */
 DEVICE unsigned first_bytes(const int x[4]) {
   return __byte_perm(__byte_perm(x[0], x[1], 0x0040), __byte_perm(x[2], x[3], 0x0040), 0x5410);
 }
@@ -198,7 +200,8 @@ DEVICE unsigned second_bytes(const int x[4]) {
 
 #ifdef DOTS
 
-/* Four weights as two bytes each: 256 high + low, where the high byte has the sign. */
+/* Four weights of two bytes each: a word of the four higher bytes, which are signed in slopes, and a word of
+ * the four lower bytes. */
 typedef struct row_weights {
   unsigned high, low;
 } row_weights;
@@ -214,8 +217,9 @@ typedef struct row_voxels {
   unsigned word[2]; /* u8 uses only the first word */
 } row_voxels;
 
-/* Only aligned words are loaded. Rows begin at multiples of four bytes, and eight bytes more may be read.
- * shift: number of bits from the aligned word at or below `row`, the first voxel, to this voxel. */
+/* Only aligned words are loaded. Rows of voxels begin at multiples of four bytes, and up to eight bytes
+ * behind a row may be read. shift_of_row(): the number of bits from the aligned word at or below `row` to
+ * `row`, the first of the four voxels. */
 DEVICE unsigned shift_of_row(GLOBAL const byte *row) { return ((unsigned)(size_t)row & 3u) * 8u; }
 DEVICE row_voxels load_row(GLOBAL const byte *row, unsigned shift) {
   row_voxels voxels;
