@@ -27,11 +27,12 @@ typedef struct brick_job {
   float *columns;        /* [threads][2][dimension 0] */
   unsigned char *copies; /* [threads][WINDOW * WINDOW][copy_bytes]; copies of rows, for grids with pages */
   size_t copy_bytes;
-  size_t first; /* the first layer of bricks to bound; over ranks, other ranks bound the layers before */
+  size_t first; /* the first layer of bricks that is bounded here; over ranks, other ranks bound the layers
+                 * before it */
 } brick_job;
 
-/* Stores the least and the greatest value of a brick. They arrive as floats, which represent the values of
- * every voxel type exactly. */
+/* Stores the least and the greatest value of a brick in the voxels' type. low and high are floats, which
+ * represent the values of every voxel type exactly. */
 static void store_bounds(const grid *grid, size_t brick, float low, float high) {
   if (grid->storage == HL_STORAGE_U8) {
     uint8_t *bounds = (uint8_t *)grid->brick_bounds + 2 * brick;
@@ -52,8 +53,8 @@ void hl_bounds_of_brick(const grid *grid, size_t brick, float bounds[2]) {
                                                   : ((const float *)grid->brick_bounds)[2 * brick + i];
 }
 
-/* Finds the bounds of a row of bricks, which begins with brick number `brick`, from the bounds of the row's
- * voxels at each x. */
+/* Finds the bounds of a row of bricks. brick: the number of the row's first brick. least, greatest: for each
+ * x, the bounds of the voxels on which the row's bricks depend. */
 static void reduce_row(const grid *grid, const float *least, const float *greatest, size_t brick) {
   for (int32_t b = 0; b < grid->brick_count[0]; b++) {
     int32_t first = clamp_index((int64_t)b * HL_BRICK_CELLS - BEFORE, grid->dimension[0]);
@@ -116,8 +117,8 @@ void hl_bricks_lay_out(grid *grid, hl_layout *layout) {
   grid->relevant_list = hl_layout_take(layout, bricks, sizeof *grid->relevant_list);
 }
 
-/* Bounds a layer of the grid's bricks by the field's coefficients. Cells of the grid are those of the
- * lattice.
+/* Bounds a layer of the grid's bricks by the coefficients of a field in bricks. The grid's cells are the
+ * cells of the field's lattice.
  */
 static void bound_layer_of_field(void *data, size_t index, int worker) {
   (void)worker;
@@ -180,8 +181,8 @@ hl_status hl_bricks_bound(hl_context *context, hl_pool *pool, const grid_functio
 
 /* ---- cells ---- */
 
-/* Sets the range of the bounds of cells, which are kept as 0 to 255 steps within it. The range holds all
- * stored values and the empty value. */
+/* Sets the range within which bounds of cells are kept, as numbers of steps from 0 to 255. The range holds
+ * all stored values and the empty value. */
 static void set_cell_range(const hl_volume *volume, grid *grid) {
   float a = (float)((volume->minimum - volume->value_offset) / volume->value_scale);
   float b = (float)((volume->maximum - volume->value_offset) / volume->value_scale);
@@ -204,7 +205,8 @@ typedef struct cell_job {
   bool failed;                 /* set where memory is short; atomic */
 } cell_job;
 
-/* Bounds one slice of voxels along x and y. slice: [2][cells y][cells x], low and high. */
+/* Finds the bounds of 2x2 cells in one slice of voxels, along x and y. slice: [2][cells y][cells x]; receives
+ * the lower and the upper bounds. */
 static void bound_slice(const cell_job *job, int32_t z, float *rows, float *padded, float *slice) {
   const grid *grid = job->grid;
   size_t width = (size_t)grid->lookup[0].count[0];
@@ -235,7 +237,7 @@ static void round_bounds(const grid *grid, const float *low, const float *high, 
   for (size_t i = 0; i < count; i++) {
     float a = floorf((low[i] - grid->cell_base) * inverse + 1e-4f),
           b = ceilf((high[i] - grid->cell_base) * inverse - 1e-4f);
-    /* a bound is NaN where the owner of the voxels has changed them */
+    /* a bound is NaN if the voxels' owner has changed voxels to NaN */
     to_low[i] = (unsigned char)(a > 255 ? 255 : a > 0 ? a : 0);
     to_high[i] = (unsigned char)(b < 0 ? 0 : b < 255 ? b : 255);
   }
@@ -249,10 +251,10 @@ static size_t greatest_layer_bytes(const grid *grid) {
   return even_bytes(grid) + UNEVEN_BYTES * (size_t)grid->brick_count[0] * (size_t)grid->brick_count[1];
 }
 
-/* The four rows of 2x2x2 cells in a row of bricks: two rows in each of two layers. */
+/* The four rows of groups of 2x2x2 cells in a row of bricks: two rows in each of two layers. */
 typedef const unsigned char *cell_rows[2 * CELL_LAYERS];
 
-/* Copies the eight cells of a brick, two along x at a time. */
+/* Copies the bounds of the eight groups of cells of a brick, of two groups along x at a time. */
 static void gather_cells(const cell_rows rows, int32_t x, int32_t count, unsigned char cells[BRICK_CELLS]) {
   int32_t next = x + 1 < count ? x + 1 : x;
   for (int row = 0; row < 2 * CELL_LAYERS; row++) {
@@ -318,7 +320,8 @@ typedef struct bound_slices {
   float *rows, *padded;    /* scratch memory of bound_slice() */
   unsigned char *bounds;   /* [CELL_LAYERS][2][plane]; bounds of a layer of bricks */
   unsigned char *packed;   /* the same bounds, packed */
-  int32_t held[CELL_TAPS]; /* the slice of the volume that each element of `slices` holds; -1 for no slice */
+  int32_t held[CELL_TAPS]; /* for each element of `slices`, the number of the volume's slice that it holds;
+                            * -1: it holds none */
 } bound_slices;
 
 /* Computes the bounds of a slice of cells. */
@@ -364,8 +367,8 @@ static size_t cells_of(const cell_lookup *lookup) {
   return (size_t)lookup->count[0] * (size_t)lookup->count[1] * (size_t)lookup->count[2];
 }
 
-/* Whether 2x2x2 cells have bounds. They have bounds where 32 bits can number them and the voxels are in
- * memory. The look-ups' counts must be set. */
+/* Whether groups of 2x2x2 cells have bounds of their own: they do if 32 bits can number the groups and the
+ * voxels are in memory. The look-ups' counts must be set. */
 static bool cells_have_bounds(const grid *grid) {
   return grid->pages == NULL && grid->bricks == NULL && cells_of(&grid->lookup[0]) < INT32_MAX;
 }
@@ -380,8 +383,8 @@ void hl_cells_lay_out(grid *grid, hl_layout *layout) {
   grid->cell_bounds = hl_layout_take(layout, (size_t)grid->brick_count[2], sizeof *grid->cell_bounds);
 }
 
-/* Lays out the scratch memory of all threads. While the bytes are only counted, job->plane is the only member
- * that is set. */
+/* Lays out the scratch memory of all threads. A pass that only counts bytes sets no member of *job but
+ * `plane`. */
 static void lay_out_slices(cell_job *job, int threads, hl_layout *layout) {
   const grid *grid = job->grid;
   size_t width = (size_t)grid->lookup[0].count[0], plane = width * (size_t)grid->lookup[0].count[1];

@@ -129,7 +129,7 @@ LANES_INLINE uint64_t bits_of_brick(const grid *grid, hl_storage storage, const 
     for (int tap = 0; tap < 4; tap++) v[tap] = lanes_load_block(&along_y[layer][0][tap], BITS_ROW);
     lanes greatest = greatest_of_cell(thirds_between(v[0], v[1]), thirds_between(v[1], v[2]),
                                       thirds_between(v[2], v[3]));
-    /* values are in units of a third along each axis */
+    /* values are multiplied by 3 for each of the three axes */
     bits |= (uint64_t)lanes_bits(greatest > lanes_set(27 * threshold)) << (16 * layer);
   }
   return bits;

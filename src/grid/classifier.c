@@ -48,7 +48,8 @@ static void integrate_colors(classifier *classifier) {
   }
 }
 
-/* Fills the table of colours, and at each entry how much the slope of the colours changes there. */
+/* Fills the table of colours. Also stores, in classifier->bent, how much the slope of the colours changes at
+ * each entry. */
 static void fill_colors(const hl_transfer_function *function, double low, double high,
                         classifier *classifier) {
   double last[3][3]; /* the colours of entries n, n - 1 and n - 2; entry n is stored at n % 3 */
@@ -67,8 +68,9 @@ static void fill_colors(const hl_transfer_function *function, double low, double
          sizeof classifier->color[0]);
 }
 
-/* Sums the changes of slope at entries that are visible or beside visible ones. Where no way can meet changes
- * that add up to enough to count, no sums are kept. */
+/* Turns the changes of slope into sums from entry 0, over entries that are visible or beside visible ones. If
+ * the changes are so small that no way through the table can have CLASSIFIER_LEAST_BENDING, no sums are
+ * kept. */
 static void sum_bends(classifier *classifier) {
   double sum = 0;
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES + 1; entry++) {
@@ -80,11 +82,13 @@ static void sum_bends(classifier *classifier) {
   if (sum * CLASSIFIER_ENTRIES <= CLASSIFIER_LEAST_BENDING) classifier->bent = NULL;
 }
 
-/* A second surface begins where extinction rises by the factor SECOND_RISE, after it has not risen over the
- * fraction LEVEL_PART of the values since the first surface's foot. */
+/* A second surface begins where extinction rises by the factor SECOND_RISE after a level stretch. On a level
+ * stretch extinction does not rise; the stretch is at least the fraction LEVEL_PART of the way from the first
+ * surface's foot. */
 static const double SECOND_RISE = 1.5, LEVEL_PART = 0.05;
 
-/* Finds the surfaces of values on one side of the empty value, from there outwards. step: 1 or -1. */
+/* Finds where the surfaces of values begin, for values on one side of the empty value: from entry `first`
+ * away from the empty value. step: 1 or -1. */
 static void fill_side(classifier *classifier, int first, int step) {
   const float(*sums)[4] = (const float(*)[4])classifier->sums;
   float foot = classifier->offset, level = 0;
@@ -108,8 +112,8 @@ static void fill_side(classifier *classifier, int first, int step) {
   }
 }
 
-/* Fills the table of surfaces. Outside of matter, values are lower for values above the empty one, and higher
- * for values below it. */
+/* Fills the table of surfaces. For values above the empty value, the outside of matter has lower values; for
+ * values below the empty value, it has higher values. */
 static void fill_outside(classifier *classifier) {
   const int empty = (int)ceilf(classifier->offset);
   fill_side(classifier, empty, 1);
@@ -253,7 +257,8 @@ bool hl_classifier_span_visible(const classifier *classifier, const grid *grid, 
   float a = (low - grid->empty) * classifier->scale + classifier->offset;
   float b = (high - grid->empty) * classifier->scale + classifier->offset;
   float least = fminf(a, b), greatest = fmaxf(a, b);
-  /* a voxel that its owner has changed may be NaN, which counts as an end of the range */
+  /* a voxel that its owner has changed may be NaN; then the bound is taken to be an end of the tables'
+   * range */
   int32_t first = !(least > 0) ? 0 : least >= CLASSIFIER_ENTRIES ? CLASSIFIER_ENTRIES : (int32_t)least;
   int32_t last = !(greatest > 0)                  ? 1
                  : greatest >= CLASSIFIER_ENTRIES ? CLASSIFIER_ENTRIES + 1

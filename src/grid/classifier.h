@@ -15,37 +15,37 @@
 
 enum { CLASSIFIER_ENTRIES = 4096, STEEPNESS_ENTRIES = 4096 };
 
-/* The least bending that is worth a mean of colours. A way's bending is the change of a colour's slope on the
- * way through the table, times the way's entries. The mean of a line with one bend of slope s over a way w
- * differs from the line's value at the mean by at most s w / 4 (derived: half the weight at either end, the
- * bend in the middle): by 1/1024. */
+/* The least bending of a way through the table for which the colour is a mean over the way. A way's bending
+ * is the change of a colour's slope along it, times the way's length in entries. Where the bending is less,
+ * the colour at the mean entry is taken. It differs from the mean by at most a quarter of the bending, 1/1024
+ * (derived: the difference is greatest for one bend in the middle and half of the weight at either end). */
 #define CLASSIFIER_LEAST_BENDING (1.0f / 256)
 
 typedef struct classifier {
   float scale, offset; /* table coordinate = density * scale + offset, clamped to [0, CLASSIFIER_ENTRIES] */
   /* Tables of CLASSIFIER_ENTRIES + 2 entries in one block, which sums owns. */
-  float (*sums)[4];  /* extinction per world unit; its integral over entries, from entry 0; the integral of
-                      * extinction times the entry's number; the first integral up to the coordinate at
-                      * which the surface begins to which values from this entry to the next belong (see
-                      * outside) */
+  float (*sums)[4];  /* [0]: extinction per world unit. [1]: its integral over entries, from entry 0. [2]: the
+                      * integral of extinction times the entry's number. [3]: the integral [1] at the
+                      * coordinate `outside` of this entry */
   float (*color)[4]; /* linear RGB; 0 */
-  float (*shown)[4]; /* integrals over entries, from entry 0: of extinction times linear RGB, and of
-                      * extinction */
-  /* For each entry, the sum of the changes of the colour's slope at visible entries up to this one; a change
-   * is the greatest channel's change per entry. Null if the slope changes little everywhere. */
+  float (*shown)[4]; /* integrals over entries, from entry 0: [0] to [2] of extinction times linear RGB, [3]
+                      * of extinction */
+  /* For each entry, the sum of the changes of the colour's slope at entries up to this one that are visible
+   * or beside visible ones. A slope is the change of a channel from entry to entry; the channel whose slope
+   * changes most counts. Null if the slope changes little everywhere. */
   float *bent;
   int32_t *next_visible; /* for each entry, the first entry from there on with extinction > 0 */
-  /* [entries]; for values from an entry to the next, the table coordinate at which their surface begins: on
-   * the way from these values to the empty value, the nearest value without extinction, or with the least
-   * extinction before a second rise; the empty value's coordinate if there is no such value */
+  /* For values from each entry to the next one, the table coordinate at which their surface begins. On the
+   * way from these values to the empty value it is the nearest value that has no extinction, or the least
+   * extinction before a second rise; or the empty value if there is no such value. */
   float *outside;
   bool several_surfaces; /* whether the surfaces of visible values begin at more than one coordinate */
   float only_beginning;  /* where several_surfaces is false: the integral of extinction up to the
                           * coordinate at which all surfaces begin */
   float first_visible, last_visible; /* table coordinates outside of which nothing has extinction */
-  /* Gradient opacity: the factor of extinction by the gradient's length, [STEEPNESS_ENTRIES + 2], in the same
-   * block. Null if the factor is 1 everywhere. Table coordinate = length * steepness_scale, clamped to [0,
-   * STEEPNESS_ENTRIES]; the length is in stored units per frame unit. */
+  /* [STEEPNESS_ENTRIES + 2], in the same block; gradient opacity: for each length of the gradient, the factor
+   * that multiplies extinction. Null if the factor is 1 everywhere. Table coordinate = length *
+   * steepness_scale, clamped to [0, STEEPNESS_ENTRIES]; the length is in stored units per frame unit. */
   float *steepness;
   float steepness_scale;
   mask_lattice mask; /* the mask of the frame's scene */
@@ -59,7 +59,7 @@ static inline bool hl_classifier_is_weighed(const classifier *classifier) {
   return classifier->steepness != NULL || classifier->mask.factors != NULL || classifier->plane.sums != NULL;
 }
 
-/* Whether the factor depends on the gradient. */
+/* Whether the factor that multiplies extinction depends on the gradient. */
 static inline bool hl_classifier_needs_gradient(const classifier *classifier) {
   return classifier->steepness != NULL ||
          (classifier->plane.sums != NULL && classifier->plane.axis == HL_SECOND_GRADIENT);
@@ -70,7 +70,7 @@ static inline bool hl_classifier_needs_gradient(const classifier *classifier) {
 hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volume,
                                const hl_scene_volume *second, const grid *grid, classifier *classifier,
                                hl_error *error);
-/* Takes the arrays of a classifier; the first of them begins its block. */
+/* Takes the memory of a classifier's arrays from a layout. They are one block, which begins with `sums`. */
 void hl_classifier_lay_out(const hl_transfer_function *function, classifier *classifier, hl_layout *layout);
 void hl_classifier_release(hl_context *context, classifier *classifier);
 

@@ -37,7 +37,7 @@ static const float CLOSE_ENTRIES = 4;
 typedef struct way_sums {
   lanes extinction; /* the mean, (I(b) - I(a)) / (b - a) */
   lanes integral;   /* I(b) - I(a), 0 where the ends are close */
-  lanes moment;     /* the integral of extinction * entry, 0 where the ends are close */
+  lanes moment;     /* the integral of extinction times the entry's number */
 } way_sums;
 
 /* The integrals of extinction over entries, from entry 0 to the ends of a way. */
@@ -76,22 +76,25 @@ LANES_INLINE lanes integral_to(const classifier *classifier, lanes x) {
   return values[1];
 }
 
-/* Light may come from the matter of one surface into another surface, which begins at the value `foot`. A
- * blurred edge passes through the first surface's values, too; then both are one surface, and the light that
- * the first surface has taken lights the second again. A layer that is thicker than a straight ramp of values
- * by these factors is a surface of its own. */
+/* Light may come from the matter of one surface into another surface, which begins at the value `foot`. In a
+ * blurred edge values rise through those of the first surface to those of the second. There the two are one
+ * surface, and the light that the first surface has absorbed lights the second one, too. A first surface
+ * whose optical depth on the light's way is up to SAME_RAMP times that of a straight ramp of values is such
+ * an edge; from OTHER_LAYER times on it is a layer of its own, and the light that it has absorbed does not
+ * count. */
 static const float SAME_RAMP = 1.2f, OTHER_LAYER = 1.6f;
 
 typedef struct second_surface {
-  lanes kept;  /* the part, 0 to 1, of the light taken by the first surface that counts as taken by the
+  lanes kept;  /* the fraction of the light absorbed by the first surface that counts as absorbed by the
                 * second */
   lanes ahead; /* the optical depth on the light's way from `start` to the second surface's foot */
 } second_surface;
 
-/* Finds a second surface on the light's way. start: the value at the place where the light is known, and
- * also `outside`, the light at the first surface's outside. first: the value where the first surface
- * begins. rise: values per unit of the light's way, above 0. Derived: a straight ramp from the value a to
- * the value b takes the optical depth |P(b) - P(a)| / rise, where P is the integral of extinction. */
+/* Finds how a first surface on the light's way affects a second one. first, foot: the values at which the
+ * first and the second surface begin. start: the value at the place where the light is known. light, outside:
+ * the light there, and the light at the outside of the first surface. rise: the change of values per unit of
+ * the light's way, above 0. Derived: a straight ramp from the value a to the value b has the optical depth
+ * |P(b) - P(a)| / rise, where P is the integral of extinction. */
 LANES_INLINE second_surface kept_at_foot(const classifier *classifier, lanes first, lanes start, lanes foot,
                                          lanes rise, lanes light, lanes outside) {
   lanes at_foot = integral_to(classifier, foot), ramp = lanes_abs(at_foot - integral_to(classifier, first)),

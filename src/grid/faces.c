@@ -40,7 +40,8 @@ static float value_at(const face_job *job, const field_taps *column, const field
 /* Whether the brick of a point may be visible. The point has a voxel's coordinates along the face. */
 static bool may_be_visible(const face_job *job, int32_t row, int32_t column) {
   int32_t at[3];
-  /* the lower voxel of the cell; a face on the end of the last cell belongs to that cell */
+  /* the lower voxel of the cell that holds the point; a face at the end of the last cell belongs to the last
+   * cell */
   at[job->axis] = job->across.first + 1 < job->last_cell ? job->across.first + 1 : job->last_cell;
   at[row_axis(job->axis)] = row;
   at[column_axis(job->axis)] = column;

@@ -6,8 +6,8 @@
 #include "core/pool.h"
 #include "grid/classifier.h"
 
-/* Number of voxels behind a face from which on matter is lit as usual. Matter nearer to the face is lit by
- * the face in part. */
+/* The distance behind a face, in voxels, from which on matter is lit as if there were no face. Matter nearer
+ * to the face is partly lit as a surface at the face. */
 #define FACE_VOXELS 2.0f
 
 /* Finds grid->face_shows; called after hl_grid_mark_relevant(). Looks at one point for each voxel of the

@@ -28,10 +28,10 @@ enum {
   GRID_MARGIN = 4
 };
 
-/* Tells which small boxes of the grid show something. A unit is 2x2x2 cells in one look-up, and a brick in
- * the other. Eight boxes begin at each unit: they are two or three units long along each axis. A unit's byte
- * has a bit for each of them: bit i + 2 j + 4 k tells whether the box of 2 + i by 2 + j by 2 + k units shows
- * something. */
+/* Tells which small boxes of the grid show something. There are two look-ups: the unit of one is a group of
+ * 2x2x2 cells, the unit of the other a brick. Eight boxes begin at each unit; each is two or three units long
+ * along each axis. A unit has a byte with a bit for each of the eight boxes: bit i + 2 j + 4 k tells whether
+ * the box of 2 + i by 2 + j by 2 + k units shows something. */
 enum { LOOKUP_SIZES = 2, LOOKUP_REACH = 3 /* units along an axis that one look-up covers */ };
 typedef struct cell_lookup {
   int32_t count[3];
@@ -51,16 +51,16 @@ typedef struct grid {
    * "voxels" are the field's coefficients of level 0. A field in bricks has, like pages, no look-ups of 2x2x2
    * cells: only bricks tell where something is visible */
   const hl_bricks *bricks;
-  hl_bricks *finite_bricks; /* in the grid's memory; a copy with the empty value where there are no data; null
-                             * if all is finite */
+  hl_bricks *finite_bricks; /* in the grid's memory; a copy of the field with the empty value where it has no
+                             * data; null if the field has data everywhere */
   double shift[3];          /* grid coordinate = voxel index + shift; 0 without bricks */
   hl_pages *value_pages; /* owned (value_pages.h); null if sampling needs no other values than the voxels */
   size_t row_bytes, slice_bytes; /* bytes of the voxels from row to row, and from slice to slice */
   /* A second copy of u8 voxels, in columns eight voxels wide. Eight rows of a column are 64 consecutive
    * bytes, so that a window of 8x8 voxels comes from two columns by two loads (of 512 bits), and neighbouring
-   * windows come from the same lines of the cache whichever way the sheets lie. Values are less 128, as
-   * signed numbers. [column][dimension[2]][dimension[1]][GRID_COLUMN]; null where nothing reads the
-   * columns. */
+   * windows come from the same lines of the cache whichever way the sheets lie. 128 is subtracted from the
+   * values, which are signed numbers here. [column][dimension[2]][dimension[1]][GRID_COLUMN]; null where
+   * nothing reads the columns. */
   unsigned char *columns;
   size_t column_slice_bytes, column_bytes; /* bytes from slice to slice, and from column to column */
   hl_storage storage;
@@ -69,18 +69,19 @@ typedef struct grid {
   double value_scale, value_offset; /* data value = value_scale * stored + value_offset */
   affine3 index_to_frame, frame_to_index;
   double box_low[3], box_high[3]; /* index space: the box in which the volume exists */
-  /* The faces of the box that cut something visible. Faces that cut nothing visible are put far outside. In
-   * a frame, so are faces beyond which another volume goes on. */
+  /* The places of the box's faces along each axis, in index space. A face that cuts nothing visible is put
+   * far outside. In a frame, a face beyond which another volume goes on is put far outside, too. */
   float face_low[3], face_high[3];
   bool face_shows[3][2]; /* [axis][low, high]: whether something is visible on the face itself */
   int32_t brick_count[3];
-  void *brick_bounds;      /* [bricks z][y][x][2]; the least and greatest stored value, of the voxels' type,
-                            * of the voxels on which the brick's cells and the cells around it depend */
+  void *brick_bounds;      /* [bricks z][y][x][2], of the voxels' type; the least and the greatest stored
+                            * value among the voxels on which the brick's cells and the cells around the brick
+                            * depend */
   unsigned char *relevant; /* [bricks z][y][x]; 1 where the transfer function may show something */
   cell_lookup lookup[LOOKUP_SIZES]; /* look-ups of groups of 2x2x2 cells, and of bricks */
-  /* [bricks z], each owned, of the size that packing finds: the packed bounds of every group of 2x2x2 cells
-   * of a layer of bricks (bounds.h). Stored value = cell_base + cell_step * bound. Null where 32 bits cannot
-   * number the cells */
+  /* [bricks z]; for each layer of bricks, the packed bounds of all its groups of 2x2x2 cells (bounds.h). Each
+   * layer is owned, and has the size that packing finds. Stored value = cell_base + cell_step * bound. Null
+   * where 32 bits cannot number the cells */
   unsigned char **cell_bounds;
   float cell_base, cell_step; /* stored units */
   uint64_t *cell_bits;        /* [bricks z][y][x]; bit x + 4 y + 16 z tells whether the cell (x, y, z) of the
@@ -92,13 +93,13 @@ typedef struct grid {
   int32_t content_low[3],
       content_high[3]; /* the least and greatest coordinates of relevant bricks and of bricks that only a mask
                         * hides. A frame's geometry follows from them, so that no mask moves its sheets */
-  bool cut; /* whether some relevant brick reaches the box's faces, so that rays must know where they cross
-             * them */
+  bool cut; /* whether relevant bricks reach the box's faces, or there are cuts, so that rays must know where
+             * they cross faces */
   const cut_shape *cuts; /* borrowed; [cut_count]; the shapes that are removed from the box */
   size_t cut_count;
   bool cut_casts_shadow; /* whether the matter that cuts remove still casts shadows */
-  float *finite_voxels;  /* a copy of the voxels with non-finite ones replaced by the empty value; for an
-                          * interpolating kernel its coefficients (prefilter.h). May be null */
+  float *finite_voxels;  /* a copy of the voxels in which the empty value replaces non-finite ones; or, for an
+                          * interpolating kernel, the kernel's coefficients (prefilter.h). May be null */
   uint64_t kept_voxels;  /* number of the relevant bricks' voxels: 64 for each brick, fewer for bricks at
                           * the borders */
 } grid;
@@ -117,8 +118,8 @@ enum { CELL_TAPS = 5 /* voxels along an axis on which two neighbouring cells dep
  * high: count / 2 + 1. smooth: whether the kernel is the B-spline. */
 typedef void bound_along_function(hl_storage storage, const void *row, int32_t count, bool smooth,
                                   float *padded, float *low, float *high);
-/* Finds the bounds of pairs of cells along y or z, like bound_along_function, elementwise across rows of
- * bounds. */
+/* Finds the bounds of pairs of cells along y or z as bound_along_function does along x: elementwise, from
+ * CELL_TAPS rows of bounds. */
 typedef void bound_across_function(const float *const low_rows[CELL_TAPS],
                                    const float *const high_rows[CELL_TAPS], size_t count, bool smooth,
                                    float *low, float *high);

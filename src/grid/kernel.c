@@ -13,7 +13,8 @@ static const kernel bspline = {
     .degree = HL_BSPLINE_DEGREE,
 };
 
-/* The cubic B-spline, applied to coefficients with which it passes through the voxels' values. */
+/* The interpolating kernel: the cubic B-spline over coefficients for which the sum passes through the voxels'
+ * values. */
 static const kernel interpolating = {
     .name = "interpolating",
     .support = 2,

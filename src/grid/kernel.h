@@ -17,7 +17,7 @@ enum { HL_KERNEL_DEGREE = 5, HL_BSPLINE_DEGREE = 3 };
 typedef struct kernel {
   const char *name;
   float support;                     /* radius in voxels: 1 or 2 */
-  double variance;                   /* variance along an axis, voxels^2: the blur */
+  double variance;                   /* the kernel's variance along an axis, in voxels^2: how much it blurs */
   float inner[HL_KERNEL_DEGREE + 1]; /* |d| in [0,1]: coefficients of a^0 .. a^5, a = |d| */
   float outer[HL_KERNEL_DEGREE + 1]; /* |d| in [1,2]: coefficients, a = |d| - 1 */
   int degree;                        /* the highest power with a coefficient other than zero */

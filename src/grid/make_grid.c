@@ -101,7 +101,8 @@ static void copy_slice(void *data, size_t index, int worker) {
 
 /* ---- the grid ---- */
 
-/* Whether sampling needs other values than the voxels: finite ones or coefficients. */
+/* Whether sampling needs other values than the stored ones: values in place of non-finite ones, or
+ * coefficients. */
 static bool needs_other_values(const hl_volume *volume, const kernel *kernel) {
   return volume->bricks == NULL && (volume->nonfinite_count > 0 || kernel->interpolates);
 }
@@ -167,7 +168,8 @@ static hl_status check_bricks(const hl_volume *volume, hl_error *error) {
       volume->dimension[0], volume->dimension[1], volume->dimension[2], bricks, UINT32_MAX);
 }
 
-/* Gives a grid with pages the pages of other values, if it needs other values. */
+/* Gives a grid with pages other pages, with the values that sampling needs, if these are not the stored
+ * values. */
 static hl_status make_value_pages(hl_pool *pool, const grid_source *source, grid *grid, hl_error *error) {
   const hl_volume *volume = source->volume->volume;
   if (grid->pages == NULL || !needs_other_values(volume, source->kernel)) return HL_OK;

@@ -12,9 +12,9 @@ typedef struct mask_lattice {
   const unsigned char *colors; /* [k][j][i][4] (label/mask.h); null if the mask has no colours */
   const signed char *slopes;   /* [k][j][i][4] (label/mask.h) */
   const uint32_t (*bricks)[2]; /* (label/mask.h) */
-  int32_t brick_step[3];       /* distance from brick to brick along i, j, k; in bricks */
+  int32_t brick_step[3];       /* distance in `bricks` from a brick to the next one along i, j, k */
   int32_t last[3];             /* the greatest index along i, j, k */
-  int32_t step[3];             /* distance from point to point along i, j, k; in points */
+  int32_t step[3];             /* distance in `factors` from a point to the next one along i, j, k */
   float to_index[3][4];        /* maps frame space to index space */
   float rest;                  /* the factor outside the lattice */
 } mask_lattice;
@@ -24,7 +24,8 @@ void hl_mask_lattice_set_up(mask_lattice *lattice, const hl_scene_volume *volume
 
 /* The points around a position, and the position's place between them. */
 typedef struct mask_cell {
-  int32_t near[3], far[3]; /* numbers of points, counted from the first, along each axis */
+  int32_t near[3], far[3]; /* for each axis, the offsets in `factors` of the points before and after the
+                            * position */
   float part[3];
 } mask_cell;
 

@@ -20,7 +20,8 @@ void hl_plane_table_lay_out(const hl_transfer_function *function, plane_table *t
 
 /* ---- the part of the plane that the table covers ---- */
 
-/* The greatest possible length of a gradient: along each axis the range of the values per voxel edge. */
+/* The greatest possible length of a gradient: that of a gradient whose component along each axis is the range
+ * of values per voxel edge. */
 static double longest_gradient(const hl_scene_volume *volume, double range) {
   mat3 placed = hl_scene_volume_index_to_world(volume).linear;
   double sum = 0;
@@ -61,7 +62,8 @@ static table_axis axis_of(const plane_box *bounds, const plane_box *reach, int a
   return (table_axis){low - 2 * step, step, reach->low[axis], reach->high[axis], -INFINITY};
 }
 
-/* The part of an axis for which a point of the table stands. */
+/* Finds the part of an axis for which point n of the table stands: the values that are nearer to it than to
+ * other points, as far as the data reach. */
 static void part_of_axis(const table_axis *axis, int n, double *low, double *high) {
   double middle = axis->start + n * axis->step;
   *low = fmin(fmax(middle - axis->step / 2, axis->low), axis->high);
@@ -136,7 +138,8 @@ static void find_greatest(const plane_table *table, int entries, float (*greates
 /* Tables are read up to this many columns beyond a position. */
 enum { BEYOND = 3 };
 
-/* The column before which look-ups do not depend on the second number: all rows hold the same numbers there.
+/* The column before which look-ups do not depend on the second number, because all rows hold the same numbers
+ * there.
  */
 static float even_columns(const plane_table *table) {
   int even = PLANE_STRIDE;

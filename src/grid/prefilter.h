@@ -12,9 +12,9 @@
 #include "grid/grid.h"
 #include "grid/kernel.h"
 
-/* The greatest distance of a value from 0. Coefficients are up to 27 times as far from 0: 3 times along each
- * axis, by the sum of the filter's weights (derived). Greater values would leave the range of floats, and are
- * replaced by this one. */
+/* The greatest magnitude of a value that sampling uses. Coefficients have up to 27 times the values'
+ * magnitude: 3 times for each axis, by the sum of the filter's weights (derived). Values of greater magnitude
+ * would make coefficients leave the range of floats; they are replaced by this one, with their sign. */
 static inline float hl_greatest_value(const kernel *kernel) {
   return kernel->interpolates ? FLT_MAX / 64 : FLT_MAX;
 }
@@ -32,10 +32,11 @@ void hl_prefilter(hl_pool *pool, grid *grid);
 /* Filters a slice along x and y, in place. slice: [height][width]. */
 void hl_prefilter_slice(float *slice, size_t width, size_t height);
 
-/* Filter along an axis of `count` voxels, 2 or more: first forward, from each voxel to the next; then back,
- * from each voxel but the last to the one before. here, before, after: [width]; neighbouring lines' values at
- * voxel `at`, and at the voxels before and after it, which must have been filtered already. before: null for
- * the first voxel. */
+/* Both functions filter `width` neighbouring lines along an axis of `count` voxels, 2 or more. Call the first
+ * function for each voxel of the lines, from the first to the last; then the second one for each voxel but
+ * the last, from the last but one to the first. here: [width]; the lines' values at voxel `at`. before,
+ * after: [width]; the values at the voxel before or after it, which must have been filtered already. before:
+ * null for the first voxel. */
 void hl_prefilter_forward(float *here, const float *before, size_t width, size_t at, size_t count);
 void hl_prefilter_back(float *here, const float *after, size_t width, size_t at, size_t count);
 

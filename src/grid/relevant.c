@@ -38,7 +38,7 @@ void hl_content_bounds(const grid *grid, double margin, double low[3], double hi
   box_of_bricks(grid, grid->content_low, grid->content_high, margin, low, high);
 }
 
-/* Marks bricks that only a mask keeps from being relevant. */
+/* The mark, in `relevant`, of a brick that would be relevant if no mask hid it. */
 enum { HIDDEN = 2 };
 
 typedef struct brick_job {
@@ -55,8 +55,8 @@ static bool overlaps_box(const grid *grid, const int32_t b[3]) {
   return true;
 }
 
-/* The distance around a brick within which its voxels are needed for matter that cuts or a mask leave beside
- * it: the kernel's radius and a cell. */
+/* The distance around a brick, in voxels, within which matter depends on the brick's voxels: the kernel's
+ * radius and a cell. Where cuts or a mask leave such matter, the brick is needed. */
 enum { BESIDE_CUT = 3 };
 
 /* Whether brick b and its surroundings are cut away for the eye and for lights. */
@@ -137,8 +137,8 @@ static bool has_visible_cell(const grid *grid, size_t brick) {
 
 typedef struct cell_job {
   grid *grid;
-  uint16_t least_high[256]; /* for each lower bound, the least upper bound with which some value is visible;
-                             * 256 if there is none */
+  uint16_t least_high[256]; /* for each lower bound, the least upper bound for which some value between the
+                             * two bounds is visible; 256 if there is no such bound */
 } cell_job;
 
 static void find_least_high(const classifier *classifier, const grid *grid, uint16_t least_high[256]) {
@@ -223,9 +223,9 @@ static void look_up_row(unsigned char *cells, size_t width) {
     cells[x] = (unsigned char)-(cells[x] | cells[width - 1]);
 }
 
-/* Widens look-ups along y or z, in place, for `width` cells side by side from the first one on. step:
- * distance from a cell to the next along the axis. three: the bits of boxes that are three units long along
- * the axis. */
+/* Makes the boxes of look-ups two or three units long along y or z, in place, for `width` neighbouring units
+ * along x. cells: the first unit's byte. step: distance from a unit to the next along y or z. three: the bits
+ * of boxes that are three units long along this axis. */
 static void join_axis(unsigned char *cells, size_t step, int32_t count, size_t width, unsigned char three) {
   for (int32_t i = 0; i + 2 < count; i++) {
     unsigned char *cell = cells + (size_t)i * step;
@@ -266,10 +266,10 @@ static void fill_lookups(grid *grid, hl_pool *pool) {
 
 /* ---- a bit for each cell ---- */
 
-/* The most cells that get bits. For larger volumes, an eighth of a byte per voxel would be much beside their
- * other memory. */
+/* The greatest number of bytes that cells' bits take; larger volumes have no bits. For them an eighth of a
+ * byte per voxel would be much, compared with their other memory. */
 static const uint64_t GREATEST_BYTES = 8 << 20;
-/* The least fraction of the visible bricks' cells that the bits must exclude to be worth reading. */
+/* Bits are read only if they tell that at least this fraction of the visible bricks' cells shows nothing. */
 static const double LEAST_LEFT_OUT = 1.0 / 8;
 
 void hl_cell_bits_lay_out(grid *grid, hl_layout *layout) {
@@ -282,7 +282,8 @@ typedef struct bits_job {
   grid *grid;
   brick_bits_function *brick_bits;
   float sign, threshold;     /* a value is visible where sign * stored value > threshold */
-  uint64_t bricks, set_bits; /* number of visible bricks, and number of their cells with a bit; atomic */
+  uint64_t bricks, set_bits; /* number of visible bricks, and number of their cells that may show something;
+                              * atomic */
 } bits_job;
 
 /* Finds the comparison that tells whether a voxel is visible: its value times a sign lies above a threshold.
@@ -298,15 +299,15 @@ static bool find_threshold(const grid *grid, const classifier *classifier, bits_
                  (double)grid->empty;
   job->sign = scale > 0 ? 1 : -1;
   job->threshold = (float)(value * (double)job->sign - 8e-6 * greatest - 2e-3 / fabs(scale));
-  /* sums of zeros are zero without an error */
+  /* a sum of zeros is exactly zero, so a threshold below zero is not needed */
   float at_zero = -grid->empty * classifier->scale + classifier->offset;
   if (scale > 0 && grid->cell_base >= 0 && at_zero <= classifier->first_visible)
     job->threshold = fmaxf(job->threshold, 0);
   return isfinite(job->threshold);
 }
 
-/* Finds the bits of all bricks, relevant or not. Values that are not visible themselves may lie on a ray's
- * way from one sheet to a visible value on the next. */
+/* Finds the bits of a brick, which need not be relevant. Bricks that are not relevant need bits, too, because
+ * a ray may come from their values on one sheet to a visible value on the next. */
 static uint64_t find_bits(const bits_job *job, size_t at, const int32_t brick[3]) {
   const grid *grid = job->grid;
   float bounds[2];
@@ -346,8 +347,8 @@ static void find_cell_bits(grid *grid, const classifier *classifier, brick_bits_
 
 /* ---- all steps together ---- */
 
-/* Finds which faces of the box cut something visible: the faces that relevant bricks, or a slab's neighbours
- * of them, reach. */
+/* Finds which faces of the box cut something visible: the faces that the box around all relevant bricks
+ * reaches, or from which it is less than a voxel away. */
 static void find_faces(grid *grid, bool any_relevant) {
   grid->cut = any_relevant && grid->cut_count > 0;
   for (int axis = 0; axis < 3; axis++) {
@@ -361,8 +362,8 @@ static void find_faces(grid *grid, bool any_relevant) {
   }
 }
 
-/* Lists the relevant bricks, bounds their coordinates, counts their voxels and finds the faces that they
- * reach. */
+/* Lists the relevant bricks that have a visible cell. For all relevant bricks, finds the least and greatest
+ * coordinates, the number of voxels, and the faces of the box that they reach. */
 static void list_relevant(grid *grid) {
   grid->kept_voxels = 0;
   grid->relevant_count = 0;

@@ -1,11 +1,12 @@
 /* grid/relevant.h - which bricks and cells the transfer function shows, found once for each transfer
  * function.
  *
- * A voxel can be left out only if every point that it contributes to is transparent, whichever other voxels
- * are left out. As kernels are non-negative and sum to 1, a point's density lies between the least and the
- * greatest of its 64 voxels; a sum over some of the 64 lies between these two and the empty value. So a brick
- * is relevant if any value between its bounds, extended to the empty value, is visible (derived). The bounds
- * include one more cell on each side, because slabs across the brick's faces read these neighbours. */
+ * A voxel can be left out only if every point to which it contributes is transparent, whichever other voxels
+ * are left out. Kernels are non-negative and sum to 1. So a point's density lies between the least and the
+ * greatest of its 64 voxels. Where some of the 64 are left out, the sum lies in this range extended to the
+ * empty value. So a brick is relevant if any value between its bounds, extended to the empty value, is
+ * visible (derived). The bounds include one more cell on each side, because slabs across the brick's faces
+ * read these neighbours. */
 #ifndef HL_GRID_RELEVANT_H
 #define HL_GRID_RELEVANT_H
 

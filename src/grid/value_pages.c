@@ -25,8 +25,8 @@ typedef struct value_job {
   size_t width, height, slice; /* voxels of a row; rows of a slice; voxels of a slice */
   size_t first;                /* number of the slice in slices[0] */
   float *slices;               /* [slices loaded at once][slice] */
-  float *beside;               /* [slice]; the slice before the loaded ones, or on the way back the slice
-                                * after them */
+  float *beside;               /* [slice]; on the way forward the slice before the loaded ones; on the way
+                                * back the slice after them */
   bool any_beside;             /* whether `beside` holds a slice */
   unsigned char *rows;         /* [threads][row_bytes] */
   size_t row_bytes;
@@ -85,7 +85,8 @@ static void run_along_z(value_job *job, size_t count, bool forward) {
 
 /* ---- a scratch file ---- */
 
-/* Reads or writes slices between the two runs; slices lie one after another in a file. */
+/* Writes slices to a file after the forward run, or reads them before the run back. at: the offset of the
+ * first slice in the file, in bytes. */
 static bool move_slices(int file, bool write, float *slices, size_t bytes, uint64_t at) {
   unsigned char *place = (unsigned char *)slices;
   while (bytes > 0) {
@@ -102,7 +103,8 @@ static hl_status fail_cancelled(const value_job *job, hl_error *error) {
              : HL_OK;
 }
 
-/* Loads all slices, `most` at once. Stores them in pages, or, filtered forward, in a file. */
+/* Loads all slices, `most` at once. Where `file` is below 0, stores them in pages; else filters them forward
+ * along z and stores them in the file. */
 static hl_status run_forward(value_job *job, size_t most, int file, hl_pages *pages, hl_error *error) {
   const size_t depth = job->volume->dimension[2];
   hl_status status = HL_OK;
@@ -171,7 +173,8 @@ static hl_status make_file(value_job *job, hl_pages **made, hl_error *error) {
                          ? hl_pages_create(context, folder, &grid, volume->pages->shift, made, error)
                          : hl_fail_memory(error, most * job->slice * sizeof(float), subject);
   if (status == HL_OK) {
-    hl_glimpse_release((*made)->glimpse); /* automatic choices look at the volume's own glimpse */
+    hl_glimpse_release((*made)->glimpse); /* this glimpse is not needed: automatic choices are made from the
+                                           * volume's own */
     (*made)->glimpse = NULL;
   }
   bool along_z = job->filters && volume->dimension[2] > 1;
@@ -192,8 +195,8 @@ static void replace_own(const value_job *job, const hl_own_voxels *own, hl_own_v
   for (size_t n = 0; n < count; n++) values[n] = hl_grid_value(values[n], job->greatest, job->empty);
 }
 
-/* Filters this rank's slices to coefficients. Along z, rank after rank filters, and each rank sends its last
- * slice to the next. */
+/* Turns this rank's slices into coefficients. Along z the ranks filter one after the other; each sends the
+ * slice at its end to the next rank, and on the way back the slice at its begin to the rank before. */
 static void filter_own(value_job *job, hl_ranks *ranks, hl_own_voxels *made) {
   const size_t count = made->box.count[2], bytes = job->slice * sizeof(float);
   job->slices = (float *)(void *)made->slices;
