@@ -218,9 +218,8 @@ LANES_INLINE void lanes_in_brick(const hl_bricks *bricks, const lanes_int cell[3
   found->bits = lanes_bits(same);
 }
 
-/* Makes *view, a grid of a brick's coefficients, for sum_in_memory(). Sets only the members that
- * sum_in_memory() reads.
- */
+/* Makes *view, a grid of a brick's coefficients, for sum_in_memory(). Sets only the members that this
+ * function reads. */
 LANES_INLINE void grid_of_brick(const hl_bricks *bricks, const hl_brick_entry *entry, struct grid *view) {
   size_t width = ((size_t)1 << bricks->shift) + BRICK_MARGIN;
   view->voxels = bricks->pool + (size_t)entry->slot * width * width * width;

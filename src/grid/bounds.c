@@ -117,9 +117,8 @@ void hl_bricks_lay_out(grid *grid, hl_layout *layout) {
   grid->relevant_list = hl_layout_take(layout, bricks, sizeof *grid->relevant_list);
 }
 
-/* Bounds a layer of the grid's bricks by the coefficients of a field in bricks. The grid's cells are the
- * cells of the field's lattice.
- */
+/* Bounds a layer of the grid's bricks by the coefficients of a field in bricks. Its cells are the cells of
+ * the field's lattice. */
 static void bound_layer_of_field(void *data, size_t index, int worker) {
   (void)worker;
   const grid *grid = ((const brick_job *)data)->grid;

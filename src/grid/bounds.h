@@ -5,9 +5,8 @@
  * tightly: between four neighbouring voxels a cubic B-spline lies within its Bezier points. For the cell
  * between the voxels b and c of four voxels a b c d along an axis, these points are (a + 4 b + c) / 6, (2 b +
  * c) / 3, (b + 2 c) / 3 and (b + 4 c + d) / 6. All weights are non-negative, so bounds found along one axis
- * can serve as input along the next. In noise
- *    around a threshold, these bounds mark half as many cells as the least and greatest voxel would. The
- *    other kernels use the least and greatest voxel. */
+ * can serve as input along the next. In noise around a threshold, these bounds mark half as many cells as the
+ * least and greatest voxel would. The other kernels use the least and greatest voxel. */
 #ifndef HL_GRID_BOUNDS_H
 #define HL_GRID_BOUNDS_H
 

@@ -138,9 +138,8 @@ static void find_greatest(const plane_table *table, int entries, float (*greates
 /* Tables are read up to this many columns beyond a position. */
 enum { BEYOND = 3 };
 
-/* The column before which look-ups do not depend on the second number, because all rows hold the same numbers
- * there.
- */
+/* The column before which look-ups do not depend on the second number: there all rows hold the same
+ * numbers. */
 static float even_columns(const plane_table *table) {
   int even = PLANE_STRIDE;
   for (int row = 1; row < PLANE_ROWS; row++)

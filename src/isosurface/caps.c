@@ -1,5 +1,5 @@
-/* isosurface/caps.c - see caps.h. Each face is covered with triangles a voxel wide. They are cut where the
- * field takes the surface's value, then by the other faces and by the box. */
+/* isosurface/caps.c - see caps.h. Each face is covered with triangles a voxel wide. The triangles are cut
+ * where the field has the surface's value, then by the other faces and by the box. */
 #include "isosurface/caps.h"
 
 #include <math.h>
@@ -13,8 +13,9 @@
  * different triangles, whose edges lie apart by less than this; so no gap shows between them. */
 static const double OVERLAP = 0.03;
 
-/* A face, given in a space of its own with coordinates q. On the face q[axis] is `height`, and the other two
- * coordinates run from -1 to 1. For a sphere, these points q are then scaled to the length 1. */
+/* A face, in a space of its own with coordinates q. On the face q[axis] is `height`, and the other two
+ * coordinates run from -1 to 1. For a sphere, these points of a cube's face are then scaled to the length
+ * 1. */
 typedef struct cap_face {
   affine3 to_index, from_index;
   int axis;
@@ -30,8 +31,8 @@ typedef struct capping {
   const lattice *lattice;
   const cap_face *face;
   iso_triangles patch;
-  double *inside;   /* owned; [vertices]; how far the field at each vertex is beyond the surface's value;
-                     * above 0 inside; stored units */
+  double *inside;   /* owned; [vertices]; for each vertex, the field less the surface's value, with the sign
+                     * that makes it positive inside; stored units */
   size_t across[2]; /* number of cells along the two coordinates */
 } capping;
 
@@ -88,8 +89,8 @@ static void place_row(void *data, size_t row, int worker) {
 
 /* ---- cut by the field ---- */
 
-/* Adds a vertex a little beyond the place where the field takes the surface's value between a vertex inside
- * and a vertex outside. The place is found by bisection. */
+/* Adds a vertex on the way from a vertex inside to a vertex outside, OVERLAP beyond the place where the field
+ * has the surface's value. The place is found by bisection. */
 static uint32_t cross_field(capping *cap, uint32_t in, uint32_t out) {
   enum { STEPS = 14 };
   const float *a = cap->patch.positions[in], *b = cap->patch.positions[out];
@@ -136,8 +137,8 @@ static void add_inside(capping *cap, const uint32_t corner[3]) {
   for (int i = 1; i + 1 < count; i++) add_triangle(&cap->patch, kept[0], kept[i], kept[i + 1]);
 }
 
-/* Goes through both triangles of all cells, and adds their parts inside if `add` is set. Returns the number
- * of triangles that the field cuts. */
+/* Visits the two triangles of every cell. If `add` is set, adds the parts of triangles that lie inside the
+ * surface. Returns the number of triangles that lie partly inside. */
 static size_t visit_cells(capping *cap, bool add) {
   size_t crossed = 0;
   const size_t row = cap->across[0] + 1;
@@ -173,7 +174,8 @@ static hl_status make_patch(hl_pool *pool, capping *cap, hl_error *error) {
   patch->vertex_count = vertices;
   hl_status status = hl_lattice_run(pool, cap->across[1] + 1, place_row, cap, error);
   if (status != HL_OK) return status;
-  const size_t crossed = visit_cells(cap, false); /* each adds two vertices and a triangle */
+  const size_t crossed = visit_cells(cap, false); /* each of these triangles may add two vertices and a
+                                                   * triangle */
   vertices += 2 * crossed;
   void *positions = hl_reallocate(cap->context, patch->positions, vertices, sizeof *patch->positions);
   if (positions != NULL) patch->positions = positions;
@@ -230,8 +232,9 @@ static hl_status trim(hl_context *context, const grid *grid, size_t cut, iso_tri
   return status;
 }
 
-/* The cells along a face whose half is `half` voxels long: a voxel wide. On a sphere the edges of triangles,
- * h long and across a cell sqrt(2) h, lie h^2 / (4 r) below it at most (derived, as in refine.c): by
+/* The number of cells along a face; `half` is half of the face's length, in voxels. A cell is at most a voxel
+ * wide. On a sphere of radius r, cells of width h have diagonals of length sqrt(2) h, which lie up to h^2 /
+ * (4 r) below the sphere (derived, as in refine.c). There cells are so small that this is at most
  * MOST_DEPTH. */
 static size_t cells_along(const cap_face *face, double half) {
   enum { MOST_CELLS = 8192 };
@@ -257,7 +260,8 @@ static hl_status cap_face_of(hl_pool *pool, const lattice *lattice, const cap_fa
 
 /* ---- all faces ---- */
 
-/* Whether face n of the box, by axis, the lower one first, ends the volume. */
+/* Whether face n of the box ends the volume. Faces 2 a and 2 a + 1 are the lower and the upper face of axis
+ * a. */
 static bool ends_volume(const grid *grid, int n) {
   return fabsf(n % 2 ? grid->face_high[n / 2] : grid->face_low[n / 2]) < FACE_FAR_OUT;
 }

@@ -5,8 +5,9 @@
 
 #include "core/memory.h"
 
-/* One face: the half space normal . p + offset >= 0, or the inside of a sphere, |q|^2 <= 1. Vertices on cut
- * edges are made anew for each triangle: the mesh is open there anyway. */
+/* One cut at one face. The side that is kept is the half space normal . p + offset >= 0, or the inside of a
+ * sphere, |q|^2 <= 1. Each triangle gets vertices of its own on the edges that are cut, because the mesh is
+ * open there anyway. */
 typedef struct cutting {
   hl_context *context;
   iso_triangles *made;
@@ -123,7 +124,7 @@ static hl_status cut_all(cutting *cut, hl_error *error) {
   return HL_OK;
 }
 
-/* Whether some vertex lies on the side that is removed. */
+/* Whether some vertex lies on the other side of the face than the side that is kept. */
 static bool cuts(const cutting *cut) {
   for (size_t v = 0; v < cut->made->vertex_count; v++)
     if (height(cut, (uint32_t)v) < 0) return true;

@@ -1,10 +1,11 @@
 /* isosurface/cubes.c - see cubes.h. The patterns are derived.
  *
- * Walk around a face of the cube, counter-clockwise as seen from outside. The surface crosses the face
- * between the edge where the walk comes inside and the edge where it leaves again. An edge that is entered on
- * one of its two faces is left on the other, so these steps link the crossed edges to loops, which are cut
- * into triangles. Both cubes beside a face see the same crossings, so that the surface has no holes; where
- * two opposite corners of a face are inside, each is cut off for itself. */
+ * Walk around a face of the cube, counter-clockwise as seen from outside. On the face, the surface runs from
+ * the edge where the walk comes inside to the edge where the walk leaves again. If a walk comes inside at an
+ * edge on one of the edge's two faces, the walk around the other face leaves there. So these steps link the
+ * crossed edges to loops, which are cut into triangles. Both cubes beside a face have the same crossings on
+ * it, so that the surface has no holes. Where only two opposite corners of a face are inside, each of them is
+ * cut off for itself. */
 #include "isosurface/cubes.h"
 
 int hl_cube_edge_corner(int edge) {
@@ -27,7 +28,8 @@ static void corners_of_face(int face, int corner[4]) {
   for (int i = 0; i < 4; i++) corner[i] = face % 2 ? high[i] | 1 << axis : low[i];
 }
 
-/* Sets, for the edge where a walk around the face comes inside, the edge where it leaves. */
+/* Sets next[edge] for each edge at which a walk around the face comes inside: the edge at which the walk
+ * leaves again. */
 static void link_face(int pattern, int face, int next[CUBE_EDGES]) {
   int corner[4];
   corners_of_face(face, corner);

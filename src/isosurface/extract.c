@@ -24,7 +24,8 @@ void hl_iso_triangles_release(hl_context *context, iso_triangles *triangles) {
 
 enum { EDGE_VOXELS = FIELD_TAPS + 2 };
 
-/* The field along an edge: the sums over the voxels across the edge, for each voxel of a row along it. */
+/* The field along an edge, as numbers on a row of places along the edge, a voxel apart. Each number is the
+ * weighted sum of the voxels across the edge at this place. */
 typedef struct edge_field {
   const kernel *kernel;
   double start;  /* coordinate of the edge's beginning along the edge's axis */
@@ -66,8 +67,8 @@ static double value_on_edge(const edge_field *field, double way) {
 /* The least distance of a vertex from the ends of its edge, in voxels, so that every triangle has an area. */
 static const double LEAST_WAY = 1.0 / 16384;
 
-/* Returns how far from the beginning of an edge the field takes the surface's value. Found by false position
- * (the Illinois method; Dowell and Jarratt 1971). length: of the edge. */
+/* Returns the distance, from the beginning of an edge, of the place where the field has the surface's value.
+ * It is found by false position (the Illinois method; Dowell and Jarratt 1971). length: the edge's length. */
 static double find_crossing(const lattice *lattice, int axis, const double from[3], double length) {
   enum { MOST_STEPS = 24 };
   const edge_field field = field_of_edge(lattice, axis, from);
@@ -141,7 +142,7 @@ static bool is_cell(const lattice *lattice, const lattice_brick *brick, const in
   return true;
 }
 
-/* The pattern of the corners of a cell that lie inside; 0, too, where the lattice has no such cell. */
+/* The pattern of those corners of a cell that lie inside. It is 0 where the lattice has no such cell. */
 static int pattern_of_cell(const lattice *lattice, const lattice_brick *const around[8], const int cell[3]) {
   int pattern = 0;
   if (!is_cell(lattice, around[0], cell)) return 0;

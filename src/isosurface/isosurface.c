@@ -1,6 +1,6 @@
-/* isosurface/isosurface.c - see isosurface.h. The cells of a lattice are cut into triangles. Edges are halved
- * where the surface bends. The triangles are cut at the clip box and at cuts, and caps are added there. At
- * last everything is moved to the world. */
+/* isosurface/isosurface.c - see isosurface.h. The cells of a lattice are cut into triangles. The triangles'
+ * edges are halved where the surface bends. Then the triangles are cut at the volume's box and at cuts, and
+ * caps are added at the box's and the cuts' faces. At last all triangles are moved to the world. */
 #include "isosurface/isosurface.h"
 
 #include <string.h>

@@ -23,9 +23,9 @@ const lattice_brick *hl_lattice_brick(const lattice *lattice, const int32_t at[3
 
 enum { CROSSED = 1, KEPT = 2 };
 
-/* Whether a brick's cells, which are those of the grid's brick, may hold the value. With an
- * interpolating kernel the voxels are coefficients; the field is a mean of these, too, and has the same
- * bounds. */
+/* Whether the surface's value may occur in a brick's cells, which are the cells of the grid's brick at the
+ * same place. With an interpolating kernel the voxels are coefficients. The field is a weighted mean of
+ * coefficients, too, so their bounds are its bounds. */
 static bool brick_crossed(const lattice *lattice, const int32_t at[3]) {
   const grid *grid = lattice->grid;
   float bounds[2];
@@ -35,7 +35,7 @@ static bool brick_crossed(const lattice *lattice, const int32_t at[3]) {
   return bounds[0] <= lattice->value && bounds[1] >= lattice->value;
 }
 
-/* Keeps a crossed brick, and the bricks beside it that hold points of its cells. */
+/* Marks a crossed brick to be kept, and those bricks beside it that hold points of its cells. */
 static void keep_around(const lattice *lattice, const int32_t at[3], unsigned char *marks) {
   for (int corner = 0; corner < 8; corner++) {
     const int32_t beside[3] = {at[0] + (corner & 1), at[1] + (corner >> 1 & 1), at[2] + (corner >> 2)};
@@ -76,8 +76,8 @@ static void list_bricks(lattice *lattice, const unsigned char *marks) {
 
 enum { SIDE = HL_BRICK_CELLS, WINDOW = SIDE + 4 };
 
-/* Applies the weights along one axis of a window of values. from: [outer][WINDOW][inner]; to:
- * [outer][SIDE][inner]. */
+/* Replaces, along one axis of a window, the voxels' values by weighted sums of them at a brick's points.
+ * from: [outer][WINDOW][inner]; to: [outer][SIDE][inner]. */
 static void weigh_axis(const double weight[SIDE][WINDOW], const double *from, int outer, int inner,
                        double *to) {
   for (int o = 0; o < outer; o++)
@@ -125,11 +125,11 @@ static void find_inside(void *data, size_t index, int worker) {
 
 /* ---- edges ---- */
 
-/* The points with the greatest coordinate along an axis. */
+/* For each axis, the points of a brick that have the greatest coordinate along it, one bit each. */
 static const uint64_t last_points[3] = {0x8888888888888888u, 0xf000f000f000f000u, 0xffff000000000000u};
 
-/* The points of a brick at which edges along an axis begin: the points of the lattice but for the last one
- * along the axis. */
+/* The points of a brick at which edges along an axis begin, one bit each. An edge begins at each point of the
+ * lattice that is not the last one along the axis. */
 static uint64_t edge_points(const lattice *lattice, const lattice_brick *brick, int axis) {
   uint64_t points = 0;
   for (int p = 0; p < SIDE * SIDE * SIDE; p++) {

@@ -1,5 +1,4 @@
-/* isosurface/lattice.h - a lattice of points, at each of which it is known whether it lies inside the
- * surface.
+/* isosurface/lattice.h - a lattice of points that knows of each point whether it lies inside the surface.
  *
  * The points stand at the voxels, and on the faces of the grid: along an axis of n voxels, point 0 lies at
  * -0.5, point i at i - 1, point n + 1 at n - 0.5. A cell lies between 2x2x2 points, and has the number of
@@ -16,7 +15,8 @@ typedef struct lattice_brick {
   int32_t at[3];     /* coordinates, in bricks */
   uint8_t crossed;   /* the surface may run through its cells */
   uint64_t inside;   /* the points that lie inside */
-  uint64_t cross[3]; /* along x, y and z: the points whose edge along this axis crosses the surface */
+  uint64_t cross[3]; /* for each axis, the points from which an edge along this axis begins that crosses the
+                      * surface */
   uint32_t vertex;   /* number of the brick's first vertex; its other vertices follow, sorted by axis and
                       * then by point */
   uint32_t triangle; /* number of its first triangle */
@@ -39,8 +39,8 @@ typedef struct lattice {
   size_t count;
 } lattice;
 
-/* Makes the lattice of a surface. value: the surface's, in data values. grid, kernel: borrowed. Release it
- * after a failure, too. */
+/* Makes the lattice of a surface. value: the field's value on the surface; data values. grid, kernel:
+ * borrowed. Release the lattice after a failure, too. */
 hl_status hl_lattice_create(hl_context *context, hl_pool *pool, const grid *grid, const kernel *kernel,
                             double value, lattice *made, hl_error *error);
 void hl_lattice_release(lattice *made);

@@ -2,22 +2,22 @@
  *
  * Over an edge e between the unit normals m and n the surface rises by about |e . (n - m)| / 8 (derived: on a
  * circle of radius r the normals' difference along e is |e| / r, and the arc rises by |e|^2 / (8 r) above its
- * chord). An edge is halved in both triangles beside it, so that there are no gaps. Lengths are the
- * world's, in smallest edges of a voxel: where voxels are long, lengths in index space would differ from the
- * world's. */
+ * chord). An edge is halved in both triangles beside it, so that there are no gaps. Lengths are measured in
+ * the world, in units of a voxel's smallest edge. Lengths in index space would be wrong where voxels are
+ * long. */
 #include <stdlib.h>
 
 #include "core/memory.h"
 #include "isosurface/triangles.h"
 #include "mesh/mesh.h"
 
-/* The greatest rise of the surface above an edge that is left whole. Above the middle of an even
- * triangle it rises 4/3 as far. */
+/* The greatest rise of the surface above an edge that is left whole. Above the middle of an equilateral
+ * triangle the surface rises 4/3 as far. */
 static const double MOST_RISE = 0.014;
 
-/* An edge of this length is left whole however much the surface bends. Otherwise noise, whose surfaces bend
- * within a voxel, would be cut into countless triangles. The surface rises by 0.014 above such an edge where
- * its radius is 5. */
+/* An edge of this length or less is left whole however much the surface bends. Otherwise noise, whose
+ * surfaces bend within a voxel, would be cut into countless triangles. A surface of radius 5 rises by 0.014
+ * above an edge of this length. */
 static const double LEAST_EDGE = 0.75;
 
 typedef struct halving {
@@ -29,7 +29,7 @@ typedef struct halving {
   size_t first_vertex; /* number of the first vertex that is an edge's middle */
   mat3 ways, turns;    /* `ways` maps differences of index coordinates to the world; `turns`, its inverse
                           transpose, maps normals */
-  float (*normals)[3]; /* owned; [vertices before the middles]; unit normals in the world */
+  float (*normals)[3]; /* owned; [vertices that are no middles of edges]; unit normals in the world */
 } halving;
 
 static vec3 vertex_of(const float (*of)[3], uint32_t vertex) {
@@ -93,9 +93,9 @@ static int64_t middle_of(const halving *job, uint32_t a, uint32_t b) {
   return found != NULL ? (int64_t)(job->first_vertex + (size_t)(found - job->edges)) : -1;
 }
 
-/* Moves a point of index space onto the surface along the field's slope in the world (Newton), by at most
- * `reach` in world units. The reach is a length in the world because in long voxels a middle may have to
- * move by many of the short edges. */
+/* Moves a point of index space onto the surface, along the field's slope in the world (Newton's method). If
+ * the surface is farther away than `reach`, the point stays. The reach is a length in the world, because in
+ * long voxels the middle of an edge may have to move by several short voxel edges. */
 static vec3 move_to_surface(const halving *job, vec3 start, double reach) {
   enum { STEPS = 4 };
   const lattice *lattice = job->lattice;
@@ -256,8 +256,8 @@ static hl_status halve_edges(hl_pool *pool, const lattice *lattice, iso_triangle
 hl_status hl_iso_refine(hl_pool *pool, const lattice *lattice, iso_triangles *triangles, hl_error *error) {
   enum {
     ROUNDS = 8
-  }; /* the greatest number of rounds; a cell that is twenty times as wide along one axis
-      * as along another needs five */
+  }; /* the greatest number of rounds; cells that are twenty times as wide along one axis as along another
+      * need five */
   hl_status status = HL_OK;
   bool any = true;
   for (int round = 0; round < ROUNDS && any && status == HL_OK; round++)

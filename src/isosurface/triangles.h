@@ -1,5 +1,5 @@
 /* isosurface/triangles.h - the triangles of an isosurface while they are made, in index space. Their normals
- * are the field's, and point away from the inside. */
+ * are the directions of the field's gradient, and point away from the inside. */
 #ifndef HL_ISOSURFACE_TRIANGLES_H
 #define HL_ISOSURFACE_TRIANGLES_H
 
@@ -20,7 +20,7 @@ hl_status hl_iso_refine(hl_pool *pool, const lattice *lattice, iso_triangles *tr
 
 void hl_iso_triangles_release(hl_context *context, iso_triangles *triangles);
 
-/* The unit vector away from the inside, for a slope of the field. */
+/* The unit normal that points away from the inside where the field has the gradient `slope`. */
 static inline vec3 hl_iso_normal(const lattice *lattice, vec3 slope) {
   return vec3_scale(vec3_normalise(slope), -lattice->sign);
 }

@@ -6,8 +6,8 @@
 /* Number of points along each side of a part; the part's middle and spread are means over these points. */
 enum { POINTS_OF_PART = 8 };
 
-/* A light is one part if its apparent size is at most this fraction of its distance, and it looks about as
- * long as wide. */
+/* A light stays one part if its apparent size is at most this fraction of its distance, and if it looks about
+ * as long as wide. */
 static const double NARROW = 0.35;
 
 /* Cuts a rect into parts that look about as long as wide. length: the apparent lengths of its edges. */

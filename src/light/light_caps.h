@@ -2,9 +2,10 @@
  *
  * Scattering in media depends on the angle to the light, so media need to know how wide the light looks. A
  * parallel light looks the same from everywhere: it is one cap of directions. Other lights are cut into
- * parts. A part is taken as the cap of directions with the same mean (derived: a disk of radius q at
- * distance 1, square to the view, has the mean cosine 2 (h - 1) / q^2, h = sqrt(1 + q^2); a cap of least
- * cosine c has (1 + c) / 2; so c = (3 - h) / (1 + h)). */
+ * parts. A part is replaced by the round cap of directions that has the same mean cosine of the angle to the
+ * part's middle. Derived: with h = sqrt(1 + q^2), a disk of radius q at distance 1, at a right angle to the
+ * view, has the mean cosine 2 (h - 1) / q^2. A cap within an angle of cosine c has the mean cosine (1 + c) /
+ * 2. So c = (3 - h) / (1 + h). */
 #ifndef HL_LIGHT_LIGHT_CAPS_H
 #define HL_LIGHT_LIGHT_CAPS_H
 

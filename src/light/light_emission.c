@@ -7,8 +7,8 @@
 /* Number of samples of the image along each side of a cell. */
 enum { LEAST_SAMPLES = 4, GREATEST_SAMPLES = 32 };
 
-/* Adds the colour at a point of the image, interpolated bilinearly between the middles of pixels. s: the
- * point's place to the right; t: upwards; each from -1 to 1. */
+/* Adds the colour at a point of the image, interpolated bilinearly between the middles of pixels. s, t: the
+ * point's place in the image, to the right and upwards, each from -1 to 1. */
 static void add_color(const light_picture *picture, double s, double t, double sum[HL_CHANNELS]) {
   const int size[2] = {picture->width, picture->height};
   const double position[2] = {(1 + s) / 2 * size[0] - 0.5, (1 - t) / 2 * size[1] - 0.5};
@@ -28,9 +28,9 @@ static void add_color(const light_picture *picture, double s, double t, double s
   }
 }
 
-/* The mean colour of cell (i, j) of side x side cells. The offset of a point on a parallel light changes the
- * direction of travel. This is opposite to the direction in which the light is seen, so the offset's sign is
- * reversed. */
+/* Finds the mean colour of cell (i, j) of side x side cells. For a parallel light, the offset of a point is
+ * added to the direction in which light travels. The light is seen in the opposite direction, so the sign of
+ * the offset is reversed. */
 static void mean_of_cell(const light_source *source, const emission_plane *plane, int side, int i, int j,
                          double mean[HL_CHANNELS]) {
   const light_picture *picture = &source->emission;
@@ -67,7 +67,7 @@ void hl_light_emission_weights(const light_source *source, int side, float (*wei
       weights[i][c] = mean[c] > 0 ? (float)((double)weights[i][c] / mean[c]) : 1;
 }
 
-/* Weighs all cells by their light, in the cells' order; dark cells are included. */
+/* Sets the weights of all cells, dark ones included, to the fractions of the light that they send. */
 static void weigh_cells(const light_source *source, light_emission *emission) {
   float weights[EMISSION_CELLS][HL_CHANNELS];
   hl_light_emission_weights(source, EMISSION_SIDE, weights, emission->mean);
@@ -96,8 +96,8 @@ static vec3 middle_of_cell(const light_source *source, int i) {
                         (i % EMISSION_SIDE + 0.5) / EMISSION_SIDE);
 }
 
-/* The greatest slope of receivers at which every cell of a tilted light has taps of its own; at greater
- * slopes the outermost cells share taps. */
+/* The greatest slope of the rays to receivers at which every cell of a tilted light has taps of its own. At
+ * greater slopes the outermost cells share taps. */
 static const double GREATEST_SLOPE = 0.5;
 
 /* Leaves dark cells out, and bounds the other cells. */
@@ -124,7 +124,8 @@ static void finish(light_emission *emission) {
   }
 }
 
-/* For parallel light the unit is negative: light that travels farther along u comes from farther back. */
+/* For parallel light the unit is negative, because light whose direction of travel leans more towards u comes
+ * from farther back along u. */
 void hl_light_emission_see(const light_source *source, const sheet_light *seen, vec3 normal,
                            light_emission *emission) {
   double unit = fmax(seen->width_u, seen->width_v) * (source->parallel ? -1 : 1);

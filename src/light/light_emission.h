@@ -1,9 +1,9 @@
 /* light/light_emission.h - the emission image on a light's surface, as the kernel of its penumbrae.
  *
  * The light is cut into cells of equal area, each with its mean colour. A penumbra is a sum of sharp shadows,
- * one for each cell, which is shifted like the cell and weighted by the cell's red, green and blue (derived:
- * T(x) = mean over the light's points y of colour(y) t(x, y)). These shifts and weights are the penumbra's
- * taps. */
+ * one for each cell. A cell's shadow is shifted as the cell is shifted from the light's middle, and weighted
+ * by the cell's red, green and blue (derived: T(x) = mean over the light's points y of colour(y) t(x, y)).
+ * These shifts and weights are the penumbra's taps. */
 #ifndef HL_LIGHT_LIGHT_EMISSION_H
 #define HL_LIGHT_LIGHT_EMISSION_H
 
@@ -14,7 +14,8 @@ enum {
   EMISSION_SIDE = 12,
   EMISSION_CELLS = EMISSION_SIDE * EMISSION_SIDE,
   EMISSION_TAPS = (EMISSION_SIDE + 3) * (EMISSION_SIDE + 3),
-  /* The most pixels from tap to tap; a box can blur by this distance (cascade_emission.c). */
+  /* The greatest distance from tap to tap, in pixels; a box blur of this width is possible
+   * (cascade_emission.c). */
   EMISSION_GREATEST_STEP = 88
 };
 
@@ -30,7 +31,7 @@ typedef struct light_emission {
   bool even; /* the image has one colour, so that penumbrae are the same as for a light without an image */
   int count; /* number of cells that are not dark */
   emission_cell cells[EMISSION_CELLS];
-  bool tilted;     /* cells differ in z, so receivers at different slopes see different taps */
+  bool tilted;     /* cells differ in z, so the taps depend on the slope of the rays to the receiver */
   double reach;    /* the cells' greatest distance from the middle, for any receiver */
   double range[2]; /* the cells' extent along u and v, for any receiver */
 } light_emission;

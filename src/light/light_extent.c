@@ -27,17 +27,17 @@ static vec3 onto_plane(vec3 x, vec3 normal) {
   return vec3_subtract(x, vec3_scale(normal, vec3_dot(x, normal)));
 }
 
-/* The u axis in the sheets before it is turned to the principal axis: a parallelogram's edge, else the
- * light's tilt. */
+/* The first choice of the u axis in the sheets, which is turned to the principal axis later: the projection
+ * of a parallelogram's edge, or else of the light's direction. */
 static vec3 first_axis(const light_source *source, vec3 normal) {
   vec3 along = source->shape.kind->parallelogram ? source->shape.edge1 : source->direction;
   vec3 axis = onto_plane(along, normal);
   return vec3_length(axis) > 1e-3 * vec3_length(along) ? vec3_normalise(axis) : vec3_perpendicular(normal);
 }
 
-/* Projects a point of the light onto the plane, along its ray to the content's middle. Points nearly as low
- * as the content are moved by at most a factor of four. A light beside or below the content's middle is
- * projected along the sheets' normal. */
+/* Projects a point of the light onto the plane, along the ray from the content's middle to the point. A point
+ * nearly as low as the content would be moved far away; its distance from the content is multiplied by at
+ * most four. A light beside or below the content's middle is projected along the sheets' normal. */
 static vec3 seen_on_plane(const light_source *source, vec3 normal, vec3 offset) {
   if (source->parallel) {
     vec3 way = vec3_add(source->direction, offset);

@@ -24,23 +24,26 @@ typedef struct sheet_light {
   vec3 middle; /* the middle of the light's projection; frame space; for parallel light the mean direction
                 * of travel */
   vec3 u, v;   /* unit vectors in the sheets: the projection's principal axes, u the longer */
-  double width_u, width_v; /* widths of the boxes that have the variance of the projection; frame units. Of
-                            * parallel lights they are per unit of height */
-  mat3 spread; /* mean of x x' over the light itself, where x is a point of the light counted from its
-                * centre; along u, v and the sheets' normal */
+  double width_u, width_v; /* widths, along u and v, of a box that has the same variances as the projection;
+                            * frame units, or for parallel light frame units per frame unit of height */
+  mat3 spread; /* mean of the matrix x x' over the light, where x is the offset of a point of the light from
+                * its centre, in components along u, v and the sheets' normal */
   bool parallel;
 } sheet_light;
 
 sheet_light hl_light_on_sheets(const light_source *source, vec3 normal);
 
-/* The position of a point of the light, given by its offset from the centre (hl_light_point), relative to
- * seen->middle: along u, v and the sheets' normal. For parallel light: the shift along u and v over a unit of
- * height, and 0. A receiver at a slope sees u and v reduced by the slope times the third coordinate. */
+/* Finds the position of a point of the light relative to seen->middle, in coordinates along u, v and the
+ * sheets' normal. offset: the point's offset from the light's centre (hl_light_point). For parallel light the
+ * first two coordinates are the shift along u and v per unit of height, and the third one is 0. For a
+ * receiver to which rays come at a slope, the slope times the third coordinate is subtracted from the first
+ * two. */
 void hl_sheet_light_position(const sheet_light *seen, const light_source *source, vec3 normal, vec3 offset,
                              double position[3]);
 
-/* The square of width_u (axis 0) or width_v (axis 1) as seen by receivers at a slope: the distance along the
- * axis over the height below the light. A light tilted against the sheets looks wider from one side. */
+/* The square of width_u (axis 0) or width_v (axis 1), as receivers see it to which rays come at a slope. The
+ * slope is the distance along the axis over the height below the light. A light that is tilted against the
+ * sheets looks wider from one side. */
 double hl_sheet_light_squared_width(const sheet_light *light, int axis, double slope);
 
 /* The average size of the light's orthogonal projection onto the sheets (section 5.2, (1) and (3)). */

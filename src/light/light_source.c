@@ -65,9 +65,10 @@ light_sectors hl_light_sectors(vec3 eye_direction, double widest) {
     vec3 across = vec3_add(vec3_scale(u, cos(turn)), vec3_scale(v, sin(turn)));
     sectors.axis[i] = vec3_add(vec3_scale(eye_direction, along), vec3_scale(across, sin(phi)));
   }
-  /* In every direction the cosine to some axis is at least 0.84 of the cosine between an axis and the
-   * direction across the eye's that lies midway between two axes (found over 200,000 directions, phi from 15
-   * to 45 degrees). A sector ends a little further from its axis, so that sectors fade into each other. */
+  /* Take a direction at a right angle to the eye's direction, midway between two axes. Its cosine to these
+   * axes is cos(30 degrees) sin(phi). Every direction has at least 0.84 of this cosine to some axis (found
+   * over 200,000 directions, phi from 15 to 45 degrees). A sector ends a little farther from its axis, at 0.7
+   * of it, so that sectors fade into each other. */
   sectors.least = 0.7 * cos(HL_PI / 6) * sin(phi);
   return sectors;
 }
@@ -113,11 +114,12 @@ static bool bound_screen(const view *view, const light_source *source, double lo
   return true;
 }
 
-/* Bounds the part of a view's picture that a light's cone lights, along both of the view's axes. Derived:
- * planes through the light that contain the view's other axis touch the cone of half angle a where their
- * angle phi from the view's normal n obeys r sin(psi - phi) = +- sin a. Here r and psi are the length and
- * angle of the cone's axis in the plane of n and this axis. corner, du and dv of the view are n and its axes,
- * unit and perpendicular. */
+/* Bounds the part of a view's picture that a light's cone lights, along both of the view's axes. Derived, for
+ * one axis: take the planes through the light that contain the view's other axis, and call phi the angle
+ * between a plane and the view's normal n. Such a plane touches a cone of half angle a where r sin(psi - phi)
+ * = +- sin a. Here r and psi are the length and the angle of the cone's axis, projected onto the plane of n
+ * and the first axis. The view's corner, du and dv must be n and the two axes, as unit vectors at right
+ * angles. */
 static bool bound_cone(const view *view, const light_source *source, double low[2], double high[2]) {
   const vec3 axes[2] = {view->du, view->dv};
   vec3 cone = vec3_normalise(source->shape.direction);

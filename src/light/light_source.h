@@ -2,9 +2,10 @@
  * brightness of a spot light by direction, and the region that a light lights.
  *
  * All rays must cross the sheets in the same direction and not too flatly. A light within or beside the
- * content sends rays in all directions, so they are divided among six slicing axes: three roughly along the
- * eye's direction and three roughly against it. The eye's rays and the light of the axis's own sector both
- * cross its sheets well. The sectors' fractions fade into each other and sum to 1, so that no seam shows. */
+ * content sends rays in all directions, so its rays are divided among six sectors, each with a slicing axis
+ * of its own: three axes roughly along the eye's direction and three roughly against it. The eye's rays and
+ * the light of the axis's sector both cross the axis's sheets well. The sectors' fractions fade into each
+ * other and sum to 1, so that no seam shows. */
 #ifndef HL_LIGHT_LIGHT_SOURCE_H
 #define HL_LIGHT_LIGHT_SOURCE_H
 
@@ -19,8 +20,7 @@ enum { LIGHT_SECTORS = 6 };
 enum { MAXIMUM_SWEEP_LIGHTS = 16 };
 
 typedef struct light_sectors {
-  vec3 axis[LIGHT_SECTORS]; /* unit vectors, the directions in which the light of the sectors travels;
-                             * frame space */
+  vec3 axis[LIGHT_SECTORS]; /* for each sector, the unit vector along which its light travels; frame space */
   double least;             /* the cosine of the angle to a sector's axis at which the sector has faded out */
 } light_sectors;
 
@@ -50,7 +50,7 @@ typedef struct light_picture {
 /* The picture that a light projects, and the screen on which it stands; frame space. */
 typedef struct light_screen {
   light_picture picture;
-  vec3 center, right, up; /* the middle of the screen, and the ways from there to the middles of its right
+  vec3 center, right, up; /* the middle of the screen, and the vectors from there to the middles of its right
                            * and top edges */
 } light_screen;
 
@@ -60,15 +60,16 @@ typedef struct light_source {
                    * or the way from the light's centre to the centre of its screen or of the content */
   vec3 position;  /* position of the light's centre, unless parallel; frame space */
   vec3 content;   /* the content's middle; frame space */
-  mat3 spread;    /* mean of x x' over the light, where x is a point of the light counted from its centre;
-                   * for parallel light over its directions, as points at distance 1 */
+  mat3 spread;    /* mean of the matrix x x' over the light, where x is the offset of a point of the light
+                   * from its centre; for parallel light, of a direction, as a point at distance 1, from the
+                   * mean direction */
   hl_shadows shadows; /* off, hard or soft */
   hl_soft_method soft_method;
   light_shape shape;      /* frame space; vertices of polygons are borrowed until the frame ends */
   light_screen screen;    /* the picture that the light projects */
   light_picture emission; /* the picture on the light's own surface */
-  double of_sky;   /* the fraction of the light that a medium takes, where the light is a sun of the sky,
-                    * which makes no highlights; else 0 */
+  double of_sky;   /* where the light is a sun of the sky, which makes no highlights: the fraction of its
+                    * light that lights media; else 0 */
   int light_index; /* index in the scene */
   int row;         /* index in the frame's list of lights */
   const light_sectors *sectors; /* where this source is one sector of a light: the frame's sectors; else

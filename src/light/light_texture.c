@@ -7,9 +7,10 @@
 #include "scene/light/light_kind.h"
 #include "view/view.h"
 
-/* The light's view through its screen, with the image's pixels. Derived: a sample x lies on the ray through c
- * + s R + t U. For a light at P, x - P = w (c - P + s R + t U); for parallel light along d, x = c + s R + t U
- * + k d. These are three linear equations, whose third unknown is w or k. */
+/* The light's view through its screen; the view's pixels are the pixels of the projected image. Derived: a
+ * sample x lies on the ray through c + s R + t U. For a light at P, x - P = w (c - P + s R + t U); for
+ * parallel light along d, x = c + s R + t U + k d. These are three linear equations, whose third unknown is w
+ * or k. */
 static view view_of_screen(const light_source *source, int width, int height) {
   vec3 corner = vec3_add(vec3_subtract(source->screen.center, source->screen.right), source->screen.up);
   view view = {.perspective = !source->parallel,
@@ -24,8 +25,9 @@ static view view_of_screen(const light_source *source, int width, int height) {
   return view;
 }
 
-/* The length of a screen vector's projection at the content's middle, across the light's ray there. Where
- * the content lies before the screen, the vector's own length counts. */
+/* The length of a vector in the screen when light projects it to the content's middle, measured at a right
+ * angle to the light's ray there. Where the content lies between light and screen, the vector is not
+ * magnified. */
 static double length_at_content(const light_source *source, const view *view, vec3 step, vec3 content) {
   vec3 way = source->direction;
   double magnified = 1;
@@ -59,7 +61,8 @@ static double disk_below(double x) {
   return 0.5 + (x * sqrt(1 - x * x) + asin(x)) / HL_PI;
 }
 
-/* A convolution along one axis: result pixel i is the kernel's mean around start + (i + 1/2) step. */
+/* A convolution along one axis: pixel i of the result is the image's mean, weighted by a kernel around start
+ * + (i + 1/2) step. */
 typedef struct axis_plan {
   int count;                      /* number of result pixels */
   double start, step, half_width; /* in pixels of the image that is convolved */
@@ -178,9 +181,10 @@ static double blur_at(const light_source *source, const view *view, vec3 point) 
   return fabs(1 - 1 / fmax(w, 0.05));
 }
 
-/* Level 0 blurs by 1.4 pixels of the picture, and each next level by sqrt(2) times as much. A level's pixels
- * are half as large as its blur, at least 0.7 of the picture's, and larger where the level would exceed the
- * greatest side. */
+/* FIRST_BLUR: the standard deviation of level 0's blur, in pixels of the picture; each next level blurs by
+ * sqrt(2) times as much. The edge of a level's pixel is LEVEL_PIXEL of the level's blur, but at least
+ * LEAST_PIXEL of a pixel of the picture. It is larger where a side of the level would exceed
+ * GREATEST_LEVEL_SIDE. */
 static const double FIRST_BLUR = 1.4, LEVEL_PIXEL = 0.5, LEAST_PIXEL = 0.7;
 enum { GREATEST_LEVEL_SIDE = 8192 };
 
@@ -201,8 +205,8 @@ static level_plan plan_level(const light_texture *texture, const double deviatio
   return plan;
 }
 
-/* Makes the blurred levels of a texture. averaged: number of floats of the averaged image, with which the
- * texture's memory begins. */
+/* Makes the blurred levels of a texture. The texture's memory begins with the averaged image, which has
+ * `averaged` floats; the levels follow it. */
 static hl_status make_levels(hl_context *context, const light_source *source, const view *view,
                              const texture_use *use, light_texture *texture, size_t averaged,
                              hl_error *error) {
@@ -210,7 +214,8 @@ static hl_status make_levels(hl_context *context, const light_source *source, co
   level_plan plans[TEXTURE_LEVELS];
   const bool box = source->shape.kind->parallelogram;
   kernel_fraction *below = box ? box_below : disk_below;
-  double half_widths = box ? sqrt(3) : 2; /* half width in standard deviations */
+  double half_widths = box ? sqrt(3) : 2; /* half of the kernel's width, in standard deviations of the
+                                           * kernel */
   spread_on_screen(source, view, use->content, deviation);
   for (int axis = 0; axis < 2; axis++)
     widest = fmax(widest, deviation[axis] * (double)texture->sharpness[axis]);
@@ -251,8 +256,8 @@ static hl_status make_levels(hl_context *context, const light_source *source, co
 
 /* ---- the screen ---- */
 
-/* The number of pixels that the picture has across the projected image, but at most the image's own
- * number. */
+/* The number of pixels along a side of the averaged image: as many as the picture has across the projected
+ * image, but at most as many as the image itself has. */
 static int resolution(double length, int count, double pixel, float *sharpness) {
   double wanted = ceil(length / pixel);
   int chosen = wanted < 1 ? 1 : wanted < count ? (int)wanted : count;

@@ -28,17 +28,17 @@ enum { TEXTURE_LEVELS = 24 };
 typedef struct light_texture {
   const float *pixels; /* [height][width][3], linear RGB; null: the light has no texture */
   int width, height;
-  float map[3][4]; /* maps frame space to (w, w u, w v): u, v in pixels from the image's top left corner. w <=
-                    * 0: the ray does not pass the screen's plane */
+  float map[3][4];    /* maps frame space to (w, w u, w v), where u and v are pixels from the image's top left
+                       * corner. w <= 0: the sample's ray does not pass the screen's plane */
   float sharpness[2]; /* along u and v: number of the picture's pixels that one pixel of the image covers, at
                        * least 1 */
-  float beyond[4];    /* for parallel light: maps frame space to the distance from the screen along the
-                       * rays. For near light, w of `map` is this distance */
+  float beyond[4];    /* for parallel light: maps frame space to the distance from the screen along the rays.
+                       * For near light, w of `map` serves instead */
   int parallel;
-  float first; /* 1 / square of the distance (near light: of 1 - Zs / Z) for which level 0 is blurred. Level l
-                * is for 2^l times this square, and has 2^l times the variance */
-  float edge[2];   /* along u and v: width, in pixels of the image, of the box with the blur's variance at
-                    * distance 1 */
+  float first; /* 1 / square of the distance from the screen (near light: of 1 - Zs / Z) for which level 0 is
+                * blurred. Level l is blurred for 2^l times this square, and so by 2^l times the variance */
+  float edge[2];   /* along u and v: width, in pixels of the image, of a box that has the variance of the blur
+                    * at distance 1 */
   int level_count; /* number of levels; 0: the light's extent does not matter */
   texture_level level[TEXTURE_LEVELS];
   float *memory; /* owned; the averaged image and its levels; null where neither is needed */

@@ -44,7 +44,7 @@ LANES_INLINE void read_image(const float *pixels, int width, int height, lanes u
   }
 }
 
-/* Adds the unblurred image times a weight. A box blurs the screen's edges. */
+/* Adds the image times a weight. The image itself is not blurred, but a box blurs the edges of the screen. */
 LANES_INLINE void sharp_pattern(const light_texture *texture, lanes blur, lanes u, lanes v, lanes weight,
                                 lanes pattern[3]) {
   lanes sharp_u = lanes_set(texture->sharpness[0]), sharp_v = lanes_set(texture->sharpness[1]);
@@ -58,10 +58,11 @@ LANES_INLINE void sharp_pattern(const light_texture *texture, lanes blur, lanes 
   for (int c = 0; c < 3; c++) pattern[c] = lanes_fma(color[c], inside, pattern[c]);
 }
 
-/* Interpolates between the two levels whose variances enclose the sample's; the mean's variance is linear in
- * the weights. Below the first level it fades between the image itself and this level, whose weight is the
- * square of the variance, so that the image stays sharp as long as it can. The screen edges of the image
- * itself are blurred separately. */
+/* Interpolates between the two levels whose variances enclose the variance of the sample's blur; the variance
+ * of the result is linear in the weights. Where the sample's variance is below that of level 0, the result is
+ * a mean of level 0 and the image itself. The weight of level 0 is then the square of the ratio of the two
+ * variances, so that the image stays sharp as long as it can. The edges of the screen are blurred in the
+ * image itself, too. */
 LANES_INLINE void soft_pattern(const light_texture *texture, lanes blur, lanes u, lanes v, lanes ahead,
                                lanes pattern[3]) {
   lanes variance = lanes_min(blur * blur * texture->first, lanes_set(1e30f));

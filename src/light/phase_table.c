@@ -55,12 +55,12 @@ static double mean_over_cap(double g, double c, double towards, const ring_place
   sum *= (high - low) / 2 * HL_PI / RING_COUNT;
   if (turn < half) sum += 1 / (1 - g) - high; /* rings that lie within the cap */
   if (turn + half > HL_PI)
-    sum += low - 1 / (1 + g); /* rings around the opposite direction that lie within
-                               * the cap */
+    sum += low - 1 / (1 + g); /* rings around the opposite direction that lie completely within the cap */
   return (1 - g * g) / (g * (1 - c)) * sum;
 }
 
-/* Fills the row of a cap. apart: distance from one number to the next. */
+/* Fills a row of a table, for the cap within an angle of cosine c. apart: floats from a number of the row to
+ * the next. */
 static void fill_row(double g, double c, const ring_places *rings, float *row, size_t apart) {
   for (int i = 0; i < PHASE_COLUMNS; i++) {
     double s = 1 - g + 2 * g * i / (PHASE_COLUMNS - 1);
@@ -76,7 +76,7 @@ static bool scatters_unevenly(const hl_scene_volume *volume) {
   return volume->anisotropy != 0 && volume->shading != HL_SHADING_FLAT;
 }
 
-/* Whether some light is wide. *near: whether some light is wide and not parallel. */
+/* Whether some light is wide. near: only lights that are not parallel count. */
 static bool has_wide_light(const hl_scene_description *scene, bool near) {
   bool found = false;
   for (size_t i = 0; i < scene->light_count; i++)
@@ -90,7 +90,8 @@ static bool needs_caps(const hl_scene_description *scene) {
   return scene->sky.type != HL_SKY_NONE || has_wide_light(scene, true);
 }
 
-/* The number of tables. A table is needed for g and, where light is scattered again, for g^2. */
+/* The number of tables that a scene needs. Each volume that scatters unevenly needs a table for g and, where
+ * light is scattered more than once, a table for g^2. */
 static size_t wanted_tables(const hl_scene_description *scene) {
   size_t count = 0;
   if (scene->render.compositing != HL_COMPOSITING_LIGHT ||

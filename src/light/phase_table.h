@@ -3,7 +3,7 @@
  *
  * A table for each anisotropy holds the mean of p over round caps of directions, divided by p in the
  * direction of the cap's middle. It has a row for each size of a cap and a column for each angle to its
- * middle. Angles and sizes are measured by
+ * middle. Angles, and the angles up to which caps reach, are measured by
  *
  *
  *     s(angle) = sqrt(1 + g^2 - 2 g cos(angle)),      p = (1 - g^2) / s^3,
