@@ -1,8 +1,9 @@
 /* scatter/direct.c - the lights' unscattered light at the nodes.
  *
- * Light that reaches a node is found for a few points of each light: extinction is summed along the way to
- * the point, in steps as long as the distance of the nodes. A node holds the mean over its box: the light
- * that reaches the box's lit side, times (1 - exp(-t)) / t for the optical depth t of the box. */
+ * The light that reaches a node is found for a few points of each light: extinction is summed on the way from
+ * the node to the point, in steps as long as the distance of the nodes. A node holds the mean of the light
+ * over its box. This is the light that reaches the box's lit side, times (1 - exp(-t)) / t for the optical
+ * depth t of the box. */
 #include <math.h>
 #include <string.h>
 
@@ -11,8 +12,9 @@
 
 enum { SOFT_SIDE = 3 /* points along each side of a soft light's square */ };
 
-/* exp(-x) for x >= 0, the same on every machine: 2^n (1 + a + ... + a^6 / 6!), where a is the rest times ln
- * 2. It is at most 0.35, so the error is below 1e-7 (derived: the remainder of the series). */
+/* exp(-x) for x >= 0, the same on every machine. Derived: it is 2^n (1 + a + ... + a^6 / 6!), where n is -x /
+ * ln 2 rounded to a whole number, and a is the rest times ln 2. |a| is at most 0.35, so the remainder of the
+ * series is below 1e-7. */
 static float falling(float x) {
   if (!(x < 80)) return 0;
   float y = -x * 1.44269504f, whole = floorf(y + 0.5f), a = (y - whole) * 0.693147181f;
@@ -59,8 +61,8 @@ static bool add_extinction(const direct_job *job, const float at[3], float weigh
   return true;
 }
 
-/* The fraction of light from a direction that is left at a node. The direction is a unit vector towards the
- * light, which is `distance` away. */
+/* Finds, for each channel, the fraction of a light's light that volumes leave at a node. towards: unit vector
+ * towards the light, which is `distance` away. */
 static void find_passing(const direct_job *job, const int32_t at[3], size_t node, vec3 towards,
                          double distance, float passing[3]) {
   const double way[3] = {towards.x, towards.y, towards.z};
@@ -87,14 +89,15 @@ static float within_cone(const light_cone *cone, vec3 towards) {
   return (float)(x * x * (3 - 2 * x));
 }
 
-/* Takes a mesh's part of the light on its way. */
+/* Multiplies the light by the fraction that a mesh lets through where the light meets it. */
 static void meet_mesh(void *data, const surface_hit *hit) {
   float *passing = data;
   const double *color = hit->mesh->look.attenuation_color;
   for (int c = 0; c < 3; c++) passing[c] *= (float)(1 - hit->opacity * color[c]);
 }
 
-/* Adds the light of one point of a light, which stands for a share of it. */
+/* Adds the light of one point of a light to a node. Each of the light's points has an equal part of its
+ * light. */
 static void add_point(const direct_job *job, const int32_t at[3], size_t node, const double square[2]) {
   const light_source *source = job->source;
   vec3 offset = job->side > 1 ? hl_light_point(source, square[0], square[1]) : (vec3){0, 0, 0};

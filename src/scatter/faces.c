@@ -1,19 +1,19 @@
 /* scatter/faces.c - changes the light of nodes beside matter, so that samples between nodes are lit as the
  * matter is.
  *
- * Samples are lit by the light of nodes, interpolated linearly in the distance. Between nodes with the
- * extinctions e and f, each of which covers half of the way, light is linear in the optical depth. On a
- * line that crosses the face between them, where light goes from u to v, it is u + (v - u) e / (e + f) in
- * the middle. Linear interpolation gives this value if the node of less matter, f, has v + (v - u) (e - f)
- * / (e + f) (derived). Lines along the face are another case. Beside the matter such a line holds the light
- * of the sky, or none; within the matter it holds the light that is scattered there. Each line stands for
- * all directions that are nearly along the face. At the face, one half of these directions brings v and the
- * other half u; a little deeper all of them bring u. So in the middle v counts a quarter, for which the
- * node of less matter must have v + (u - v) / 2 (e - f) / (e + f).
+ * Samples are lit by the light of nodes, interpolated linearly in the distance. The light itself is linear in
+ * the optical depth. Consider a line that crosses the matter's face between two nodes. Let the nodes have the
+ * extinctions e and f, f the lesser one, each for half of the way, and the light u and v. In the middle the
+ * light is then u + (v - u) e / (e + f). Linear interpolation gives this value if the node of extinction f
+ * holds v + (v - u) (e - f) / (e + f) in place of v (derived). Lines along the face are another case. Beside
+ * the matter such a line holds v, the light of the sky or none; within the matter it holds u, the light that
+ * is scattered there. Each line stands for all directions that are nearly along the face. At the face, one
+ * half of these directions brings v and the other half u; a little deeper all of them bring u. So in the
+ * middle v has the weight 1/4. For this the node of less matter must hold v + (u - v) / 2 (e - f) / (e + f).
  *
- * An empty node beside matter has the light at the matter's face. So it continues the light of the matter,
- * and light that is even stays even. Where a node has several such neighbours, the mean counts, weighted by
- * how much more matter they have. */
+ * So an empty node beside matter holds the light at the matter's face. It continues the light of the matter,
+ * and light that is even stays even. Where a node has several neighbours with more matter, it gets the mean
+ * of their changes, weighted by how much more matter they have. */
 #include "scatter/parts.h"
 
 typedef struct faces {

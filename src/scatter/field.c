@@ -178,7 +178,8 @@ typedef struct channel {
   float *light, *flux;
 } channel;
 
-/* The albedo of all matter together: of the light that matter takes, the fraction that is scattered. */
+/* The albedo of all matter together: the fraction of the light that meets matter which the matter
+ * scatters. */
 static float mean_albedo(const channel *of, size_t count) {
   double met = 0, kept = 0;
   for (size_t n = 0; n < count; n++) met += of->own[n], kept += of->extinction[n] - of->scattering[n];
@@ -199,7 +200,7 @@ static void leave_sky(const channel *of, const scatter_work *work, size_t count)
   }
 }
 
-/* Solves one channel. begun: the lines were prepared before, for the same extinction. */
+/* Solves one channel. begun: the lines have been prepared already, for the same extinction. */
 static void solve_channel(const scatter_scene *scene, const scatter_nodes *nodes, const channel *of,
                           bool begun, scatter_work *work) {
   const bool two = of->inflow != NULL && of->own != of->extinction;

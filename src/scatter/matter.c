@@ -117,7 +117,8 @@ static void add_volume(const scatter_volume *volume, vec3 point, float weight, m
   }
 }
 
-/* The number of samples along an edge of a node's box with which a volume's voxels are found. */
+/* The number of samples along an edge of a node's box, so that samples are about as close together as a
+ * volume's voxels. */
 static int samples_of(const scatter_volume *volume, float spacing) {
   double voxel = mat3_shortest_column(volume->grid->index_to_frame.linear);
   return (int)fmin(fmax(ceil(spacing / voxel), 1), MOST_SAMPLES);

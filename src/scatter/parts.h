@@ -22,8 +22,9 @@ enum {
 
 /* Matter and light at the nodes, each array [channels][nodes]. */
 typedef struct scatter_arrays {
-  float *extinction; /* extinction of the medium that scatters evenly, per frame unit */
-  float *scattering; /* per frame unit; scattering of this medium */
+  float *extinction; /* extinction, per frame unit, of the evenly scattering medium (scatter.h) that replaces
+                      * the real one */
+  float *scattering; /* scattering of the same medium, per frame unit */
   float *own;        /* extinction of the real medium, per frame unit. Where all media scatter evenly, it
                       * is the array `extinction` */
   float *direct;     /* [3][nodes]; the mean over all directions of the light that was not scattered */
@@ -31,8 +32,8 @@ typedef struct scatter_arrays {
   const surface_tree *tree; /* borrowed; the tree of meshes, without boxes where there are no meshes */
 } scatter_arrays;
 
-/* Light that enters the grid at the ends of its lines, for one channel: the radiance that travels along a
- * line's direction, and against it. */
+/* Light of one channel that enters the grid at the ends of its lines: for each direction of lines, the
+ * radiance that travels along the direction, and the radiance that travels against it. */
 typedef struct scatter_inflow {
   float along[SCATTER_LINES], against[SCATTER_LINES];
 } scatter_inflow;
@@ -45,29 +46,31 @@ const int *hl_scatter_step(int line);
 vec3 hl_scatter_way(int line, bool onwards);
 float hl_scatter_line_weight(int line);
 
-/* Finds the sky's light that enters the grid, in each channel. Each of the 26 directions has the mean
- * radiance of the sky's directions that are nearest to it. One factor for all of them makes their sum the
- * light of the whole sky. */
+/* Finds the sky's light that enters the grid, in each channel. A direction of the grid gets the mean radiance
+ * of those directions of the sky that are nearest to it. Then all 26 directions are multiplied by one factor,
+ * so that their weighted sum is the light of the whole sky. */
 void hl_scatter_sky_inflow(const hl_sky *sky, scatter_inflow inflow[3]);
 
-/* Where w is the albedo, the field of the sky, whose cells are finer than the nodes, lights samples with (1
- * - w) of the sky's unscattered light. The rest is in the grid:
+/* How the sky's light is divided. The sky's field (field/sky_field.h) is finer than the nodes. It lights
+ * samples with the fraction 1 - w of the sky's unscattered light, where w is the albedo. The grid holds the
+ * rest:
  *
  *
  *     all light of the grid - (1 - w) of its unscattered light.
  *
- * So where all light is scattered on, details of the sky's shadow vanish. This is right, because a fold
- * that gets less of the sky's light gets more scattered light. Under an even sky a medium of albedo 1 is
- * lit by 1 everywhere, exactly. */
+ * So where matter scatters all light, details of the sky's shadow vanish. This is right, because a fold of
+ * the matter that gets less of the sky's light gets more scattered light. Under an even sky a medium of
+ * albedo 1 is lit by 1 everywhere, exactly. */
 
-/* The fractions of light that meshes let through along the lines, each array [nodes]; and the depths that
- * walls.c makes from them and from a channel's extinction. */
+/* Meshes on the lines, each array [nodes]: the fractions of light that they let through, and the optical
+ * depths that walls.c makes from these fractions and from a channel's extinction. */
 typedef struct scatter_walls {
-  float *outside[SCATTER_LINES]; /* fractions let through between the sky and the first nodes of lines; 0
-                                  * at other nodes */
-  float *after[SCATTER_LINES];   /* fractions let through between a node and the next one; at last nodes,
-                                  * between the node and the sky */
-  float *at_node[SCATTER_LINES], *between[SCATTER_LINES]; /* depths at nodes, and depths between nodes */
+  float *outside[SCATTER_LINES]; /* at first nodes of lines: the fraction let through between the sky and the
+                                  * node; 0 at other nodes */
+  float *after[SCATTER_LINES];   /* the fraction let through between the node and the line's next node; at
+                                  * last nodes, between the node and the sky */
+  float *at_node[SCATTER_LINES], *between[SCATTER_LINES]; /* the depth of the node's own box, and the depth
+                                                           * between the node and the line's next node */
 } scatter_walls;
 
 /* Working memory of transport.c, one channel at a time. */
@@ -97,11 +100,12 @@ void hl_scatter_fill_walls(const scatter_scene *scene, const scatter_nodes *node
 void hl_scatter_add_wall(const scatter_walls *walls, int line, size_t node, size_t next,
                          const float *extinction, float length);
 
-/* Changes the light of nodes beside matter (faces.c). The light is the mean over the lines in work->along. */
+/* Changes the light of nodes beside matter (faces.c). light: [nodes]; the mean over all directions.
+ * work->along holds the light along each line. */
 void hl_scatter_continue(const scatter_nodes *nodes, const float *extinction, const scatter_work *work,
                          float *light);
 
-/* Prepares the lines for one channel of extinction. */
+/* Prepares the working memory of all lines for the extinction of one channel. */
 void hl_scatter_begin_lines(hl_pool *pool, const scatter_nodes *nodes, const float *extinction,
                             scatter_work *work);
 /* Finds the light that enters the grid and is not scattered, as the mean over all directions. flux: as for
@@ -110,10 +114,10 @@ void hl_scatter_enter(hl_pool *pool, const scatter_nodes *nodes, const float *ex
                       const scatter_inflow *inflow, scatter_work *work, float *scratch, float *light,
                       float *flux);
 
-/* Solves one channel. light: the mean over all directions of light that was scattered once or more often.
- * direct: the light that was not scattered, without the light that enters. inflow: the light that enters,
- * which is added scattered and unscattered; null: none enters. flux: [3][nodes], the mean times the direction
- * of travel; null: not wanted. */
+/* Solves one channel. direct: the lights' unscattered light. inflow: the sky's light that enters; null: there
+ * is none. light: receives the mean over all directions of the scattered light and of the sky's light,
+ * scattered or not. flux: [3][nodes]; receives the mean of this light times its direction of travel; null:
+ * not wanted. */
 void hl_scatter_solve(hl_pool *pool, const scatter_nodes *nodes, const float *extinction,
                       const float *scattering, const float *direct, const scatter_inflow *inflow,
                       scatter_work *work, float *light, float *flux);

@@ -12,7 +12,7 @@
  *
  * A medium with the extinction s, anisotropy g and albedo w is replaced by a medium that scatters evenly,
  * with the extinction s (1 - w g) and the scattering s w (1 - g) (similarity; van de Hulst, "Multiple light
- * scattering", 1980). Both media spread light alike after many scatterings. */
+ * scattering", 1980). After many scatterings light spreads alike in both media. */
 #ifndef HL_SCATTER_SCATTER_H
 #define HL_SCATTER_SCATTER_H
 
@@ -38,10 +38,10 @@ typedef struct scatter_scene {
   hl_context *context;
   hl_pool *pool;
   const hl_scene_description *scene; /* in frame space */
-  const double *sun_parts; /* [scene->light_count]; light_source.of_sky of each light, for suns of the sky */
-  const scatter_volume *volumes; /* [scene->volume_count] */
-  uint64_t sky_mark;             /* identifies the pixels of the sky's image */
-  const surfaces *surfaces;      /* the scene's meshes, which absorb light; null: none */
+  const double *sun_parts;           /* [scene->light_count]; for each light, `of_sky` of its light_source */
+  const scatter_volume *volumes;     /* [scene->volume_count] */
+  uint64_t sky_mark;                 /* identifies the pixels of the sky's image */
+  const surfaces *surfaces;          /* the scene's meshes, which absorb light; null: none */
 } scatter_scene;
 
 /* The places of the nodes, in frame space: node (x, y, z) is at origin + spacing * (x, y, z). */

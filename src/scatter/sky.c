@@ -5,8 +5,8 @@
 
 #include "scatter/parts.h"
 
-/* The sky is sampled in BANDS bands of equal height. A higher image has a band for each of its rows, up to
- * MOST_BANDS. */
+/* The sky is sampled in BANDS bands of equal height. If the sky's image has more rows, there is a band for
+ * each row, up to MOST_BANDS. */
 enum { BANDS = 64, MOST_BANDS = 512 };
 
 enum { DIRECTIONS = 2 * SCATTER_LINES };
@@ -18,8 +18,8 @@ typedef struct sky_sums {
   double sums[DIRECTIONS][3], samples[DIRECTIONS];
 } sky_sums;
 
-/* The number of the grid's direction in which light of the sky travels, nearly. from: where the light comes
- * from, the opposite of its direction of travel. */
+/* The number of the grid's direction that is nearest to the direction in which light of the sky travels.
+ * from: the direction from which the light comes, opposite to its travel. */
 static int nearest_direction(const sky_sums *sums, vec3 from) {
   int nearest = 0;
   double greatest = -INFINITY;

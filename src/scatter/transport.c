@@ -1,17 +1,18 @@
 /* scatter/transport.c - how scattered light spreads from node to node.
  *
  * Along a line through the nodes, let u be the mean of the light that travels onwards and of the light that
- * travels back. With even scattering and the optical depth t, u obeys u'' = u - S, where S is the light
- * scattered into either way (Feautrier, "Sur la resolution numerique de l'equation de transfert", 1964).
- * Where nodes i and i + 1 have the optical distance d_{i+1/2}, and t_i is the optical depth of a node's own
- * box,
+ * travels back. With even scattering, u obeys u'' = u - S, where u'' is the second derivative by the optical
+ * depth, and S is the light that is scattered into each of the two ways (Feautrier, "Sur la resolution
+ * numerique de l'equation de transfert", 1964). Where nodes i and i + 1 have the optical distance d_{i+1/2},
+ * and t_i is the optical depth of a node's own box,
  *
  *
  *     t_i (u_i - S_i) = (u_{i+1} - u_i) / d_{i+1/2} - (u_i - u_{i-1}) / d_{i-1/2}
  *
- * and the light I enters at the ends, which is only a sky's light. The elimination starts at one end. Its
- * form has no differences and no division by d, which is 0 in empty space (derived; after Rybicki and Hummer,
- * "An accelerated lambda iteration method for multilevel radiative transfer", 1991, appendix A):
+ * and the light I enters at the ends; only a sky's light does. These equations are solved by elimination,
+ * which starts at one end. The form used here has no differences and no division by d, which is 0 in empty
+ * space (derived; after Rybicki and Hummer, "An accelerated lambda iteration method for multilevel radiative
+ * transfer", 1991, appendix A):
  *
  *
  *     f_i = t_i + f_{i-1} g_{i-1},  y_i = t_i S_i + y_{i-1} g_{i-1},  g_i = 1 / (1 + f_i d_{i+1/2}),  f = 1
@@ -21,24 +22,24 @@
  * The mean over all directions is the weighted sum over the 13 lines between a node and its 26 neighbours, by
  * the weights of the cubature of degree 7 of Lebedev ("Values of the nodes and weights of ninth to
  * seventeenth order Gauss-Markov quadrature formulae invariant under the octahedron group with inversion",
- * 1975). The scheme keeps all energy, and where many mean free paths lie between nodes it becomes the
- * diffusion equation.
+ * 1975). The scheme conserves energy. Where many mean free paths lie between nodes it becomes the diffusion
+ * equation.
  *
  * From node i to the next one, the light that travels onwards exceeds the mean of both ways by v_{i+1/2} =
  * y_i - f_i u_i (derived: the first of these equations for (u_i - u_{i+1}) / d). The sum of v times the
  * line's direction is the light's flux.
  *
- * The scattered light depends on the light itself. Let G be the sum above as a function of the energy that
- * nodes send out, D the scattering, and b the light that was not scattered. Then u = G D (u + b). G is
- * symmetric, so conjugate gradients (Hestenes and Stiefel, 1952) solve (1 - sqrt(D) G sqrt(D)) v = sqrt(D) G
- * D b for v = sqrt(D) u. */
+ * The scattered light depends on the light itself. Let G be the linear map that gives this weighted sum for
+ * the energy that nodes send out. Let D be the scattering, u the scattered light, and b the light that was
+ * not scattered. Then u = G D (u + b). G is symmetric, so conjugate gradients (Hestenes and Stiefel, 1952)
+ * solve (1 - sqrt(D) G sqrt(D)) v = sqrt(D) G D b for v = sqrt(D) u. */
 #include <math.h>
 #include <string.h>
 
 #include "scatter/parts.h"
 
-/* MOST_STEPS: the most steps of conjugate gradients. They end earlier where the residual has fallen to a
- * fraction of the first residual. */
+/* MOST_STEPS: the greatest number of steps of conjugate gradients. The steps end earlier when the residual
+ * has fallen to the fraction ENOUGH of the first residual. */
 enum { MOST_STEPS = 60 };
 static const double ENOUGH = 2e-3;
 
@@ -75,14 +76,15 @@ static const scatter_walls *walls_of(const lines_job *job) {
   return job->work->walls.after[0] != NULL ? &job->work->walls : NULL;
 }
 
-/* A row of nodes along x on the lines of one direction. */
+/* A row of nodes along x, for lines of one direction. */
 typedef struct line_row {
   size_t at;         /* number of the row's first node */
   size_t step;       /* step from a node to the next node of the line */
   int32_t low, high; /* the nodes of the row that have a next node: from low to high - 1 */
 } line_row;
 
-/* The rows of a line, in order. index: from 0 on. */
+/* Row number `index` for lines of a direction, in the order in which light that travels onwards reaches the
+ * rows. */
 static line_row row_of(const scatter_nodes *nodes, int line, size_t index) {
   const int *way = ways[line];
   const int32_t *count = nodes->count;
@@ -96,7 +98,7 @@ static line_row row_of(const scatter_nodes *nodes, int line, size_t index) {
   return row;
 }
 
-/* Finds g for all nodes of a line; for last nodes 1 / (1 + f). */
+/* Finds g at all nodes, for lines of one direction; at last nodes of lines, 1 / (1 + f) takes its place. */
 static void begin_line(void *data, size_t line, int worker) {
   (void)worker;
   const lines_job *job = data;
@@ -198,7 +200,8 @@ static void solve_line(void *data, size_t line, int worker) {
   }
 }
 
-/* Does the work of flux_line(): finds v at the nodes, as the mean over the links on both sides. */
+/* Finds v at the nodes, for lines of one direction: at each node, the mean of v on the links before and after
+ * it. */
 static void flux_line(void *data, size_t line, int worker) {
   (void)worker;
   const lines_job *job = data;
@@ -292,7 +295,8 @@ static void apply(hl_pool *pool, lines_job *job, const float *root, const float 
   for (size_t n = 0; n < count; n++) product[n] = v[n] - root[n] * product[n];
 }
 
-/* Solves by conjugate gradients, starting at v = 0. rest: the right side; afterwards the residual. */
+/* Solves for v by conjugate gradients, starting at v = 0. rest: the equation's right side; afterwards the
+ * residual. */
 static void solve_symmetric(hl_pool *pool, lines_job *job, const float *root, float *rest, float *v) {
   size_t count = hl_scatter_node_count(job->nodes);
   float *way = job->work->vectors[1], *product = job->work->vectors[2], *scratch = job->work->vectors[3];
@@ -336,8 +340,8 @@ void hl_scatter_solve(hl_pool *pool, const scatter_nodes *nodes, const float *ex
   lines_job job = {.nodes = nodes, .extinction = extinction, .work = work};
   for (size_t n = 0; n < count; n++) root[n] = sqrtf(scattering[n]), sent[n] = scattering[n] * direct[n];
   job.inflow = inflow;
-  spread(pool, &job, sent, rest); /* after this, rest = G D b + E, which is the light u that is not scattered
-                                   * further, plus the light that enters */
+  spread(pool, &job, sent, rest); /* after this, rest = G D b + E: the light that was scattered once, plus the
+                                   * light that enters */
   job.inflow = NULL;
   for (size_t n = 0; n < count; n++) right[n] = root[n] * rest[n];
   solve_symmetric(pool, &job, root, right, light);

@@ -1,18 +1,18 @@
 /* scatter/walls.c - meshes on the lines of the grid.
  *
- * A few rays beside each line are tested for meshes. The mean fraction of light that passes along these
- * rays counts as the fraction that meshes let through between two nodes. Beyond the ends of the line the
- * rays spread over the part of the sky for which the line stands. In a channel of extinction, the fractions
- * become depths (derived). A wall lets the fraction T of light through and sends none back. With t = (1 -
- * T) / (1 + T), the mean u of both ways, and the excess v of the light that travels onwards, obey on its
- * two sides
+ * A few rays beside each line are tested for meshes. The mean of the fractions of light that pass along these
+ * rays is taken as the fraction that meshes let through between two nodes. Beyond the ends of the line the
+ * rays spread over the part of the sky for which the line stands. For each channel of extinction, the
+ * fractions are turned into optical depths (derived). A wall lets the fraction T of light through and sends
+ * none back. With t = (1 - T) / (1 + T), the mean u of both ways, and the excess v of the light that travels
+ * onwards, obey on its two sides
  *
  *
  *     v_1 = t u_1 + (u_1 - u_2) / d,  v_2 = (u_1 - u_2) / d - t u_2,  d = 2 t / (1 - t^2)
  *
- * So the depth of the nodes on both sides grows by t, and the depth d lies between them. Where matter of
- * the depth r lies between each node and the wall, even light on both sides (u_1 = u_2) meets 1 / t + r
- * instead of 1 / t, and opposite light (u_1 = -u_2) meets t + r instead of t. So
+ * So a wall adds t to the depths of the nodes on both sides, and the depth d between them. Let matter of the
+ * depth r lie between each node and the wall. Then even light on both sides (u_1 = u_2) meets 1 / t + r
+ * instead of 1 / t, and opposite light (u_1 = -u_2) meets t + r instead of t. So t and d become
  *
  *
  *     t' = t / (1 + r t),  d' = 2 (t + r) (1 + r t) / (1 - t^2) */
@@ -39,7 +39,8 @@ typedef struct wall_job {
  * node. */
 typedef struct wall_ray {
   vec3 origin, step; /* position of the first node, and step from node to node */
-  vec3 tilt;         /* added to a way of unit length from a node to the sky, it tilts the way */
+  vec3 tilt;         /* added to the unit vector from an end of the ray towards the sky, so that rays spread
+                      * over the sky */
   double passing[SCATTER_MOST_NODES + 1];
   int count; /* number of nodes */
 } wall_ray;

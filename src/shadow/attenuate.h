@@ -20,10 +20,10 @@ typedef struct attenuate_volume {
   float voxel;                /* the smallest edge of its voxels; frame units */
   float weight[HL_CHANNELS];  /* relative extinction of R, G, B */
   int uncut;                  /* the box does not cut the slab here */
-  const slab_run
-      *faces; /* the run of the slab, where a face of a cut that is lit as a surface is near; else null */
-  int slab;   /* the slab's number in its run */
-  const grid *grid; /* with gradient opacity: the grid whose gradient decides the factor */
+  const slab_run *faces; /* the run that holds the slab, where a face that cuts matter and is lit as a surface
+                          * is near; else null */
+  int slab;              /* the slab's number in its run */
+  const grid *grid;      /* with gradient opacity: the grid whose gradient decides the factor */
   const kernel *kernel;
   const float (*to_index)[4]; /* frame space to index space */
 } attenuate_volume;
@@ -41,7 +41,8 @@ typedef struct attenuate_job {
   int volume_count;
   int channels;                      /* 1: attenuation is grey; 3 */
   float *transmittance[HL_CHANNELS]; /* the tile's first pixel; rows stride apart */
-  float *older[HL_CHANNELS];         /* as transmittance, multiplied alike; null: none */
+  float *older[HL_CHANNELS];         /* further transmittance, laid out as `transmittance` and multiplied by
+                                      * the same factors; null: none */
   float *outside[HL_CHANNELS];       /* the light at the outside of surfaces, laid out as the
                                       * transmittance; null: none */
   size_t stride;
@@ -49,28 +50,27 @@ typedef struct attenuate_job {
                                * light that the slab absorbs, times `position`, is added to it */
   size_t moment_stride;
   float position;
-  bool marks; /* surfaces leave marks in pixels that are dark or that they make dark; see DARK_AT_START */
+  bool marks; /* surfaces write marks into pixels that are dark, or that they make dark; see DARK_AT_START */
 } attenuate_job;
 
-/* A volume's surface is lit by the light that arrives at its outside. Matter that light crosses while it
- * goes deeper into one and the same surface shades all that lies behind, but not this surface. So a pixel
- * keeps two numbers: its transmittance T, and the light Y at the outside. Y - T is the light that the
- * surface has taken so far. A slab with the transmittance t, in which values go from x1 to x2, changes both
- * numbers as follows (derived):
+/* A volume's surface is lit by the light that arrives at its outside. While light goes deeper into one
+ * surface, the matter that it crosses shades everything behind it, but not this surface itself. So a pixel
+ * keeps two numbers: its transmittance T, and the light Y at the outside. Y - T is the light that the surface
+ * has taken so far. A slab with the transmittance t, in which values go from x1 to x2, changes both numbers
+ * as follows (derived):
  *
  *
  *     Y <- T t + k (Y - T) + k' T (1 - t)      T <- T t
  *
  * The depth h of a value is the integral of extinction over values, from the value at which its surface
  * begins, classifier.outside. An edge whose values rise evenly has, up to a value, an optical depth in
- * proportion to h.
- * While light goes on within one surface, which begins at one value, k = k' = min(1, h2 / h1)^OUTWARDS_POWER:
- * 1 while it goes deeper, falling to 0 where the surface ends. Light that enters another surface within the
- * slab has k = 0 and k' = 1. Light that leaves a surface, or a cut's face, has k = k' = 0. The product over
- * slabs depends only on h at both ends, and not on how the way is cut into slabs. Where values hardly change,
- * matter is no surface (classifier.normal_edge): EVEN_VOXELS of such matter on the light's way divide k and
- * k' by e. In a medium k = k' = 0. Where several volumes share a slab, k and k' are their means, weighted by
- * optical depth.
+ * proportion to h. While light goes on within one surface, which begins at one value, k = k' = min(1, h2 /
+ * h1)^OUTWARDS_POWER, where h1 and h2 are the depths of x1 and x2. This is 1 while light goes deeper, and
+ * falls to 0 where the surface ends. Where light enters another surface within the slab, k = 0 and k' = 1.
+ * Where light leaves a surface, or a cut's face, k = k' = 0. The product of k over slabs depends only on h at
+ * both ends of the way, and not on how the way is cut into slabs. Where values hardly change, matter is no
+ * surface (classifier.normal_edge): EVEN_VOXELS of such matter on the light's way divide k and k' by e. In a
+ * medium k = k' = 0. Where several volumes share a slab, k and k' are their means, weighted by optical depth.
  *
  * A face that cuts matter is a surface, too. Its outside is the face, and light goes deeper into it
  * whatever the values behind it are: k = k' = 1 for visible matter up to a voxel behind a face through
@@ -78,20 +78,20 @@ typedef struct attenuate_job {
  * 1 to 0 at FACE_VOXELS behind the face. Over the same distance the eye sees less and less of the face
  * (render/slab_lanes.h).
  *
- * OUTWARDS_POWER: sets how soon a surface that light leaves again counts as left. Where h has fallen by a
+ * OUTWARDS_POWER: sets how soon a surface has ended for light that leaves it again. Where h has fallen by a
  * tenth, .19 of the taken light still lights the surface; where it has fallen by a third, .0015 does. */
 #define OUTWARDS_POWER 16
 
-/* Voxels of even matter after which a surface counts as left. Matter that is even over a voxel is no edge, so
- * that light does not go on through it from a wall into the floor below. The faces of cuts, behind which
- * matter is even, have a rule of their own. */
+/* The number of voxels of even matter over which k falls by the factor e. Matter that is even over a voxel is
+ * no edge of a surface. So light that a wall has absorbed does not light the floor behind such matter again.
+ * The faces of cuts, behind which matter is even, have a rule of their own. */
 #define EVEN_VOXELS 1
 
-/* Marks of surfaces in the dark. A surface in the dark takes no light. A method that blurs the light which
- * was taken before still needs to know where the surface is, because light from beside the shadow also ends
- * at it. Where less than DARK_AT_START of the light is left, the pixel becomes -DARK_MARK times the
- * transmittance of the chunk's surfaces, at most -LEAST_MARK. Where a surface takes all light, the pixel
- * becomes -LEAST_MARK. Readers take marks as 0. */
+/* Marks of surfaces in the dark. A surface in the dark absorbs no light. But a method that blurs the light
+ * which was absorbed before needs to know where the surface is, because light from beside the shadow ends at
+ * it, too. Where less than DARK_AT_START of the light is left, the pixel becomes -DARK_MARK times the
+ * transmittance of the chunk's surfaces, but not more than -LEAST_MARK. Where a surface absorbs all light,
+ * the pixel becomes -LEAST_MARK. Whoever reads light takes marks as 0. */
 #define DARK_AT_START (1.0f / 256)
 #define DARK_MARK     0x1p-64f
 #define LEAST_MARK    0x1p-88f

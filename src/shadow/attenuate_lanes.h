@@ -105,13 +105,15 @@ LANES_INLINE lanes power_of_depth(lanes h1, lanes h2) {
   return left;
 }
 
-/* k to the power 1 - skin. Products of such powers do not depend on the distance of sheets. */
+/* k to the power 1 - skin. The product of such powers over slabs does not depend on how thick the slabs
+ * are. */
 LANES_INLINE lanes kept_in_skin(lanes kept, lanes skin) {
   return lanes_select(skin > 0.0f, lanes_power_of_part(kept, 1.0f - skin), kept);
 }
 
-/* The kept light near a face of a cut. Matter there belongs to the face's surface if it is visible where
- * light leaves the slab. b: the value at this place; corner: the block's first pixel. */
+/* The kept light near a face that cuts matter. The matter belongs to the face's surface if it is visible
+ * where the light leaves the slab. b: the table coordinate of the value there. corner: the block's first
+ * pixel. */
 LANES_INLINE kept_light kept_by_face(const attenuate_volume *volume, kept_light kept, table_coordinate b,
                                      const int corner[2]) {
   lanes skin = skin_of_faces(volume->faces, volume->slab, block_u(corner[0]), block_v(corner[1]));
@@ -122,23 +124,23 @@ LANES_INLINE kept_light kept_by_face(const attenuate_volume *volume, kept_light 
   return (kept_light){kept_in_skin(kept.before, skin), kept_in_skin(kept.within, skin)};
 }
 
-/* A part of a slab in a box that ends nearer than this to the slab's own end is taken to reach the end: the
- * difference is rounding. */
+/* If the part of a slab that lies in the box ends within this fraction of the slab before the slab's end, it
+ * is taken to reach the end: such a difference is only rounding. */
 static const float ROUNDING_OF_SPAN = 1e-3f;
 
-/* The kept light where a face of the box begins or ends the matter within the slab. Where matter ends,
- * light leaves the surface. Where matter begins, the light comes from no surface. Blurs may still have
- * brought taken light across the face: they spread the shadow of the face's own matter, and the light that
- * this matter took. The face keeps that light. */
+/* The kept light where the matter begins or ends within the slab, at a face of the box. Where matter ends,
+ * light leaves the surface, and k = k' = 0. Where matter begins, no surface lies before it. But blurs may
+ * have brought absorbed light across the face: they spread the shadow of the face's own matter, and the light
+ * that this matter has absorbed. This light goes on to light the face, so k is not changed there. */
 LANES_INLINE kept_light kept_in_span(const attenuate_volume *volume, kept_light kept, covered_span span) {
   if (volume->enter == NULL) return kept;
   lanes_int ends = (span.begin + span.length) < (1.0f - ROUNDING_OF_SPAN);
   return (kept_light){lanes_keep(~ends, kept.before), lanes_keep(~ends, kept.within)};
 }
 
-/* The kept light that follows from one volume's own values. to: the factor of the way from a to b. path:
- * length of the light's ray through the slab. extinction: the slab's. at: offset of the block's first
- * pixel. */
+/* The kept light that follows from one volume's own values. a, b: the values' coordinates at the ends of the
+ * slab's covered part. to: the integrals of extinction up to a and up to b. path: length of the light's ray
+ * through the slab. extinction: the volume's in the slab. at: offset of the block's first pixel. */
 LANES_INLINE kept_light kept_by_values(const attenuate_job *job, const attenuate_volume *volume,
                                        table_coordinate a, table_coordinate b, const way_ends *to,
                                        covered_span span, lanes path, lanes extinction, size_t at) {
@@ -198,15 +200,15 @@ LANES_INLINE lanes pass_outside(float *at, size_t stride, lanes before, lanes af
   return outside;
 }
 
-/* Attenuates one block by the slab. The result says whether the slab absorbed any light there (taken), and
- * whether enough light is left, or was left at the outside (lit). */
+/* Attenuates one block by the slab. Returns whether the slab absorbed any light there (taken), and whether
+ * enough light is left after it, or at the outside of surfaces (lit). */
 LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volume_count, int channels,
                                               int tile_x, int tile_y, int block) {
   const int x = block % 4 * BLOCK, y = block / 4 * BLOCK, corner[2] = {tile_x * TILE + x, tile_y * TILE + y};
   lanes depth[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)}, total = lanes_set(0);
   kept_light kept = {lanes_set(0), lanes_set(0)};
   lanes path = path_through_sheet(&job->rays, job->path, block_u(corner[0]), block_v(corner[1]));
-  int hidden = 0; /* non-zero: a surface may have ended because its matter is hidden, not because values
+  int hidden = 0; /* not 0: a surface may have ended because a factor hides its matter, and not because values
                    * are low */
   for (int i = 0; i < volume_count; i++) {
     const attenuate_volume *volume = &job->volumes[i];

@@ -77,9 +77,10 @@ static pixel_row row_around(double low, double high, double size, double pixel) 
   return (pixel_row){count, (low + high) / 2 - count * pixel / 2, pixel};
 }
 
-/* Makes pixels a little smaller, so that the middles of the first and the last pixel lie just inside the
- * bounds (borders aside): light along a box's face is then not mixed with light that passes outside. This
- * is not done for soft shadows, nor where the bounds are narrower than LEAST_FITTED of a pixel. */
+/* The least width of bounds, in pixels, that are fitted by row_between(). It makes pixels a little smaller,
+ * so that the middles of the first and the last pixel, without the borders, lie just inside the bounds. Light
+ * along a box's face is then not mixed with light that passes outside the face. Bounds of soft shadows are
+ * not fitted. */
 static const double LEAST_FITTED = 0.25;
 
 static pixel_row row_between(double low, double size, double pixel) {

@@ -4,14 +4,14 @@
  * 17). At the volume its pixels are hardly larger than the picture's pixels. Around it is a margin of ones,
  * unattenuated light, which blurs read.
  *
- * The light runs ahead of the picture, which reads the planes of earlier sheets: so the buffer keeps the
- * planes of the last sheets in a ring; sheet k has the planes number k % ring. A tile that has changed is
- * carried from sheet to sheet until all planes of the ring hold what it became; a tile that never changes
- * costs nothing.
+ * The buffer is brought forward ahead of the picture, which reads the planes of earlier sheets. So the buffer
+ * keeps the planes of the last sheets in a ring: sheet k has the planes number k % ring. A tile that has
+ * changed is copied from sheet to sheet until all planes of the ring hold its last content. A tile that never
+ * changes costs nothing.
  *
  * Surfaces of volumes are lit by the light that arrives at their outside. Where a scene has such surfaces, a
- * pixel also holds this light: the transmittance, plus what the surface that the light's ray is in has taken
- * since the ray entered it (attenuate.h). */
+ * pixel also holds this light. It is the transmittance, plus the light that the pixel's ray has lost to the
+ * surface in which the ray is (attenuate.h). */
 #ifndef HL_SHADOW_SHADOW_BUFFER_H
 #define HL_SHADOW_SHADOW_BUFFER_H
 
@@ -24,8 +24,8 @@
 /* The planes of one sheet. */
 typedef enum shadow_plane {
   SHADOW_TRANSMITTANCE,
-  SHADOW_OUTSIDE, /* the light at the outside of the surface in which a pixel's ray is; never less than the
-                   * transmittance */
+  SHADOW_OUTSIDE, /* the light that arrives at the outside of the surface in which a pixel's ray is; not less
+                   * than the transmittance */
   SHADOW_SECOND   /* planes for the method's own use: for `paper` the result of half a blur, for `cascade`
                    * the light from which samples fade */
 } shadow_plane;
@@ -40,8 +40,8 @@ typedef struct shadow_buffer {
   int ring;                          /* number of sheets that are kept */
   bool has_outside, has_second;      /* whether each sheet has planes of these two kinds beside the
                                       * transmittance */
-  float *transmittance[HL_CHANNELS]; /* pixel (0,0) of the planes of the sheet that was reached last; a
-                                      * part of `memory` */
+  float *transmittance[HL_CHANNELS]; /* pixel (0,0) of each channel, in the planes of the sheet to which the
+                                      * buffer was brought last; a part of `memory` */
   float *outside[HL_CHANNELS], *second[HL_CHANNELS]; /* the same for other planes; null: there are none */
   int sheet;                                         /* that was reached last */
   float *planes;                                     /* in memory; [ring][1 to 3][channels][plane] */
@@ -57,13 +57,13 @@ typedef struct shadow_extent {
   const vec3 *points; /* corners of the region to cover; frame space */
   int point_count;
   double pixel;           /* wanted edge of a pixel at the volume, frame units */
-  int resolution;         /* pixels along the longer side; 0: by pixel */
+  int resolution;         /* number of pixels along the longer side; 0: `pixel` decides */
   size_t greatest_pixels; /* limit of width * height */
-  double margin;          /* margin around the points for penumbrae: frame units; for a near light its
-                           * width at distance 1 */
+  double margin;          /* width of the margin for penumbrae around the points: frame units; for a near
+                           * light its width at distance 1 */
   const vec3 *content;    /* corners of all content; no margin is needed beyond the content; frame space */
   int content_count;
-  vec3 u; /* unit vector, the direction of the buffer's rows; zero: chosen by the light's tilt */
+  vec3 u; /* unit vector along the buffer's rows; zero: the light's tilt decides */
 } shadow_extent;
 
 /* Lays out the view: plane_normal is the light's direction (hard) or the sheets' normal (soft). */
@@ -78,7 +78,7 @@ typedef struct shadow_buffer_size {
   int ring;             /* sheets that are kept; at least 1 */
 } shadow_buffer_size;
 
-/* (Re)allocates and sets all transmittances to 1. */
+/* Allocates a buffer's memory, or allocates it again if it is too small, and sets all transmittances to 1. */
 hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buffer *buffer,
                                  const shadow_buffer_size *size, hl_error *error);
 /* Sets a buffer's view, tiles, stride, plane and origin. reach: as in shadow_buffer_size. */
@@ -90,7 +90,7 @@ void hl_shadow_buffer_count(const shadow_buffer_size *size, hl_layout *layout);
 /* Bytes of one sheet's planes. */
 uint64_t hl_shadow_sheet_bytes(const shadow_buffer_size *size);
 
-/* Pixel (0,0) of a channel of the planes of one kind, which the buffer has, at a sheet. */
+/* Pixel (0,0) of a channel, in a sheet's planes of one kind. The buffer must have planes of this kind. */
 float *hl_shadow_plane_at(const shadow_buffer *buffer, int sheet, shadow_plane kind, int channel);
 /* Points `transmittance`, `outside` and `second` to a sheet's planes. */
 void hl_shadow_buffer_reach(shadow_buffer *buffer, int sheet);
@@ -98,12 +98,12 @@ void hl_shadow_buffer_reach(shadow_buffer *buffer, int sheet);
 static inline bool hl_shadow_is_carried(const shadow_buffer *buffer, size_t tile, int sheet) {
   return buffer->changed[tile] > 0 && buffer->changed[tile] > sheet - buffer->ring;
 }
-/* Copies a tile from the sheet before to this sheet, unless its planes there hold the same numbers already.
- * Where hl_shadow_is_carried() is true, call it for each sheet in turn, before the tile changes at this
- * sheet. */
+/* Copies a tile from the planes of the sheet before to the planes of this sheet, unless these hold the same
+ * numbers already. Where hl_shadow_is_carried() is true, call this function for each sheet in turn, before
+ * the tile changes at the sheet. */
 void hl_shadow_buffer_carry(shadow_buffer *buffer, size_t tile, int sheet);
-/* Finds the lit blocks of a tile (tile_lit) again after a blur. both: a block is lit also where only the
- * second planes have light. */
+/* Finds the lit blocks of a tile (tile_lit) again after a blur. both: blocks in which only the second planes
+ * have light count as lit, too. */
 void hl_shadow_buffer_find_lit(shadow_buffer *buffer, int x, int y, bool both,
                                lit_blocks_function *lit_blocks);
 void hl_shadow_buffer_release(hl_context *context, shadow_buffer *buffer);
@@ -127,7 +127,7 @@ typedef struct shadow_lookup {
   float young;                     /* how far samples have faded to `transmittance`, 0 to 1 */
 } shadow_lookup;
 
-/* Transmittance in units of 1 / SUBLIGHT_ONE, to halve the memory traffic of floats. */
+/* Transmittance in units of 1 / SUBLIGHT_ONE, which takes half of a float's memory traffic. */
 typedef uint16_t sublight_pixel;
 enum { SUBLIGHT_ONE = 65535 };
 

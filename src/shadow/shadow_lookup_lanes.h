@@ -56,8 +56,8 @@ LANES_INLINE void cubic_weights(lanes way, lanes weight[4]) {
   weight[3] = both * way;
 }
 
-/* Interpolates between four by four pixels, clamped to the range of the nearest four: without the clamp it
- * would overshoot beside an edge, and darken too much just inside a box's face. The function is not
+/* Interpolates between four by four pixels, clamped to the range of the nearest four. Without the clamp, the
+ * result would overshoot beside an edge, and would be too dark just inside a box's face. The function is not
  * inlined, so that it takes no registers from the bilinear look-up. */
 static __attribute__((noinline, unused)) lanes look_up_cubic(const shadow_map *map, const shadow_taps *taps,
                                                              const float *buffer) {

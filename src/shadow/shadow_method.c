@@ -114,13 +114,13 @@ void hl_light_shadow_end(light_shadow *shadow) {
 /* ---- the size of a shadow buffer's pixels and the region that it covers, for all methods ---- */
 
 /* Pixels of shadow buffers are as large as possible without visibly adding to the sheets' error (measured
- * against the reference, docs/experiments.md): their edge is three quarters of the sheets' distance, but at
- * least three tenths and at most three quarters of a voxel. SHADOW_PIXEL_PER_IMAGE_PIXEL holds for buffers
- * that are blurred. */
+ * against the reference, docs/experiments.md): their edge is SHADOW_PIXEL_PER_SPACING times the sheets'
+ * distance, but at least LEAST_SHADOW_PIXEL and at most GREATEST_SHADOW_PIXEL of a voxel. It is also at most
+ * SHADOW_PIXEL_PER_IMAGE_PIXEL times the edge of a picture's pixel. */
 static const double SHADOW_PIXEL_PER_SPACING = 0.75, LEAST_SHADOW_PIXEL = 0.3, GREATEST_SHADOW_PIXEL = 0.75;
 static const double SHADOW_PIXEL_PER_IMAGE_PIXEL = 1.4;
-/* Look-ups by cubic convolution, on pixels that are larger by this fraction of a voxel, are as exact as
- * bilinear look-ups. */
+/* Look-ups by cubic convolution are as exact as bilinear look-ups even if pixels are larger by this fraction
+ * of a voxel. */
 static const double CUBIC_LARGER = 1.0 / 8;
 enum { SHADOW_PIXELS_PER_IMAGE_PIXEL = 4, LEAST_SHADOW_PIXELS = 1 << 20 };
 

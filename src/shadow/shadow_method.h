@@ -59,7 +59,7 @@ typedef struct shadow_setup {
   const sheet_stack *sheets;
   const view *eye;
   const light_exchange *exchange; /* exchange with the other parts of a shared picture; null: there are no
-                                   * other parts, or they cannot be asked */
+                                   * other parts, or messages cannot be exchanged with them */
   bool surfaces;         /* some volume has surfaces, which are lit by the light at the surfaces' outside */
   int channels;          /* of attenuation: 1 or 3 */
   double voxel;          /* the smallest edge of a voxel, frame units */
@@ -89,8 +89,8 @@ typedef struct shadow_plan {
 typedef struct shadow_memory {
   void *planes;    /* owned; [capacity] */
   size_t capacity; /* bytes */
-  bool zeros;      /* all bytes are zeros; false while a method uses the planes, and after a frame that was
-                    * cancelled */
+  bool zeros;      /* all bytes are zeros; it is false while a method uses the planes, and after a cancelled
+                    * frame */
 } shadow_memory;
 
 typedef struct shadow_method shadow_method;
@@ -126,12 +126,12 @@ typedef struct shadow_layouts {
 struct shadow_method {
   const char *name;
   size_t state_bytes; /* of light_shadow.state, zeros before plan */
-  int first_slab;     /* where shadows of a near light within a slab begin. 0: with the part of this slab that
-                       * lies beyond the light; 1: with the next slab */
-  /* The number of the buffer's pixels by which surfaces take light late (surface/late/lateness.h), where
-   * look-ups are bilinear. Such look-ups read less than a pixel to each side, so that the least delay at
-   * which a flat surface does not darken itself is 1. Methods that blur by a pixel or more need a greater
-   * delay. */
+  int first_slab;     /* the first slab that casts shadows of a near light that lies within a slab. 0: this
+                       * slab, with its part beyond the light; 1: the next slab */
+  /* The delay of surfaces where look-ups are bilinear, in pixels of the buffer: the distance after which a
+   * surface absorbs light (surface/late/lateness.h). Bilinear look-ups read less than a pixel to each side,
+   * so with a delay of 1 a flat surface does not darken itself. Methods that blur by a pixel or more need a
+   * greater delay. */
   double surface_delay;
   double surface_rise; /* number of pixels by which surfaces lie higher in the buffer than they are */
   void (*plan)(light_shadow *shadow);
@@ -152,8 +152,8 @@ struct shadow_method {
   /* Each part of a shared picture works through only those tiles that it needs, by needed_until or
    * sublights_until. */
   bool divides;
-  /* Raises needed_until, [tiles], for tiles on whose pixels the pixels of other, needed tiles will depend.
-   * Null: no tile depends on another. */
+  /* Raises needed_until, [tiles], for those tiles on whose pixels needed pixels of other tiles will depend.
+   * Null: no tile depends on other tiles. */
   void (*widen_needs)(light_shadow *shadow, int32_t *needed_until);
   /* Each part of a shared picture works through only those tiles that it needs, and gets the rest from the
    * other parts (the setup's exchange, needed_until, owned). Each tile that any brick touches has one owner
@@ -184,12 +184,14 @@ shadow_layouts hl_light_shadow_count(light_shadow *shadow);
 /* Begins a copy of a planned shadow, which stays as it is. buffer and memory are the renderer's. */
 hl_status hl_light_shadow_begin(light_shadow *shadow, const light_shadow *planned, const shadow_means *means,
                                 int ring, shadow_buffer *buffer, shadow_memory *memory, hl_error *error);
-/* Releases what a planned or begun shadow holds, also after a failure; allowed for a struct of zeros. */
+/* Releases what a planned or begun shadow holds. Call it after a failure, too; a struct of zeros is
+ * allowed. */
 void hl_light_shadow_end(light_shadow *shadow);
 
 /* ---- for methods ---- */
 
-/* The edge of a buffer's pixel for the sheets' distance, frame units; larger for cubic convolution. */
+/* The edge of a buffer's pixel that suits the sheets' distance, in frame units. It is larger for cubic
+ * convolution. */
 double hl_shadow_pixel(const shadow_setup *setup, bool cubic);
 /* Whether hard shadows, or soft ones of an even light, are best read by cubic convolution. */
 bool hl_cubic_is_better(const shadow_setup *setup);
@@ -200,7 +202,7 @@ void hl_plan_soft(light_shadow *shadow, double pixel);
  * the second for light that the method blurs. */
 double hl_sharp_pixel(const shadow_setup *setup, bool cubic);
 double hl_blurred_pixel(const shadow_setup *setup, bool cubic);
-/* An extent around what is seen. pixel: frame units. */
+/* An extent around the content that the eye sees. pixel: wanted edge of a buffer's pixel; frame units. */
 shadow_extent hl_extent_of_seen(const shadow_setup *setup, double pixel);
 
 /* The last sheet's height. */
