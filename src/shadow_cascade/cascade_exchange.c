@@ -3,14 +3,14 @@
  *
  * A part attenuates the tiles that it needs. Penumbrae reach into these tiles from matter in other tiles,
  * which other parts attenuate. So after each chunk, the owner of each tile that the chunk has touched sends
- * what the groups at the chunk's ends hold in this tile. So every part's groups are complete, the same as
- * in one renderer, and each blurs them where its own tiles read them.
+ * the pixels that the groups at the chunk's ends have in this tile. Then the groups of every part are
+ * complete, as if one renderer made them, and each part blurs them where its own tiles read them.
  *
  * The groups of a chunk are read first at the end of the next chunk, when matter before it is blurred (Near
- * matter, cascade.h). So the messages of a chunk are under way while the next one is filled, lit and seen,
- * and parts wait for those alone that are more than a chunk behind. Messages go in posts of a fixed number:
- * their memory does not grow with the tiles. The first post is sent at the chunk's end, and further ones,
- * where a part has more, when the first one is received. */
+ * matter, cascade.h). So the messages of a chunk are under way while all parts work on the next chunk, and a
+ * part waits only for parts that are more than a chunk behind. Messages are sent in posts, each of a limited
+ * number of messages, so that their memory does not grow with the number of tiles. The first post is sent at
+ * the chunk's end. If a part has further posts, it sends them when the first one is received. */
 #include <string.h>
 
 #include "shadow_cascade/cascade_passes.h"
@@ -21,7 +21,7 @@ enum { MOST_POSTED = 8 << 20 };
 
 /* The head of a post. */
 typedef struct post_head {
-  uint32_t count;  /* of this part's messages, in all posts of the chunk */
+  uint32_t count;  /* number of this part's messages in all posts of the chunk */
   uint32_t unused; /* messages begin at a multiple of 8 bytes */
 } post_head;
 

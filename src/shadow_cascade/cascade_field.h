@@ -6,8 +6,8 @@
 
 #include "shadow/blur.h"
 
-/* Absorbed light in units of 1 / FIELD_ONE, to halve the memory traffic of floats. A pixel is at most
- * FIELD_ONE, but somewhat more in sums of several groups' penumbrae. */
+/* Absorbed light in units of 1 / FIELD_ONE, which takes half of a float's memory traffic. A pixel is at most
+ * FIELD_ONE, but may be a little more in sums of several groups' penumbrae. */
 typedef uint16_t field_pixel;
 enum { FIELD_ONE = 32768 };
 
@@ -19,8 +19,8 @@ static const tile_rows ALL_ROWS = {0, TILE};
 
 /* An operation on fields, given by their pixel (0,0); rows are stride apart, with zeros all around. */
 typedef struct field_job {
-  const field_pixel *a, *b; /* inputs; each function says their resolutions. Null stands for zeros: b may
-                             * be null unless it is coarser than the output, a may be null if b is coarser */
+  const field_pixel *a, *b; /* inputs; cascade_functions tells their resolutions. Null stands for zeros. b may
+                             * be null only if it is not coarser than the output, a only if b is coarser */
   field_pixel *to;
   size_t stride_in, stride; /* stride_in: of inputs of another resolution */
   const field_pixel *thin;  /* the fraction of b that a's thin matter absorbs; null: none */
@@ -43,17 +43,17 @@ typedef struct field_blur_job {
 /* Returns whether any pixel of the tile is more than zero. */
 typedef int field_blur_tile_function(const field_blur_job *job, int tile_x, int tile_y);
 
-/* Refilling the buffer at a chunk's end: a pixel becomes 1 - absorbed, limited to 0..1, times the
- * transmittance of the chunk's own slabs. */
+/* How the buffer is refilled at a chunk's end. A pixel becomes 1 - absorbed, limited to 0 to 1, times the
+ * transmittance of the slabs of the chunk that ends. */
 typedef struct refill_job {
   const field_pixel *absorbed; /* rows stride apart */
   float *absorbed_at_start; /* rows are `stride` apart; 1 - the light at the chunk's start; afterwards 1 - the
                              * new value of `to` */
   float *to;                /* rows stride_to apart; the buffer */
-  float *older;   /* rows are stride_to apart; the second planes, which get the old value of `to`, or where
-                   * `again` is not set the new one */
-  float *outside; /* rows are stride_to apart; the light at the outside of surfaces, which keep what they
-                   * have taken; null: none */
+  float *older;   /* rows are stride_to apart; the second planes. They get the old value of `to`, or the new
+                   * value where `again` is not set */
+  float *outside; /* rows are stride_to apart; the light at the outside of surfaces, whose difference from
+                   * `to` stays the same; null: none */
   size_t stride, stride_to;
   int kept;  /* the chunk's slabs absorbed some light */
   int again; /* `to` was refilled at the chunk's start as well */
@@ -74,24 +74,25 @@ typedef int field_emission_tile_function(const field_emission_job *job, int tile
 
 enum { GREATEST_EDGE = 16 };
 
-/* Adds the light that a chunk's slabs have absorbed, (1 - absorbed_at_start) - now, and the fraction that
- * thin matter absorbed, to two groups. The fraction moment / (length * absorbed light) of both goes to the
- * group at the chunk's end, the rest to the group at its start. Where the chunk began in the dark, marks of
- * surfaces (shadow/attenuate.h) take the light that the groups before the chunk leave, half of it for each
- * group. Inside of opaque surfaces the group at the end hides all that is before it. */
+/* Adds matter to two groups: the light that a chunk's slabs have absorbed, (1 - absorbed_at_start) - now, and
+ * the fraction of it that thin matter absorbed. The fraction moment / (length * absorbed light) of the matter
+ * goes to the group at the chunk's end, the rest to the group at the chunk's start. Where the chunk began in
+ * the dark, surfaces that left marks (shadow/attenuate.h) absorb the light that the groups before the chunk
+ * leave, one half in each group. Inside of opaque surfaces the group at the chunk's end hides all matter
+ * before it. */
 typedef struct absorbed_job {
   const float *absorbed_at_start; /* rows stride apart */
   const float *now; /* transmittance at the chunk's end, or marks of surfaces; rows are stride_now apart;
                      * readable up to `edge` pixels beside a tile */
-  float *moment;    /* sum over the slabs of absorbed light times the slab's position in the chunk; cleared
-                     * afterwards */
+  float *moment;    /* sum, over the chunk's slabs, of the absorbed light times the slab's position in the
+                     * chunk; it is cleared afterwards */
   float length;     /* of the chunk */
   const field_pixel *before; /* rows are `stride` apart; the light that the groups before the chunk
                               * absorbed; null: unknown */
-  field_pixel *start_absorbed, *start_thin; /* rows stride apart; raised */
-  field_pixel *end_absorbed, *end_thin;     /* rows stride apart; written */
+  field_pixel *start_absorbed, *start_thin; /* rows are `stride` apart; the matter is added to them */
+  field_pixel *end_absorbed, *end_thin;     /* rows are `stride` apart; the matter is written to them */
   size_t stride, stride_now;
-  int edge; /* width, in pixels, of the part next to the edges of surfaces that does not hide what is
+  int edge; /* width, in pixels, of the strip along the edges of opaque surfaces that does not hide the matter
              * before it; at most GREATEST_EDGE */
 } absorbed_job;
 /* Returns which of the four fields got more than zero, one bit each in their order. */

@@ -5,7 +5,8 @@
 #include "shadow/blur_lanes.h"
 #include "shadow_cascade/cascade_field.h"
 
-/* Blurred sums leave a little light in umbrae: a transmittance below this becomes 0. */
+/* Where an umbra should be dark, blurred sums leave a little light. So a transmittance below this becomes
+ * 0. */
 static const float UMBRA = 1.0f / 160;
 
 /* Prefetches a tile's rows, each on a cache line of its own. field null: does nothing. */
@@ -25,7 +26,8 @@ LANES_INLINE void fetch_float_tile(const float *field, size_t stride, int tile_x
   for (int i = 0; i < TILE; i++, row += stride) __builtin_prefetch(row, 0);
 }
 
-/* Stores rounded pixels and keeps the greatest so far. */
+/* Stores sixteen pixels, rounded. *greatest becomes the greatest pixels that were stored so far, lane by
+ * lane. */
 LANES_INLINE void store_pixels(field_pixel *p, lanes pixels, lanes *greatest) {
   lanes_store_short(p, pixels);
   *greatest = lanes_max(*greatest, pixels);
@@ -121,13 +123,13 @@ static int add_half_tile(const field_job *job, int tile_x, int tile_y) {
   return is_above_zero(greatest);
 }
 
-/* A row of a tile from a field of half the resolution. Pixel 2i lies a quarter of a coarse pixel before
- * coarse pixel i's centre, pixel 2i+1 a quarter after. */
+/* A row of a tile, interpolated from a field of half the resolution. The centre of pixel 2 i lies a quarter
+ * of a coarse pixel before the centre of coarse pixel i, the centre of pixel 2 i + 1 a quarter after it. */
 LANES_INLINE lanes double_row(const field_pixel *from, size_t stride, int tile_x, int y) {
   const field_pixel *near = from + (ptrdiff_t)(y / 2) * (ptrdiff_t)stride + tile_x * TILE / 2 - 1;
   const field_pixel *far = y & 1 ? near + stride : near - stride;
   lanes coarse = lanes_add_scaled(0.25f * lanes_load_short(far), lanes_load_short(near),
-                                  0.75f); /* from the coarse pixel before the tile on */
+                                  0.75f); /* coarse pixels; the first one lies before the tile */
   lanes own = __builtin_shufflevector(coarse, coarse, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8, 8);
   lanes other = __builtin_shufflevector(coarse, coarse, 0, 2, 1, 3, 2, 4, 3, 5, 4, 6, 5, 7, 6, 8, 7, 9);
   return lanes_add_scaled(0.25f * other, own, 0.75f);
@@ -232,9 +234,10 @@ static void refill_tile(const refill_job *job, int tile_x, int tile_y) {
   }
 }
 
-/* Splits matter at one position into matter at two, of which the second gets the fraction `late` (derived):
- * thin matter's transmittance 1 - F is the product of (1 - F)^(1 - late) and (1 - F)^late; the light that
- * both absorb one after the other, A2 + (1 - F2) A1, equals the A of the whole. */
+/* Splits matter into two parts, one behind the other, of which the second one gets the fraction `late`.
+ * Derived: thin matter's transmittance 1 - F is the product of the parts' transmittances, (1 - F)^(1 - late)
+ * and (1 - F)^late. The light A2 + (1 - F2) A1 that both parts absorb one after the other equals the light A
+ * that the whole absorbs. */
 typedef struct matter_pair {
   lanes absorbed[2], thin[2];
 } matter_pair;
@@ -299,13 +302,13 @@ LANES_INLINE lanes_int is_hidden(const float *now, const float *absorbed_at_star
   return is_opaque(now) | (lanes_load(absorbed_at_start) > 1.0f - DARK_AT_START);
 }
 
-/* Where more than this fraction of the light is left at a chunk's start, nothing is made to be hidden,
- * since sums are right there. */
+/* Where more than this fraction of the light was left at a chunk's start, surfaces are not made to hide the
+ * matter before them, because the sums are right there. */
 static const float HARDLY_HIDDEN = 0.9f;
 
-/* Finds which of sixteen pixels lie inside an opaque surface: the pixel is opaque, began the chunk with
- * less than all light, and is not near the surface's edge. It is not near an edge if the pixels beside it
- * in four directions, 1, 2, 4 ... and job->edge away, are hidden. at: the place of the first pixel in
+/* Finds which of sixteen pixels lie inside an opaque surface. Such a pixel is opaque, had at most
+ * HARDLY_HIDDEN of the light at the chunk's start, and is not near the surface's edge: in four directions,
+ * the pixels that are 1, 2, 4 ... and job->edge pixels away are hidden. at: the first pixel's offset in
  * absorbed_at_start. */
 LANES_INLINE lanes_int is_inside_surface(const absorbed_job *job, const float *now, size_t at) {
   const float *start = job->absorbed_at_start + at;

@@ -4,21 +4,21 @@
 
 #include "shadow_cascade/cascade_passes.h"
 
-/* Limits of a sweep's chunks; thickness is measured in pixels of omega. Chunks grow up to THICK_CHUNK so
- * that there are no more than ENOUGH_CHUNKS. They grow up to THICKEST_CHUNK so that there are no more than
- * NEAR_CHUNKS, or FAR_CHUNKS for a parallel light. They must not be thicker, because the chunks next to a
- * receiver cast shadows without penumbrae, which shows where things touch. With 64 chunks, balls under
- * parallel lights 60 to 90 degrees wide showed rings; with some greater numbers below 200, balls under
- * lights 90 to 120 degrees wide did. */
+/* Limits of a sweep's chunks; their thickness is measured in omega, in pixels. Chunks are as thick as needed
+ * so that there are at most ENOUGH_CHUNKS, but at most THICK_CHUNK thick. If there would then be more than
+ * NEAR_CHUNKS, or FAR_CHUNKS for a parallel light, they become thicker, up to THICKEST_CHUNK. Thicker chunks
+ * are not allowed, because the chunks next to a receiver cast shadows without penumbrae, which is visible
+ * where objects touch. With 64 chunks, balls under parallel lights 60 to 90 degrees wide showed rings. With
+ * some greater numbers of chunks below 200, balls under lights 90 to 120 degrees wide showed rings. */
 static const double ENOUGH_CHUNKS = 32, NEAR_CHUNKS = 64, FAR_CHUNKS = 88, GREATEST_CHUNKS = 200;
 static const double LEAST_CHUNK = 0.15, THICK_CHUNK = 1.3, THICKEST_CHUNK = 2;
 
-/* Divides omega from start to end into chunks of one length. A near light's omega grows without bound
- * towards the light, so these chunks may be more than the most allowed; then a chunk is a fixed fraction of
- * -omega (derived: at a distance z from the light a penumbra of width w in omega is w z wide in space, and
- * -omega is L / z, so all chunks have penumbrae of one width in space). For a lamp within the content the
- * last chunks would be a small part of a pixel long; its chunks are no shorter than `thick`. Returns how
- * many chunks there are. */
+/* Divides omega from start to end into chunks of one length. The magnitude of a near light's omega grows
+ * without bound towards the light, so there may be more such chunks than allowed. Then the length of a chunk
+ * is a fixed fraction of -omega at its start. Derived: at a distance z from the light a penumbra of width w
+ * in omega has the width w z in space, and -omega is L / z, so the penumbrae of all chunks have one width in
+ * space. For a lamp within the content the last chunks would be a small part of a pixel long, so its chunks
+ * are not shorter than `thick`. Returns how many chunks there are. */
 static double divide(soft_cascade *cascade, double start, double end, bool within) {
   double length = end - start, few = cascade->parallel ? FAR_CHUNKS : NEAR_CHUNKS;
   double thick = fmin(fmax(length / ENOUGH_CHUNKS, LEAST_CHUNK), THICK_CHUNK);
@@ -42,16 +42,16 @@ static double divide(soft_cascade *cascade, double start, double end, bool withi
  * that levels keep: three on level 0, two on level 1, five on every other level. */
 static double chunks_before(int level) { return level < 2 ? 3 * level : 4 * (pow(2, level - 1) - 1); }
 
-/* The scale of a level, in pixels of the buffer. It is chosen so that the narrowest penumbra on the level
- * is at least one and a half of its pixels wide; the blur by resampling is subtracted from the penumbra
- * (resampled_by). With an emission image the blur cannot be subtracted, and the narrowest penumbra is at
- * least four pixels wide. */
+/* The scale of a level: the edge of its pixels, in pixels of the buffer. It is chosen so that the narrowest
+ * penumbra on the level is at least one and a half of the level's pixels wide. Resampling blurs, too; its
+ * blur is subtracted from the penumbra (resampled_by). With an emission image the blur cannot be subtracted,
+ * and the narrowest penumbra is at least four pixels wide. */
 static int level_scale(const soft_cascade *cascade, int level) {
   double penumbra = cascade->shortest_chunk * chunks_before(level) * cascade->least_fraction,
          own = cascade->emission == NULL ? 1.5 : 4;
   int scale = 1, greatest = level < 2
                                 ? 1 << level
-                                : 1 << (level - 1); /* coarser ones were less exact, and hardly cheaper */
+                                : 1 << (level - 1); /* coarser levels were less exact, and hardly cheaper */
   while (2 * scale * own <= penumbra && scale < greatest) scale *= 2;
   return scale;
 }
@@ -169,8 +169,9 @@ static void plan_levels(soft_cascade *cascade, const light_shadow *shadow) {
     cascade->slope_step[axis] = vec3_dot(axis == 0 ? view->du : view->dv, along[axis]);
   }
   double start = hl_cascade_omega(cascade, first), end = hl_cascade_omega(cascade, last);
-  /* near a light, omega grows without bound, and penumbrae wider than twice the buffer make no difference.
-   * With a parallel light even the first slabs may be receivers, and would get shadows without penumbrae */
+  /* near a light -omega grows without bound, and wider penumbrae than twice the buffer make no difference.
+   * This does not hold for parallel light: there even the first slabs may be receivers, and would get shadows
+   * without penumbrae */
   if (!cascade->parallel) start = fmax(start, end - 2 * TILE * fmax(tiles_x, tiles_y));
   double chunks = divide(cascade, start, end, shadow->setup.source->sectors != NULL);
   /* level j > 1 is first used after 5 * 2^(j-1) - 4 chunks (derived: five groups are kept, on this level or
@@ -201,10 +202,11 @@ static double steepest_tangent(const view *view, vec3 normal) {
   return greatest;
 }
 
-/* Pixels around the bricks' projections in which the cascade keeps its buffer up to date. A brick's sample
- * may be looked up in the middle of the slab, half a slab away from the brick along the eye's ray: in a
- * buffer parallel to the sheets this is at most half their distance times the sum of the two rays' tangents
- * (derived). At most a tile, for lights within the content. */
+/* The width, in pixels, of the margin around the bricks' projections in which the cascade keeps its buffer up
+ * to date. A brick's sample may be looked up in the middle of the slab, half a slab away from the brick along
+ * the eye's ray. In a buffer parallel to the sheets, this moves the look-up by at most half the sheets'
+ * distance times the sum of the tangents of the eye's ray and the light's ray (derived). The margin is
+ * limited to a tile, for lights within the content. */
 static double look_up_spare(const shadow_setup *setup, const shadow_plan *plan) {
   const sheet_stack *sheets = setup->sheets;
   const view *view = &plan->view;
@@ -279,8 +281,8 @@ static void clear_plane(void *data, size_t index, int worker) {
 }
 
 /* Clears the moments and the light at the start of the last, unfinished chunk. All tiles are cleared, also
- * those that the chunk has not touched: dark pixels have moments that no chunk's end clears, which come
- * from rounding and from matter behind surfaces' marks. */
+ * tiles that the chunk has not touched: in dark pixels, rounding and matter behind surfaces' marks leave
+ * moments that no chunk's end clears. */
 static void clear_moments(const soft_cascade *cascade, hl_pool *pool) {
   const cascade_level *level = &cascade->level[0];
   size_t bytes = (size_t)level->tiles_y * TILE * level->stride * sizeof(float);
@@ -290,7 +292,7 @@ static void clear_moments(const soft_cascade *cascade, hl_pool *pool) {
   }
 }
 
-/* Returns the memory filled with zeros, for the next frame. */
+/* Gives the memory back filled with zeros, as the next frame expects it. */
 void hl_cascade_end(light_shadow *shadow) {
   soft_cascade *cascade = shadow->state;
   hl_pool *pool = shadow->means.pool;

@@ -7,21 +7,22 @@
 /* Chunks after which a level's sums are made again. */
 static uint64_t period_of(int level) { return level < 2 ? 1 : (uint64_t)1 << (level - 2); }
 
-/* The difference of two boxes' variances, at the place where the light is widest; in squared pixels of the
- * buffer. */
+/* The difference of the variances of two boxes whose widths are given, in squared pixels of the buffer. The
+ * widths are those where the light is widest. */
 static double variance_between(double wide, double narrow) {
   return fmax(wide * wide - narrow * narrow, 0) / 12;
 }
 
-/* The variance by which a level's coarser pixels blur its sums on the way to the buffer (derived: halving
- * takes the mean of two pixels, of variance 1/4; doubling weighs by 3/4 and 1/4, of variance 3/4; together
- * s^2 from scale s to 2 s and back, which is a geometric sum). */
+/* The variance, in squared pixels of the buffer, by which a level's coarser pixels blur its sums on the way
+ * to the buffer. Derived: halving takes the mean of two pixels, which has the variance 1/4; doubling weighs
+ * pixels by 3/4 and 1/4, which has the variance 3/4. Going from the scale s to 2 s and back adds s^2; over
+ * all scales this is a geometric sum. */
 static double resampled_by(const cascade_level *level) {
   return ((double)level->scale * level->scale - 1) / 3;
 }
 
-/* The blur from a level's sum to omega on a level as fine or finer. If resampling blurs by more than this,
- * the rest is subtracted from the next blur (owed). */
+/* The blur that brings a level's sum to `omega`, on a level that is as fine or finer. If resampling alone
+ * blurs by more than this, the excess is subtracted from the next blur (owed). */
 static cascade_blur blur_towards(const cascade_level *from, double receiver, double omega,
                                  cascade_level *to) {
   double variance = variance_between(receiver - from->sum_omega, receiver - omega),
@@ -67,10 +68,10 @@ static void hand_over(soft_cascade *cascade, const cascade_crew *crew) {
   forget_oldest(level, 1);
 }
 
-/* Moves the two oldest groups of a level, a and b, to the next level. That level already has a group at a's
- * omega, and gets a new one at the omega of the third group. b lies between these two: its absorbed light is
- * split between them by its distances (derived: kernels are then linear between groups, which keeps a
- * penumbra's middle). */
+/* Moves the two oldest groups of a level, a and b, to the next level. The next level has a group at a's omega
+ * already, and gets a new group at the omega of this level's third group. b lies between these two, and its
+ * matter is split between them by b's distances from them (derived: kernels are then linear between groups,
+ * which keeps a penumbra's middle). */
 static void merge_up(soft_cascade *cascade, int index, const cascade_crew *crew) {
   cascade_level *level = &cascade->level[index], *next = &cascade->level[index + 1];
   cascade_group a = level->group[0], b = level->group[1];
@@ -134,8 +135,8 @@ static void absorb_tile(const absorb_task *task, size_t tile_x, size_t tile_y, b
   }
 }
 
-/* Adds the light that the chunk's slabs have absorbed to the groups at the chunk's two ends. Tiles stay
- * marked until the buffer is refilled. */
+/* Adds the light that the chunk's slabs have absorbed to the groups at the chunk's two ends. The marks
+ * `touched` of the tiles stay until the buffer is refilled. */
 static void absorb_piece(void *data, size_t index, int worker) {
   (void)worker;
   const absorb_task *task = data;
@@ -148,12 +149,13 @@ static void absorb_piece(void *data, size_t index, int worker) {
   }
 }
 
-/* The number of pixels at the edges of surfaces that hide nothing that is before them. Derived: where two
- * edges lie one behind the other, a chunk apart, as at the rim of a ball, the sum of the light that both
- * take is about right. For a receiver w behind the second edge, the sum before this edge has a penumbra of
- * width sqrt((c + w)^2 - w^2), where c is the chunk's length. In the penumbra's dark half the second edge
- * must not hide the light that is left. Half of this half is enough: wider edges would leave light where
- * pieces of one surface that lie in two chunks meet. */
+/* The width, in pixels, of the strip along the edges of opaque surfaces that does not hide the matter before
+ * it. Derived: where two edges lie one behind the other, a chunk apart, as at the rim of a ball, the sum of
+ * the light that both absorb is about right. For a receiver that lies w behind the second edge, the sum
+ * before this edge has a penumbra of the width sqrt((c + w)^2 - w^2), where c is the chunk's length. In the
+ * penumbra's dark half the second edge must not hide the light that is left. A strip half as wide as this
+ * half is enough. A wider one would leave light where two pieces of one surface meet that lie in two
+ * chunks. */
 static int edge_of(double length, double behind) {
   return (int)fmin(round(sqrt(length * (length + 2 * behind)) / 4), GREATEST_EDGE);
 }
@@ -192,16 +194,16 @@ static double slab_omega(const soft_cascade *cascade, const sheet_stack *sheets,
   return hl_cascade_omega(cascade, (hl_sheet_height(sheets, sheet - 1) + hl_sheet_height(sheets, sheet)) / 2);
 }
 
-/* The reach of a sum, as pixels around the tiles that are read, where the sum's field `b` is still to be
- * doubled from `scale` on. */
+/* The reach of a pass whose result, at the scale `scale`, will be doubled until it has the scale of the sum:
+ * the pixels around the tiles that are read in which it must compute. */
 static int reach_at(const cascade_sum *sum, int scale) {
   int doubling = hl_cascade_doubling_reach(scale, sum->level->scale);
   return sum->reach == READ_EVERYWHERE ? sum->reach : sum->reach + doubling;
 }
 
-/* Makes a sum of a and b, one channel of what the groups up to a level absorbed. b may lie on a much farther
- * level than a: it is blurred there, where blurs are cheap, and doubled level by level until it is as fine as
- * a. */
+/* Makes the sum of a and of b blurred; b is one channel of the light that the groups up to a level have
+ * absorbed. b may lie on a much farther level than a. It is blurred there, where blurs are cheap, and then
+ * doubled level by level until it is as fine as a. */
 static void bring(cascade_sum sum, cascade_blur blur, const cascade_crew *crew) {
   const cascade_level *from = sum.level_b;
   if (from->scale == sum.level->scale) {
@@ -236,7 +238,8 @@ static void bring(cascade_sum sum, cascade_blur blur, const cascade_crew *crew) 
   hl_cascade_add(crew, &sum);
 }
 
-/* Adds a group to the sum of the groups before it, which is blurred for this group first. */
+/* Adds a group to the sum of the groups before it. First this sum is blurred from the group before to the new
+ * group. */
 static void pass_group(int channels, cascade_level *from, cascade_level *level, const cascade_group *group,
                        double receiver, int reach, const cascade_crew *crew) {
   cascade_blur blur = blur_towards(from, receiver, group->omega, level);
@@ -297,9 +300,9 @@ static int reach_behind(const soft_cascade *cascade, int index, int g, double re
   return reach + reach_of(from, variance_between(receiver - omega, 0), &cascade->level[0]);
 }
 
-/* Sums the groups from the farthest to the nearest. Thicker levels are summed less often. Empty groups are
- * left out, which saves blurs and keeps kernels close to boxes. Returns the nearest level with anything in
- * its sum; null if nothing is in the way. */
+/* Sums the groups from the farthest to the nearest. Levels with thicker groups are summed less often. Empty
+ * groups are left out, which saves blurs and keeps kernels close to boxes. Returns the nearest level with
+ * anything in its sum; null if nothing is in the way. */
 static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cascade_crew *crew) {
   cascade_level *sum = NULL;
   bool due = false;
@@ -308,8 +311,8 @@ static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cas
     uint64_t period = period_of(i);
     due = due || level->renewed || cascade->chunks % period == 0;
     if (due) level->filled = false;
-    /* receivers move on by a period less one chunk until this level is renewed: the sum is made for the
-     * receiver in the middle */
+    /* until this level is renewed, the receivers move on by one chunk less than the period; the sum is made
+     * for the receiver in the middle of this way */
     double served = hl_cascade_chunks_on(cascade, receiver, (double)(period - 1) / 2);
     for (int g = 0; g < level->count && due; g++) {
       const cascade_group *group = &level->group[g];
@@ -329,8 +332,8 @@ static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cas
   return sum;
 }
 
-/* Bits of cascade->refilled: the tile was refilled at the end of the chunk before; the tile was refilled at
- * this chunk's end. */
+/* Bits of cascade->refilled. REFILLED_BEFORE: the tile was refilled at the end of the chunk before.
+ * REFILLED_NOW: the tile was refilled at the end of this chunk. */
 enum { REFILLED_BEFORE = 1, REFILLED_NOW = 2 };
 
 typedef struct refill_task {
@@ -431,7 +434,7 @@ static void advance_cascade(light_shadow *shadow, const occupancy *occupancy, in
   if (cascade->shrink > 0) cascade->chunk = end - omega;
   cascade->chunk_start = omega;
   find_reads(cascade, occupancy, shadow, sheet);
-  /* made from the chunks before the one that ends */
+  /* this sum is made from the chunks before the one that ends here */
   bool any = find_shade(cascade, end, &crew);
   push_chunk(cascade, shadow, omega, any, &crew);
   refill_buffer(cascade, shadow->buffer, any, &crew);

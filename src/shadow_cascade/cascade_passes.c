@@ -33,8 +33,8 @@ int hl_cascade_doubling_reach(int from, int to) {
   return reach;
 }
 
-/* Notes whether a tile is all zeros after some of its rows were computed. The other rows are not read, so all
- * may be cleared. */
+/* Marks whether a tile is all zeros after some of its rows were computed. The tile's other rows are not read;
+ * so if the computed rows are zeros, the whole tile is cleared. */
 static void note_zeros(const cascade_level *level, const cascade_field *field, int x, int y, tile_rows rows,
                        int above_zero) {
   unsigned char *zeros = &field->zeros[y * level->tiles_x + x];
@@ -48,7 +48,7 @@ typedef struct add_task {
   cascade_sum sum;
   field_job job;
   field_tile_function *function;
-  bool doubled; /* b is coarser than the output; where b is zeros, an `a` of zeros may then be left out */
+  bool doubled; /* b is coarser than the output; only then may an `a` that is zeros be left out */
 } add_task;
 
 /* Whether a sum is all zeros in a row of tiles, from x0 to x1, both included. */
@@ -165,7 +165,7 @@ static void blur_piece(void *data, size_t index, int worker) {
     job.u = level->boxes[x].box;
     job.v = level->boxes[level->tiles_x + y].box;
     if (sum->a != NULL && sum->a->zeros[tile])
-      job.a = job.thin = NULL; /* a group's thin matter is where it absorbed */
+      job.a = job.thin = NULL; /* a group has thin matter only where it has absorbed light */
     if (sum->thin != NULL && sum->thin->zeros[tile]) job.thin = NULL;
     note_zeros(level, sum->to, x, y, job.rows, task->function(&job, x, y));
   }
@@ -255,7 +255,7 @@ void hl_cascade_merge(const cascade_crew *crew, const cascade_merger *merger) {
                       *of_spare[2] = {spare->absorbed, spare->thin};
   const cascade_field *to[2] = {second->absorbed, second->thin}, *old[2] = {first->absorbed, first->thin};
   for (int i = 0; i < 2; i++) {
-    /* the matter for the first field goes by way of the second's fields */
+    /* the matter that goes to `first` passes through the fields of `second`, which are overwritten at last */
     const cascade_sum sums[3] = {
         {level, of_b[i], of_b[1], level, of_a[i], next, to[i], READ_EVERYWHERE},
         {next, to[i], to[1], next, old[i], next, old[i], READ_EVERYWHERE},

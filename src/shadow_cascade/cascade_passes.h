@@ -1,5 +1,5 @@
-/* shadow_cascade/cascade_passes.h - passes over whole fields of a cascade, in tasks of a piece of a row of
- * tiles; tiles of zeros are skipped. */
+/* shadow_cascade/cascade_passes.h - passes over whole fields of a cascade. A task works on a piece of a row
+ * of tiles; tiles that are all zeros are skipped. */
 #ifndef HL_SHADOW_CASCADE_CASCADE_PASSES_H
 #define HL_SHADOW_CASCADE_CASCADE_PASSES_H
 
@@ -38,8 +38,8 @@ typedef struct cascade_sum {
   const cascade_field *b;        /* null: zeros; only where a is not coarser than `to` */
   const cascade_level *level;    /* level of `to` */
   const cascade_field *to;
-  int reach; /* `to` is computed in the tiles that are read, and this many pixels of the buffer around
-                them; READ_EVERYWHERE: in all tiles */
+  int reach; /* `to` is computed in the tiles that are read, and up to this many pixels of the buffer around
+              * these tiles; READ_EVERYWHERE: in all tiles */
 } cascade_sum;
 void hl_cascade_add(const cascade_crew *crew, const cascade_sum *sum);
 
@@ -57,8 +57,8 @@ typedef struct cascade_matter {
   const cascade_field *absorbed, *thin;
 } cascade_matter;
 
-/* Moves the matter of two groups, a and b, to the next level, which may be twice as coarse. There a's and
- * b's matter is added to `first`, except for a fraction of b's, which becomes `second`. */
+/* Moves the matter of two groups, a and b, to the next level, which may be twice as coarse. There the matter
+ * of a and b is added to `first`, except for the fraction `late` of b's matter, which becomes `second`. */
 typedef struct cascade_merger {
   const cascade_level *level;
   cascade_matter a, b;  /* on level; b is changed */
@@ -67,11 +67,11 @@ typedef struct cascade_merger {
   const cascade_level *next;
   cascade_matter first, second; /* on next */
 } cascade_merger;
-/* Each row of tiles goes through all steps at once. */
+/* Merges two groups. Each row of tiles goes through all steps before the next row does. */
 void hl_cascade_merge(const cascade_crew *crew, const cascade_merger *merger);
 
-/* How far beyond its output doubling reads, where it leads from one scale down to another; in pixels of the
- * buffer. */
+/* How far beyond its output repeated doubling reads, from the scale `from` down to the scale `to`; in pixels
+ * of the buffer. */
 int hl_cascade_doubling_reach(int from, int to);
 
 /* True if all tiles of a rectangle are zeros; tiles outside the level count as zeros. */

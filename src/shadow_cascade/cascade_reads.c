@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-/* Writes 1 for each tile that is read. The number stands one row and one column further on, as summed-area
- * tables need. */
+/* Writes 1 for each tile that is read, in the entry that lies one row and one column after the tile's own, as
+ * the summed-area table needs it. */
 static void mark_tiles(cascade_reads *reads, const occupancy *occupancy, const int32_t *needed_until,
                        int first_sheet, int last_sheet) {
   size_t width = (size_t)reads->tiles_x, words = (size_t)occupancy->tile_words;
@@ -35,7 +35,8 @@ void hl_cascade_reads_find(cascade_reads *reads, const occupancy *occupancy, con
   }
 }
 
-/* The band around the rows `top` to `bottom` of the buffer's pixels, both included. */
+/* The band of all tiles that have some of the buffer's rows of pixels from `top` to `bottom`, both
+ * included. */
 static read_band band_of(const cascade_reads *reads, int top, int bottom) {
   int y0 = top < 0 ? 0 : top / TILE, y1 = bottom < reads->tiles_y * TILE ? bottom / TILE + 1 : reads->tiles_y;
   if (y0 > y1) y0 = y1;

@@ -27,14 +27,14 @@ typedef struct read_band {
   const uint32_t *upper, *lower;
 } read_band;
 
-/* What is read around a row of tiles of a level: the tiles within `reach` pixels of the buffer. scale:
- * width of the level's pixels. */
+/* The tiles that are read within `reach` pixels of the buffer around a row of tiles of a level. scale: width
+ * of the level's pixels. */
 typedef struct read_row {
   int scale, reach, tiles_x;
   int around;                     /* reach in tiles */
   bool any;                       /* anything is read; if not, `blocks` is not set */
   read_band all;                  /* around the whole row */
-  read_band blocks[TILE / BLOCK]; /* around each four rows of its pixels */
+  read_band blocks[TILE / BLOCK]; /* around each four rows of the tile row's pixels */
 } read_row;
 
 read_row hl_cascade_read_row(const cascade_reads *reads, int scale, int y, int reach);
@@ -48,7 +48,8 @@ static inline bool hl_cascade_is_read(const read_row *row, const read_band *band
   return band->lower[x1] - band->lower[x0] != band->upper[x1] - band->upper[x0];
 }
 
-/* The rows of pixels of tile x that must be computed, in steps of four. Some of the tile is read. */
+/* The rows of pixels of tile x that must be computed, in steps of four. Some part of the tile must be
+ * read. */
 static inline tile_rows hl_cascade_rows_read(const read_row *row, int x) {
   tile_rows rows = ALL_ROWS;
   if (row->reach == READ_EVERYWHERE) return rows;
