@@ -1,12 +1,12 @@
 /* shadow_paper/paper.c - the paper's soft shadows (sections 5.1 and 5.2), unchanged, as the baseline.
  *
- * One buffer is convolved again and again with a box, or with the light's emission image, of the width that
- * eq. (5) gives for the step from the last convolved sheet to the next one. Convolution adds variances, not
- * widths, so penumbrae grow with the square root of the distance: this is the error that the other methods
- * avoid.
+ * One buffer is convolved again and again with a box, or with the light's emission image. The width of the
+ * box or image is given by eq. (5) for the step from the last convolved sheet to the next one. Convolution
+ * adds variances, not widths, so penumbrae grow with the square root of the distance: this is the error that
+ * the other methods avoid.
  *
- * A part of a shared picture works through the pixels that it reads, and through those within reach of the
- * convolutions on the way there: the bounds of the light's rays. */
+ * A part of a shared picture works through the pixels that it reads, and through the pixels that the
+ * convolutions read for them. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -17,14 +17,14 @@
 typedef struct soft_paper {
   const light_emission *emission; /* null: boxes */
   bool parallel;
-  double size;         /* L of the virtual light; parallel: L / Z */
-  double light_height; /* distance of the light along the sheets' normal (not parallel) */
+  double size;         /* the width L of the virtual light; for parallel light L / Z */
+  double light_height; /* position of a near light along the sheets' normal */
   double pixel;        /* edge of a buffer pixel: frame units; for near light, its size at distance 1 */
   double last;         /* height of the last convolved sheet */
-  double remainder;    /* accumulated width not yet convolved, pixels */
+  double remainder;    /* accumulated width that was not convolved yet, in pixels */
   int reach;           /* pixels beyond a tile that blurs may read, and the width of the buffer's margin */
-  int32_t *reached;    /* [slabs]; of widen_needs() */
-  int32_t *far;        /* [tiles of the buffer]; likewise */
+  int32_t *reached;    /* [slabs]; used by widen_needs() */
+  int32_t *far;        /* [tiles of the buffer]; used by widen_needs() */
 } soft_paper;
 
 /* The virtual light is the orthogonal projection of the real one onto a plane parallel to the sheets
@@ -55,8 +55,8 @@ static double width_between(const soft_paper *soft, double from, double to) {
   return soft->size * (1 / near - 1 / far) / soft->pixel;
 }
 
-/* The width, in pixels, of the widest box that the sheets of a sweep can need. The first convolution takes
- * place after two sheets. */
+/* A bound of the reach, in pixels, of the convolutions that a sweep can need. The first convolution covers
+ * the distance of two sheets. */
 static int widest_reach(const soft_paper *soft, const sheet_stack *sheets) {
   double first = sheets->first, spacing = sheets->spacing;
   double widest = width_between(soft, first, first + 2 * spacing);
@@ -70,10 +70,10 @@ static int widest_reach(const soft_paper *soft, const sheet_stack *sheets) {
 typedef struct convolution {
   shadow_buffer *buffer;
   const int32_t *needed_until; /* light_shadow's */
-  int sheet, reach;            /* reach: pixels around a tile that it reads */
-  unsigned char *wanted;       /* [tiles]; of the tiles that can change */
+  int sheet, reach;            /* reach: the number of pixels around a tile that the convolution reads */
+  unsigned char *wanted;       /* [tiles]; 1 for tiles that can change */
   shadow_plane kind;           /* the planes that are convolved now */
-  bool last;                   /* these slabs are the last of this convolution */
+  bool last;                   /* these planes are the last ones of this convolution */
   const blur_functions *blur;
   blur_box box;
   /* with an emission image, instead of the box: */
@@ -148,7 +148,7 @@ static void copy_back(void *data, size_t index, int worker) {
 }
 
 /* Convolves the planes of one kind; planes of other kinds stay as they are. last: no other planes of the
- * sheet follow, so that the lit blocks of tiles are found again afterwards. */
+ * sheet are convolved after these, so the lit blocks of tiles are found again. */
 static void convolve_planes(const soft_paper *soft, convolution *task, shadow_plane kind, bool last,
                             hl_pool *pool) {
   size_t rows = (size_t)task->buffer->tiles_y;
@@ -205,8 +205,8 @@ static bool any_below_one(const shadow_buffer *buffer, int x, int y, int reach) 
 }
 
 /* Marks the tiles of a row that can change. The marks depend only on pixels within reach. So the parts of a
- * shared picture, which know only the pixels within their reach, set the same marks. Marks matter for
- * bytes, because the sum of an image's weights is not exactly 1. */
+ * shared picture, which know only such pixels, set the same marks. Different marks would change bytes,
+ * because the sum of an emission image's weights is not exactly 1. */
 static void find_wanted(void *data, size_t index, int worker) {
   (void)worker;
   const convolution *task = data;
@@ -220,7 +220,7 @@ static void find_wanted(void *data, size_t index, int worker) {
   }
 }
 
-/* Pixels around a pixel that a convolution reads. */
+/* How many pixels to each side of a pixel a convolution reads. width: of the box or image, in pixels. */
 static int reach_of(const soft_paper *soft, int width) {
   if (soft->emission != NULL) return (int)(soft->emission->reach * width) + 2;
   blur_box box = hl_blur_box((float)width);
@@ -249,10 +249,10 @@ static void convolve(const soft_paper *soft, const light_shadow *shadow, int she
   for (size_t tile = 0; tile < tiles; tile++) buffer->tile_touched[tile] |= task.wanted[tile];
 }
 
-/* Section 5.2, (2): accumulates dx until it exceeds two pixels, convolves by its integer part and carries
- * the rest. An emission image has one tap per pixel and no more taps than cells: wider steps take several
- * convolutions. shadow: null: only the reach is found, and nothing is convolved. Returns the sum of the
- * reaches of the convolutions after a sheet, in pixels. */
+/* Section 5.2, (2): accumulates dx until it exceeds two pixels, convolves by the integer part of the sum and
+ * carries the rest. An emission image has one tap per pixel, and at most as many taps along an axis as it has
+ * cells; so greater widths take several convolutions. shadow: where it is null, only the reach is found, and
+ * nothing is convolved. Returns the sum of the reaches of the convolutions at this sheet, in pixels. */
 static int pass_sheet(soft_paper *soft, const sheet_stack *sheets, int sheet, const light_shadow *shadow) {
   double next = hl_sheet_height(sheets, sheet + 1);
   double width = soft->remainder + width_between(soft, soft->last, next);
@@ -291,7 +291,7 @@ static void raise_tile(const shadow_buffer *buffer, int32_t *far, int x, int y, 
   }
 }
 
-/* The greatest value of a tile's eight neighbours. */
+/* The greatest value among a tile's eight neighbours. */
 static int32_t greatest_beside(const shadow_buffer *buffer, const int32_t *far, int x, int y) {
   int32_t greatest = -TILE;
   for (int v = y > 0 ? y - 1 : 0; v <= y + 1 && v < buffer->tiles_y; v++)
@@ -302,7 +302,7 @@ static int32_t greatest_beside(const shadow_buffer *buffer, const int32_t *far, 
   return greatest;
 }
 
-/* The last slab whose reach is at most `far`. reached: [slabs], never falling; the reach of each slab. */
+/* The last slab whose entry in `reached` is at most `far`. reached: [slabs]; its numbers never fall. */
 static int32_t last_slab(const int32_t *reached, int slabs, int32_t far) {
   int32_t low = 0, high = slabs;
   while (high - low > 1) {
@@ -313,12 +313,12 @@ static int32_t last_slab(const int32_t *reached, int slabs, int32_t far) {
   return low;
 }
 
-/* Raises needed_until in the tiles whose pixels the convolutions bring to those that the picture reads.
- * Derived: let reached(k) be how far the convolutions before slab k reach together. A pixel of slab k
- * affects a pixel d away that is read in slab s, if d <= reached(s) - reached(k). Its tile is therefore
- * needed until the last k with reached(k) <= reached(s) - d. For a tile that is n tiles away, d is at least
- * 16 (n - 1) + 1. The greatest reached(s) - 16 n is found by going through the tiles twice, each time from
- * neighbour to neighbour. */
+/* Raises needed_until in tiles whose pixels affect, by convolutions, pixels that the picture reads. Derived:
+ * let reached(k) be the sum of the reaches of all convolutions before slab k. A pixel of slab k affects a
+ * pixel that is d pixels away and is read in slab s, if d <= reached(s) - reached(k). So its tile is needed
+ * until the last k with reached(k) <= reached(s) - d. For a tile that is n tiles away, d is at least 16 (n -
+ * 1) + 1. The greatest reached(s) - 16 n is found in two passes over the tiles, each of which hands values on
+ * from neighbour to neighbour. */
 static void widen_needs(light_shadow *shadow, int32_t *needed_until) {
   const shadow_buffer *buffer = shadow->buffer;
   const sheet_stack *sheets = shadow->setup.sheets;

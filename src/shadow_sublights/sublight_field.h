@@ -5,9 +5,9 @@
 
 #include "shadow/shadow_buffer.h"
 
-/* The number of copies of a slab's transmittance. A copy whose index has bit 0 is shifted by half a pixel
- * along u, one with bit 1 along v. A copy is given by its pixel (0,0); its rows are slab_stride apart, and
- * its margin holds ones. */
+/* The number of copies of a slab's transmittance. A copy whose index has bit 0 set is shifted by half a pixel
+ * along u; a copy whose index has bit 1 set is shifted along v. A copy is given by its pixel (0,0). Its rows
+ * are slab_stride apart, and the margin around its pixels holds ones. */
 enum { SLAB_COPIES = 4 };
 
 typedef struct half_pixel_job {
@@ -16,15 +16,17 @@ typedef struct half_pixel_job {
   size_t slab_stride;
 } half_pixel_job;
 
-/* Rows of a tile in which pixels of the slab or of its moved copies are below 1: bit TILE * copy + row. */
+/* The rows of a tile in which a pixel of the slab or of its shifted copies is below 1: bit TILE * copy +
+ * row. */
 typedef uint64_t slab_rows;
 
-/* Fills a tile of the shifted copies, in rows where some pixels are below 1; the others are ones already. */
+/* Fills a tile of the shifted copies, in those rows where some pixels are below 1; other rows hold ones
+ * already. */
 typedef slab_rows half_pixel_tile_function(const half_pixel_job *job, int tile_x, int tile_y);
 
 typedef struct sublight_job {
   const float *slab[HL_CHANNELS][SLAB_COPIES];
-  /* the fraction of full light that is left at the outside of surfaces after the slab */
+  /* the light that is left at the outside of surfaces after the slab, where full light comes to the slab */
   const float *slab_outside[HL_CHANNELS][SLAB_COPIES];
   size_t slab_stride;
   const slab_rows *rows; /* [slab_tiles_y][slab_tiles_x] */
@@ -38,18 +40,18 @@ typedef struct sublight_job {
                                                * transmittance; null: none */
   size_t stride;                              /* a tile's margin on either side */
   int tiles_x;
-  float carry; /* added to a pixel's new value before the value is truncated; between 0 and 1. It varies from
-                * slab to slab, so that haze of which each slab absorbs less than 1 / SUBLIGHT_ONE is
-                * absorbed on average */
+  float carry; /* added to a pixel's new value before the value is truncated to a whole number; between 0 and
+                * 1. It varies from slab to slab, so that haze attenuates light by the right amount on
+                * average, even if each slab of it absorbs less than 1 / SUBLIGHT_ONE */
   int channels;
 } sublight_job;
 
 /* Multiplies a tile by the slab. Returns whether the slab absorbed any light. */
 typedef int sublight_tile_function(const sublight_job *job, int tile_x, int tile_y);
 
-/* Multiplies a row of the sub-light's tiles by the slab's tiles from first to last, where scale is 1. lit:
- * [tiles_x], each tile's blocks with light, one bit each; tiles without any are skipped. touched: [tiles_x],
- * becomes 1 where light may have been absorbed. */
+/* Multiplies a row of the sub-light's tiles by the slab's tiles from `first` to `last`. The job's scale must
+ * be 1. lit: [tiles_x]; for each tile, its blocks with light, one bit each; tiles without such blocks are
+ * skipped. touched: [tiles_x]; becomes 1 for tiles in which light may have been absorbed. */
 typedef void sublight_row_function(const sublight_job *job, int tile_y, int first, int last,
                                    const uint16_t *lit, unsigned char *touched);
 

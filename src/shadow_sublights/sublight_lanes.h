@@ -3,9 +3,9 @@
  *
  * A sub-light's pixel is multiplied by the slab's transmittance at the nearest half pixel. Values between
  * pixels come from cubic convolution with a = -1 (Keys, "Cubic convolution interpolation for digital image
- * processing", 1981), with weights -1/8, 5/8, 5/8, -1/8. They are sharper than the samples by about as much
- * as the bilinear look-up of the buffer blurs (variances: -1/4 at half pixels and 0 at whole ones, against
- * 1/6). */
+ * processing", 1981), with weights -1/8, 5/8, 5/8, -1/8. They sharpen the slab by about as much as the
+ * bilinear look-up of the buffer blurs it: their variance is -1/4 at half pixels and 0 at whole ones; the
+ * look-up's is 1/6 on average. */
 #ifndef HL_SHADOW_SUBLIGHTS_SUBLIGHT_LANES_H
 #define HL_SHADOW_SUBLIGHTS_SUBLIGHT_LANES_H
 
@@ -27,9 +27,9 @@ LANES_INLINE lanes middle_along(const float *at, ptrdiff_t step) {
 
 LANES_INLINE slab_rows any_below_one(lanes x) { return lanes_bits(x < 1.0f) != 0; }
 
-/* Finds the rows that have a pixel below 1, among the rows of a tile and the first row below it; the first
- * pixel of the right neighbour counts, too. Pixels further away have negative weights, so they cannot bring
- * a value in the middle below 1. */
+/* Finds which rows have a pixel below 1, among a tile's rows and the first row below the tile. The pixel to
+ * the right of each row counts, too. Values between pixels depend on pixels farther away only by negative
+ * weights, so these pixels cannot bring such a value below 1. */
 LANES_INLINE uint32_t rows_below_one(const float *corner, ptrdiff_t stride) {
   uint32_t rows = 0;
   for (int row = 0; row <= TILE; row++) {
@@ -69,13 +69,13 @@ LANES_INLINE lanes_int nearest_halves(float scale, float start, float size) {
 
 enum { SUBLIGHT_TAPS = 8 };
 
-/* How sixteen pixels in a row read a row of the slab's copies. If the slab's pixels had the same size,
- * pixel i would lie 2 i half pixels after the first one. The slab's pixels are a little larger or smaller:
- * pixel i deviates by `first` to first + count - 1 half pixels. weight[k] is 1 for pixels that deviate by
- * first + k, else 0. */
+/* How sixteen pixels in a row of a sub-light read a row of the slab's copies. If the slab's pixels had the
+ * same size as the sub-light's, pixel i would read 2 i half pixels after pixel 0. The slab's pixels are a
+ * little larger or smaller. So the place that pixel i reads differs from 2 i by `first` to first + count - 1
+ * half pixels. weight[k] is 1 for pixels with the difference first + k, else 0. */
 typedef struct row_taps {
   int first, count; /* count 0: too many */
-  lanes_int half;   /* of each pixel, held inside the slab */
+  lanes_int half;   /* for each pixel, the half pixel that it reads, limited to the slab and its margin */
   lanes weight[SUBLIGHT_TAPS];
 } row_taps;
 
@@ -93,8 +93,8 @@ LANES_INLINE row_taps taps_of_row(const sublight_job *job, int tile_x) {
   return taps;
 }
 
-/* Reads sixteen pixels along a row of the slab. copies: the row in two copies, of which the second is
- * shifted by half a pixel. */
+/* Reads sixteen pixels along a row of the slab. copies: the row in two copies; the second copy is shifted by
+ * half a pixel along the row. */
 LANES_INLINE lanes slab_row(const row_taps *taps, const float *const copies[2]) {
   if (taps->count == 0) {
     lanes_int column = taps->half >> 1;
@@ -118,14 +118,15 @@ LANES_INLINE void tiles_of_row(const sublight_job *job, const row_taps *taps, in
   if (*last >= job->slab_tiles_x) *last = job->slab_tiles_x - 1;
 }
 
-/* The rows in which a pixel is below 1 in either of the two copies with this vertical half pixel. */
+/* The rows that have a pixel below 1 in one of two copies of the slab: the copies that are shifted along v
+ * (between: 1), or the copies that are not (between: 0). */
 LANES_INLINE uint32_t rows_of_either(slab_rows rows, int between) {
   rows >>= 2 * TILE * between;
   return (uint32_t)(rows | rows >> TILE) & EVERY_ROW;
 }
 
-/* The rows of a sub-light's tile, one bit each, that some pixels of the slab below 1 will darken. half:
- * each row's position in the slab, in half pixels. */
+/* The rows of a sub-light's tile, one bit each, that read pixels of the slab below 1. half: each row's
+ * position in the slab, in half pixels. first, last: the slab's columns of tiles that the rows read. */
 LANES_INLINE uint32_t present_rows(const sublight_job *job, const int32_t half[TILE], int first, int last) {
   int y0 = half[0] < 0 ? 0 : half[0] / (2 * TILE), y1 = half[TILE - 1] < 0 ? -1 : half[TILE - 1] / (2 * TILE);
   uint32_t present = 0;
@@ -145,14 +146,15 @@ LANES_INLINE uint32_t present_rows(const sublight_job *job, const int32_t half[T
 
 static const float DARK_SUBLIGHT = DARK * SUBLIGHT_ONE;
 
-/* The blocks, of a row of four, that hold any of these columns. */
+/* Which blocks of a row of four blocks hold any of the given columns of pixels. */
 LANES_INLINE uint32_t blocks_of_columns(uint32_t columns) {
   uint32_t any = columns | columns >> 1;
   any |= any >> 2;
   return (any & 1) | (any >> 3 & 2) | (any >> 6 & 4) | (any >> 9 & 8);
 }
 
-/* The columns with light in a row of blocks. at: its first pixel. */
+/* The columns of pixels with light in a row of four blocks, one bit each. at: the offset of the row's first
+ * pixel. */
 LANES_INLINE uint32_t lit_columns(const sublight_job *job, size_t at) {
   uint32_t columns = 0;
   for (int row = 0; row < BLOCK; row++)
@@ -181,11 +183,13 @@ LANES_INLINE lanes composite_sublight(const sublight_job *job, int channel, ptrd
   return light;
 }
 
-/* Where a slab takes less light than this, the fraction that surfaces keep of it cannot be computed. */
+/* Where a slab absorbs a smaller fraction of the light than this, rounding makes it impossible to tell which
+ * part of this light surfaces keep. */
 static const float LEAST_TAKEN = 1e-5f;
 
-/* Composites the slab into the light at the outside. light: the transmittance before. Derived: with k = k'
- * (attenuate.h), Y becomes T t + k (Y - T t). Full light becomes Y' = t + k (1 - t), from which k follows. */
+/* Composites the slab into the light at the outside. light: the sub-light's transmittance before the slab.
+ * Derived: with k = k' (attenuate.h), Y becomes T t + k (Y - T t). Where full light comes to the slab, this
+ * is t + k (1 - t), which is slab_outside; so k follows. */
 LANES_INLINE void composite_outside(const sublight_job *job, int channel, ptrdiff_t offset, lanes light,
                                     lanes slab_transmittance, lanes slab_outside) {
   sublight_pixel *at = job->outside[channel] + offset;
@@ -217,7 +221,7 @@ static int sublight_tile(const sublight_job *job, int tile_x, int tile_y) {
       ptrdiff_t at = (ptrdiff_t)(corner + (size_t)row * job->stride);
       lanes slab_transmittance = slab_row(&taps, rows);
       if (lanes_bits(slab_transmittance < 1.0f) == 0)
-        continue; /* the sub-light's row need not come from memory */
+        continue; /* the sub-light's pixels in this row need not be loaded from memory */
       lanes light = composite_sublight(job, c, at, slab_transmittance);
       touched = 1;
       if (job->outside[c] == NULL) continue;
@@ -244,8 +248,8 @@ LANES_INLINE int copy_of_shift(const sublight_job *job) {
   return (job->half[0] & 1) + 2 * (job->half[1] & 1);
 }
 
-/* Finds which of the slab's sixteen rows from `top` on have a pixel below 1 in a tile's columns: one bit
- * each. */
+/* Finds which of the slab's sixteen rows from `top` on have a pixel below 1 in the columns of tile tile_x:
+ * one bit each. copy: the copy of the slab that is read. */
 LANES_INLINE uint32_t rows_from(const sublight_job *job, int tile_x, int top, int copy) {
   const slab_rows *tile = job->rows + tile_x;
   int y = top >> 4, down = top & (TILE - 1);
@@ -260,7 +264,8 @@ LANES_INLINE int is_dark_tile(const sublight_job *job, const uint16_t *lit, int 
   return tile_x < 0 || tile_x >= job->tiles_x || lit[tile_x] == 0;
 }
 
-/* The sub-light's pixels under a tile's first column: their offset from the first pixel. */
+/* The offset, from the sub-light's first pixel, of the pixel that lies under the first column of the slab's
+ * tile tile_x, in the first row of the sub-light's row of tiles tile_y. */
 LANES_INLINE ptrdiff_t pixels_under(const sublight_job *job, int tile_x, int tile_y) {
   return (ptrdiff_t)(tile_y * TILE) * (ptrdiff_t)job->stride + tile_x * TILE - (job->half[0] >> 1);
 }

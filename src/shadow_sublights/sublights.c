@@ -30,8 +30,8 @@ static void view_of_sublight(const light_shadow *shadow, int i, view *view, int 
   if (hl_tiles(view->height) > *tiles_y) *tiles_y = hl_tiles(view->height);
 }
 
-/* Buffers have a margin of a tile on either side, where the slab's tiles reach across the edges, and
- * ROWS_BEYOND rows that look-ups may read after the last. */
+/* Buffers have a margin of a tile on the left and on the right, because the slab's tiles reach across their
+ * edges. After their last row there are ROWS_BEYOND further rows that look-ups may read. */
 enum { ROWS_BEYOND = 7 };
 static void lay_out_planes(sublights *sublights) {
   /* rows of pixels fill whole lines of the cache */
@@ -130,8 +130,8 @@ static float *slab_copy(const sublights *sublights, const shadow_buffer *slab, s
   return sublights->moved + (number * MOVED_COPIES + (size_t)copy - 1) * slab->plane + slab->origin;
 }
 
-/* Where the sub-light's ray through its pixel (at, at) meets a height, in the slab's pixels; false if that
- * lies behind the sub-light or the light's centre. */
+/* Finds, in the slab's pixels, the point at which the sub-light's ray through its pixel (at, at) reaches a
+ * height. False if this point lies behind the sub-light or behind the light's centre. */
 static bool slab_position(const sublight *sublight, const view *slab, vec3 normal, double height, double at,
                           double uv[2]) {
   vec3 start, way;
@@ -146,12 +146,13 @@ static bool slab_position(const sublight *sublight, const view *slab, vec3 norma
 static float carry_of_slab(const sublights *sublights, const sublight *sublight) {
   double turn = sublights->slabs * 0.6180339887498949 +
                 (double)(sublight - sublights->sublight) / sublights->count;
-  return (float)(1.0 / 128 + (turn - floor(turn)) * 63 / 64); /* far enough from 0 and 1 that whole numbers
-                                                               * stay the same */
+  return (float)(1.0 / 128 + (turn - floor(turn)) * 63 / 64); /* it stays so far from 0 and 1 that a whole
+                                                               * number plus the carry is truncated to the
+                                                               * same whole number */
 }
 
-/* The greatest shift, in pixels, for the functions that only shift. Grazing light may shift further; the
- * general functions then clamp the shift. */
+/* The greatest shift, in pixels, for which the functions are used that shift the slab without scaling it.
+ * Grazing light may shift the slab farther; then the general functions are used, which clamp positions. */
 static const double FARTHEST_SHIFT = 1 << 20;
 
 /* Prepares a sub-light's job for a slab. Both views are parallel to the sheets and have the same axes, so
@@ -203,8 +204,8 @@ typedef struct sublight_task {
   int slab_after;              /* the next slab's number, as needed_until counts them */
 } sublight_task;
 
-/* Finds the first and the last tile, along one axis, onto which the pixels x to x + TILE fall after scaling
- * and shifting, and one pixel more on either side. */
+/* Finds, along one axis, the first and the last tile that hold the pixels x to x + TILE after scaling and
+ * shifting, or one pixel more on either side. */
 static void tiles_under(double x, double scale, double shift, int tiles, int *first, int *last) {
   double low = (scale * x + shift - 1) / TILE, high = (scale * (x + TILE) + shift + 1) / TILE;
   *first = low < 0 ? 0 : low > tiles ? tiles : (int)low;
@@ -244,7 +245,8 @@ static void bound_present(sublight_task *task) {
   }
 }
 
-/* The tiles of a sub-light under the slab's tiles low to high, along one axis. */
+/* Finds, along one axis, the first and the last tile of a sub-light that lie under the slab's tiles low to
+ * high. */
 static void sublight_tiles(const sublight *sublight, int axis, int low, int high, int tiles, int *first,
                            int *last) {
   double scale = 1 / (double)sublight->job.scale[axis], shift = -(double)sublight->job.shift[axis] * scale;
@@ -325,9 +327,9 @@ static void advance_row(void *data, size_t index, int worker) {
   const sublight_task *task = data;
   const sublights *all = task->sublights;
   sublight *sublight =
-      &all->sublight[index % (size_t)all->count]; /* the order is row by row, with all sub-lights for each
-                                                   * row, so that the slab's pixels under a row stay in the
-                                                   * cache */
+      &all->sublight[index % (size_t)all->count]; /* tasks go through all sub-lights for one row of tiles,
+                                                   * then for the next row, so that the slab's pixels for a
+                                                   * row stay in the cache */
   int y = (int)(index / (size_t)all->count);
   if (task->ends_run && task->needed_until != NULL) forget_tiles(task, sublight, y);
   if (!sublight->reaches) return;
@@ -337,7 +339,7 @@ static void advance_row(void *data, size_t index, int worker) {
 
 /* ---- the slab ---- */
 
-/* Fills the rows of a tile that have a bit, 0 to 15, with ones. */
+/* Fills some rows of a tile with ones. rows: one bit for each of the tile's sixteen rows. */
 static void fill_ones(float *pixels, size_t stride, slab_rows of_copies) {
   for (uint32_t rows = of_copies & ((1u << TILE) - 1); rows != 0; rows &= rows - 1)
     for (size_t i = 0, row = (size_t)__builtin_ctz(rows); i < TILE; i++) pixels[row * stride + i] = 1;
@@ -434,8 +436,8 @@ static void advance_sublights(light_shadow *shadow, const occupancy *occupancy, 
 
 /* ---- lit blocks of the slab ---- */
 
-/* Pixels around a block of the slab that affect the same pixels of a sub-light: values at half pixels depend
- * on two pixels on either side. */
+/* The number of pixels around a block of the slab by which values in the block still affect a sub-light: a
+ * value at a half pixel depends on two pixels on either side. */
 enum { BLOCK_SPARE = 2 };
 
 /* The rows (or columns) of a sub-light's blocks that lie under each of the four rows (or columns) of blocks
@@ -467,8 +469,8 @@ static blocks_under find_under(const sublight *sublight, int axis, int tile, int
   return under;
 }
 
-/* The lit blocks of a sub-light in a row of blocks, one bit each, beginning with block `first`; at most 64.
- */
+/* The lit blocks of a sub-light in a row of blocks, from block `first` to block `last`: one bit each, block
+ * `first` in bit 0. There may be at most 64. */
 static uint64_t lit_in_row(const sublights *all, const sublight *sublight, int row, int first, int last) {
   const uint16_t *tiles = sublight->lit + (size_t)(row / 4) * (size_t)all->tiles_x;
   uint64_t bits = 0;

@@ -1,10 +1,10 @@
 /* shadow_sublights/sublights.h - soft shadows as the mean of many sharp ones (beyond the paper).
  *
  * M x M sub-lights stand for the light; each is a point (or a direction) with a buffer of its own, parallel
- * to the sheets. A slab is classified once, in the view of the light's centre. Seen from a sub-light the slab
- * is only scaled and shifted, so only the compositing is repeated: each sub-light multiplies its buffer, in
- * 16 bits, by the slab's transmittance at the nearest half pixel. The buffers are never resampled. A sample
- * takes the mean over all buffers, each through its own map. */
+ * to the sheets. A slab is classified once, in the view of the light's centre. Seen from a sub-light, the
+ * slab's picture is only scaled and shifted. So only the compositing is repeated: the buffer of each
+ * sub-light, whose pixels have 16 bits, is multiplied by the slab's transmittance at the nearest half pixel.
+ * The buffers are never resampled. A sample takes the mean over all buffers, each through its own map. */
 #ifndef HL_SHADOW_SUBLIGHTS_SUBLIGHTS_H
 #define HL_SHADOW_SUBLIGHTS_SUBLIGHTS_H
 
@@ -28,10 +28,11 @@ typedef struct sublight {
   unsigned char *touched; /* [tiles]; 1 where slabs have absorbed light since the lit blocks were found; a
                            * part of `marks` */
   sublight_job job;       /* the current slab's */
-  bool reaches;           /* the sub-light lies before the slab */
+  bool reaches;           /* the slab lies beyond the sub-light, so that the sub-light's rays reach it */
   bool shifted;           /* the job's scale is 1 */
-  sublight_map near, far; /* for the first and the last slab of the next run */
-  bool comes; /* the sub-light lies within the next run: it casts shadows in the run's last slab only */
+  sublight_map near, far; /* the sub-light's maps for the first and for the last slab of the next run */
+  bool comes; /* the sub-light lies within the next run: its rays reach the run's last slab, but not the first
+               * one */
 } sublight;
 
 typedef struct sublights {

@@ -14,8 +14,8 @@ LANES_INLINE int32_t lanes_word(const unsigned char *p) {
   return word;
 }
 
-/* Offsets of sixteen loads, in memory: taking them out of a vector register one by one would cost more than
- * the loads. */
+/* The offsets of sixteen loads. They are kept in memory, because taking them out of a vector register one by
+ * one would cost more than the loads. */
 typedef struct lanes_offsets {
   _Alignas(64) int32_t at[LANES];
 } lanes_offsets;
@@ -134,8 +134,8 @@ LANES_INLINE void gather_rows_of_four(const float *table, lanes_int index, int c
 #if defined(__AVX512F__)
   lanes_offsets offsets;
   lanes_store_offsets(&offsets, index * 4);
-  __m512 of_half[2][4]; /* of four lanes in each half: the values of the first rows, then those of the
-                         * second rows */
+  __m512 of_half[2][4]; /* of_half[h][c]: column c for eight lanes of half h, in quarters of the register:
+                         * four lanes' first rows, then their second rows, and so for the next four lanes */
   for (int half = 0; half < 2; half++) {
     const int32_t *at = offsets.at + 8 * half;
     __m512 pairs[4];
@@ -231,7 +231,8 @@ typedef struct lanes_squares {
 } lanes_squares;
 
 #if defined(__AVX512BW__)
-/* The least column and row of the active lanes, in all lanes, 16 bits each; both are below 65535. */
+/* The least column and the least row of the active lanes, 16 bits each, in every lane of the result. Columns
+ * and rows must be below 65535. */
 LANES_INLINE __m512i least_corner(__m512i corners, __mmask16 active) {
   __m512i held = _mm512_mask_mov_epi32(_mm512_set1_epi32(-1), active, corners);
   __m256i of_eight = _mm256_min_epu16(_mm512_castsi512_si256(held), _mm512_extracti64x4_epi64(held, 1));
@@ -248,8 +249,8 @@ LANES_INLINE __m512i four_rows(const uint16_t *from, size_t stride) {
   return _mm512_inserti32x4(rows, _mm_loadu_si128((const __m128i *)(const void *)(from + 3 * stride)), 3);
 }
 
-/* Takes the lanes' squares from one window of eight rows of eight numbers. False where the squares are too
- * far apart. At least one lane is active. */
+/* Takes the squares of all active lanes from one window of eight rows of eight numbers. False where the
+ * squares are too far apart for this. At least one lane must be active. */
 LANES_INLINE int squares_in_window(const uint16_t *table, size_t stride, lanes_squares squares,
                                    uint32_t active, __m512i pair[2]) {
   __m512i corners = _mm512_or_si512((__m512i)squares.column, _mm512_slli_epi32((__m512i)squares.row, 16));

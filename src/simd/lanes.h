@@ -156,10 +156,11 @@ LANES_INLINE lanes_int lower_words(lanes_double x) {
 }
 
 /* a b + c, rounded once, computed in doubles. In doubles a product of floats is exact, but a sum is not.
- * Rounding the sum to a float is wrong only where the sum lies in the middle between two floats and is not
- * exact (among subnormal floats: where it is not exact). There the sum is first rounded to odd: to the one
- * of the two doubles around the exact sum that has an odd last bit, which then rounds to the right float
- * (Boldo and Melquiond, "Emulation of a FMA and correctly rounded sums", 2008). */
+ * Rounding the sum to a float is wrong only where the sum is not exact and lies in the middle between two
+ * floats; among subnormal floats it may be wrong wherever the sum is not exact. There the sum is first
+ * rounded to odd: of the two doubles around the exact sum, the double with an odd last bit is taken, which
+ * then rounds to the right float (Boldo and Melquiond, "Emulation of a FMA and correctly rounded sums",
+ * 2008). */
 LANES_CALL lanes fma_in_doubles(lanes a, lanes b, lanes c) {
   lanes_double product = __builtin_convertvector(a, lanes_double) * __builtin_convertvector(b, lanes_double);
   lanes_double addend = __builtin_convertvector(c, lanes_double), sum = product + addend;
@@ -224,8 +225,8 @@ LANES_INLINE lanes lanes_clamp(lanes x, float low, float high) {
 }
 LANES_INLINE lanes lanes_abs(lanes x) { return (lanes)((lanes_int)x & lanes_set_int(0x7fffffff)); }
 
-/* Multiplies two vectors, whose lanes hold two signed numbers of 16 bits each: a lane of the result is the
- * sum of the two products. */
+/* Multiplies two vectors, each lane of which holds two signed 16-bit numbers. A lane of the result is the sum
+ * of the lane's two products. */
 LANES_INLINE lanes_int lanes_multiply_shorts(lanes_int a, lanes_int b) {
 #if defined(__AVX512BW__)
   return (lanes_int)_mm512_madd_epi16((__m512i)a, (__m512i)b);
@@ -249,8 +250,8 @@ LANES_INLINE lanes_int lanes_multiply_shorts(lanes_int a, lanes_int b) {
 #endif
 }
 
-/* Brings the numbers of 16 bits of two vectors together, in pairs. Of each eight numbers of a vector the
- * first four go to pairs[0], the last four to pairs[1]. */
+/* Joins the 16-bit numbers of two vectors to pairs, each of a number of of[0] and the number at the same
+ * place in of[1]. Of each eight pairs the first four go to pairs[0], the last four to pairs[1]. */
 LANES_INLINE void lanes_unpack_shorts(const lanes_int of[2], lanes_int pairs[2]) {
 #if defined(__AVX512BW__)
   pairs[0] = (lanes_int)_mm512_unpacklo_epi16((__m512i)of[0], (__m512i)of[1]);

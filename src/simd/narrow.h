@@ -24,8 +24,8 @@ LANES_INLINE int any_short_above(__m256i x, int limit) {
   return !_mm256_testz_si256(above, above);
 }
 
-/* Narrow numbers in memory. narrow_pair() points at the number of lane k of a half; the one of lane k + 4
- * follows NARROW_SECOND numbers later. */
+/* Narrow numbers in memory. narrow_pair() points at the number of lane k of a half of the lanes; the number
+ * of lane k + 4 of this half follows NARROW_SECOND numbers later. */
 typedef struct narrow_offsets {
   _Alignas(32) uint16_t at[LANES];
 } narrow_offsets;

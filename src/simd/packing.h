@@ -24,9 +24,9 @@ LANES_INLINE uint64_t spread_bits(uint64_t bits) {
   return (bits | bits << 3) & NIBBLE_ONES;
 }
 
-/* The numbers of the chosen nibbles, moved together: each moves down by the number of nibbles below it that
- * are not chosen, by one, two, four and eight in turn (Warren, "Hacker's Delight", compress). before: how
- * many are chosen below each. */
+/* The numbers of the chosen nibbles, moved together. Each number moves down by the number of nibbles below it
+ * that are not chosen, in steps of one, two, four and eight nibbles (Warren, "Hacker's Delight", compress).
+ * chosen: 1 in each chosen nibble. before: for each nibble, how many chosen nibbles lie below it. */
 LANES_INLINE uint64_t chosen_numbers(uint64_t chosen, uint64_t before) {
   uint64_t all = chosen * 15, numbers = NIBBLE_NUMBERS & all, ways = (NIBBLE_NUMBERS - before) & all;
   for (int step = 0; step < 4; step++) {
@@ -38,11 +38,11 @@ LANES_INLINE uint64_t chosen_numbers(uint64_t chosen, uint64_t before) {
 }
 #endif
 
-/* Moves some of sixteen lanes, one bit each, to the lanes from `at` on, in their order. */
+/* How some of sixteen lanes, the chosen ones, are moved to the lanes from `at` on, in their order. */
 typedef struct lanes_packing {
 #if defined(__AVX512F__)
-  __m512i from; /* for each packed lane: the lane that it comes from */
-  __m512i to;   /* for each lane with a bit: the lane that it goes to */
+  __m512i from; /* for each packed lane, the lane from which it comes */
+  __m512i to;   /* for each chosen lane, the lane to which it goes */
   __mmask16 packed, bits;
 #else
   lanes_int from, to, packed, bits;
@@ -60,7 +60,8 @@ LANES_CALL lanes_packing lanes_packing_of(uint32_t bits, int at) {
   packing.to = _mm512_maskz_expand_epi32(packing.bits, _mm512_add_epi32(first, _mm512_set1_epi32(at)));
 #else
   uint64_t chosen = spread_bits(bits),
-           before = chosen * NIBBLE_ONES - chosen; /* the product adds up the nibbles below each */
+           before = chosen * NIBBLE_ONES - chosen; /* in each nibble, the product is the sum of this nibble
+                                                    * and all nibbles below it */
   packing.bits = lanes_from_bits(bits);
   packing.packed = lanes_from_bits(packed);
   packing.from = lanes_from_nibbles(chosen_numbers(chosen, before) << 4 * at);
