@@ -1,5 +1,5 @@
-/* surface/cluster_order.h - the primitives of a mesh in an order in which primitives that follow each other
- * are close together. */
+/* surface/cluster_order.h - orders the primitives of a mesh so that primitives that follow each other in the
+ * order are close together. */
 #ifndef HL_SURFACE_CLUSTER_ORDER_H
 #define HL_SURFACE_CLUSTER_ORDER_H
 

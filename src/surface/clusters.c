@@ -18,11 +18,12 @@ static uint16_t filled_up(uint32_t vertices) { return (uint16_t)((vertices + 15)
 
 /* ---- memory ---- */
 
-/* How many clusters a scene's meshes have. */
+/* The numbers of clusters that a scene's meshes have. */
 typedef struct cluster_counts {
-  size_t all, with_corners; /* clusters; clusters of primitives that have corners */
+  size_t all, with_corners; /* number of all clusters, and number of clusters of primitives that have
+                             * corners */
   size_t primitives;
-  uint64_t most; /* primitives of one kind of the largest mesh */
+  uint64_t most; /* the greatest number of primitives of one kind in a mesh */
 } cluster_counts;
 
 /* Counts the primitives of kind number k that a mesh has. */
@@ -79,9 +80,9 @@ static void find_box(const surfaces *all, surface_cluster *cluster) {
 
 /* ---- cones ---- */
 
-/* Finds the cone of a cluster's normals: the mean of the normals, and the greatest angle between a normal
- * and the mean. Triangles without an area have no normal and are not seen. Primitives without corners have
- * normals of all directions. */
+/* Finds the cone of a cluster's normals: the mean of the normals, and the greatest angle between a normal and
+ * the mean. Triangles without an area have no normal; as they are never seen, they do not count. Primitives
+ * without corners have normals in all directions. */
 static void find_cone(const surfaces *all, surface_cluster *cluster) {
   vec3 normals[CLUSTER_SIZE], sum = {0, 0, 0};
   double least = 1;
@@ -104,7 +105,7 @@ static void find_cone(const surfaces *all, surface_cluster *cluster) {
 /* The vertices of a cluster, found by hashing. */
 enum { SLOTS = 512 };
 typedef struct vertex_set {
-  uint32_t slot[SLOTS]; /* number in `vertex`, plus 1; 0: none */
+  uint32_t slot[SLOTS]; /* the vertex's index in `vertex`, plus 1; 0: the slot is free */
   uint32_t vertex[CLUSTER_VERTICES], count;
 } vertex_set;
 
@@ -235,14 +236,14 @@ void hl_clusters_release(hl_context *context, surfaces *all) {
   hl_release(context, all->cluster_positions);
 }
 
-/* The least angle, as a sine, by which a triangle must be turned away from the view to count as turned
+/* The sine of the least angle by which a triangle must be turned away from the view to count as turned
  * away. */
 static const double AWAY = 0.02;
 
-/* Whether all triangles of a cluster surely turn their backs to a view. Derived: a normal m within the
- * angle a of the axis n, and a way v from the eye to the middle of the box, with the angle t between v and
- * n, have m.v >= |v| cos(t + a); to another point of the box, less than r away, m.(v + w) >= |v| cos(t + a)
- * - r. */
+/* Whether all triangles of a cluster surely turn their backs to a view. Derived: let v be the vector from the
+ * eye to the middle of the box, t the angle between v and the cone's axis n, and m a normal within the angle
+ * a of n. Then m.v >= |v| cos(t + a). For another point of the box, v + w with |w| < r, m.(v + w) >= |v|
+ * cos(t + a) - r. */
 bool hl_cluster_faces_away(const surface_cluster *cluster, const view *view) {
   vec3 low = hl_surface_vector(cluster->low), high = hl_surface_vector(cluster->high), way = view->direction;
   double reach = 0, a = cluster->cosine;

@@ -18,15 +18,15 @@ struct surface_cluster {
   float axis[3];         /* of the cone; unit */
   float cosine;          /* the cosine of the greatest angle between the axis and a normal; below 0: the
                           * normals may have any direction */
-  uint32_t first; /* the place in all->order of the cluster's first primitive; the order keeps primitives
-                   * of one kind together, so that all primitives of the cluster have the kind of the first
-                   * one */
+  uint32_t first; /* the index, in all->order, of the cluster's first primitive. All primitives of a cluster
+                   * have the kind of the first one, because the order keeps primitives of one kind
+                   * together */
   uint16_t count, mesh;
   uint16_t vertices;   /* of triangles: as in cluster_shape */
   size_t first_vertex; /* in all->cluster_positions */
 };
 
-/* Counts the memory that hl_clusters_create() takes at most, which it takes where triangles share their
+/* Counts the most memory that hl_clusters_create() can take. It takes that much where triangles share their
  * vertices with few others. */
 void hl_clusters_count(const hl_scene_description *scene, hl_layout *layout);
 

@@ -16,9 +16,10 @@ typedef struct edge {
   int64_t least, greatest; /* the least and the greatest offset */
 } edge;
 
-/* Sets the edge from a to b. The caller's order of corners says on which side of the edge the inside lies.
- * A sample on an edge belongs to the triangle on one of its sides only: the function of the edge is less by
- * 1 if the edge runs the other way. */
+/* Sets the edge from a to b. Which side of the edge is the inside depends on the order of the corners, which
+ * the caller chooses. A sample on an edge belongs to the triangle on one of the edge's sides only. So the
+ * function is less by 1 for edges in one half of all directions, and an edge has opposite directions in its
+ * two triangles. */
 static void set_edge(edge *e, int64_t ax, int64_t ay, int64_t bx, int64_t by) {
   int64_t dx = bx - ax, dy = by - ay;
   bool owns = dy > 0 || (dy == 0 && dx < 0);

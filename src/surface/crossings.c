@@ -6,8 +6,8 @@
 #include "surface/sample_rows.h"
 #include "surface/shown_surface.h"
 
-/* A pixel with more fragments than this is not parted: so many surfaces in one pixel are a thicket, in
- * which nobody sees their order. */
+/* The fragments of a pixel that has more than this are not parted, because nobody sees the order of so many
+ * surfaces in one pixel. */
 enum { MOST_FRAGMENTS = 32 };
 
 /* The fragments of a pixel, and the surfaces of the fragments that may cross others. */
@@ -15,10 +15,10 @@ typedef struct pixel_fragments {
   const crossing_tile *tile;
   fragment list[2 * MOST_FRAGMENTS]; /* [count]; first the given fragments, then those of their parts that
                                       * come before other fragments */
-  uint8_t part_of[MOST_FRAGMENTS];   /* of each part: the fragment whose surface it shows */
+  uint8_t part_of[MOST_FRAGMENTS];   /* for each part, the fragment from which it was parted */
   size_t given, count;
   shown_surface surfaces[MOST_FRAGMENTS];
-  uint32_t has_surface, changed; /* one bit for each of those given */
+  uint32_t has_surface, changed; /* one bit for each given fragment */
   int x, y;                      /* the pixel */
 } pixel_fragments;
 
@@ -45,7 +45,7 @@ static const shown_surface *surface_of(pixel_fragments *pixel, size_t i) {
   return surface;
 }
 
-/* The samples, among some given samples, at which fragment i lies before fragment j. */
+/* Those of the given samples at which fragment i lies before fragment j. */
 static uint32_t samples_before(pixel_fragments *pixel, size_t i, size_t j, uint32_t samples) {
   const shown_surface *own = surface_of(pixel, i), *other = surface_of(pixel, j);
   uint32_t before = 0;
@@ -58,7 +58,8 @@ static uint32_t samples_before(pixel_fragments *pixel, size_t i, size_t j, uint3
   return before;
 }
 
-/* Whether two fragments, the first of which comes first, may cross in samples that they share. */
+/* Whether two fragments may cross in samples that they share. first: the fragment that comes before the other
+ * one. */
 static bool may_cross(const pixel_fragments *pixel, const fragment *first, const fragment *second) {
   double apart = depth_of(pixel, (double)second->height) - depth_of(pixel, (double)first->height);
   return (first->samples & second->samples) != 0 &&
@@ -97,8 +98,8 @@ static void part_translucent(pixel_fragments *pixel, size_t i) {
   }
 }
 
-/* Parts fragment i, which is opaque, from the fragments before it: each loses the samples that the other
- * one hides. */
+/* Parts fragment i, which is opaque, where it crosses fragments that come before it. Of two fragments that
+ * cross, each loses the samples at which the other one hides it. */
 static void part_opaque(pixel_fragments *pixel, size_t i) {
   const float *least = pixel->tile->order->least;
   fragment *own = &pixel->list[i];
@@ -141,7 +142,7 @@ static bool any_may_cross(const pixel_fragments *pixel, const fragment *list, si
   return false;
 }
 
-/* Parts a pixel's fragments; *parted is set where any were. */
+/* Parts a pixel's fragments. *parted is set if any fragment was parted. */
 static size_t part_pixel(const crossing_tile *tile, const fragment *list, size_t count, fragment *to,
                          bool *parted) {
   pixel_fragments pixel;

@@ -1,7 +1,7 @@
 /* surface/crossings.h - fragments of a pixel whose surfaces cut into each other there.
  *
- * Fragments are composited by one height each. Where two surfaces cross within a pixel, each sample has an
- * order of its own: there the fragments are cut into parts, so that the line between the surfaces is as
+ * Each fragment is composited at one height. But where two surfaces cross within a pixel, their order differs
+ * from sample to sample. There the fragments are cut into parts, so that the line between the surfaces is as
  * smooth as edges of surfaces are. */
 #ifndef HL_SURFACE_CROSSINGS_H
 #define HL_SURFACE_CROSSINGS_H
@@ -19,10 +19,10 @@ typedef struct crossing_tile {
 } crossing_tile;
 
 /* Parts the fragments of a tile where their surfaces cross. The fragments are sorted by pixels and in the
- * view's order. Where three surfaces cross in one pixel, and two or more of them let light through, their
- * order may be wrong. A pixel of more than 32 fragments is left as it is. to: room for 2 count fragments;
- * gets the result, sorted likewise. *parted: set where some fragment changed; it may then lie in another
- * slab. Returns the number of fragments in `to`. */
+ * view's order. If three surfaces cross in one pixel, and two or more of them let light through, the order of
+ * their parts may be wrong. A pixel of more than 32 fragments is left as it is. to: room for 2 count
+ * fragments; gets the result, sorted likewise. *parted: set if any fragment changed; a changed fragment may
+ * lie in another slab than before. Returns the number of fragments in `to`. */
 size_t hl_part_crossings(const crossing_tile *tile, const fragment *list, size_t count, fragment *to,
                          bool *parted);
 

@@ -6,10 +6,11 @@
  * are sorted by depth.
  *
  * Opacity. Fragments of one pixel may cover the same samples or different samples. They are composited one
- * after the other. So the opacity of a fragment is the fraction of light that it takes, of the light which
- * the fragments before it let pass, averaged over the samples. (Derived: where t[i] is the transmittance of
- * sample i before the fragment and a its own opacity, it takes the sum of t[i] a over its samples, divided by
- * the sum of t[i] over all samples.) So triangles that share an edge leave no seam. */
+ * after the other. So the opacity of a fragment is a fraction of the light which the fragments before it let
+ * pass: the part that it absorbs, averaged over the pixel's samples. (Derived: let t[i] be the transmittance
+ * of sample i before the fragment, and a the fragment's own opacity. The fraction is the sum of t[i] a over
+ * the fragment's samples, divided by the sum of t[i] over all samples.) With such opacities triangles that
+ * share an edge leave no seam. */
 #ifndef HL_SURFACE_FRAGMENT_H
 #define HL_SURFACE_FRAGMENT_H
 
@@ -33,9 +34,9 @@ typedef struct fragment {
 /* The mean position of the covered samples in their pixel, 0 to 1. */
 void hl_fragment_middle(uint16_t samples, double *u, double *v);
 
-/* The reach of a fragment is the greatest distance of the surface above or below the fragment's height,
- * within its samples. It is stored in REACH_PARTS parts of the distance of sheets, rounded up. The greatest
- * number stands for any reach. */
+/* The reach of a fragment is the greatest distance of its surface above or below the fragment's height,
+ * within its samples. It is stored in units of 1 / REACH_PARTS of the distance of sheets, rounded up.
+ * FARTHEST stands for a reach of any length. */
 enum { REACH_PARTS = 16, FARTHEST = UINT8_MAX };
 
 /* The number that stands for a reach. The reach is in distances of sheets. */

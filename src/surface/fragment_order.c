@@ -57,9 +57,9 @@ static bool may_meet(const fragment_order *order, float apart, uint8_t reach, ui
   return fabs((double)apart) <= hl_reach_of(reach, order->spacing) + hl_reach_of(other, order->spacing);
 }
 
-/* Copies a pixel's fragments in the order of their keys. Leaves out a fragment where opaque fragments
- * before it cover all its samples for certain, whatever the slopes of the surfaces are. most: the greatest
- * reach of any fragment. Returns the number of fragments that are left. */
+/* Copies a pixel's fragments in the order of their keys. Leaves out a fragment if opaque fragments before it
+ * certainly cover all its samples, whatever the slopes of the surfaces are. most: the greatest reach of any
+ * fragment. Returns the number of fragments that are left. */
 static size_t copy_uncovered(const fragment *list, const order_key *keys, size_t count, uint8_t most,
                              const fragment_order *order, fragment *to) {
   size_t kept = 0;
@@ -136,9 +136,9 @@ static int count_samples(uint32_t samples) {
   return count;
 }
 
-/* Finds the opacities of the opaque fragments with which a pixel's fragments begin. An opacity is a fraction
- * of the samples that the fragments before leave open. Returns the number of these fragments. *open: the
- * samples that they leave open. */
+/* A pixel's fragments begin with opaque ones, or with none. This function finds the opacities of these first
+ * opaque fragments, and returns their number. Such an opacity is the fraction that a fragment covers of the
+ * samples which the fragments before it leave open. *open: the samples that they all leave open. */
 static size_t resolve_opaque(fragment *list, size_t count, const float *least, uint32_t *open) {
   size_t i = 0;
   *open = 0xffff;
@@ -151,7 +151,7 @@ static size_t resolve_opaque(fragment *list, size_t count, const float *least, u
   return i;
 }
 
-/* Finds the opacities of one pixel's fragments, which are in the order that the light or the eye meets
+/* Finds the opacities of one pixel's fragments, which are in the order in which the light or the eye meets
  * them. Fragments that take no light get opacity 0. */
 static void resolve_pixel(fragment *list, size_t count, const float *least) {
   uint32_t open;
@@ -204,9 +204,9 @@ static size_t resolve_slabs(fragment *list, size_t count, const float *least) {
   return kept;
 }
 
-/* Joins fragments of neighbouring triangles of a coloured pane that cover different samples of one pixel to
- * one fragment. So each colour loses the same light to the pane, however the triangles share the pixel.
- * Returns the number of fragments that are left. */
+/* Joins fragments of one pixel that belong to neighbouring triangles of a coloured pane, and cover different
+ * samples, to one fragment. So each colour loses the same light to the pane, however the triangles share the
+ * pixel. Returns the number of fragments that are left. */
 static size_t join_panes(fragment *list, size_t count, const float *least) {
   size_t kept = 0;
   for (size_t i = 0; i < count; i++) {
@@ -223,9 +223,9 @@ static size_t join_panes(fragment *list, size_t count, const float *least) {
   return kept;
 }
 
-/* Lets each fragment take the light of the part of the pixel that it covers, as if no fragment hid another.
- * Neighbouring triangles of a mesh that cover different samples become one fragment. Returns the number of
- * fragments that are left. */
+/* Finds opacities as if no fragment hid another: each fragment absorbs the light of the part of the pixel
+ * that it covers. Fragments of neighbouring triangles of a mesh that cover different samples are joined to
+ * one fragment. Returns the number of fragments that are left. */
 static size_t resolve_apart(fragment *list, size_t count) {
   size_t kept = 0;
   for (size_t i = 0; i < count; i++) {

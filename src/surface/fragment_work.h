@@ -19,8 +19,7 @@ typedef struct fragment_block {
 typedef struct tile_list {
   const fragment *list; /* [count]; in a block */
   uint32_t count;
-  uint32_t reached; /* number of the tile's fragments that lie before the next slab that the sweep will ask
-                     * for */
+  uint32_t reached; /* number of the tile's fragments in slabs that the sweep has asked for already */
 } tile_list;
 
 /* The input of hl_fragments_create(); borrowed. */
@@ -33,18 +32,17 @@ typedef struct fragments_source {
   const sheet_stack *sheets;
   bool falling;  /* the view meets great heights first */
   bool of_light; /* a light's view sees the meshes that cast shadows; other views see the visible meshes */
-  bool unseen;   /* the eye's view, of only those meshes that are not visible and cast shadows. Then no
-                  * fragment hides another, and an opacity is a fraction of the pixel */
-  double delay;  /* pixels of the view by which a fragment is delayed: it takes light from the height on
-                  * that its surface's plane has this far away. So a surface does not darken itself where
-                  * look-ups interpolate */
+  bool unseen;   /* the eye's view sees only meshes that are not visible but cast shadows. Then no fragment
+                  * hides another, and an opacity is a fraction of the pixel's light */
+  double delay;  /* delay of fragments, in pixels of the view: a fragment absorbs light only from the height
+                  * on that its surface's plane has this many pixels away. So a surface does not darken itself
+                  * where look-ups interpolate */
   /* A distance in pixels. In a light's view, a fragment fills all slabs that its surface's plane crosses
    * within this distance of the fragment. So rays of other directions than the view's find no gap between the
    * pixels of a slanted surface. 0: a fragment fills one slab. */
   double rise;
-  uint64_t *marks; /* [sheets][tile_words], bit = tile; may be null. A sheet's bits are set for tiles in
-                    * which, or beside which, the slab that ends at the sheet has a visible or
-                    * shadow-casting surface */
+  uint64_t *marks; /* [sheets][tile_words], bit = tile; may be null. A bit is set if the slab that ends at the
+                    * sheet has a visible or shadow-casting surface in the tile or beside it */
   int tile_words;
   const int32_t *needed; /* [tiles]; 0: nobody needs the tile's fragments; null: all tiles are needed */
 } fragments_source;
@@ -52,14 +50,14 @@ typedef struct fragments_source {
 /* The opaque fragments that were added last to a pixel of a tile in a light's view; each lies in a slab of
  * its own. */
 typedef struct latest_fragments {
-  uint32_t end; /* the place in the worker's scratch one past the first of these fragments; 0: there are
+  uint32_t end; /* index, in the worker's scratch, of the first of these fragments, plus 1; 0: there are
                  * none */
   int32_t last; /* the slab of the last of them */
 } latest_fragments;
 
 /* The samples of a pixel that opaque fragments of a light's view cover. */
 typedef struct covered_so_far {
-  float height; /* the greatest height of these fragments, up to the fragment that covered the last sample */
+  float height; /* the greatest height of the fragments that were added until all samples were covered */
   uint32_t samples;
 } covered_so_far;
 
@@ -86,7 +84,8 @@ typedef struct fragment_work {
   const seen_surfaces *seen;
   const primitive_bins *bins;
   binned *wanted;           /* [mesh_count]; the primitives of each mesh that are seen */
-  small_view small;         /* a pattern: the members that depend on a mesh are not set */
+  small_view small;         /* a pattern for tiles and meshes: the members that depend on a mesh are not
+                             * set */
   fragment_worker *workers; /* [threads] */
   float *least;             /* [mesh_count]; as in fragment_order */
   bool *dark_backs; /* [mesh_count]; in a light's view: whether the light leaves the mesh's backs dark */

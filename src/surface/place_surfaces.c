@@ -25,8 +25,8 @@ static surface_mesh describe(const hl_scene_mesh *mesh, size_t first_vertex, siz
                         .first_edge_normal = first_edge_normal};
 }
 
-/* Numbers the primitives kind by kind. If the array of meshes is allocated already, the meshes are told their
- * own numbers. */
+/* Numbers the primitives kind by kind. If the array of meshes is allocated already, the numbers of each
+ * mesh's primitives are stored in it. */
 static uint64_t number_primitives(const hl_scene_description *scene, surfaces *made) {
   uint64_t primitives = 0;
   for (int k = 0; k < PRIMITIVE_KINDS; k++) {

@@ -26,26 +26,27 @@ typedef struct hull_ball {
 } hull_ball;
 
 typedef struct primitive_kind {
-  const char *noun; /* what people call several of them */
+  const char *noun; /* the kind's name in messages, in the plural */
   /* Whether primitives are flat between three corners, which all->triangles lists: such a primitive has one
    * normal and one plane, and its cluster keeps a copy of its vertices. */
   bool has_corners;
-  const primitive_raster *raster;   /* what views see of it */
-  const primitive_lattice *lattice; /* where lines through a lattice meet it */
-  /* How many of its primitives a mesh has. */
+  const primitive_raster *raster;   /* what views see of the kind's primitives */
+  const primitive_lattice *lattice; /* where lines through a lattice meet the kind's primitives */
+  /* How many primitives of the kind a mesh has. */
   size_t (*count)(const hl_mesh_description *mesh);
   /* Takes the arrays of the primitives of all meshes. */
   void (*lay_out)(surfaces *made, hl_layout *layout);
   /* Brings the primitives of a mesh to frame space. */
   void (*place)(hl_pool *pool, surfaces *made, const surface_mesh *mesh);
-  /* A point of it; [3]. */
+  /* A point of a primitive; [3]. */
   const float *(*point)(const surfaces *all, uint32_t primitive);
-  /* A box around it, wider by what rounding may take. */
+  /* Finds a box around a primitive, which is so wide that rounding takes no part of the primitive out of
+   * it. */
   void (*bound)(const surfaces *all, uint32_t primitive, float low[3], float high[3]);
   /* The fraction of light that a primitive stops, at its middle. */
   double (*opacity)(const surfaces *all, const surface_mesh *mesh, uint32_t primitive);
-  /* The unit normal where a ray met a primitive. *from: a point's distance from the plane there, above 0 on
-   * the normal's side. */
+  /* The unit normal of a primitive at `met`, where a ray has met it. *from: the distance of `point` from the
+   * plane that touches the primitive there, above 0 on the normal's side. */
   vec3 (*normal)(const surfaces *all, uint32_t primitive, vec3 met, vec3 point, double *from);
   /* The plane of a primitive, or the plane that touches it where a ray met it, as a view sees the plane. */
   void (*plane)(const view *view, const sheet_stack *sheets, const surfaces *all, uint32_t primitive,
@@ -54,9 +55,9 @@ typedef struct primitive_kind {
    * unit normal of the primitive itself, on the side of *normal. */
   vec3 (*look)(const surfaces *all, const surface_mesh *mesh, uint32_t primitive, vec3 at, vec3 *normal,
                double color[3]);
-  /* How much the surface is bent towards a light: the turn of the normal (on the eye's side) per length on
-   * the way `along`, a unit vector on the surface. It is above 0 in a hollow, and 0 where the surface is
-   * flat or rough or lets light pass. */
+  /* How much the surface is bent towards a light: how far the normal on the eye's side turns per length of
+   * the way `along`, a unit vector on the surface. It is above 0 in a hollow, and 0 where the surface is flat
+   * or rough or lets light pass. */
   double (*bend)(const surfaces *all, const surface_mesh *mesh, uint32_t primitive, vec3 at, vec3 normal,
                  vec3 along);
   /* Finds where a ray meets a primitive, in lengths of the ray's way. Returns how many places were stored. */
@@ -89,7 +90,7 @@ static inline bool hl_has_corners(const surfaces *all, uint32_t primitive) {
   return hl_primitive_kind(all, primitive)->has_corners;
 }
 
-/* Of a sphere: its centre and radius. */
+/* The centre and the radius of a primitive that is a sphere. */
 static inline const float *hl_sphere_of(const surfaces *all, uint32_t primitive) {
   return all->spheres[primitive - all->first[PRIMITIVE_sphere]];
 }

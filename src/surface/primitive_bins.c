@@ -23,9 +23,10 @@ typedef struct bin_work {
   const seen_surfaces *seen;
   const binned *wanted;
   primitive_bins *bins;
-  tile_span *spans; /* [primitives]; of those that are binned one by one */
-  uint32_t *places; /* [tasks][tiles]; first the number of runs that a task has for a tile, later the place
-                     * of the task's next run */
+  tile_span *spans; /* [primitives]; for each primitive that is put into tiles by itself, the tiles that it
+                     * touches */
+  uint32_t *places; /* [tasks][tiles]; first the number of runs that a task has for a tile, later the index of
+                     * the task's next run for it */
   size_t tiles, tasks;
   size_t a_task; /* clusters of a task */
   int tiles_x, tiles_y;

@@ -24,8 +24,8 @@ typedef struct primitive_bins {
 /* What of a mesh is binned. */
 typedef enum binned { BINNED_NOTHING, BINNED_FRONTS, BINNED_ALL } binned;
 
-/* Sorts primitives into tiles. wanted: [mesh_count]; for each mesh which primitives; BINNED_FRONTS: only
- * triangles that face the view. */
+/* Sorts primitives into tiles. wanted: [mesh_count]; which primitives of each mesh are sorted. BINNED_FRONTS:
+ * all but triangles that turn their backs to the view. */
 hl_status hl_primitive_bins_create(hl_context *context, hl_pool *pool, const seen_surfaces *seen,
                                    const binned *wanted, primitive_bins *bins, hl_error *error);
 /* Counts the memory that hl_primitive_bins_create() takes if each primitive lies in one tile. */

@@ -24,14 +24,16 @@ typedef struct tile_part {
  * marked as failed. */
 bool hl_tile_make_room(hl_context *context, fragment_worker *worker, size_t more);
 
-/* Marks a slab about a pixel, block after block. */
+/* Marks that a slab has a surface in the tiles around a pixel. pixel: the pixel's number in the tile, block
+ * after block. */
 static inline void hl_mark_slab(const fragment_work *work, fragment_worker *worker, int pixel, int32_t slab) {
   worker->near[slab] |= work->near[pixel];
   worker->nearest = slab < worker->nearest ? slab : worker->nearest;
   worker->farthest = slab > worker->farthest ? slab : worker->farthest;
 }
 
-/* A fragment of a primitive, still without its place. Its opacity is 0 where it only marks slabs. */
+/* A fragment of a primitive, whose pixel, height and slab are not set yet. Its opacity is 0 where it only
+ * marks slabs. */
 fragment hl_fragment_of(const fragment_work *work, size_t mesh_index, uint32_t primitive);
 
 /* Adds a fragment to the slabs from `first` to `last` of a light's view, from its delayed height `start`
@@ -45,8 +47,8 @@ typedef struct covered_pixel {
   double u, v;
 } covered_pixel;
 
-/* Finds the next pixel of which samples are covered, from the tile's column at[0] and row at[1] on; false:
- * there is none. */
+/* Finds the next pixel that has covered samples, from the tile's column at[0] and row at[1] on. False: there
+ * is no such pixel. */
 bool hl_next_pixel(const view *view, const tile_part *part, const seen_part *seen, int at[2], fragment *f,
                    covered_pixel *pixel);
 

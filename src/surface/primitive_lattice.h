@@ -7,29 +7,28 @@
 
 #include "surface/primitive.h"
 
-/* Parallel lines along an axis of a lattice, or aslant to it. A line has the number (c, r) if it goes through
- * the column c and the row r at the height 0. At the height h it is at the column c - slope_across h and at
- * the row r - slope_down h. Columns, rows and heights are counted in cells, from the middle of the first cell
- * on. */
+/* Parallel lines along an axis of a lattice, or aslant to it. Line (c, r) goes through the column c and the
+ * row r at the height 0. At the height h it goes through the column c - slope_across h and the row r -
+ * slope_down h. Columns, rows and heights are measured in cells; 0 is the middle of the first cell. */
 typedef struct lattice_lines {
   int axis, across, down;      /* the axes of heights, columns and rows */
   double low[3], inverse_cell; /* the lattice's low corner, and 1 over the edge of a cell; frame space */
   double middle[3];            /* the middle of the first cell, in cells from the low corner */
   int slope_across, slope_down;
-  double farthest; /* lines whose column or row is farther than this from 0 are left out */
+  double farthest; /* lines (c, r) are left out where |c| or |r| is greater than this */
 } lattice_lines;
 
-/* Takes note of a place at which a line meets a primitive. opacity: the part of the light that the primitive
- * stops there. */
+/* Is called for each place at which a line meets a primitive. opacity: the fraction of the light that the
+ * primitive absorbs there. */
 typedef void lines_meet_function(const void *data, int32_t column, int32_t row, double height,
                                  double opacity);
 
-/* Takes note of a point; frame space. */
+/* Is called for each point; frame space. */
 typedef void point_function(void *data, const double at[3]);
 
 struct primitive_lattice {
-  /* Finds all places at which lines with whole numbers meet a primitive. Two triangles that share an edge
-   * never both meet a line on the edge. */
+  /* Finds all places at which lines (c, r) with whole numbers c and r meet a primitive. Of two triangles that
+   * share an edge, only one meets a line that goes through the edge. */
   void (*meet)(const surfaces *all, const surface_mesh *mesh, uint32_t primitive, const lattice_lines *lines,
                lines_meet_function *met, const void *data);
   /* Visits points on a primitive, or near it, that are at most `apart` from each other. */

@@ -19,10 +19,10 @@ typedef struct small_batch small_batch;         /* small_batch.h */
 typedef struct shown_surface shown_surface;     /* shown_surface.h */
 
 struct primitive_raster {
-  /* Finds a rectangle around the part of a primitive that the view sees; false: the view sees nothing of
-   * it. fronts: sides that face away from the view do not count. */
+  /* Finds a rectangle around the part of a primitive that the view sees. False: the view sees nothing of the
+   * primitive. fronts: sides that face away from the view do not count. */
   bool (*see)(const seen_surfaces *seen, uint32_t primitive, bool fronts, seen_bounds *bounds);
-  /* Its least height above the first sheet, or less. */
+  /* A lower bound of a primitive's height above the first sheet. */
   float (*lowest)(const surfaces *all, const sheet_stack *sheets, uint32_t primitive);
   /* Adds a primitive to a batch of small ones; false where it must be rasterised by itself. */
   bool (*collect)(const fragment_work *work, const tile_part *part, small_batch *batch, uint32_t primitive);

@@ -3,8 +3,8 @@
 
 /* The width, in pixels, of the frame around the view within which triangles are not cut. */
 static const double FRAME_AROUND = 4096;
-/* The least distance in front of a perspective view's eye, as a fraction of the distance at which rays have
- * length 1. */
+/* The least distance from a perspective view's eye at which points are seen, in units of the distance at
+ * which rays have the length 1. */
 static const double NEAREST = 1e-4;
 
 /* A corner as (w, w u, w v). */

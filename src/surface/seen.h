@@ -1,7 +1,8 @@
 /* surface/seen.h - triangles and spheres as one view sees them.
  *
  * A triangle that crosses the plane of the view's eye is cut there. A triangle that reaches far outside the
- * view is cut to a frame around the view. So whole numbers hold all pixel coordinates. */
+ * view is cut to a frame around the view. Therefore 32-bit whole numbers can hold all coordinates in 1/256
+ * pixels. */
 #ifndef HL_SURFACE_SEEN_H
 #define HL_SURFACE_SEEN_H
 
@@ -22,8 +23,8 @@ typedef struct seen_surfaces {
   const surfaces *all;
 } seen_surfaces;
 
-/* Finds where the view sees a vertex, in 1/256 pixels. False where the frame or the eye may cut triangles of
- * the vertex. */
+/* Finds where the view sees a vertex, in 1/256 pixels. False if triangles of the vertex may be cut at the
+ * frame or at the eye. */
 bool hl_see_vertex(const seen_surfaces *seen, uint32_t vertex, int32_t at[2]);
 
 void hl_see_triangle(const seen_surfaces *seen, uint32_t triangle, seen_polygon *polygon);

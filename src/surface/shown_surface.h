@@ -7,9 +7,10 @@
 #include "surface/sphere_coverage.h"
 
 struct shown_surface {
-  const primitive_raster *raster; /* the table of the primitive's kind; members below that belong to other
+  const primitive_raster *raster; /* the table of the primitive's kind. Of the members below, those for other
                                    * kinds are not set */
-  double lowest, highest;         /* of the primitive; above the first sheet */
+  double lowest, highest;         /* the least and the greatest height of the primitive above the first
+                                   * sheet */
   /* Of a triangle. */
   surface_plane plane;
   bool by_corners;         /* none of the triangle's corners was cut by the view: the height is rise / part */

@@ -1,6 +1,6 @@
-/* surface/small_spheres_lanes.h - opaque spheres of few pixels, seen from outside, eight at a time. Sums
- * are made in doubles, in the order of seen.c, sphere_coverage.c, surface_plane.c and tile_fragments.c, so
- * that bytes are the same. */
+/* surface/small_spheres_lanes.h - opaque spheres of few pixels, seen from outside, eight at a time. Numbers
+ * are computed in doubles, with the operations of seen.c, sphere_coverage.c, surface_plane.c and
+ * tile_fragments.c in the same order, so that the bytes are the same as theirs. */
 #ifndef HL_SURFACE_SMALL_SPHERES_LANES_H
 #define HL_SURFACE_SMALL_SPHERES_LANES_H
 
@@ -191,7 +191,8 @@ LANES_INLINE void store_eight_floats(float *to, eight_doubles x) {
 }
 LANES_INLINE void store_eight(int32_t *to, eight_ints v) { memcpy(to, &v, sizeof v); }
 
-/* Finds heights, delays and slabs of the fragments of pixels k, some of whose samples are covered. */
+/* Finds the heights, delays and slabs of the fragments at pixel number k of each sphere, where some of the
+ * pixel's samples are covered. */
 LANES_INLINE eight_longs place_fragments(const small_view *small, const eight_rays *rays, doubles3 centre,
                                          eight_doubles u, eight_doubles v, int at, int k,
                                          small_cover *cover) {

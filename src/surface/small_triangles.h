@@ -20,14 +20,15 @@ typedef struct small_view {
   float normal[3], first; /* the sheets' normal; a point's height is normal.X - first */
   float spacing, last_slab;
   int32_t columns, rows; /* size of the tile, within the view */
-  int of_light;          /* else the next members, down to rise, are not used */
-  int perspective;       /* the rays come from `from`; else they go along it */
+  int of_light;          /* a light's view; in other views the members from `perspective` to `rise` are not
+                          * used */
+  int perspective;       /* the rays come from the point `from`; else they run along the vector `from` */
   float from[3], du[3], dv[3];
   float depth[3];    /* in a perspective view: the distance of a point X, in lengths of its ray, is
                       * depth.(X - from) */
   float delay, rise; /* as in fragments_source */
-  double inverse[3][3], origin[3]; /* for clusters: w, w u and w v are the rows of `inverse` times (point -
-                                    * origin); w is 1 where the view is no perspective one */
+  double inverse[3][3], origin[3]; /* for clusters: the rows of `inverse` times (point - origin) are w, w u
+                                    * and w v; in a parallel view w is 1 instead */
   int32_t left, top;               /* for clusters: the tile's corner; 1/256 pixels */
   const view *view;                /* for spheres; borrowed */
   const sheet_stack *sheets;       /* for spheres; borrowed */
@@ -77,8 +78,9 @@ typedef struct seen_cluster {
 typedef struct small_cover {
   uint32_t large; /* the triangles that touch the tile and are too large for this function, one bit each */
   uint32_t covered[SMALL_PIXELS]; /* for each pixel, the triangles that cover some of its samples, one bit
-                                   * each; the members below are set only for these */
-  /* Number of the pixel in the tile, block after block. */
+                                   * each; the members below are set only for pixels and triangles with a
+                                   * bit */
+  /* the pixel's number in the tile, block after block */
   _Alignas(64) int32_t pixel[SMALL_PIXELS][SMALL_TRIANGLES];
   uint16_t samples[SMALL_PIXELS][SMALL_TRIANGLES]; /* covered samples, one bit each */
   int32_t reach[SMALL_PIXELS][SMALL_TRIANGLES];    /* for the eye's view: reaches of the

@@ -37,8 +37,8 @@ LANES_INLINE lanes_int load_ints(const int32_t *p) {
 }
 LANES_INLINE void store_ints(int32_t *p, lanes_int v) { memcpy(p, &v, sizeof v); }
 
-/* Brings corners to pixels: finds the first pixel, the number of pixels after it, and whether these are
- * few. */
+/* Finds, along one axis, the first pixel that a triangle's box touches, and the number of further pixels that
+ * it touches (*more). Returns whether these are fewer than SMALL_SIDE. */
 LANES_INLINE lanes_int find_first_pixel(const int32_t at[3][SMALL_TRIANGLES], lanes_int *first,
                                         lanes_int *more) {
   lanes_int a = load_ints(at[0]), b = load_ints(at[1]), c = load_ints(at[2]);
@@ -51,7 +51,8 @@ LANES_INLINE lanes_int find_first_pixel(const int32_t at[3][SMALL_TRIANGLES], la
 }
 
 /* Sets the edges as in coverage.c. A sample on an edge belongs to the triangle on one side of it. A half is
- * added or subtracted to tell these sides apart, which keeps values away from 0. */
+ * added to the function or subtracted from it to tell the two sides apart, so that the function is never 0 at
+ * a sample. */
 LANES_INLINE void set_shape(const small_triangles *t, lanes_int column, lanes_int row, small_shape *shape) {
   for (int i = 0; i < 3; i++) {
     shape->x[i] = lanes_from_int(load_ints(t->x[i]) - (column << 8));
@@ -88,9 +89,9 @@ LANES_INLINE void find_heights(const small_triangles *t, const small_shape *shap
 }
 
 /* How much the height of the triangle's plane changes from pixel to pixel. *leaving: whether the rays leave
- * the mesh at the triangle. Derived: along the ray A + s B, a step D aside in the picture moves the point
- * of the plane with normal n by s D - B s (n.D) / (n.B). It moves the height by s (h.D - (h.B) (n.D) /
- * (n.B)). */
+ * the mesh at the triangle. Derived: let the ray A + s B meet the plane with the normal n. The ray of the
+ * next pixel, whose vector differs by D, meets the plane s D - B s (n.D) / (n.B) farther. The height there
+ * differs by s (h.D - (h.B) (n.D) / (n.B)). */
 LANES_INLINE lanes find_slope(const small_view *view, const small_triangles *t, lanes_int *leaving) {
   lanes normal[3], way[3], depth = lanes_set(1.0f);
   for (int axis = 0; axis < 3; axis++) {
@@ -148,9 +149,9 @@ LANES_INLINE void cover_samples(const small_shape *shape, int x, int y, small_sa
 }
 
 /* Finds the number of samples in each lane's bits, and the sums of their columns and rows. Derived: fields of
- * neighbouring samples are joined. Each field has its number of samples and their sum of columns, counted
- * from its own first column. Column c has the row 3 - c + 8 (c odd) + 16 (c in SECOND_TURN), which is (3 + 7
- * c) modulo 16. */
+ * neighbouring samples are joined in pairs, until one field is left. For each field the number of its samples
+ * is known, and the sum of their columns counted from the field's first column. Column c has the row 3 - c +
+ * 8 (c odd) + 16 (c in SECOND_TURN), which is (3 + 7 c) modulo 16. */
 LANES_INLINE void count_samples(lanes_int bits, small_samples *samples) {
   enum { PAIRS = 0x5555, FOURS = 0x3333, EIGHTS = 0x0f0f, SECOND_TURN = 0xf550 };
   lanes_int odd = (bits >> 1) & PAIRS, turn = bits & SECOND_TURN;
@@ -188,10 +189,10 @@ LANES_INLINE int greatest_of(lanes_int x, lanes_int of) {
 
 typedef uint32_t small_words __attribute__((vector_size(64)));
 
-/* Finds the samples that triangles cover which are at most a pixel high and two pixels wide. In each column
- * of samples only one sample can lie within the triangle's rows, and only this sample is tested. bits: for
- * each of two rows of pixels, the samples of two pixels, 16 bits each. Returns whether the triangles in
- * `of` are so small. */
+/* Finds the samples that triangles cover, for triangles at most a pixel high and two pixels wide. In each
+ * column of samples only one sample can lie within such a triangle's rows, and only this sample is tested.
+ * bits: for each of two rows of pixels, the samples of two pixels, 16 bits each. Returns whether the
+ * triangles in `of` are so small. */
 LANES_INLINE int cover_columns(const small_shape *shape, lanes_int of, lanes_int bits[2]) {
   lanes_int columns, rows, column = sample_range(shape->x, &columns), row = sample_range(shape->y, &rows);
   if (lanes_bits(of & ((rows > 16) | (column + columns > 32) | (row + rows > 32))) != 0) return 0;

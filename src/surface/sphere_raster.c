@@ -41,7 +41,8 @@ static uint32_t cover_small(const surface_functions *functions, small_batch *bat
 
 /* ---- one at a time ---- */
 
-/* Whether a light lights nothing of a sphere from within: no light passes it, and the light is outside. */
+/* Whether a light lights no part of a sphere from within: no light passes the sphere's surface, and the light
+ * is outside. */
 static bool has_dark_inside(const fragment_work *work, const float sphere[4], const fragment *f) {
   const view *view = work->source->view;
   if (f->opacity < 1 || work->least[f->mesh] < 1) return false;

@@ -17,7 +17,7 @@ typedef struct seen_part {
 typedef enum cut_answer { CUT_LEAVES_ALL, CUT_LEAVES_SOME, CUT_LEAVES_NOTHING } cut_answer;
 cut_answer hl_surface_cut(const surfaces *all, const surface_mesh *mesh, uint32_t primitive);
 
-/* The samples of pixel (x, y), among some given samples, at which cuts leave the part. */
+/* Those of the given samples of pixel (x, y) at which cuts leave the part. */
 uint16_t hl_left_samples(const seen_part *part, int x, int y, uint16_t samples);
 
 #endif

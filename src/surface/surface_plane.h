@@ -13,7 +13,7 @@ typedef struct surface_plane {
   double rise[3], way[3], above[3], climb[3]; /* d - n.A, n.B, h.A, h.B */
   double lowest, highest;                     /* the least and greatest height of the surface, above the first
                                                * sheet */
-  bool leaving; /* at this place the light's rays leave a surface whose inside they do not light */
+  bool leaving; /* the light's rays leave the mesh here, and they do not light the mesh's inside */
 } surface_plane;
 
 /* A function of surface_plane at a pixel. */

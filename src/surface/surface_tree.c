@@ -43,7 +43,8 @@ static uint32_t part(boxed_primitive *list, uint32_t count, int axis, float at) 
   return below;
 }
 
-/* Makes the tree of a range of primitives, which it sorts. list: of all primitives. */
+/* Makes the tree of a range of primitives, and sorts the range. list: all primitives; the range begins at
+ * `first`. */
 static void make(surface_tree *tree, boxed_primitive *list, uint32_t first, uint32_t count, int depth) {
   surface_box *made = &tree->boxes[tree->box_count++];
   float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -74,9 +75,9 @@ static mesh_held held_of(const surface_mesh *mesh, double distance) {
   return isinf(distance) || !mesh->mesh->closed ? HELD_WHOLE : HELD_NOT;
 }
 
-/* Whether a tree for a given distance holds a mesh's primitive number i of a kind, counted from the mesh's
- * first one. near: the primitives with corners that the tree holds, beside other primitives
- * that are cut; null: all primitives. */
+/* Whether a tree holds primitive number i of a kind, counted from the mesh's first primitive of this kind.
+ * near: for each primitive with corners, whether the tree holds it; of other primitives it holds those that
+ * are cut. Null: the tree holds all primitives. */
 static bool takes(const surfaces *all, const surface_mesh *mesh, int kind, uint32_t i, const bool *near) {
   if (near == NULL) return true;
   if (hl_primitive_kinds[kind]->has_corners) return near[i];
@@ -289,7 +290,8 @@ bool hl_surface_tree_reaches(const surface_tree *tree, const hull_ball *balls, i
 typedef struct box_ray {
   double origin[3], way[3], inverse[3];
   double first, last;
-  double aside[3]; /* for a bundle: how far its rays lie from the middle ray, along each axis */
+  double aside[3]; /* for a bundle: the greatest distance of its rays from the middle ray along each axis;
+                    * else 0 */
 } box_ray;
 
 static box_ray ray_of_boxes(const surface_ray *ray) {
@@ -314,10 +316,11 @@ static bool meets_box(const surface_box *box, const box_ray *ray) {
     double from = low * ray->inverse[a], to = high * ray->inverse[a];
     nearest = greater(nearest, lesser(from, to)), farthest = lesser(farthest, greater(from, to));
   }
-  return nearest <= farthest + 1e-9 * fabs(farthest); /* boxes of flat triangles are flat */
+  return nearest <= farthest + 1e-9 * fabs(farthest); /* a little is allowed for rounding, because the boxes
+                                                       * of flat triangles are flat */
 }
 
-/* number: the ray's, in its bundle. */
+/* Finds where a ray meets the primitives of a leaf. number: the ray's number in its bundle. */
 static void meet_leaf(const surface_tree *tree, const surface_box *leaf, const surface_ray *ray, int number,
                       surface_met *met, void *data) {
   const surfaces *all = tree->all;
@@ -356,9 +359,9 @@ void hl_surface_tree_cast(const surface_tree *tree, const surface_ray *ray, surf
   }
 }
 
-/* Makes a bundle of rays from one point: the middle ray leads to the middle of the rays' ends, and no ray
- * is farther from it along an axis than the ends are (derived: the point at the part t of a ray is origin +
- * t end). */
+/* Makes a bundle of rays from one point. The middle ray leads to the middle of the box around the rays' ends.
+ * Along each axis no ray is anywhere farther from the middle ray than the ends are (derived: at the fraction
+ * t of a ray its point is origin + t (end - origin)). */
 static box_ray bundle_of_rays(const surface_ray *rays, int count) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, middle[3];
   for (int k = 0; k < count; k++) vec3_bound_ball(vec3_scale(rays[k].way, rays[k].last), 0, low, high);

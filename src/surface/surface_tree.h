@@ -10,9 +10,9 @@
 
 typedef struct surface_box {
   float low[3], high[3];
-  uint32_t first, count; /* for a leaf: the range of its primitives among the tree's primitives. Of other
-                          * nodes count is 0, and `first` is the second child; the first child follows its
-                          * parent */
+  uint32_t first, count; /* for a leaf: the range of its primitives among the tree's primitives. For another
+                          * node, count is 0, and `first` is the index of its second child; the first child
+                          * follows the node itself */
 } surface_box;
 
 /* Whether a tree holds primitives of a mesh: none; some, and cuts leave the mesh whole; some, and cuts cut
@@ -23,16 +23,17 @@ typedef struct surface_tree {
   const surfaces *all;  /* borrowed */
   uint32_t *primitives; /* owned with the next two; [count]; sorted by leaves */
   mesh_held *holds;     /* [mesh_count of all] */
-  cut_shape *cuts;      /* [cut_count]; those of `all` when it was created */
+  cut_shape *cuts;      /* [cut_count]; the cuts of `all` when the tree was created */
   size_t cut_count;
   double distance;    /* as it was created with */
   surface_box *boxes; /* owned; [box_count]; the root is the first */
   uint32_t count, box_count;
 } surface_tree;
 
-/* How much a tree holds is a distance. ALL_SURFACES: all meshes that take light away, with their spheres. A
- * finite distance, in frame units: only triangles within this distance of an open edge, a cut or a corner
- * (late/surface_rims.h), of meshes that are not closed or that cuts cut, and spheres that cuts cut. */
+/* A distance tells which primitives a tree holds. ALL_SURFACES: all primitives of meshes that absorb light. A
+ * finite distance, in frame units: only some primitives of meshes that are not closed, or that cuts cut.
+ * These are the triangles within this distance of an open edge, a cut or a corner (late/surface_rims.h), and
+ * the spheres that cuts cut. */
 #define ALL_SURFACES INFINITY
 
 /* Makes a tree. all: the surfaces; null: none. A tree of zeros, which was not created, may be released. */
@@ -42,8 +43,8 @@ hl_status hl_surface_tree_create(hl_context *context, const surfaces *all, doubl
 bool hl_surface_tree_current(const surface_tree *tree, const surfaces *all, double distance);
 void hl_surface_tree_release(hl_context *context, surface_tree *tree);
 
-/* Counts what hl_surface_tree_create() takes at most: which it takes if each triangle of a mesh that is not
- * closed lies within the distance. False: the tree holds nothing. */
+/* Counts the most memory that hl_surface_tree_create() can take. It takes that much if all triangles of
+ * meshes that are not closed lie within the distance. False: the tree holds nothing. */
 bool hl_surface_tree_count(const surfaces *all, double distance, hl_layout *layout);
 
 /* Whether a mesh takes light away. */
@@ -67,15 +68,16 @@ typedef void surface_met(void *data, const surface_hit *hit);
 /* Whether some primitive's box meets a box. */
 bool hl_surface_tree_overlaps(const surface_tree *tree, const double low[3], const double high[3]);
 
-/* Whether some primitive may meet the convex hull of balls. A triangle does not meet it where the hull lies
- * on one side of the triangle. A sphere does not where the hull lies within the sphere, or beyond a plane
- * that touches the sphere. Points beyond a surface by less than `least` count as lying on it. */
+/* Whether some primitive may meet the convex hull of balls. A triangle does not meet the hull if the hull
+ * lies on one side of the triangle's plane. A sphere does not meet the hull if the hull lies within the
+ * sphere, or beyond a plane that touches the sphere. Points beyond a surface by less than `least` count as
+ * lying on it. */
 bool hl_surface_tree_reaches(const surface_tree *tree, const hull_ball *balls, int count, double least);
 
 void hl_surface_tree_cast(const surface_tree *tree, const surface_ray *ray, surface_met *met, void *data);
 
-/* Does the work of hl_surface_tree_cast() for at most MOST_BUNDLED rays from one point, whose ends are
- * finite. Boxes that none of the rays can meet are passed over once for all rays. Each ray gets the same
+/* Does the work of hl_surface_tree_cast() for at most MOST_BUNDLED rays that come from one point and have
+ * finite ends. Boxes that none of the rays can meet are passed over once for all rays. Each ray gets the same
  * hits as from hl_surface_tree_cast(), in the same order. */
 enum { MOST_BUNDLED = 16 };
 void hl_surface_tree_cast_bundle(const surface_tree *tree, const surface_ray *rays, int count,

@@ -14,12 +14,12 @@
 #include "scene/geometry/cut.h"
 #include "surface/primitive_kinds.h"
 
-/* How a mesh looks, and what it takes of light. */
+/* How a mesh looks, and how much light it absorbs. */
 typedef struct surface_look {
   double color[3];             /* linear RGB */
-  double opacity;              /* times the opacity of its vertices */
-  double attenuation_color[3]; /* R, G, B: the parts of red, green and blue light that the mesh takes, as
-                                * factors of `opacity` */
+  double opacity;              /* multiplies the opacities of the mesh's vertices */
+  double attenuation_color[3]; /* R, G, B: factors on `opacity` that give the fractions of red, green and blue
+                                * light that the mesh absorbs */
   hl_material material;
   bool smooth;    /* normals are interpolated between vertices */
   bool two_sided; /* the side that faces away from the eye is lit like the front */
@@ -46,7 +46,8 @@ typedef struct surface_mesh {
 typedef struct surface_cluster surface_cluster; /* clusters.h */
 typedef struct surface_seam surface_seam;       /* late/surface_seams.h */
 
-/* A primitive has a number. The primitives of a kind follow those of the kind before. */
+/* The surfaces of a scene. Each primitive has a number. The numbers of the primitives of one kind follow the
+ * numbers of the kind before. */
 typedef struct surfaces {
   surface_mesh *meshes;      /* owned, in one block with the next five arrays; [mesh_count]; the primitives
                               * of a mesh follow the primitives of the mesh before */
@@ -75,7 +76,7 @@ void hl_surfaces_key_add(hl_key *key, const surfaces *all);
 /* The number of primitives. */
 static inline uint32_t hl_surfaces_count(const surfaces *all) { return all->first[PRIMITIVE_KINDS]; }
 
-/* Whether the cuts leave a point of a mesh; frame space. */
+/* Whether no cut removes a mesh at a point; frame space. */
 static inline bool hl_surface_left(const surfaces *all, const surface_mesh *mesh, vec3 point) {
   return !mesh->is_cut || hl_cuts_leave(all->cuts, all->cut_count, point);
 }

@@ -12,7 +12,7 @@
  * large as the block before, up to GREATEST_BLOCK (6 MiB); a tile with more fragments gets a larger block. */
 enum { FIRST_BLOCK = 1 << 12, GREATEST_BLOCK = 1 << 18 };
 
-/* Room for a tile's fragments in one block. */
+/* Makes room for a tile's fragments in the worker's latest block, or in a new block. */
 static bool make_room_for_tile(hl_context *context, fragment_worker *worker, size_t more) {
   fragment_block *before = worker->out;
   if (before != NULL && more <= before->room - before->count) return true;
@@ -85,7 +85,7 @@ static void add_small_pixel(const fragment_work *work, fragment_worker *worker, 
   worker->scratch[worker->count++] = f;
 }
 
-/* The opacities of the primitives in `lanes`. */
+/* Finds the opacities of those primitives of a batch that have a bit in `lanes`. */
 static void find_opacities(const fragment_work *work, small_batch *batch, uint32_t lanes) {
   for (; lanes != 0; lanes &= lanes - 1) {
     int lane = __builtin_ctz(lanes);
@@ -119,8 +119,9 @@ static void add_batch(const fragment_work *work, fragment_worker *worker, tile_p
   batch->count = 0;
 }
 
-/* Whether opaque fragments of a light's view cover all pixels of a tile that a cluster touches, at places
- * before the cluster. Each of the cluster's fragments would then be left out when fragments are sorted. */
+/* Whether opaque fragments of a light's view, all of which lie before a cluster, cover all pixels that the
+ * cluster touches in a tile. Each of the cluster's fragments would then be left out when fragments are
+ * sorted. */
 static bool is_covered(const fragment_work *work, const fragment_worker *worker, const tile_part *part,
                        const cluster_shape *shape, const seen_cluster *seen) {
   const view *view = work->source->view;
@@ -212,7 +213,7 @@ static void add_next_run(const fragment_work *work, fragment_worker *worker, til
   if (!worker->failed) add_run(work, worker, part, batch, run);
 }
 
-/* The least height that a run has, or less. */
+/* A lower bound of a run's height. */
 static float lowest_of(const fragment_work *work, primitive_run run) {
   const surfaces *all = work->source->surfaces;
   const sheet_stack *sheets = work->source->sheets;
@@ -230,8 +231,8 @@ static bool make_room_for_runs(hl_context *context, fragment_worker *worker, siz
   return true;
 }
 
-/* Adds the fragments of a tile's runs. Where higher runs may be covered by lower ones, the lowest come
- * first. */
+/* Adds the fragments of a tile's runs. If lower runs may cover higher ones completely, runs are added from
+ * the lowest to the highest. */
 static void add_runs(const fragment_work *work, fragment_worker *worker, tile_part *part, size_t tile,
                      small_batch *batch) {
   const primitive_run *runs = work->bins->runs + work->bins->first[tile];

@@ -9,12 +9,12 @@
 
 void hl_fragment_blocks_release(hl_context *context, fragment_block *latest);
 
-/* Fills the members `small` and `near`, which depend on the view alone. */
+/* Fills those members of the work that depend on the view alone: `small` and `near`. */
 void hl_fragment_work_begin(fragment_work *work);
 
 /* Allocates those arrays of a worker that do not grow; false: there is no memory. */
 bool hl_fragment_worker_begin(hl_context *context, fragment_worker *worker, int sheets);
-/* Releases all but the blocks of the tiles made. */
+/* Releases all memory of a worker except the blocks that hold the finished tiles' fragments. */
 void hl_fragment_worker_end(hl_context *context, fragment_worker *worker);
 
 /* Makes one tile's fragments: a task of the pool. data: fragment_work. */

@@ -6,7 +6,8 @@
 #include "mesh/mesh.h"
 #include "surface/primitive.h"
 
-/* A triangle's unit normal; *from: a point's distance from its plane, above 0 on the normal's side. */
+/* A triangle's unit normal. *from: the distance of `point` from the triangle's plane, above 0 on the normal's
+ * side. */
 vec3 hl_triangle_normal(const surfaces *all, uint32_t triangle, vec3 point, double *from);
 
 /* The functions of primitive.h for triangles that stand in files of their own: `count`, `lay_out` and `place`
@@ -28,7 +29,8 @@ static inline vec3 hl_corner_normal(const surfaces *all, const surface_mesh *mes
                                               : all->normals[all->triangles[triangle][i]]);
 }
 
-/* The normal of corner i as it is interpolated, on the side of the triangle's own, flat one. */
+/* The normal of corner i that is interpolated over the triangle. It lies on the same side as `flat`, the
+ * triangle's own normal. */
 static inline vec3 hl_rounded_normal(const surfaces *all, const surface_mesh *mesh, uint32_t triangle, int i,
                                      vec3 flat) {
   vec3 own = hl_corner_normal(all, mesh, triangle, i);

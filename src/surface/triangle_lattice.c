@@ -1,8 +1,8 @@
 /* surface/triangle_lattice.c - see primitive_lattice.h: triangles.
  *
- * The points of a triangle are moved aside so that the lines become upright and stand at whole numbers
- * (derived: a line that goes through column c at the height 0 goes through column c - slope h at the height
- * h, so that c is the column plus slope h at every height). */
+ * The points of a triangle are moved aside, so that the lines become upright and stand at whole numbers.
+ * Derived: a line that goes through column c at the height 0 goes through column c - slope h at the height h.
+ * So the column plus slope h is c at every height. */
 #include "surface/primitive_lattice.h"
 
 static double lesser(double a, double b) { return a < b ? a : b; }

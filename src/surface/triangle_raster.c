@@ -105,8 +105,8 @@ static void cover(const fragment_work *work, fragment_worker *worker, tile_part 
 
 /* ---- heights within a pixel ---- */
 
-/* Finds the linear function that has given values at three points. area: twice the area of the triangle
- * between the points. */
+/* Finds the linear function that has given values at three points of the picture. area: twice the area of the
+ * triangle between the points. */
 static void set_linear(double f[3], const double x[3], const double y[3], double area,
                        const double value[3]) {
   double a = value[1] - value[0], b = value[2] - value[0];
@@ -118,7 +118,8 @@ static void set_linear(double f[3], const double x[3], const double y[3], double
 /* Finds the heights of a triangle as linear functions between its corners, which are rounded to the grid of
  * 1/256 pixels by which samples are covered. So even a triangle that is seen from its edge has, at all its
  * samples, heights between the heights of its corners, and meets its neighbours; the heights of its plane
- * would not. Derived: heights over the distance are linear in the picture, as is one over the distance. */
+ * would not. Derived: height divided by distance is linear in the picture, and so is 1 divided by
+ * distance. */
 static void set_corners(const seen_surfaces *seen, const sheet_stack *sheets, uint32_t triangle,
                         shown_surface *shown) {
   const view *view = seen->view;

@@ -67,8 +67,8 @@ static void brick_ranges_in_view(const brick_view *view, const grid *grid,
     high = lanes_select(anywhere, lanes_set(INFINITY), high + lanes_abs(high) * 1e-6f + view->spare);
     store_range(view, low, lanes_select(ahead, high, lanes_set(-INFINITY)), axis, ranges);
   }
-  /* sheets lie at whole numbers; the first sheet that a brick touches is the next whole number above the
-   * low end */
+  /* heights are in units in which sheets lie at whole numbers, so the first sheet that a brick touches is the
+   * next whole number at or above the low end */
   store_range(view, -lanes_from_int(lanes_floor(lanes_clamp(-height.low, -1e9f, 1e9f))), height.high,
               RANGE_SHEETS, ranges);
 }

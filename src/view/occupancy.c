@@ -21,8 +21,8 @@ static int last_tile(double high, int tiles) {
   return high < 0 ? -1 : high >= (double)tiles * TILE ? tiles - 1 : (int)(high / TILE);
 }
 
-/* The rectangle of tiles that the bounds, enlarged by a margin, touch; empty where the view does not see
- * them. */
+/* The rectangle of tiles that bounds, enlarged by a margin, touch. It is empty where the view does not see
+ * the bounds. */
 static tile_rectangle tiles_of(const footprint_bounds *bounds, const occupancy *o) {
   tile_rectangle r = {.x = first_tile(bounds->low[0] - o->spare), .y = first_tile(bounds->low[1] - o->spare)};
   int x1 = last_tile(bounds->high[0] + o->spare, o->tiles_x),
@@ -101,7 +101,7 @@ static void set_view(const footprint_map *map, const grid *grid, const sheet_sta
   memcpy(view->last, last, sizeof last);
 }
 
-/* Sets bits first to last. Bits that other bricks have set already are only read. */
+/* Sets the bits from `first` to `last`. Words whose bits are set already are not written. */
 static void mark_bits(uint64_t *words, int first, int last) {
   for (int word = first / 64; word <= last / 64; word++) {
     int low = word == first / 64 ? first % 64 : 0, high = word == last / 64 ? last % 64 : 63;

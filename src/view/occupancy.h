@@ -50,8 +50,9 @@ typedef struct brick_view {
   float slack[4];   /* for each of the four functions, a bound of its rounding error */
   float middle[3];  /* a point of index space */
   float spare;      /* margin, in tiles, around each brick's projection that counts as touched */
-  int32_t first[RANGE_AXES], last[RANGE_AXES]; /* the greatest values that ranges may have: the grid's last
-                                                * tile across and down, and the view's last sheet */
+  int32_t first[RANGE_AXES], last[RANGE_AXES]; /* limits of the ranges: the first and last tile of the grid's
+                                                * rectangle across and down, and the first and last sheet of
+                                                * the view */
 } brick_view;
 
 /* The first and last tile across, tile down and sheet that each brick touches. A brick with an empty range
@@ -80,7 +81,7 @@ typedef struct occupancy_source {
   int grid_count;
   const view *view;
   const sheet_stack *sheets;
-  double spare; /* margin for the occupancy's `spare`; in pixels, at least PIXEL_TO_SPARE */
+  double spare; /* the occupancy's `spare`, in pixels; at least PIXEL_TO_SPARE */
 } occupancy_source;
 
 /* Fills an empty occupancy. Call hl_occupancy_release() even after a failure. */
@@ -92,8 +93,8 @@ void hl_occupancy_release(hl_context *context, occupancy *occupancy);
  * set, but no pointers. */
 void hl_occupancy_count(const occupancy_source *source, occupancy *occupancy, hl_layout *layout);
 
-/* The first slab, from the given one on, in which a patch is touched by the slab's sheet or by the sheet
- * before. INT32_MAX if there is none. */
+/* The first slab, from the given one on, whose own sheet or the sheet before touches a patch. INT32_MAX if
+ * there is no such slab. */
 int32_t hl_occupancy_next_slab(const occupancy *occupancy, size_t patch, int slab);
 
 static inline int hl_occupancy_has(const occupancy *occupancy, size_t patch, int sheet) {

@@ -79,16 +79,17 @@ bool hl_view_project(const view *view, vec3 point, double uv[2]);
 /* The ray through continuous pixel (u, v): start and (unnormalised) direction. */
 void hl_view_ray(const view *view, double u, double v, vec3 *start, vec3 *direction);
 
-/* (w, w u, w v) as affine functions of a point p of another space (given by to_frame): rows of 4 floats,
- * the last is the constant. For a parallel view w is 1. */
+/* Finds (w, w u, w v) as affine functions of a point of another space, from which to_frame leads to frame
+ * space. rows: the factors of the point's coordinates, and the constant. For a parallel view w is 1. */
 void hl_view_homogeneous(const view *view, affine3 to_frame, double rows[3][4]);
 
-/* The points where pixels see one sheet, in a space that the maker chooses. (u, v) counts pixels from the
- * first pixel's centre. In a perspective view, the position is base + P / H and the direction is W; in a
- * parallel view the position is P; with P = p0 + u pu + v pv, W = w0 + u wu + v wv and H = h.W = h0 + u hu
- * + v hv. Derived: the ray E + s W meets the sheet h.X = z at s = (z - h.E) / H; with any t and Wc, base =
- * E + t Wc gives P = (z - h.E) W - t H Wc, linear as H is. If Wc is the middle ray's direction and base its
- * point on the sheet, P stays as small as the visible area, however far away the eye is. */
+/* The points where pixels see one sheet, in a space that the maker chooses. (u, v) are pixels, counted from
+ * the first pixel's centre. Let P = p0 + u pu + v pv, W = w0 + u wu + v wv and H = h.W = h0 + u hu + v hv. In
+ * a perspective view the position is base + P / H and the direction is W; in a parallel view the position is
+ * P. Derived: the ray E + s W meets the sheet h.X = z at s = (z - h.E) / H. With any t and Wc, base = E + t
+ * Wc gives P = (z - h.E) W - t H Wc, which is linear in u and v, as H is. Here Wc is the middle ray's
+ * direction and base its point on the sheet. So P stays as small as the visible area, however far away the
+ * eye is. */
 typedef struct sheet_rays {
   int perspective;
   float base[3], p0[3], pu[3], pv[3];
@@ -118,8 +119,8 @@ static inline double hl_sheet_height(const sheet_stack *sheets, int sheet) {
  * which it enters and leaves the box, and the slab between two sheets counts only as far as it lies between
  * these heights (derived; exact for a homogeneous medium). */
 
-/* Rays of a view in one grid's index space: start + s * direction with s > least. Start and direction are
- * linear in the pixel. The ray's height above the first sheet is start_height + s * climb. */
+/* Rays of a view in one grid's index space: a ray is start + s * direction with s > least, where start and
+ * direction are linear in the pixel. The ray's height above the first sheet is start_height + s * climb. */
 typedef struct box_rays {
   float start[3], start_u[3], start_v[3];
   float direction[3], direction_u[3], direction_v[3];

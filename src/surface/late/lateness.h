@@ -1,5 +1,5 @@
-/* surface/late/lateness.h - the constants of surfaces that shadow buffers take into account late, each with
- * its reason.
+/* surface/late/lateness.h - constants, each with its reason. Shadow buffers take surfaces into account late,
+ * and the constants say how late, and how the consequences are mended.
  *
  * A look-up for a sample of a surface also reads pixels beside the sample, and the surface must not darken
  * itself there. So a shadow buffer takes a surface into account only some pixels behind the surface's
@@ -18,12 +18,13 @@
 /* The greatest number of slabs that a fragment fills. With 64, no picture changed. */
 enum { MOST_SLABS = 16 };
 
-/* The greatest slope of a surface by which its delay is reckoned; frame units a pixel. Without this limit,
- * a surface that light grazes would have an unlimited slope and delay; such a surface is hardly lit. */
+/* The greatest slope of a surface that counts for its delay, in frame units per pixel. Without this limit, a
+ * surface that light grazes would have an unlimited slope and delay; such a surface is hardly lit. */
 #define STEEPEST_SLOPE 12
 
 /* How far above its triangle a fragment's slabs may lie, in distances of sheets. A pixel on the edge between
- * two triangles has a fragment of each. Both must fill one common slab, so that the pixel is full there. */
+ * two triangles has a fragment of each of them. The two fragments must have a slab in common, so that there
+ * the whole pixel is covered. */
 #define SEAM 2
 
 /* The least delay, in distances of sheets. Without it, rounding could put a surface that runs along the
@@ -32,17 +33,17 @@ enum { MOST_SLABS = 16 };
 
 /* ---- seams: corners at which large triangles meet (surface_seams.h, seen_seams.h) ---- */
 
-/* A triangle is large where an edge of it is longer than this; in diagonals of the box around all clusters.
- * Light that leaks at the corners of smaller triangles makes only specks. */
+/* A triangle is large if one of its edges is longer than this; the unit is the diagonal of a box around all
+ * clusters. Light that leaks at corners between smaller triangles makes only specks. */
 static const double LARGE_EDGE = 1.0 / 64;
 
-/* Ends of edges that are closer together than this count as one place; in the same diagonals. */
+/* Ends of edges that are closer together than this count as one place; the unit is the same diagonal. */
 static const double SAME_PLACE = 1e-5;
 
-/* Bounds of memory and time. MOST_SEAMED: the number of triangles whose edges are looked at, in the order of
- * clusters. MOST_AT_EDGE: the number of neighbours that an edge keeps. MOST_SEAMS_ASKED: the number of edges
- * that an edge is compared with, on either side in the order of keys; more edges have the same key only by
- * chance. */
+/* Limits of memory and time. MOST_SEAMED: the greatest number of triangles whose edges are looked at, in the
+ * order of clusters. MOST_AT_EDGE: the greatest number of neighbours that are kept for an edge.
+ * MOST_SEAMS_ASKED: the greatest number of edges with which an edge is compared on either side of it, in the
+ * order of keys. Only by chance do more edges have nearly the same key. */
 enum { MOST_SEAMED = 1 << 14, MOST_AT_EDGE = 4, MOST_SEAMS_ASKED = 64 };
 
 /* The greatest number of seams of a triangle that a light's view looks at: MOST_AT_EDGE for each edge. */
@@ -52,27 +53,28 @@ enum { MOST_SEEN_SEAMS = 12 };
  */
 static const double BESIDE_SEAM = 1.5;
 
-/* How far fragments beside a corner overlap with the other triangle. The unit is the height by which the
- * other triangle's plane rises over a pixel: the height at a pixel's middle may differ by so much from the
- * height at the corner. */
+/* The overlap of fragments beside a corner with the corner's other triangle. The unit is the height by which
+ * the other triangle's plane rises over a pixel, because the height at a pixel's middle may differ by that
+ * much from the height at the corner. */
 static const double SEAM_OVERLAP = 1;
 
 /* ---- rims: triangles near boundary edges and corners (surface_rims.h) ---- */
 
-/* The number of passes over all triangles, forwards and backwards in turn. Each pass carries distances on by
- * at least one edge. */
+/* The number of passes over all triangles, forwards and backwards in turn. Each pass carries distances from
+ * vertex to vertex over at least one edge. */
 enum { RIM_PASSES = 8 };
 
-/* A mesh is rough where more than MOST_CORNERS of its vertices, and more than one vertex in MOST_PARTS, lie
- * at corners. A rough mesh counts as having no corners: rays all over it would cost several times the frame,
- * and it has no corners of rooms where light could leak. */
+/* A mesh is rough if more than MOST_CORNERS of its vertices, and more than one vertex in MOST_PARTS, lie at
+ * corners. The corners of a rough mesh are ignored, for two reasons. Rays all over such a mesh would take
+ * several times as long as the rest of the frame. And it has no corners as those of rooms, where light could
+ * leak. */
 enum { MOST_CORNERS = 4096, MOST_PARTS = 8 };
 
 /* ---- look-ups ---- */
 
-/* How far look-ups move away from a surface, in pixels of the shadow buffer: along the normal, but not to
- * where the buffer meets the surface earlier (render/surface_lanes.h). So they read as little as possible of
- * the light behind the surface, and of the light that the surface itself has taken. */
+/* The distance by which look-ups are moved away from a surface, in pixels of the shadow buffer: along the
+ * normal, but not to places where the buffer meets the surface earlier (render/surface_lanes.h). So look-ups
+ * are affected as little as possible by light behind the surface, and by what the surface itself absorbs. */
 static const float LOOKUP_OFFSET = 1.25f;
 
 /* The delay of surfaces, in pixels, where look-ups use cubic convolution: it is how far such look-ups
@@ -80,8 +82,9 @@ static const float LOOKUP_OFFSET = 1.25f;
 static const double CUBIC_DELAY = 1.75;
 
 /* How far around a volume's sample its look-up reads, in pixels of the buffer. Behind an opaque surface, the
- * pixels beside the sample may hold the surface later than the sample's own pixel; so surfaces count as
- * delayed by this many pixels more. For a translucent surface this would take its light twice. */
+ * surface may enter the pixels beside the sample later than the sample's own pixel. So for volumes an opaque
+ * surface counts as delayed by this many pixels more. A translucent surface does not, because its light would
+ * be absorbed twice. */
 static const double READ_BESIDE = 1.25;
 
 /* The number of slabs before the current one whose fragments may not be in the buffers yet. */
@@ -97,13 +100,13 @@ static const double CLOSE = 3, FARTHEST_CLOSE = 10;
 /* How far from its point a ray begins, in pixels of the buffer. It is more than the errors of rounding. */
 static const double RAY_START = 0.0005;
 
-/* How far the middle of the visible part of a pixel may lie from the sample's place, in pixels of the picture
- * at the content; where the eye grazes a surface it could lie anywhere. */
+/* The greatest distance of the middle of a pixel's visible part from the sample's place, in pixels of the
+ * picture at the content. Without this limit the middle could lie anywhere where the eye grazes a surface. */
 static const double MOST_PIXELS_ASIDE = 8;
 
 /* ---- hollow surfaces (render/late/contact.c) ---- */
 
-/* The sine of the angle between a light's ray and a hollow surface up to which it is tested whether the
+/* The sine of the greatest angle between a light's ray and a hollow surface at which it is tested whether the
  * surface shades itself. At greater angles the buffer is hardly late. */
 static const double GRAZING = 0.2;
 

@@ -10,7 +10,7 @@ static bool set_end(const fragments_source *source, uint32_t vertex, double at[2
   return hl_view_project(source->view, place, at);
 }
 
-/* Whether a triangle is whole, casts a shadow, and lets no light through. */
+/* Whether no cut may remove a part of a triangle, and it casts a shadow and lets no light through. */
 static bool is_opaque_shade(const fragment_work *work, uint32_t triangle) {
   const surfaces *all = work->source->surfaces;
   size_t mesh = hl_surface_mesh_of(all, triangle);

@@ -1,10 +1,9 @@
 /* surface/late/seen_seams.h - how far fragments of a light's view reach where triangles meet at a corner.
  *
- * A fragment takes light from a delayed height on (fragment_work.h: delay). The steeper its triangle is,
- * the longer is the delay. So the delays of two triangles that meet at a corner differ, and slanted rays
- * could pass between the end of one and the start of the other. Fragments beside the corner therefore fill
- * the slabs between, too. The lit side of the other triangle stays bright, because that triangle is delayed
- * as far. */
+ * A fragment takes light from a delayed height on (fragment_work.h: delay). The steeper its triangle is, the
+ * longer is the delay. So the delays of two triangles that meet at a corner differ, and slanted rays could
+ * pass between the end of one and the start of the other. So fragments beside the corner also fill the slabs
+ * between the two. The lit side of the other triangle stays bright, because its own delay is as long. */
 #ifndef HL_SURFACE_LATE_SEEN_SEAMS_H
 #define HL_SURFACE_LATE_SEEN_SEAMS_H
 
@@ -27,7 +26,8 @@ typedef struct seen_seams {
 /* Finds the corners at which an opaque triangle meets opaque triangles of meshes that cast shadows. */
 void hl_see_seams(const fragment_work *work, const fragment *f, seen_seams *seams);
 
-/* The height up to which a fragment at a pixel's point fills slabs: `end`, or more close to a corner. */
+/* The height up to which a fragment at the continuous pixel (u, v) fills slabs: `end`, or a greater height
+ * close to a corner. */
 double hl_seam_end(const fragments_source *source, const seen_seams *seams, double u, double v, double end);
 
 #endif

@@ -26,8 +26,9 @@ static void sum_edges(const surfaces *all, const surface_mesh *mesh, uint64_t *s
 /* The distance that marks a vertex at a corner, until begin_distances() sets it to 0. */
 static const float AT_CORNER = -1;
 
-/* Marks each vertex at which some triangle bends much against the vertex's first triangle. Returns the number
- * of marked vertices. first: [vertices]; becomes the first triangle of each vertex. */
+/* Marks each vertex that has a triangle whose normal differs much from the normal of the vertex's first
+ * triangle. Returns the number of marked vertices. first: [vertices]; becomes the first triangle of each
+ * vertex. */
 static size_t mark_corners(const surfaces *all, const surface_mesh *mesh, uint32_t *first, float *from_edge) {
   size_t count = 0;
   for (uint32_t t = mesh->primitives[PRIMITIVE_triangle].count; t-- > 0;)

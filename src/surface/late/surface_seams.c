@@ -40,8 +40,8 @@ static void set_scale(seam_search *search) {
   search->same = SAME_PLACE * diagonal;
 }
 
-/* An edge's key, by which edges are sorted: the coordinate of the edge's middle along a direction that
- * edges of walls seldom have. */
+/* The key by which edges are sorted: the coordinate of the edge's middle along a direction in which edges of
+ * walls seldom run. */
 static double key_of(const surfaces *all, const uint32_t ends[2]) {
   const vec3 direction = {0.57735, 0.70711, 0.40825};
   return vec3_dot(direction, vec3_add(position_of(all, ends[0]), position_of(all, ends[1]))) / 2;
@@ -92,8 +92,7 @@ static bool is_near(const seam_search *search, uint32_t a, uint32_t b) {
   return vec3_length(apart) <= search->same;
 }
 
-/* Whether two edges lie in one place, and the surface bends much there from one edge's triangle to the
- * other's. */
+/* Whether two edges lie in one place, and the normals of their triangles differ much. */
 static bool is_corner(const seam_search *search, const large_edge *a, const large_edge *b) {
   if (a->triangle == b->triangle) return false;
   if (!(is_near(search, a->ends[0], b->ends[0]) && is_near(search, a->ends[1], b->ends[1])) &&
@@ -108,8 +107,8 @@ static void add_seam(seam_search *search, const large_edge *edge, const large_ed
       edge->triangle, other->triangle, {edge->ends[0], edge->ends[1]}};
 }
 
-/* Adds the seams of edge number i in the order of keys with edges on one side of it. way: 1 for the edges
- * after it, -1 for the edges before it. */
+/* Adds the seams between an edge and edges on one side of it in the order of keys. i: the edge's number in
+ * this order. way: 1 for edges after it, -1 for edges before it. */
 static void find_at(seam_search *search, size_t i, int way) {
   const large_edge *own = &search->edges[search->order[i].index];
   int found = 0;

@@ -2,7 +2,7 @@
  * and bend.
  *
  * Two edges are the same edge where their ends lie in the same places: triangles that meet need not share
- * vertices, nor be of one mesh. In: triangles in frame space. Out: for each triangle, its neighbours at
+ * vertices, nor belong to one mesh. In: triangles in frame space. Out: for each triangle, its neighbours at
  * corners, which fragments of a light's view need (seen_seams.h). */
 #ifndef HL_SURFACE_LATE_SURFACE_SEAMS_H
 #define HL_SURFACE_LATE_SURFACE_SEAMS_H
@@ -14,7 +14,7 @@
 /* An edge at which a triangle meets another one, at an angle of more than 40 degrees. */
 struct surface_seam {
   uint32_t triangle, other; /* of surfaces->triangles */
-  uint32_t ends[2];         /* of surfaces->positions; the triangle's own */
+  uint32_t ends[2];         /* indices in surfaces->positions of the ends of `triangle`'s own edge */
 };
 
 /* Counts the memory that hl_surface_seams_create() takes at most for a number of triangles. */

@@ -23,9 +23,9 @@ static bent_triangle bent_triangle_of(const surfaces *all, const surface_mesh *m
   return bent;
 }
 
-/* How much the normal turns along a way on the triangle. Derived: along a way, the weight of corner i grows
- * by cross x edge / cross^2, where `edge` is the edge opposite to the corner. The normal is the weighted
- * sum of the corners' normals. */
+/* How much the normal turns per length along a way on the triangle. Derived: the gradient of corner i's
+ * weight is cross x edge / cross^2, where `edge` is the edge opposite to the corner. The normal is the
+ * weighted sum of the corners' normals. */
 static double bend_along(const bent_triangle *bent, vec3 along) {
   vec3 turn = {0, 0, 0};
   double square = vec3_dot(bent->cross, bent->cross);
