@@ -250,8 +250,8 @@ LANES_INLINE lanes_int lanes_multiply_shorts(lanes_int a, lanes_int b) {
 #endif
 }
 
-/* Joins the 16-bit numbers of two vectors to pairs, each of a number of of[0] and the number at the same
- * place in of[1]. Of each eight pairs the first four go to pairs[0], the last four to pairs[1]. */
+/* Joins the 16-bit numbers of two vectors to pairs: a number from of[0], and the number at the same place in
+ * of[1]. Of each eight pairs the first four go to pairs[0], the last four to pairs[1]. */
 LANES_INLINE void lanes_unpack_shorts(const lanes_int of[2], lanes_int pairs[2]) {
 #if defined(__AVX512BW__)
   pairs[0] = (lanes_int)_mm512_unpacklo_epi16((__m512i)of[0], (__m512i)of[1]);
