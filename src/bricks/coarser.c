@@ -44,8 +44,8 @@ static bool is_outside(const coarsening *c, const hl_brick_entry *entry) {
   return entry->slot < 0 && entry->constant == c->source.outside;
 }
 
-/* Splits a brick where the old field has a finer brick than this one. Leaves a brick out where the old field
- * is everywhere the number outside. */
+/* Splits a brick where the old field has a finer brick than this one. Leaves a brick out where the
+ * whole of the old field has the value that it has outside of its bricks. */
 static hl_bricks_choice choose(void *data, int level, const size_t brick[3]) {
   const coarsening *c = data;
   const size_t blocks = (size_t)2 << level, *size = c->fine->directory_size;

@@ -67,10 +67,10 @@ LANES_INLINE size_t step_to_cell(const sky_steps *steps, int corner) {
   return steps->to_pair[corner >> 1] + (corner & 1 ? SKY_CELL : 0);
 }
 
-/* Finds a cell, among the eight around a position, that no surface separates from the position. Derived: let
- * a flat surface cut the ways from a cell to its three neighbours at the fractions d[i] of the ways. A
- * position at the fractions e[i] lies on the cell's side of the surface if the sum of e[i] / d[i] is below
- * 1. */
+/* Finds a cell, among the eight around a position, that no surface separates from the position. Derived:
+ * three ways go from a cell to its neighbours along the axes, and a flat surface cuts them at the fractions
+ * d[i] of their lengths. A position at the fractions e[i] lies on the cell's side of the surface if the sum
+ * of e[i] / d[i] is below 1. */
 static int cell_on_side(const int16_t *cell, const sky_steps *steps, const float fraction[3]) {
   int corner = (fraction[0] >= 0.5f) + 2 * (fraction[1] >= 0.5f) + 4 * (fraction[2] >= 0.5f);
   for (int step = 0; step < 3; step++) {

@@ -46,7 +46,8 @@ LANES_INLINE void add_harmonics(const sky_slice *slice, const sky_reaching *reac
     for (int k = 0; k < count; k++) cells[(size_t)lane * slice->across + (size_t)k] += sums[k][lane];
 }
 
-/* Adds a third of the transmittance of each of sixteen cells along the slices' axis to the cell's floats. */
+/* Adds, for each of sixteen cells, a third of the cell's transmittance along the slices' axis to the mean of
+ * its transmittances along three axes, which is one of the cell's numbers (slice->passing). */
 LANES_INLINE void add_passing(const sky_slice *slice, lanes depth, int32_t column, float *cells) {
   float passing[FIELD_LANES];
   lanes_store(passing, lanes_exp2(lanes_max(-depth, lanes_set(-100.0f))) * (1.0f / 3));

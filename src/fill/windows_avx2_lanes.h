@@ -11,8 +11,8 @@
 #include "simd/narrow.h"
 
 enum {
-  WINDOW_SIDE = GRID_COLUMN,       /* voxels */
-  WINDOW_SPREAD = WINDOW_SIDE - 4, /* voxels: the greatest distance between lanes' first taps */
+  WINDOW_SIDE = GRID_COLUMN,       /* in voxels */
+  WINDOW_SPREAD = WINDOW_SIDE - 4, /* the greatest distance between lanes' first taps, in voxels */
   USUAL_SPREAD = 2,                /* the greatest distance that most blocks need; because it is a constant,
                                     * the compiler unrolls loops */
   USUAL_SLICES = 4 + USUAL_SPREAD

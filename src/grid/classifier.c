@@ -129,7 +129,8 @@ static float integral_to(const classifier *classifier, float x) {
   return at[1] + (next[1] - at[1]) * (x - (float)(int)x);
 }
 
-/* Finds the integrals at which surfaces begin, and whether there are several surfaces. */
+/* Finds where surfaces begin, as integrals of extinction over the table (integral_to()), and whether there
+ * are several surfaces. */
 static void fill_beginnings(classifier *classifier) {
   float only = 0, only_side = 0;
   int surfaces = 0;

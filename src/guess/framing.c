@@ -166,8 +166,8 @@ static void improve(const frame_job *job, const hl_view *view, vec3 along, doubl
 static double make_room(const frame_job *job, const frame_job *few, const hl_view *view, frame_place *place) {
   const frame_place tight = *place, loose = fit(job, FILLED_LEAST);
   double depth = (reach(job, job->forward, 0) - reach(job, vec3_scale(job->forward, -1), 0)) / 2;
-  /* Seen from above or below, the picture turns about the line of sight, and every depth needs the same
-   * room. */
+  /* seen from above or below, the object turns about the line of sight, and the target may lie at any depth:
+   * the turn needs the same room */
   bool depth_matters = fabs(vec3_dot(job->forward, vec3_normalise(vec3_of(view->up)))) < 1 - 1e-9;
   /* repeated, because the middle depends slightly on the distance */
   for (int round = 0; round < 3; round++) {

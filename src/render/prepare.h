@@ -30,7 +30,8 @@ typedef struct prepared_volume {
   double empty;                  /* data value */
   hl_kernel kernel;              /* the kernel for which the grid's cells are bounded */
   hl_transfer_function function; /* the function from which the classifier was made; its points are owned */
-  uint64_t plane_mark;           /* identifies the content of the function of two numbers; 0: there is none */
+  uint64_t plane_mark; /* identifies the content of a transfer function of two numbers (a value and a
+                        * second number); 0: there is none */
   double clip[6];
   int clipped;
   uint64_t version, tables_version; /* versions of the grid's voxels, and of everything that follows from the

@@ -94,8 +94,8 @@ LANES_INLINE lanes reaching_face(const shadow_lookup *lookup, const shadow_taps 
 }
 
 /* Corrects the light near a box's face for sub-lights, as reaching_face() does for one buffer. The pixels
- * of the sub-lights' buffers lie in all positions around the sample, so the mean over the near pixels
- * stands for them. */
+ * of different sub-lights' buffers lie in all positions around the sample. So one correction serves all
+ * sub-lights: the mean of the corrections over the near pixels. */
 LANES_INLINE void correct_faces(light_depths *depths, int channels, color_lanes *reached) {
   for (int c = 0; c < channels; c++) {
     lanes own = lanes_set(0);

@@ -1,9 +1,9 @@
 /* render/sky_lanes.h - the sky's light that a slab's samples send on.
  *
- * A surface is lit by the light that arrives at its outside. So the field is read outside of the surface to
- * whose matter a sample belongs. The distance along the normal is the way on which the matter's values fall
- * to values that are not visible, and some cells more: a cell is thicker than a surface, and dark where it
- * holds matter. */
+ * A surface is lit by the light that arrives at its outside. A sample belongs to the matter below
+ * such a surface, so the field is read outside of it, at a distance along the normal. The distance is the way
+ * on which the matter's values fall until nothing is visible, and some cells more: a cell is thicker than a
+ * surface, and dark where it holds matter. */
 #ifndef HL_RENDER_SKY_LANES_H
 #define HL_RENDER_SKY_LANES_H
 

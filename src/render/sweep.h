@@ -57,7 +57,7 @@ typedef struct sweep_counts {
  * light from any angle; white matter; white matter that receives no shadow. */
 typedef enum layer_matter { MATTER_OWN, MATTER_EVEN, MATTER_WHITE, MATTER_OPEN } layer_matter;
 
-/* A pass: the sweep's tiles are shaded once more, for a layer. */
+/* A pass over a sweep: its tiles are shaded once more, for one of the picture's layers (hl_layers). */
 typedef struct layer_pass {
   shade_tile_function *shade;
   const shade_light *lights; /* [light_count] */

@@ -97,7 +97,8 @@ void hl_view_sheets_count(const sheet_content *content, const view *view, double
 void hl_view_cut(const view *view, const sheet_stack *stack, const grid *grid, const cut_shape *shape,
                  run_cut *cut, box_rays *rays);
 
-/* Call for each slab of a stretch before its patches are asked for; sheets rise from 1. */
+/* Tells which slab comes next: the one that ends at a sheet. It must be called before the patches of the slab
+ * are asked for, for each slab in rising order. sheet: from 1 on. */
 void hl_view_sheets_reach(view_sheets *sheets, int sheet);
 
 /* A patch of a tile, in the slab before a sheet. */

@@ -105,7 +105,8 @@ typedef struct cascade_level {
   unsigned char *flags; /* owned */
 } cascade_level;
 
-/* Messages between the parts of a shared picture, each of one tile (cascade_exchange.c). */
+/* Messages between the renderers that make the parts of one picture. A message holds the light of one tile
+ * (cascade_exchange.c). */
 typedef struct cascade_exchange {
   const light_exchange *with;         /* null: nobody */
   size_t slot_bytes;                  /* of a message */

@@ -36,8 +36,7 @@ hl_status hl_volume_measure_bricks(hl_volume *volume, const char *subject, hl_er
  * 0, so that a dense volume of these voxels has the same field under the smoothing kernel; else the field's
  * value. */
 float hl_volume_value_of_bricks(const hl_volume *volume, const size_t voxel[3]);
-/* Finds the numbers that stand for the voxels of a row, as hl_volume_value_of_bricks() does for one voxel.
- * row: [dimension[0]]. */
+/* Finds the values of hl_volume_value_of_bricks() for all voxels of a row. row: [dimension[0]]. */
 void hl_volume_row_of_bricks(const hl_volume *volume, size_t j, size_t k, float *row);
 
 #endif

@@ -58,7 +58,8 @@ int web_slice(int number, int of_mask, int blend, int interpolate);
  * it. */
 int web_depth(size_t length);
 
-/* The answer of the last call. The library owns it, until the next call that can fail. */
+/* The bytes that the last call answered. The library owns them. They are valid until the next call of a
+ * function that returns a status. */
 const unsigned char *web_answer(void);
 size_t web_answer_bytes(void);
 

@@ -22,7 +22,7 @@ typedef struct slab_sample {
   vector position, start, step_sheet, towards_eye;
   float path; /* length of the eye's ray through the slab */
   covered_span part;
-  float place;         /* where the slab is seen, 0 to 1 through the slab */
+  float place;         /* where the eye sees the slab's matter: a fraction of the way through the slab */
   float before, after; /* coordinates in the tables */
   way_sums sums;
   float extinction, depth, left, opacity;

@@ -16,7 +16,7 @@ typedef struct cut_shape {
   affine3 to_shape; /* index space to the shape's own */
 } cut_shape;
 
-/* The shape of a cut in the world of its numbers. */
+/* The shape of a cut, in the world in which the cut's own numbers are given. */
 cut_shape hl_cut_shape_in_world(const hl_cut *cut);
 
 /* The shape of volume->cuts[cut]. */
