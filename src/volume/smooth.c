@@ -132,7 +132,11 @@ static hl_status adopt(const hl_volume *volume, float *values, hl_volume **smoot
   if (volume->storage != HL_STORAGE_F32) store_in_16_bits(values, count, &d);
   if (d.type == HL_VOXEL_U16) {
     void *shorter = hl_reallocate(volume->context, values, count, sizeof(uint16_t));
-    if (shorter != NULL) values = shorter;
+    if (shorter == NULL) {
+      hl_release(volume->context, values);
+      return hl_fail_memory(error, count * sizeof(uint16_t), "smoothed voxels");
+    }
+    values = shorter;
   }
   hl_status status = hl_volume_adopt(volume->context, &d, "smoothed voxels", values, smoothed, error);
   if (status != HL_OK) return status;
