@@ -63,9 +63,9 @@ HL_API void hl_overlay_defaults(hl_overlay *overlay);
 
 /* A picture on the page. */
 typedef struct hl_figure_panel {
-  const hl_image
-      *image; /* borrowed; null: the panel shows the overlay alone. On a transparent page the overlay then has
-               * the colours that it has over the scene's picture, so that it can be laid over that picture */
+  /* Borrowed; null: the panel shows the overlay alone. On a transparent page, an overlay without an image is
+   * drawn in the colours that suit the scene's picture, so that somebody can lay it over the picture. */
+  const hl_image *image;
   const hl_scene *scene; /* borrowed; the scene of the picture, for its background, exposure, camera and
                           * volumes; null: the overlay may hold annotations in fractions and a letter alone */
   double left, top, width, height; /* place and size of the panel on the page, in millimetres; left and top

@@ -87,8 +87,8 @@ static void sum_bends(classifier *classifier) {
  * surface's foot. */
 static const double SECOND_RISE = 1.5, LEVEL_PART = 0.05;
 
-/* Finds where the surfaces of values begin, for values on one side of the empty value: from entry `first`
- * away from the empty value. step: 1 or -1. */
+/* Finds at which values surfaces begin, on one side of the empty value. It looks at the table's entries one
+ * by one, from entry `first` on, away from the empty value. step: 1 or -1, the way to the next entry. */
 static void fill_side(classifier *classifier, int first, int step) {
   const float(*sums)[4] = (const float(*)[4])classifier->sums;
   float foot = classifier->offset, level = 0;

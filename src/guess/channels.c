@@ -54,17 +54,9 @@ static double sheet_distance(const hl_scene_description *description) {
 
 /* The length of the diagonal of the box around all volumes. */
 static double diagonal_of(const hl_scene_description *description) {
-  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-  for (size_t v = 0; v < description->volume_count; v++) {
-    const affine3 placement = hl_scene_volume_index_to_world(&description->volumes[v]);
-    double box[2][3];
-    hl_scene_volume_box(&description->volumes[v], box[0], box[1]);
-    for (int c = 0; c < 8; c++) {
-      const vec3 corner = {box[c & 1][0], box[c >> 1 & 1][1], box[c >> 2][2]};
-      vec3_bound_ball(affine3_apply(placement, corner), 0, low, high);
-    }
-  }
-  return vec3_length((vec3){high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+  vec3 low, high;
+  hl_scene_content_box(description, &low, &high);
+  return vec3_length(vec3_subtract(high, low));
 }
 
 /* Says how many sheets small voxels of one volume lay across a much larger one. A frame's time grows with the

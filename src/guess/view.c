@@ -306,17 +306,19 @@ hl_status hl_view_automatic(const hl_scene_description *description, hl_outline 
   hl_data_analysis analysis;
   hl_status status = hl_data_analyse(first->volume, &analysis, error);
   if (status != HL_OK) return status;
-  const bool portrait = hl_is_body(first->volume, first->file, &analysis) && hl_data_is_cut_off(&analysis);
-  if (portrait) view->elevation_deg = PORTRAIT_ELEVATION;
   /* Programs write left-posterior-superior for any data, so this says little unless the file is DICOM. */
-  if (hl_scene_is_anatomical(description) || !first_decides(description)) return HL_OK;
-  hl_upright upright;
-  status = hl_scene_upright(first, &analysis, &upright, error);
-  if (status != HL_OK) return status;
-  hl_view_about(description, upright.up, view);
-  view->azimuth_deg = upright.azimuth_deg;
-  if (portrait) view->elevation_deg = PORTRAIT_ELEVATION;
-  return analysis.kind == HL_DATA_SURFACES ? HL_OK : hl_view_widen(description, outline, view, error);
+  const bool decides = !hl_scene_is_anatomical(description) && first_decides(description);
+  if (decides) {
+    hl_upright upright;
+    status = hl_scene_upright(first, &analysis, &upright, error);
+    if (status != HL_OK) return status;
+    hl_view_about(description, upright.up, view);
+    view->azimuth_deg = upright.azimuth_deg;
+  }
+  if (hl_is_body(first->volume, first->file, &analysis) && hl_data_is_cut_off(&analysis))
+    view->elevation_deg = PORTRAIT_ELEVATION;
+  return decides && analysis.kind != HL_DATA_SURFACES ? hl_view_widen(description, outline, view, error)
+                                                      : HL_OK;
 }
 
 /* The azimuth of a view from the left: from the body's left where the file tells the anatomy, otherwise from

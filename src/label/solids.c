@@ -15,8 +15,8 @@ typedef struct solids_job {
   hl_volume *map;
   const hl_label *labels; /* [count] */
   size_t count;
-  hl_volume *
-      *occupancies;   /* [count]; null: no colours are made; an element is null if no voxel has the label */
+  /* [count]; null: no colours are made; an element is null if no voxel has the label */
+  hl_volume **occupancies;
   hl_label_part part; /* the common part of all labels */
   hl_srgb_encoder encoder;
   unsigned char *colors; /* [size z][y][x][HL_COLOR_BYTES] */

@@ -11,8 +11,9 @@
 #include "core/vector.h"
 #include "mesh/mesh.h"
 
-/* The most corners of a polygon that is clipped. Larger polygons keep their fan, because the time of clipping
- * grows with the square of the number of corners. */
+/* The greatest number of corners of a polygon that is cut into triangles by clipping ears. A polygon with
+ * more corners stays a fan of triangles, because the time of clipping grows with the square of this number.
+ */
 enum { CORNERS_MOST = 1 << 14 };
 
 hl_status hl_mesh_note_polygon(mesh_parts *parts, size_t first, hl_error *error) {

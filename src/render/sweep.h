@@ -53,8 +53,8 @@ typedef struct sweep_counts {
   double seconds_composite;             /* of the compositing in the light stage */
 } sweep_counts;
 
-/* The matter that a pass shades. In this order: the scene's own matter; white matter whose surfaces send on
- * light from any angle; white matter; white matter that receives no shadow. */
+/* The matter that a pass shades: the scene's own matter; white matter whose surfaces send on the same light
+ * whatever the angle at which it comes; white matter; white matter that receives no shadow. */
 typedef enum layer_matter { MATTER_OWN, MATTER_EVEN, MATTER_WHITE, MATTER_OPEN } layer_matter;
 
 /* A pass over a sweep: its tiles are shaded once more, for one of the picture's layers (hl_layers). */

@@ -13,9 +13,9 @@ void hl_json_number_text(double number, char text[HL_JSON_NUMBER_BYTES]);
 /* The length in bytes of the well-formed UTF-8 sequence at c; 0 if there is none (RFC 3629). */
 size_t hl_utf8_length(const unsigned char *c);
 
-/* Writes the character at *text as it stands between quotes in JSON, and moves *text past it. Returns
- * the length of what was written; 0 at the end. Bytes that are not UTF-8, as file names may hold, become
- * U+FFFD. */
+/* Writes the character at *text in the form that it has within a string of JSON (some characters need an
+ * escape), and moves *text past it. Returns the number of bytes that were written; 0 at the end. Bytes that
+ * are not UTF-8, as file names may hold, become U+FFFD. */
 size_t hl_json_piece(const char **text, char piece[HL_JSON_PIECE_BYTES]);
 
 #endif

@@ -30,9 +30,10 @@ DEVICE sheet_way no_sheets(void) {
 /* Finds the densities of a pixel on a sheet and on the sheet before, where they are needed. The sheet's own
  * density is needed where the point's cell may show something. Both densities are needed where one of the two
  * shows something. Where one member of a pack needs its sheet's density, all members of the pack compute
- * theirs. When the function is called, way->after is the density on the sheet before. starts: nothing is
- * known of the sheet before, and only this sheet's density is wanted. rays: the rays at the sheet. speed:
- * voxels that the ray advances from sheet to sheet, along the axis where it is fastest. Returns the number of
+ * theirs. way->after must be the density on the sheet before when the function is called. starts: whether
+ * nothing is known of the sheet before, and only this sheet's density is wanted. rays: the rays at the sheet.
+ * speed: the number of voxels by which the ray advances from sheet to sheet, along the axis where it is
+ * fastest. Returns the number of
  * sheets from this sheet to the next one at which the ray may meet anything. The sums are computed in a loop
  * of two passes, so that their code exists once. */
 DEVICE int fill_way(const volume_data *volume, GLOBAL const plan_rays *rays, int perspective, float u,

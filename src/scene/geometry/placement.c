@@ -148,9 +148,9 @@ double hl_scene_smallest_edge(const hl_scene_description *scene) {
   return longest > 0 ? longest / SHEETS_ACROSS_MESHES : 1;
 }
 
-static vec3 middle_of_content(const hl_scene_description *scene) {
-  vec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
-  if (scene->volume_count == 0) box_of_meshes(scene, &low, &high);
+void hl_scene_content_box(const hl_scene_description *scene, vec3 *low, vec3 *high) {
+  *low = (vec3){INFINITY, INFINITY, INFINITY}, *high = vec3_scale(*low, -1);
+  if (scene->volume_count == 0) box_of_meshes(scene, low, high);
   for (size_t i = 0; i < scene->volume_count; i++) {
     affine3 placement = hl_scene_volume_index_to_world(&scene->volumes[i]);
     double box[2][3];
@@ -158,16 +158,17 @@ static vec3 middle_of_content(const hl_scene_description *scene) {
     for (int corner = 0; corner < 8; corner++) {
       vec3 p = affine3_apply(placement,
                              (vec3){box[corner & 1][0], box[corner >> 1 & 1][1], box[corner >> 2][2]});
-      grow_box(&low, &high, p);
+      grow_box(low, high, p);
     }
   }
-  return vec3_scale(vec3_add(low, high), 0.5);
 }
 
 hl_frame_space hl_scene_frame_space(const hl_scene_description *scene) {
   int exponent;
+  vec3 low, high;
   (void)frexp(hl_scene_smallest_edge(scene), &exponent);
-  return (hl_frame_space){middle_of_content(scene), ldexp(1, exponent - 1)};
+  hl_scene_content_box(scene, &low, &high);
+  return (hl_frame_space){vec3_scale(vec3_add(low, high), 0.5), ldexp(1, exponent - 1)};
 }
 
 /* ---- lights that move with the camera, converted to the world.

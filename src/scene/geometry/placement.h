@@ -29,6 +29,10 @@ void hl_scene_volume_box(const hl_scene_volume *volume, double low[3], double hi
 /* The smallest edge of a voxel. Without a volume it is a 200th of the longest side of the meshes' box. */
 double hl_scene_smallest_edge(const hl_scene_description *scene);
 
+/* Finds the box around all volumes of a scene, as their clip boxes leave them, or around all meshes of a
+ * scene without volumes; world space. */
+void hl_scene_content_box(const hl_scene_description *scene, vec3 *low, vec3 *high);
+
 /* Frame space, in which a scene is rendered: p -> (p - centre) / unit. centre is the middle of the boxes of
  * all volumes, or, where there are none, of all meshes; unit is the power of two that the smallest voxel edge
  * is 1 to 2 times as long as. */
