@@ -8,14 +8,19 @@ import { isAnatomical } from "./sections.js";
 export function figureOverlay({ store, start, channel, failed, find, atRest, frames }) {
   const wanted = () => ({ scaleBar: false, legend: false, axes: "none", ...(channel.overlay ? store.page.over : {}) });
   const want = (part) => store.setPage({ over: { ...wanted(), ...part } });
+  const isVisible = (volume) => volume.visible !== false;
+  // Why no legend can be drawn; "": one can. A strip of colours shows a function of one number.
+  const noLegend = () => (!store.scene.volumes.some(isVisible) ? "A legend shows a visible volume."
+    : store.scene.volumes.some((volume) => isVisible(volume) && volume.transfer_function?.second !== undefined) ? "A legend cannot show a transfer function of two numbers."
+    : "");
   // Whether the file of a visible volume does not tell the unit of its lengths. A person can give the unit then.
-  const isUnitless = () => start.volumes.some((volume, v) => volume?.unit === null && store.scene.volumes[v]?.visible !== false);
+  const isUnitless = () => start.volumes.some((volume, v) => volume?.unit === null && store.scene.volumes[v] && isVisible(store.scene.volumes[v]));
   const given = () => (isUnitless() ? String(store.page.unit ?? "") : "");
   const lacksUnit = () => isUnitless() && given() === "";
   const kinds = [["none", "none"], ["arrows", "arrows"], ...(start.volumes.some(isAnatomical) ? [["letters", "letters of the body"]] : [])];
   const over = () => {
     const { scaleBar, legend, axes } = wanted(), bar = scaleBar === true && !lacksUnit();
-    return { scaleBar: bar, legend: legend === true, axes: kinds.some(([kind]) => kind === axes) ? axes : "none", ...(bar && given() ? { unit: given() } : {}) };
+    return { scaleBar: bar, legend: legend === true && noLegend() === "", axes: kinds.some(([kind]) => kind === axes) ? axes : "none", ...(bar && given() ? { unit: given() } : {}) };
   };
 
   // ---- over the picture ----
@@ -83,6 +88,8 @@ export function figureOverlay({ store, start, channel, failed, find, atRest, fra
     bar.input.disabled = lacksUnit();
     unknown.hidden = !lacksUnit();
     bar.input.checked = scaleBar;
+    legend.input.disabled = noLegend() !== "";
+    legend.input.title = noLegend();
     legend.input.checked = hasLegend;
     axes.update();
   }
