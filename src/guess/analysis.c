@@ -307,7 +307,8 @@ static hl_status analyse_values(const hl_volume *volume, const hl_sample *sample
     a->cut_off = share_beyond(&border, a->solid);
     if (a->kind == HL_DATA_SURFACES && status == HL_OK)
       status = hl_data_find_boundary(volume, sample, a, error);
-    if (a->grain > 0 && hl_roughness(volume, sample, a->background, a->faint) > NOISY) a->grain = 0;
+    if (a->grain > 0 && hl_roughness(volume, sample, a->background, a->faint) > NOISY)
+      a->sharpness = a->grain = 0; /* data that are noise throughout have no surface */
   }
   if (flow && !s.signs) a->kind = HL_DATA_FLOW;
   if (logarithms) a->kind = HL_DATA_PARTICLES;

@@ -42,11 +42,13 @@ typedef struct hl_data_analysis {
   double zeroed;      /* fraction of the voxels that have exactly the background's value */
   double cliffs;      /* fraction of the steps between the background's exact value and other values that are
                        * cliffs: at least half as high as matter */
-  double cut_off; /* fraction of the grid's border that lies beyond solid: matter that the grid cuts off */
-  double grain;   /* how far noise moves the surface of scanned objects to and fro: standard deviation, voxel
-                   * edges; 0 in data that are noise throughout, where no surface is */
-  double filled;  /* fraction of the voxels beyond solid */
-  double middle;  /* the commonest data value */
+  double cut_off;   /* fraction of the grid's border that lies beyond solid: matter that the grid cuts off */
+  double sharpness; /* how sharp the surface of scanned objects is: the mean part of a step over three voxel
+                     * edges that lies in the middle one */
+  double grain;  /* how far noise moves the surface of scanned objects to and fro: standard deviation, voxel
+                  * edges */
+  double filled; /* fraction of the voxels beyond solid */
+  double middle; /* the commonest data value */
   double lower, upper; /* how far values lie below and above the middle at most, apart from a few voxels */
   double labels[HL_FEW_LABELS]; /* ascending data values, without the background */
   size_t label_count;
@@ -76,8 +78,8 @@ double hl_data_find_vessels(const hl_volume *volume, const hl_sample *sample, co
 bool hl_data_find_rim(const hl_volume *volume, const hl_sample *sample, double noise,
                       hl_data_analysis *analysis);
 
-/* Finds what the surface of scanned objects is like: sets cliffs and grain. The distances of the analysis are
- * relative, as the sample's values are. Fails only for lack of memory. */
+/* Finds what the surface of scanned objects is like: sets cliffs, sharpness and grain. The distances of the
+ * analysis are relative, as the sample's values are. Fails only for lack of memory. */
 hl_status hl_data_find_boundary(const hl_volume *volume, const hl_sample *sample, hl_data_analysis *analysis,
                                 hl_error *error);
 

@@ -1,8 +1,10 @@
-/* guess/boundary.c - what the surface of scanned objects is like: cut out voxel by voxel, or grainy by noise.
+/* guess/boundary.c - what the surface of scanned objects is like: cut out voxel by voxel, sharp,
+ * or grainy by noise.
  *
  * A brain without its skull was cut out: around it all voxels have exactly one value, and the first voxel
  * inside is almost as bright as the matter within. A scanned object with a natural rim has voxels with values
- * between. There, noise moves the place at which the values pass a threshold. */
+ * between. The rim is sharp if most of the way from background to matter lies between two neighbours: voxels
+ * stand too far apart there. Noise moves the place at which the values pass a threshold. */
 #include <math.h>
 
 #include "guess/analysis.h"
@@ -47,6 +49,62 @@ static double share_of_cliffs(const hl_volume *volume, const hl_sample *sample, 
   return count.steps > 0 ? (double)count.cliffs / (double)count.steps : 0;
 }
 
+/* The sum of the shares of a row of steps, and their number. */
+typedef struct step_shares {
+  double sum;
+  size_t count;
+} step_shares;
+
+/* A voxel's value at a number of voxels along one axis and another number along a second axis. */
+static double value_beside(const hl_volume *volume, const size_t at[3], int axis, int steps, int other,
+                           int aside) {
+  size_t place[3] = {at[0], at[1], at[2]};
+  place[axis] = (size_t)((ptrdiff_t)place[axis] + steps);
+  place[other] = (size_t)((ptrdiff_t)place[other] + aside);
+  return hl_volume_value_within(volume, place[0], place[1], place[2]);
+}
+
+/* Whether the values between a voxel and the next one along an axis change faster along this axis than along
+ * the other two: the surface there faces the axis. change: the difference of the two voxels. */
+static bool faces_axis(const hl_volume *volume, const size_t at[3], int axis, double change) {
+  for (int other = 0; other < 3; other++) {
+    if (other == axis) continue;
+    double across = 0; /* four times the slope: the sum of two differences, each over two voxels */
+    for (int steps = 0; steps < 2; steps++)
+      across += value_beside(volume, at, axis, steps, other, 1) -
+                value_beside(volume, at, axis, steps, other, -1);
+    if (!(fabs(across) < 4 * fabs(change))) return false;
+  }
+  return true;
+}
+
+/* Adds the share of the step between a voxel and the next one along an axis, if the values pass the level
+ * there: its part of the step over three voxel edges, which begins one voxel earlier and ends one voxel
+ * later. Noise can make the share greater than 1. */
+static void add_share(const hl_volume *volume, const size_t at[3], int axis, double level,
+                      step_shares *made) {
+  const int other = (axis + 1) % 3;
+  const double here = value_beside(volume, at, axis, 0, other, 0),
+               next = value_beside(volume, at, axis, 1, other, 0);
+  if (!isfinite(here) || !isfinite(next) || (here > level) == (next > level)) return;
+  const double whole = value_beside(volume, at, axis, 2, other, 0) -
+                       value_beside(volume, at, axis, -1, other, 0);
+  if (!(whole * (next - here) > 0) || !faces_axis(volume, at, axis, next - here)) return;
+  made->sum += fmin((next - here) / whole, 2);
+  made->count++;
+}
+
+/* The mean share of the steps at which the values pass a level; 0: they pass it nowhere. */
+static double share_of_steps(const hl_volume *volume, const hl_sample *sample, double level) {
+  const size_t *n = volume->dimension;
+  step_shares made = {0, 0};
+  for (size_t k = 1; k + 2 < n[2]; k += sample->step)
+    for (size_t j = 1; j + 2 < n[1]; j += sample->step)
+      for (size_t i = 1; i + 2 < n[0]; i += sample->step)
+        for (int axis = 0; axis < 3; axis++) add_share(volume, (size_t[3]){i, j, k}, axis, level, &made);
+  return made.count > 0 ? made.sum / (double)made.count : 0;
+}
+
 /* The mean slope, per voxel edge, of the values where they pass a level; 0: they pass it nowhere.
  * Derived: a slope g in any direction is a difference g cos(t) along an axis, and a pair of neighbours lies
  * on both sides of the level with a probability in proportion to |cos(t)|. So the mean difference of such
@@ -71,11 +129,13 @@ static double slope_at(const hl_volume *volume, const hl_sample *sample, double 
 
 hl_status hl_data_find_boundary(const hl_volume *volume, const hl_sample *sample, hl_data_analysis *a,
                                 hl_error *error) {
-  const double level = a->background + a->direction * a->solid,
-               slope = slope_at(volume, sample, sample->low + sample->range * level) / sample->range;
+  const double relative = a->background + a->direction * a->solid,
+               level = sample->low + sample->range * relative,
+               slope = slope_at(volume, sample, level) / sample->range;
   double noise = 0;
   a->cliffs = share_of_cliffs(volume, sample, a);
-  hl_status status = hl_noise(volume, sample, level, a->direction, &noise, error);
+  a->sharpness = share_of_steps(volume, sample, level);
+  hl_status status = hl_noise(volume, sample, relative, a->direction, &noise, error);
   a->grain = slope > 0 && isfinite(noise) ? noise / slope : 0;
   return status;
 }

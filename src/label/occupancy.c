@@ -177,8 +177,10 @@ static hl_status fill(hl_context *context, hl_pool *pool, occupancy_job *job, hl
   const size_t count = hl_label_part_voxels(&job->part);
   job->inside = hl_allocate(context, count, 1);
   if (!make_room(context, hl_pool_threads(pool), job) || job->inside == NULL) {
+    const size_t *cells = job->levels.size;
+    size_t level_floats = HL_LEVEL_PLANES * cells[0] * cells[1] * cells[2];
     hl_release(context, job->inside);
-    return hl_fail_memory(error, 7 * count, "smooth labels");
+    return hl_fail_memory(error, count * (1 + sizeof(float)) + level_floats * sizeof(float), "smooth labels");
   }
   smooth(pool, job);
   if (hl_pool_cancelled(pool)) {

@@ -136,14 +136,64 @@ static double smoothed_by(double thick) {
   return sigma;
 }
 
-static void cliffs_and_terraces_are_smoothed(void **state) {
+static void cliffs_are_smoothed(void **state) {
   (void)state;
   fill(true, 0, 40);
   assert_true(smoothed_by(1) == 0.8);
   fill(false, 4, 4);
   assert_true(smoothed_by(1) == 0);
-  assert_true(smoothed_by(1.25) == 0);
-  assert_true(smoothed_by(1.5) == 0.8);
+  assert_true(smoothed_by(1.5) == 0); /* slices that the rim spans are not too thick */
+}
+
+/* A plane across an axis, at all places between two voxels, blurred by a Gaussian. */
+static void fill_step(int axis, double sigma) {
+  for (int v = 0; v < COUNT; v++) {
+    const int place[3] = {v % N, v / N % N, v / N / N};
+    const double lean = (place[(axis + 1) % 3] + 0.37 * place[(axis + 2) % 3]) / 17;
+    values[v] = (float)(0.5 * erfc((place[axis] - 14 - lean) / (sigma * sqrt(2))));
+  }
+}
+
+/* The mean over all places t between two voxels of the part of a blurred step that lies between them, of the
+ * part over three voxel edges. */
+static double expected_sharpness(double sigma) {
+  enum { PLACES = 1000 };
+  double sum = 0;
+  for (int n = 0; n < PLACES; n++) {
+    const double t = (n + 0.5) / PLACES - 0.5, scale = sigma * sqrt(2);
+    sum += (erf((t + 0.5) / scale) - erf((t - 0.5) / scale)) /
+           (erf((t + 1.5) / scale) - erf((t - 1.5) / scale));
+  }
+  return sum / PLACES;
+}
+
+static void sharpness_is_the_part_of_a_step_between_two_voxels(void **state) {
+  (void)state;
+  static const double sigmas[] = {0.3, 0.5, 0.8};
+  const hl_sample sample = {.context = context, .low = 0, .range = 1, .step = 1};
+  for (int axis = 0; axis < 3; axis++)
+    for (int n = 0; n < 3; n++) {
+      fill_step(axis, sigmas[n]);
+      hl_volume *volume = make(1);
+      hl_data_analysis analysis = {.background = 0, .direction = 1, .solid = 0.5};
+      assert_int_equal(hl_data_find_boundary(volume, &sample, &analysis, NULL), HL_OK);
+      assert_true(fabs(analysis.sharpness - expected_sharpness(sigmas[n])) < 0.005);
+      hl_volume_release(volume);
+    }
+  assert_true(fabs(expected_sharpness(0.5) - 0.614) < 0.001); /* from there on volumes are smoothed */
+}
+
+/* A rim that is narrower along k than the distance of slices makes terraces. */
+static void terraces_are_smoothed(void **state) {
+  (void)state;
+  for (int flat = 0; flat < 2; flat++) {
+    for (int v = 0; v < COUNT; v++) {
+      const double x = v % N - 15.3, y = v / N % N - 15.8, z = (v / N / N - 16.2) * (flat ? 4 : 1);
+      values[v] = (float)floor(130 / (1 + exp((sqrt(x * x + y * y + z * z) - 12) / 0.8)) +
+                               4 * noise(v % N, v / N % N, v / N / N));
+    }
+    assert_true(smoothed_by(1) == (flat ? 0.8 : 0));
+  }
 }
 
 /* Noise moves a surface by its standard deviation over the slope. Uniform noise of width w has w / sqrt(12),
@@ -242,7 +292,9 @@ int main(void) {
       cmocka_unit_test(a_step_becomes_a_ramp),
       cmocka_unit_test(whole_numbers_keep_16_bits),
       cmocka_unit_test(holes_stay),
-      cmocka_unit_test(cliffs_and_terraces_are_smoothed),
+      cmocka_unit_test(cliffs_are_smoothed),
+      cmocka_unit_test(sharpness_is_the_part_of_a_step_between_two_voxels),
+      cmocka_unit_test(terraces_are_smoothed),
       cmocka_unit_test(grain_is_smoothed_and_objects_stay_what_they_are),
       cmocka_unit_test(bare_scenes_are_smoothed),
       cmocka_unit_test(what_has_no_mean_is_refused),
