@@ -203,15 +203,16 @@ HL_API void hl_volume_release(hl_volume *volume); /* null is allowed */
 
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_info(const hl_volume *volume, hl_volume_info *info);
 
-/* How much the field of a volume differs from its file. Meshes of cells, grids with refinement and sparse
- * grids become a field of bricks when they are loaded. Other volumes keep the file's voxels. */
+/* How much the field of a volume differs from its file. Meshes of cells, grids with refinement, sparse
+ * grids and particles become a field when they are loaded. Other volumes keep the file's voxels. */
 typedef struct hl_volume_field_error {
   size_t struct_size; /* set by the caller */
   double value;       /* the difference in data values; NaN: nothing could be compared, as in a mesh of one
                        * layer of cells */
   double of_range;    /* `value` as a part of the volume's range; NaN as `value` */
   const char *kind;   /* "exact": somewhere the difference is as great as `value`; "bound": the differences
-                       * may all be smaller. A constant text */
+                       * may all be smaller; "sampled": `value` is the greatest difference at a few thousand
+                       * places, and other places may have greater ones. A constant text */
   const char
       *source; /* what the field was compared with, in words: "the means over the cells". A constant text */
 } hl_volume_field_error;
@@ -220,8 +221,9 @@ typedef struct hl_volume_field_error {
  * difference between the field and the values that the cells interpolate, at places where the field does
  * not depend on anything outside the mesh. For a grid with refinement it is the greatest difference between
  * a cell's value and the field's mean over the cell. For a sparse grid it is 0, since the field equals that
- * of the dense grid. Where the volume keeps the file's voxels, the call fails with HL_ERROR_ARGUMENT, and
- * sets nothing. */
+ * of the dense grid. For particles it is the greatest difference from the exact sum of the kernels at the
+ * places of up to 4,096 particles. Where the volume keeps the file's voxels, the call fails with
+ * HL_ERROR_ARGUMENT, and sets nothing. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_field_error(const hl_volume *volume,
                                                           hl_volume_field_error *field_error);
 

@@ -51,9 +51,10 @@ static void convolve_row(const gaussian *kernel, float *numbers, size_t length, 
     middle[length + (size_t)d - 1] = numbers[length - 1];
   }
   for (size_t n = 0; n < length; n++) numbers[n] = kernel->weight[0] * middle[n];
-  for (int d = 1; d <= kernel->radius; d++)
-    for (size_t n = 0; n < length; n++)
-      numbers[n] += kernel->weight[d] * (middle[n - (size_t)d] + middle[n + (size_t)d]);
+  for (int d = 1; d <= kernel->radius; d++) {
+    const float *before = middle - d, *after = middle + d;
+    for (size_t n = 0; n < length; n++) numbers[n] += kernel->weight[d] * (before[n] + after[n]);
+  }
 }
 
 /* Convolves along i, j and k. Returns false if cancelled. */

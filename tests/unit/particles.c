@@ -16,7 +16,7 @@
 #include "bricks/evaluate.h"
 #include "core/memory.h"
 #include "core/pool.h"
-#include "particles/particles.h"
+#include "particles/probes.h"
 
 enum { MOST = 20000 };
 
@@ -414,6 +414,84 @@ static void bricks_have_all_coefficients(void **state) {
   hl_pool_destroy(pool);
 }
 
+/* ---- how far a field is from the kernels ---- */
+
+/* W(r / h) / (pi h^3), summed over all particles one by one. */
+static double sum_of_all(const hl_particle_set *set, const double period[3], const uint32_t place[3]) {
+  double sum = 0;
+  for (size_t n = 0; n < set->count; n++) {
+    double squared = 0, h = (double)set->length[n];
+    for (int a = 0; a < 3; a++) {
+      double away = fabs(((double)set->place[n][a] - (double)place[a]) * set->unit[a]);
+      if (period[a] > 0) away = fmin(away, period[a] - away);
+      squared += away * away;
+    }
+    const double q = sqrt(squared) / h, outer = fmax(2 - q, 0), inner = fmax(1 - q, 0);
+    sum += (double)masses[set->order[n]] * (outer * outer * outer / 4 - inner * inner * inner) /
+           (3.14159265358979 * h * h * h);
+  }
+  return sum;
+}
+
+static void compare_sums(const double period[3], int threads) {
+  enum { COUNT = 2000 };
+  hl_particles_description d = clusters(COUNT);
+  hl_particle_input input = {.count = d.count, .positions = positions, .is_double = true, .lengths = lengths};
+  for (int a = 0; a < 3; a++) input.period[a] = period[a];
+  hl_pool *pool = NULL;
+  hl_particle_set set;
+  hl_particle_lattice lattice;
+  hl_particle_plan plan;
+  hl_particle_probes probes;
+  static double sums[HL_PARTICLE_PROBES];
+  static float weights[COUNT];
+  const hl_particle_limits limits = {0, SIZE_MAX, 240};
+  assert_int_equal(hl_pool_create(context, threads, &pool, NULL), HL_OK);
+  assert_int_equal(hl_particles_order(context, pool, &input, "test", &set, NULL), HL_OK);
+  assert_int_equal(hl_particles_lattice(&set, &limits, "test", &lattice, NULL), HL_OK);
+  assert_int_equal(hl_particles_plan(context, &set, &lattice, true, "test", &plan, NULL), HL_OK);
+  assert_int_equal(hl_particle_probes_choose(context, &set, &lattice, "test", &probes, NULL), HL_OK);
+  assert_int_equal(probes.count, COUNT);
+  for (size_t n = 0; n < COUNT; n++) weights[n] = masses[set.order[n]];
+  assert_int_equal(hl_particle_probes_sum(context, pool, &set, weights, &plan, &probes, "test", sums, NULL),
+                   HL_OK);
+  for (size_t q = 0; q < COUNT; q += 7)
+    assert_true(fabs(sums[q] / sum_of_all(&set, period, probes.place[q]) - 1) < 1e-4);
+  hl_particle_probes_release(context, &probes);
+  hl_particle_plan_release(context, &plan);
+  hl_particles_release(context, &set);
+  hl_pool_destroy(pool);
+}
+
+static void probes_are_sums_of_all_kernels(void **state) {
+  (void)state;
+  compare_sums((const double[3]){0, 0, 0}, 1);
+  compare_sums((const double[3]){1.2, 1.3, 1.7}, 2);
+}
+
+/* A single particle's field differs from its kernel most in its middle, where the kernel is 1 / (pi h^3). It
+ * is spread on a level whose spacing is at most h / 2. A lattice that does not resolve the kernel keeps
+ * little of its height. */
+static void the_difference_is_told(void **state) {
+  (void)state;
+  static const double spacings[2] = {0.5, 4};
+  double told[2];
+  for (int n = 0; n < 2; n++) {
+    hl_particles_description d = describe(1);
+    for (int a = 0; a < 3; a++) positions[0][a] = 0;
+    masses[0] = lengths[0] = 1;
+    d.spacing = spacings[n];
+    hl_volume *volume = make(&d);
+    hl_volume_field_error e = {.struct_size = sizeof e};
+    assert_int_equal(hl_volume_get_field_error(volume, &e), HL_OK);
+    assert_string_equal(e.kind, "sampled");
+    told[n] = e.value * 3.14159265358979;
+    print_message("# spacing %g h: %.2g of the kernel's height\n", spacings[n], told[n]);
+    hl_volume_release(volume);
+  }
+  assert_true(told[0] > 0.01 && told[0] < 0.12 && told[1] > 0.8 && told[1] < 1);
+}
+
 static void expect(const hl_particles_description *d, hl_status code, const char *part) {
   hl_volume *volume = NULL;
   hl_error error = {0};
@@ -472,6 +550,8 @@ int main(void) {
       cmocka_unit_test(threads_do_not_matter),
       cmocka_unit_test(a_mean_is_of_mass),
       cmocka_unit_test(bricks_have_all_coefficients),
+      cmocka_unit_test(probes_are_sums_of_all_kernels),
+      cmocka_unit_test(the_difference_is_told),
       cmocka_unit_test(wrong_numbers_are_refused),
       cmocka_unit_test(wild_numbers_make_volumes),
   };

@@ -251,7 +251,10 @@ static void print_field_error(const hl_volume *volume) {
   else if (e.value == 0) printf("  field       equals %s\n", e.source);
   else
     printf("  field       differs from %s by %.2g%s, %.2g of the range\n", e.source, e.value,
-           strcmp(e.kind, "bound") == 0 ? " at most" : "", e.of_range);
+           strcmp(e.kind, "bound") == 0     ? " at most"
+           : strcmp(e.kind, "sampled") == 0 ? " or more"
+                                            : "",
+           e.of_range);
 }
 
 static void print_json(json_writer *json, const char *path, const hl_volume *volume,

@@ -6,5 +6,5 @@ inside = lambda *p: all(6 <= c < 18 for c in p)
 voxel = lambda x, y, z: 250 if (x, y, z) == (12, 12, 12) else 100 + (x + y + z) % 5 if inside(x, y, z) else 30
 sys.stdout.buffer.write(bytes(voxel(x, y, z) for z in range(n) for y in range(n) for x in range(n)))' >b_24x24x24_uint8.raw
 echo '{"unit_distance": 1, "opacity": [[60, 0], [90, 0.4], [255, 0.9]]}' >tf.json
-halflight render b_24x24x24_uint8.raw --tf tf.json --colormap viridis --print-scene >scene.json
+halflight render b_24x24x24_uint8.raw --tf tf.json --colormap viridis --smooth 0 --print-scene >scene.json
 tool json scene.json "[round(d['volumes'][0]['transfer_function']['color'][end][0]) for end in (0, -1)]"

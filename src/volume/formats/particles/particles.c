@@ -12,6 +12,7 @@
 #include "core/door.h"
 #include "core/memory.h"
 #include "particles/particles.h"
+#include "volume/formats/particles/difference.h"
 #include "volume/in_bricks.h"
 
 enum {
@@ -118,15 +119,20 @@ static float *weights_of(hl_context *context, const hl_particles_description *d,
   return weights;
 }
 
+/* Makes the weights of a sum; null where each of them is 1. */
+static hl_status make_weights(const making *m, bool with_values, float **weights) {
+  *weights = NULL;
+  if (m->d->masses == NULL && !with_values) return HL_OK;
+  *weights = weights_of(m->context, m->d, &m->set, with_values);
+  return *weights != NULL ? HL_OK : hl_fail_memory(m->error, m->set.count * sizeof **weights, m->subject);
+}
+
 static hl_status spread(const making *m, const hl_particle_plan *plan, bool with_values,
                         hl_particle_field *field) {
   float *weights = NULL;
-  if (m->d->masses != NULL || with_values) {
-    weights = weights_of(m->context, m->d, &m->set, with_values);
-    if (weights == NULL) return hl_fail_memory(m->error, m->set.count * sizeof *weights, m->subject);
-  }
-  hl_status status = hl_particles_spread(m->context, m->pool, &m->set, weights, plan, m->subject, field,
-                                         m->error);
+  hl_status status = make_weights(m, with_values, &weights);
+  if (status == HL_OK)
+    status = hl_particles_spread(m->context, m->pool, &m->set, weights, plan, m->subject, field, m->error);
   hl_release(m->context, weights);
   return status;
 }
@@ -141,6 +147,8 @@ static float empty_density(const hl_particles_description *d, const hl_particle_
   }
   return isfinite(least) ? (float)(0.1 * least) : 1;
 }
+
+static float least_density(const making *m) { return fmaxf(empty_density(m->d, &m->set), FLT_MIN); }
 
 /* The numbers of a field, and how they are converted. */
 typedef struct conversion {
@@ -174,7 +182,7 @@ static void divide(void *data, size_t index, int worker) {
 static void convert(const making *m, hl_particle_field *field, const hl_particle_field *density) {
   bool in_bricks = field->plan->leaves != NULL;
   if (m->d->quantity == HL_PARTICLES_DENSITY) return;
-  conversion c = {.least = fmaxf(empty_density(m->d, &m->set), FLT_MIN), .outside = m->d->outside};
+  conversion c = {.least = least_density(m), .outside = m->d->outside};
   for (int level = 0; level < (in_bricks ? field->plan->lattice.levels : 1); level++) {
     c.field = field->points[level];
     c.by = density != NULL ? density->points[level] : NULL;
@@ -191,6 +199,42 @@ static hl_status make_field(const making *m, const hl_particle_plan *plan, hl_pa
   if (status == HL_OK && mean) status = spread(m, plan, false, &density);
   if (status == HL_OK) convert(m, field, mean ? &density : NULL);
   hl_particle_field_release(m->context, &density);
+  return status;
+}
+
+/* ---- the exact values ---- */
+
+static hl_status sum_kernels(const making *m, const hl_particle_plan *plan, const hl_particle_probes *probes,
+                             bool with_values, double *sums) {
+  float *weights = NULL;
+  hl_status status = make_weights(m, with_values, &weights);
+  if (status == HL_OK)
+    status = hl_particle_probes_sum(m->context, m->pool, &m->set, weights, plan, probes, m->subject, sums,
+                                    m->error);
+  hl_release(m->context, weights);
+  return status;
+}
+
+/* Finds the exact values of the wanted quantity at a few places. */
+static hl_status find_truth(const making *m, const hl_particle_plan *plan, hl_particle_truth *truth) {
+  hl_particle_probes *probes = &truth->probes;
+  double *densities = NULL;
+  hl_status status = hl_particle_probes_choose(m->context, &m->set, &plan->lattice, m->subject, probes,
+                                               m->error);
+  if (status != HL_OK) return status;
+  const bool mean = m->d->quantity == HL_PARTICLES_MEAN;
+  truth->values = hl_allocate(m->context, probes->count, sizeof(double));
+  if (mean) densities = hl_allocate(m->context, probes->count, sizeof(double));
+  if (truth->values == NULL || (mean && densities == NULL))
+    status = hl_fail_memory(m->error, probes->count * sizeof(double), m->subject);
+  if (status == HL_OK) status = sum_kernels(m, plan, probes, mean, truth->values);
+  if (status == HL_OK && mean) status = sum_kernels(m, plan, probes, false, densities);
+  const double least = (double)least_density(m);
+  for (size_t q = 0; status == HL_OK && q < probes->count; q++) {
+    if (mean) truth->values[q] /= densities[q];
+    if (m->d->quantity == HL_PARTICLES_LOG_DENSITY) truth->values[q] = log10(fmax(truth->values[q], least));
+  }
+  hl_release(m->context, densities);
   return status;
 }
 
@@ -287,14 +331,18 @@ static hl_status make_volume(making *m, hl_volume **volume) {
   hl_particle_input input = input_of(m->d);
   hl_particle_plan plan = {.leaves = NULL};
   hl_particle_field field = {.plan = NULL};
+  hl_particle_truth truth = {.values = NULL};
   hl_status status = hl_particles_order(m->context, m->pool, &input, m->subject, &m->set, m->error);
   if (status == HL_OK) status = choose_plan(m, &plan);
+  if (status == HL_OK) status = find_truth(m, &plan, &truth);
   if (status == HL_OK) status = make_field(m, &plan, &field);
   if (status == HL_OK && m->set.count < m->d->count)
     hl_log(m->context, HL_LOG_WARNING, "%s: %zu particles without a finite place are left out", m->subject,
            m->d->count - m->set.count);
   hl_particles_release(m->context, &m->set);
   if (status == HL_OK) status = take_field(m, &field, volume);
+  if (status == HL_OK) hl_particle_truth_compare(&truth, *volume);
+  hl_particle_truth_release(m->context, &truth);
   hl_particle_field_release(m->context, &field);
   hl_particle_plan_release(m->context, &plan);
   return status;
