@@ -1,8 +1,7 @@
-/* halflight/compose.h - scenes composed by named options: what a bare volume gets, and what the options mean.
+/* halflight/compose.h - makes scenes by named options. A volume without a scene (a bare volume) gets one.
  *
- * The program, the Python package and the viewer make their scenes by hl_scene_compose(). An option is a name
- * and a value as text: the options of `halflight render`, without dashes.
- */
+ * The program, the Python package and the viewer make their scenes by hl_scene_compose(). The options are
+ * those of `halflight render`: an option is its name, without dashes, and its value as text. */
 #ifndef HALFLIGHT_COMPOSE_H
 #define HALFLIGHT_COMPOSE_H
 
@@ -29,7 +28,7 @@ typedef enum hl_option_kind {
                           * hl_option_choices() */
 } hl_option_kind;
 
-/* The name of an option that scenes are composed by; null past the last. */
+/* The name of option number `index` of hl_scene_compose(); null past the last. */
 HL_API const char *hl_option_name(size_t index);
 
 /* The kind of a named option; HL_OPTION_TEXT for an unknown name. */
@@ -38,31 +37,31 @@ HL_API hl_option_kind hl_option_kind_of(const char *name);
 /* The choices of a named option, ended by a null name; null where the option has no choices. */
 HL_API const hl_setting_choice *hl_option_choices(const char *name);
 
-/* What the caller tells hl_scene_compose() of the description that it changes: flags, joined by |. */
+/* Flags, joined by |, that tell hl_scene_compose() how the caller made or changed the description. */
 typedef enum hl_compose_flag {
-  /* The description was made by hl_scene_for_volume() or another function that chooses. What follows from
-   * an option (camera, light, sky) is then chosen anew. */
+  /* The description was made by hl_scene_for_volume() or a similar function, which chose its camera, light
+   * and sky. Where an option affects one of these, it is then chosen anew. */
   HL_COMPOSE_BARE = 1,
   HL_COMPOSE_CHANGED = 2, /* the caller changed what is seen of the volumes: the camera of an HL_COMPOSE_BARE
                            * description frames them anew */
   HL_COMPOSE_CUT = 4, /* the caller cut the volume: the light of an HL_COMPOSE_BARE description is chosen for
                        * the part that is left */
   HL_COMPOSE_CAMERA = 8,  /* the caller placed the camera: it stays */
-  HL_COMPOSE_LIGHTS = 16, /* the caller chose the lights: they stay as strong as they are */
+  HL_COMPOSE_LIGHTS = 16, /* the caller chose the lights: their strengths stay */
   HL_COMPOSE_SKY = 32,    /* the caller chose the sky: it stays */
   HL_COMPOSE_MESHES = 64, /* the caller added meshes: the camera of an HL_COMPOSE_BARE description takes them
                            * into the picture, too */
-  HL_COMPOSE_VALUES = 128 /* label maps of an HL_COMPOSE_BARE description are drawn by their values, as if an
-                           * option were about values */
+  HL_COMPOSE_VALUES = 128 /* label maps of an HL_COMPOSE_BARE description are drawn by their values, even if
+                           * no option asks for this */
 } hl_compose_flag;
 
-/* Makes the scene of a description and options, which are applied in one order, whatever order they stand
- * in: label maps, looks and functions, cuts, camera, floor, lights, exposure, sky, ambient light, settings.
- * A bare label map is drawn by its values where options say how values are drawn: "tf", "colormap",
+/* Makes a scene of a description and options. The options are applied in a fixed order, which is not that of
+ * the list: label maps, looks and functions, cuts, camera, floor, lights, exposure, sky, ambient light,
+ * settings. A bare label map is drawn by its values where options say how values are drawn: "tf", "colormap",
  * "range", "threshold", "iso", "mask" and the maximum projection. If a bare label map's file has further
- * layers, they show, too. flags: of hl_compose_flag. Options that change nothing are told to the context's
- * log. Errors name an option as the program does, with two dashes: HL_ERROR_ARGUMENT for an impossible
- * value, HL_ERROR_INPUT or HL_ERROR_IO for a file that an option names. */
+ * layers, the scene shows them, too. flags: hl_compose_flag values, joined by |. The context's log names
+ * options that change nothing. Errors name an option as the program does, with two dashes: HL_ERROR_ARGUMENT
+ * for an impossible value, HL_ERROR_INPUT or HL_ERROR_IO for a file that an option names. */
 HL_API HL_WARN_UNUSED hl_status hl_scene_compose(hl_context *context, const hl_scene_description *description,
                                                  unsigned flags, const hl_option *options,
                                                  size_t option_count, hl_scene **scene, hl_error *error);
@@ -72,16 +71,16 @@ HL_API HL_WARN_UNUSED hl_status hl_scene_compose(hl_context *context, const hl_s
 HL_API HL_WARN_UNUSED hl_status hl_options_check(const hl_option *options, size_t option_count,
                                                  hl_error *error);
 
-/* A scene of a label map's layers, each a volume whose labels the options "label-table" and "show" say;
- * labels of "show" that the map lacks are passed over. path, reading (null: the defaults): as for
- * hl_volume_load_with(). */
+/* Makes a scene of a label map's layers, each of which becomes a volume. The options "label-table" and "show"
+ * say how the labels are named and which of them show; labels of "show" that the map lacks are passed over.
+ * path, reading (null: the defaults): as for hl_volume_load_with(). */
 HL_API HL_WARN_UNUSED hl_status hl_scene_for_label_map(hl_context *context, const char *path,
                                                        const hl_volume_load_options *reading,
                                                        const hl_option *options, size_t option_count,
                                                        hl_scene **scene, hl_error *error);
 
-/* The colour of a mesh or an isosurface that has none of its own, linear RGB: ivory, blue, ochre, green,
- * rose, violet, and ivory again. */
+/* The colour, linear RGB, of mesh or isosurface number `index` where it has none of its own: ivory, blue,
+ * ochre, green, rose, violet, and ivory again. */
 HL_API void hl_surface_color(size_t index, double color[3]);
 
 #ifdef __cplusplus

@@ -53,22 +53,23 @@ typedef struct hl_error {
 
 typedef enum hl_log_level { HL_LOG_WARNING = 1, HL_LOG_INFO = 2 } hl_log_level;
 
-/* Instruction sets of the hot functions. Each gives the same bytes. */
+/* Instruction sets for which the functions that take most of the time are compiled. The results have the same
+ * bytes with each. */
 typedef enum hl_instruction_set {
   HL_INSTRUCTION_SET_AUTO = 0,       /* the best that the processor has */
-  HL_INSTRUCTION_SET_SCALAR = 1,     /* the set that the compiler assumes of every processor; on 64-bit Arm
-                                      * this set has no vectors */
+  HL_INSTRUCTION_SET_SCALAR = 1,     /* the instructions that every processor of the compiler's target has; on
+                                      * 64-bit Arm they are used without vectors */
   HL_INSTRUCTION_SET_AVX2 = 2,       /* AVX2 and FMA: Haswell, Zen and later */
   HL_INSTRUCTION_SET_AVX512 = 3,     /* AVX-512 F, DQ, BW and VL: Skylake servers and later */
   HL_INSTRUCTION_SET_NEON = 4,       /* every 64-bit Arm processor */
   HL_INSTRUCTION_SET_AVX512_VBMI = 5 /* AVX-512 with VBMI, VBMI2 and VNNI: Ice Lake, Zen 4 and later */
 } hl_instruction_set;
 
-/* Libraries by which processes of an MPI job meet (halflight/ranks.h): Open MPI 4 or 5 (libmpi.so.40);
+/* The MPI libraries by which processes of a job can join (halflight/ranks.h): Open MPI 4 or 5 (libmpi.so.40);
  * MPICH 3.1 or later, or a library with its binary interface (libmpi.so.12 or libmpich.so.12). */
 typedef enum hl_mpi {
-  HL_MPI_AUTO = 0, /* the library that the process has loaded; else Open MPI; where Open MPI is missing,
-                    * MPICH */
+  HL_MPI_AUTO = 0, /* the library that the process has loaded; if there is none, Open MPI, or MPICH where Open
+                    * MPI is missing */
   HL_MPI_OPEN_MPI = 1,
   HL_MPI_MPICH = 2
 } hl_mpi;
@@ -76,13 +77,13 @@ typedef enum hl_mpi {
 /* A file that was brought from a server. */
 typedef struct hl_fetched_file {
   int descriptor; /* the file, open for reading, at any position; -1: the server has no such file */
-  uint64_t size; /* the file's size in bytes; what follows these bytes in the descriptor's file is not read */
+  uint64_t size;  /* the file's size in bytes; the library reads no further bytes of the descriptor */
 } hl_fetched_file;
 
-/* All callbacks may be null (a default is used) and receive user_data. They may be called from the thread
- * that called into the library only, except allocate and release, which may be called from any of its
- * threads. They may call the library, but not with the renderer whose frame is under way. Callbacks run in
- * C's default floating-point environment, whatever environment the host has set. */
+/* All callbacks may be null (a default is used) and receive user_data. The library calls `allocate` and
+ * `release` from any of its threads, and all other callbacks only from the thread that called the library.
+ * Callbacks may call the library, but not with the renderer whose frame is under way. Callbacks run in C's
+ * default floating-point environment, whatever environment the host has set. */
 typedef struct hl_context_options {
   size_t struct_size; /* set by hl_context_options_defaults() */
   void *user_data;
@@ -90,7 +91,8 @@ typedef struct hl_context_options {
   void *(*allocate)(void *user_data, size_t size, size_t alignment);
   void (*release)(void *user_data, void *memory);
   void (*log)(void *user_data, hl_log_level level, const char *message);
-  /* fraction in [0,1] of the named stage: "load", "prepare" (labels are smoothed), "render" or "write". */
+  /* fraction in [0,1]: how much of the named stage is done. The stages are "load", "prepare" (labels are
+   * smoothed), "render" and "write". */
   void (*progress)(void *user_data, const char *stage, double fraction);
   /* Asked every few milliseconds. A non-zero answer makes the running call return HL_ERROR_CANCELLED soon:
    * within a tenth of a second, for pictures up to 4096 x 4096 pixels and volumes up to 512^3 voxels. */
@@ -99,42 +101,44 @@ typedef struct hl_context_options {
   hl_instruction_set instruction_set; /* hl_context_create() refuses a set that the processor lacks */
   const char *data_folder; /* the folder of files that scenes call "data:..."; copied; null: none */
   /* Called with the path of every file that is opened for reading: scenes, volumes, the data files that their
-   * headers name, transfer functions, pictures. A program can use it to avoid writing over one of them. */
+   * headers name, transfer functions, pictures. A program can use the paths to avoid writing over one of
+   * these files. */
   void (*reads)(void *user_data, const char *path);
-  /* Called for a file of a format that another program must convert first ("OpenVDB"). The callback runs
-   * that program and gives the bytes of the file that the program makes (NanoVDB), which are read in place
-   * of the file. Where there is no such program it fails with HL_ERROR_UNSUPPORTED. The library runs no
+  /* Called for a file of a format that another program must convert first ("OpenVDB"). The callback runs that
+   * program and gives the bytes of the file that the program makes (NanoVDB), which are read in place of the
+   * file. Where there is no such program, the callback fails with HL_ERROR_UNSUPPORTED. The library runs no
    * program itself. */
   hl_status (*convert)(void *user_data, const char *format, const char *path, const void **bytes,
                        size_t *byte_count, hl_error *error);
   /* Releases the bytes that `convert` gave. */
   void (*converted)(void *user_data, const void *bytes, size_t byte_count);
-  /* Called where a volume's file is the URL of a Zarr store on a server ("http://..." or "https://...").
-   * The callback brings `count` files of the store, whose names are relative to the store ("0/c/1/2/3").
-   * Each has at most `most` bytes. files: [count], whose descriptors the library closes, also after a
-   * failure. A file that the server does not have is one of the store's absent files; every other fault
-   * must be an error. The callback decides which URLs it may ask: a scene's text can name any. Null
-   * (default): URLs are refused. The library asks no network itself. */
+  /* Called where a volume's file is the URL of a Zarr store on a server ("http://..." or "https://..."). The
+   * callback brings `count` files of the store, whose names are relative to the store ("0/c/1/2/3"). Each
+   * file may have `most` bytes at most. files: [count]; the library closes their descriptors, also after a
+   * failure. A file that the server does not have counts as absent from the store; every other fault must be
+   * an error. The callback decides which URLs may be asked for, because a scene's text can name any URL. Null
+   * (default): URLs are refused. The library itself uses no network. */
   hl_status (*fetch)(void *user_data, const char *url, const char *const *names, size_t count, uint64_t most,
                      hl_fetched_file *files, hl_error *error);
-  /* A folder on a disk for scratch files; copied; null (default): none. A volume of one component may be
-   * too large for memory_limit, together with a renderer's tables of its voxels. Its file is then read into
-   * a scratch file of 1.15 times the voxels' bytes, and rendered from there. The file has no name. Parts of
-   * it are in memory where the limit leaves room beside what the context holds, and always up to 16 times
-   * 64^3 voxels. */
+  /* A folder on a disk for scratch files; copied; null (default): none. It is used for a volume of one
+   * component that is too large for memory_limit, together with a renderer's tables of its voxels. Such a
+   * volume is read into a scratch file of 1.15 times the voxels' bytes, and is rendered from there. The
+   * scratch file has no name. The context keeps parts of it in memory as far as the limit leaves room, and
+   * always up to 16 times 64^3 voxels. */
   const char *scratch_folder;
   /* The device that makes the renderers' frames. "cpu" (the default, also null): the processors. "gpu": the
-   * first GPU. "auto": the first GPU, if it turns out to be faster at the first frame. "cuda" or "opencl":
-   * the first device of that interface. Any other text: the first device whose name contains it, such as
-   * "H100". Copied. The processors make a frame where there is no such device, or where the device cannot
-   * make it. The bytes are the same, and hl_render_statistics says why. Drivers are loaded for the first
-   * frame that a device shall make, not before. */
+   * first GPU. "auto": the first GPU, if the first frame shows that it is faster than the processors. "cuda"
+   * or "opencl": the first device of that interface. Any other text: the first device whose name contains it,
+   * such as "H100". Copied. The processors make a frame where there is no such device, or where the device
+   * cannot make it. The picture's bytes are then the same, and hl_render_statistics tells the reason. Drivers
+   * are loaded with the first frame that a device is to make, not before. */
   const char *device;
-  const char *cache_folder; /* a folder for kernels that were compiled for devices, of 64 MiB at most,
-                             * readable by the user alone; made if its parent folder exists; copied; null
-                             * (default): kernels are compiled anew */
-  hl_mpi mpi; /* the library that hl_ranks_join() loads: Open MPI or MPICH, whichever the launcher
-               * of the process belongs to */
+  const char *cache_folder; /* a folder for kernels that were compiled for devices: of 64 MiB at most, and
+                             * readable by the user alone. The library makes the folder if its parent folder
+                             * exists. Copied; null (default): no kernels are kept, and each context compiles
+                             * them anew */
+  hl_mpi mpi; /* the library that hl_ranks_join() loads, Open MPI or MPICH: it must be the one that the
+               * process's launcher belongs to */
 } hl_context_options;
 
 typedef struct hl_context hl_context; /* several threads may use a context at once */
@@ -145,28 +149,28 @@ HL_API void hl_context_options_defaults(hl_context_options *options);
 HL_API HL_WARN_UNUSED hl_status hl_context_create(const hl_context_options *options, hl_context **context,
                                                   hl_error *error);
 
-/* Changes `memory_limit` and `scratch_folder` from now on; volumes that are loaded stay where they are, in
- * memory or in a scratch file. scratch_folder: copied; may be null: none. Call it while no other call with
- * the context runs. */
+/* Changes `memory_limit` and `scratch_folder` from now on; volumes that were loaded before stay in memory or
+ * in their scratch file. scratch_folder: copied; may be null: none. Call it while no other call with the
+ * context runs. */
 HL_API HL_WARN_UNUSED hl_status hl_context_limit_memory(hl_context *context, uint64_t memory_limit,
                                                         const char *scratch_folder, hl_error *error);
 
-/* A context for files that strangers wrote. It opens only regular files below `folder`. Names of files are
- * relative to `folder`, also the names that files hold. Absolute names, URLs, "data:..." and names that
- * lead out of the folder by ".." or by a link are refused, with the message for files that do not exist.
- * folder: a path, relative to the folder of `context` if that context is confined; null: every file is
- * refused. Only reading is confined: files are written where the caller says. The confined context shares
- * the memory, the memory limit and the callbacks of `context`, but does not call `reads`. *confined is
+/* Makes a confined context, for files that strangers wrote. It opens only regular files below `folder`. All
+ * names of files are relative to `folder`, also those that files hold. Absolute names, URLs, "data:..." and
+ * names that lead out of the folder by ".." or by a link are refused, with the same message as for files that
+ * do not exist. folder: a path, relative to the folder of `context` if that context is confined; null: every
+ * file is refused. Only reading is confined: files are written where the caller says. The confined context
+ * shares the memory, the memory limit and the callbacks of `context`, but does not call `reads`. *confined is
  * owned by the caller, and may be destroyed before what was made with it. `context` must outlive everything
  * that was made with the confined context. */
 HL_API HL_WARN_UNUSED hl_status hl_context_confine(hl_context *context, const char *folder,
                                                    hl_context **confined, hl_error *error);
 
-/* Destroys a context. Null is allowed. Everything made with the context must be released before, unless it
- * is confined. */
+/* Destroys a context. Null is allowed. Everything made with the context must be released before; a confined
+ * context may be destroyed earlier (hl_context_confine()). */
 HL_API void hl_context_destroy(hl_context *context);
 
-/* Bytes now held through the context, and the most it ever held. */
+/* The bytes that are now held through the context, and the most bytes that were ever held through it. */
 HL_API uint64_t hl_context_memory_held(const hl_context *context);
 HL_API uint64_t hl_context_memory_peak(const hl_context *context);
 

@@ -19,10 +19,10 @@ typedef struct hl_device {
                   * choose it */
 } hl_device;
 
-/* Finds the machine's devices: loads libcuda.so.1 and nvrtc, and libOpenCL.so.1, where they are. devices:
- * room for `most` of them; *count: the number of devices of the machine, which may be greater than `most`.
- * missing: [missing_bytes]; one line that says which libraries were not found, empty if all were; may be
- * null. */
+/* Finds the machine's devices: loads libcuda.so.1 and nvrtc, and libOpenCL.so.1, if the machine has them.
+ * devices: room for `most` of them; *count: the number of devices of the machine, which may be greater than
+ * `most`. missing: [missing_bytes]; one line that says which libraries were not found, empty if all were; may
+ * be null. */
 HL_API HL_WARN_UNUSED hl_status hl_devices_find(hl_context *context, hl_device *devices, size_t most,
                                                 size_t *count, char *missing, size_t missing_bytes,
                                                 hl_error *error);

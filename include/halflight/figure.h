@@ -15,13 +15,13 @@
 extern "C" {
 #endif
 
-/* How the directions of the world are shown. */
+/* How a picture shows the directions of the world. */
 typedef enum hl_axes {
   HL_AXES_NONE = 0,
-  HL_AXES_ARROWS = 1, /* three arrows at the lower right: x, y and z, or the body's directions where the file
-                         tells them */
-  HL_AXES_LETTERS = 2 /* the body's directions at the picture's edges: R or L, A or P, S or I; refused where
-                         the file does not tell them */
+  HL_AXES_ARROWS = 1, /* three arrows at the lower right: the axes x, y and z, or the body's directions where
+                       * the volume's file tells them */
+  HL_AXES_LETTERS = 2 /* letters at the picture's edges for the body's directions: R or L, A or P, S or I;
+                       * refused where the volume's file does not tell them */
 } hl_axes;
 
 /* A text over a picture. */
@@ -29,10 +29,11 @@ typedef struct hl_annotation {
   const char *text;
   double at[3]; /* place in the picture, as fractions of its width and height from its upper left corner;
                  * at[2] is not used */
-  int in_world; /* non-zero: `at` is a point of the scene's world instead, which gets a ring */
+  int in_world; /* non-zero: `at` is a point of the scene's world instead, and a ring is drawn around the
+                 * point */
 } hl_annotation;
 
-/* A depth of the scale bar: the distance from the eye to the camera's target. */
+/* A value of hl_overlay.scale_bar_depth: the distance from the eye to the camera's target. */
 #define HL_DEPTH_OF_TARGET (-1.0)
 
 /* What is drawn over one picture. hl_overlay_defaults() fills it so that nothing is drawn. */
@@ -41,8 +42,8 @@ typedef struct hl_overlay {
   int scale_bar;              /* non-zero: a bar at the lower left, with its length */
   double scale_bar_length;    /* length of the scale bar in scale_bar_unit; 0: a length is chosen, 1, 2 or 5
                                * times a power of ten and at most a quarter of the picture's width */
-  const char *scale_bar_unit; /* unit of the scale bar's length and text; null: world_unit, or a unit in
-                               * which the number is short */
+  const char *scale_bar_unit; /* unit of the scale bar's length and text; null: world_unit, or a unit that
+                               * makes the number short */
   const char *world_unit;     /* the unit of length of the scene's world: "m", "mm", "um", "nm", "A", ..., or
                                * any other text, which is written as it is; null: the unit that the volumes'
                                * files tell; the scale bar is refused where they tell none */
@@ -67,7 +68,8 @@ typedef struct hl_figure_panel {
    * drawn in the colours that suit the scene's picture, so that somebody can lay it over the picture. */
   const hl_image *image;
   const hl_scene *scene; /* borrowed; the scene of the picture, for its background, exposure, camera and
-                          * volumes; null: the overlay may hold annotations in fractions and a letter alone */
+                          * volumes; null: the overlay may hold only a letter and annotations whose places are
+                          * fractions */
   double left, top, width, height; /* place and size of the panel on the page, in millimetres; left and top
                                     * are measured from the page's upper left corner */
   int frame;                       /* non-zero: a thin line is drawn around the panel, as around an inset */
@@ -82,33 +84,33 @@ typedef struct hl_figure {
   const char *font;              /* a family's name; default "Sans" */
   double background[3];          /* linear RGB; default white */
   int background_transparent;    /* default 0 */
-  const hl_figure_panel *panels; /* borrowed; [panel_count]; later ones are drawn over earlier ones */
+  const hl_figure_panel *panels; /* borrowed; [panel_count]; later panels are drawn over earlier ones */
   size_t panel_count;
 } hl_figure;
 
 /* A page without panels. */
 HL_API void hl_figure_defaults(hl_figure *figure);
 
-/* A page that one picture fills: sets the figure's and the panel's sizes, and figure->panels. width: of the
- * page, in millimetres; 0: chosen so that letters of 7 points are a 36th of the page's width high, and at
- * least 9 pixels. figure and panel must have their defaults. */
+/* Describes a page that one picture fills: sets the sizes of the figure and the panel, and figure->panels.
+ * width: the page's width in millimetres; 0: it is chosen so that letters of 7 points are as high as a 36th
+ * of the page's width, and at least 9 pixels high. figure and panel must have their defaults. */
 HL_API void hl_figure_of_picture(const hl_image *image, const hl_scene *scene, double width,
                                  hl_figure *figure, hl_figure_panel *panel);
 
-/* Draws a figure's page at an eighth of its pixels, without the panels' images, to find out before pictures
- * are made whether all that the figure wants can be drawn. Errors: those of hl_figure_draw(). */
+/* Finds out, before pictures are made, whether everything in a figure can be drawn: draws its page at an
+ * eighth of its pixels, without the panels' images. Errors: those of hl_figure_draw(). */
 HL_API HL_WARN_UNUSED hl_status hl_figure_check(hl_context *context, const hl_figure *figure,
                                                 hl_error *error);
 
-/* Draws the figure as pixels: each side is its length in millimetres x pixels_per_inch / 25.4, rounded. A
- * picture whose pixels coincide with the page's keeps its bytes, as 8-bit sRGB. *image is owned by the
- * caller. */
+/* Draws the figure as pixels: each side is its length in millimetres x pixels_per_inch / 25.4, rounded. Where
+ * a picture's pixels coincide with the page's pixels, the page has the picture's 8-bit sRGB codes unchanged.
+ * *image is owned by the caller. */
 HL_API HL_WARN_UNUSED hl_status hl_figure_draw(hl_context *context, const hl_figure *figure, hl_image **image,
                                                hl_error *error);
 
-/* Writes the figure in the format of the path's extension: .pdf, .svg, .png, .tif or .tiff. The file
- * appears whole or not at all. options: scene_json and pixels_per_inch, which PNG and TIFF files state;
- * null: no scene, and the figure's pixels_per_inch. */
+/* Writes the figure in the format of the path's extension: .pdf, .svg, .png, .tif or .tiff. The file appears
+ * whole or not at all. options: only scene_json and pixels_per_inch are used, which PNG and TIFF files state;
+ * null: the file states no scene, and the figure's pixels_per_inch. */
 HL_API HL_WARN_UNUSED hl_status hl_figure_write(hl_context *context, const hl_figure *figure,
                                                 const char *path, const hl_image_write_options *options,
                                                 hl_error *error);

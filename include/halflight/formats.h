@@ -10,16 +10,16 @@
 extern "C" {
 #endif
 
-/* A format of files, or a compression that volume files use inside. Texts are static. */
+/* A format of files, or a method of compression within volume files. The texts are static. */
 typedef struct hl_file_format {
   size_t struct_size;  /* set by the caller: sizeof(hl_file_format) */
   const char *name;    /* "NRRD" */
   int reads, writes;   /* non-zero: this build does */
   const char *missing; /* the library that the format needs and that this build lacks, as "libtiff"; null:
                         * the build reads the format */
-  /* The endings of file names by which files of the format are read and written, separated by blanks, as
-   * ".nrrd .nhdr". "" where the ending does not tell the format, or where such files are not read or not
-   * written. */
+  /* Endings of file names, separated by blanks, as ".nrrd .nhdr": files with these names are read, or
+   * written, in this format. "" where the ending does not tell the format, or where the format is not read or
+   * not written. */
   char read_endings[64], written_endings[64];
 } hl_file_format;
 

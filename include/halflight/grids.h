@@ -1,4 +1,5 @@
-/* halflight/grids.h - volumes of grids that are no boxes of voxels: meshes of cells, and adaptive grids. */
+/* halflight/grids.h - makes volumes of grids that are not boxes of voxels: meshes of cells, and adaptive
+ * grids. */
 #ifndef HALFLIGHT_GRIDS_H
 #define HALFLIGHT_GRIDS_H
 
@@ -9,8 +10,8 @@ extern "C" {
 #endif
 
 /* Whether a .vtu file is an unstructured grid that hl_volume_load() reads as a volume: some of its cells
- * enclose a volume, and it has values. Other unstructured grids are meshes (hl_mesh_load()). 0 for files of
- * other formats, and for null. */
+ * enclose a volume, and it has values at points or cells. Other unstructured grids are meshes
+ * (hl_mesh_load()). 0 for files of other formats, and for null. */
 HL_API int hl_volume_reads_cells(hl_context *context, const char *path);
 
 /* A mesh of cells with values, in VTK's terms. All arrays are borrowed during the call. */
@@ -18,12 +19,13 @@ typedef struct hl_cells_description {
   size_t struct_size;   /* set by hl_cells_description_defaults() */
   const double *points; /* [point_count][3]: world */
   size_t point_count;
-  const unsigned char *types; /* [cell_count]; VTK's numbers of the types of cells: 10 tetrahedra, 12
+  const unsigned char *types; /* [cell_count]; the type of each cell by VTK's numbers: 10 tetrahedra, 12
                                * hexahedra, 13 wedges, 14 pyramids, ...; cells that enclose no volume are left
                                * out, with a warning */
   const int64_t *ends;        /* [cell_count]; the index in `corners` one past each cell's last corner */
   size_t cell_count;
-  const int64_t *corners; /* [corner_count]; indices of points, from 0; in VTK's order */
+  const int64_t *corners; /* [corner_count]; the corners of all cells as indices of points, from 0; each
+                           * cell's corners in VTK's order */
   size_t corner_count;
   const double *values; /* one value for each point, or for each cell; NaN: there is no data */
   int of_cells;         /* non-zero: values belong to cells, and a point gets the mean of the cells around it.
@@ -39,7 +41,7 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_create_cells(hl_context *context,
                                                        const hl_cells_description *description,
                                                        hl_volume **volume, hl_error *error);
 
-/* A box of cells of one level of an adaptive grid. */
+/* A patch: a box of cells of one level of an adaptive grid. */
 typedef struct hl_patch {
   int level;           /* from 0, the coarsest */
   int64_t first[3];    /* the place of the patch's first cell in the level's index space, along x, y, z */
@@ -48,16 +50,16 @@ typedef struct hl_patch {
                         * cells; borrowed during the call */
 } hl_patch;
 
-/* An adaptive grid. Cell i of a level covers the cells i ratio .. i ratio + ratio - 1 of the next finer one.
- */
+/* An adaptive grid. Cell i of a level covers the cells i ratio .. i ratio + ratio - 1 of the next finer
+ * level. */
 typedef struct hl_amr_description {
   size_t struct_size;      /* set by hl_amr_description_defaults() */
   int levels;              /* 1 to 16 */
   const int *ratios;       /* [levels - 1]; how many times finer level n + 1 is than level n: 2, 4, 8, ... */
-  int64_t first[3];        /* the domain's first cell of level 0; default 0 */
-  size_t count[3];         /* the domain's cells of level 0 along x, y, z */
-  double origin[3];        /* world: the domain's corner with the least coordinates; default 0 */
-  double spacing[3];       /* world: the edges of a cell of level 0; default 1 */
+  int64_t first[3];        /* index of the domain's first cell in level 0; default 0 */
+  size_t count[3];         /* number of the domain's cells in level 0 along x, y, z */
+  double origin[3];        /* the domain's corner with the least coordinates, in the world; default 0 */
+  double spacing[3];       /* the lengths of the edges of a cell of level 0, in the world; default 1 */
   const hl_patch *patches; /* [patch_count] */
   size_t patch_count;
 } hl_amr_description;

@@ -22,17 +22,18 @@ HL_API int hl_image_height(const hl_image *image);
 HL_API float *hl_image_pixels(hl_image *image);
 HL_API const float *hl_image_pixels_const(const hl_image *image);
 
-/* Adds a layer beside the picture's RGBA, all zero. name: letters, digits and '_', not yet taken; channels:
- * one letter each, "RGB", "XYZ" or "Z". *values: [height][width][channels], owned by the image. */
+/* Adds a layer beside the picture's RGBA; its values are all zero. name: letters, digits and '_'; no other
+ * layer may have it; channels: one letter each, "RGB", "XYZ" or "Z". *values: [height][width][channels],
+ * owned by the image. */
 HL_API HL_WARN_UNUSED hl_status hl_image_add_layer(hl_image *image, const char *name, const char *channels,
                                                    float **values, hl_error *error);
 
 /* How a PNG shows light that is brighter than white. */
 typedef enum hl_tone {
   HL_TONE_CLIP = 0,  /* each channel is cut at 1 */
-  HL_TONE_FILMIC = 1 /* where a colour's brightest channel is above 0.6 of white, the channel approaches 1
-                      * ever more slowly, and the other channels keep their ratio to it: nothing is clipped
-                      * and hues stay; darker colours are left as they are */
+  HL_TONE_FILMIC = 1 /* a curve without clipping: where a colour's brightest channel is above 0.6 of white,
+                      * the curve lets this channel approach 1 ever more slowly. The other channels keep their
+                      * ratio to it, so that hues stay. Darker colours are unchanged */
 } hl_tone;
 
 typedef struct hl_image_write_options {
@@ -42,13 +43,13 @@ typedef struct hl_image_write_options {
   int background_transparent; /* PNG and TIFF keep alpha, unassociated */
   const char *scene_json;     /* the scene's JSON, stored in a PNG as the text chunk "halflight:scene"; may
                                * be null */
-  const char *field_errors;   /* a JSON array that says how much the fields of the scene's volumes differ
-                               * from their files (hl_volume_get_field_error()), with each volume's number.
-                               * It is stored beside scene_json, if that is not null, as the text chunk
+  const char *field_errors;   /* a JSON array that says how much the fields of the scene's volumes differ from
+                               * their files (hl_volume_get_field_error()); each entry has the volume's
+                               * number. A PNG that stores scene_json stores it, too, as the text chunk
                                * "halflight:field_errors". hl_scene_write_options() sets it; may be null */
   double exposure;            /* exposure in stops, -32 to 32; PNG only: the picture's light is multiplied by
                                * 2^exposure, the background is not */
-  hl_tone tone;           /* PNG only: how the picture's light is brought below white, after the exposure; the
+  hl_tone tone;           /* PNG only: how light that is brighter than white is shown, after the exposure; the
                            * background keeps its colour */
   double pixels_per_inch; /* the number of pixels per inch that a PNG or TIFF states as its physical size,
                            * 1 to 100000; 0 (default): none */
@@ -57,11 +58,11 @@ typedef struct hl_image_write_options {
 HL_API void hl_image_write_options_defaults(hl_image_write_options *options);
 
 /* Writes a picture in the format of the path's extension: .png, .tif or .tiff (sRGB, composited over the
- * background), .exr (linear float) or .npy (float32, height x width x 4). The file is written to a
- * temporary name beside the path and then renamed, so half a file is never seen. Layers become channels
- * "name.R" and so on of an .exr, and files of their own beside an .npy, "picture-name.npy" (height x width
- * x channels, or height x width), which are written before it; for a .png or .tif an image with layers is
- * refused. A build without libtiff refuses .tif. options may be null. */
+ * background), .exr (linear float) or .npy (float32, height x width x 4). The file is written to a temporary
+ * name beside the path and then renamed, so that nobody sees half a file. In an .exr, layers become channels
+ * "name.R" and so on. Beside an .npy, each layer becomes a file of its own, "picture-name.npy" (height x
+ * width x channels, or height x width), which is written before the picture. An image with layers is refused
+ * for a .png or .tif. A build without libtiff refuses .tif. options may be null. */
 HL_API HL_WARN_UNUSED hl_status hl_image_write(hl_context *context, const hl_image *image, const char *path,
                                                const hl_image_write_options *options, hl_error *error);
 
@@ -72,11 +73,11 @@ HL_API HL_WARN_UNUSED hl_status hl_image_encode(hl_context *context, const hl_im
                                                 unsigned char **bytes, size_t *length, hl_error *error);
 HL_API void hl_bytes_release(hl_context *context, unsigned char *bytes); /* null is allowed */
 
-/* The picture as 8-bit sRGB, for windows and toolkits: bytes R, G, B, A of each pixel, top row first, the
- * same codes as in a .png of png_depth 8. Pixels over a background have A = 255. With
- * background_transparent, colours are not multiplied by alpha. bytes: the caller's, [height][row_stride], 4
- * x width of them used in each row; row_stride in bytes, at least 4 x width. options may be null: over
- * black. */
+/* Converts the picture to 8-bit sRGB, for windows and toolkits: bytes R, G, B, A of each pixel, top row
+ * first. The codes are those of a .png with png_depth 8. Pixels over a background have A = 255. With
+ * background_transparent, colours are not multiplied by alpha. bytes: the caller's, [height][row_stride], of
+ * which 4 x width are used in each row; row_stride in bytes, at least 4 x width. options null: the picture is
+ * shown over black. */
 HL_API HL_WARN_UNUSED hl_status hl_image_to_srgb8(const hl_image *image,
                                                   const hl_image_write_options *options, uint8_t *bytes,
                                                   size_t row_stride, hl_error *error);
@@ -86,18 +87,19 @@ HL_API HL_WARN_UNUSED hl_status hl_image_to_srgb8(const hl_image *image,
 HL_API HL_WARN_UNUSED hl_status hl_image_read(hl_context *context, const char *path, hl_image **image,
                                               hl_error *error);
 
-/* The scene that a PNG carries (hl_image_write_options.scene_json), null-terminated: for
- * hl_scene_from_json(); free with hl_text_release(). bytes: [byte_count], the whole file; name: what errors
- * call it. */
+/* Finds the scene that a PNG carries (hl_image_write_options.scene_json). *text: null-terminated, for
+ * hl_scene_from_json(); free with hl_text_release(). bytes: [byte_count], the whole file. name: the file's
+ * name in errors. */
 HL_API HL_WARN_UNUSED hl_status hl_image_find_scene(hl_context *context, const char *name, const void *bytes,
                                                     size_t byte_count, char **text, hl_error *error);
 
-/* How a picture b differs from a picture a, over R, G, B and A, linear and premultiplied. */
+/* How much picture b differs from picture a. All numbers are of linear premultiplied R, G, B and A. */
 typedef struct hl_image_difference {
   size_t struct_size;     /* set by the caller */
   double rmse;            /* root mean square over all pixels and channels */
   double maximum;         /* greatest absolute difference */
-  double percentile_99_9; /* of the pixels' greatest absolute difference */
+  double percentile_99_9; /* each pixel has a greatest absolute difference of its channels; 99.9 % of the
+                           * pixels do not exceed this value */
   double mean_signed[4];  /* mean of b - a per channel */
   double rmse_channel[4];
   uint64_t differing_pixels; /* pixels that are not equal */

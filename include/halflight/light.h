@@ -21,7 +21,8 @@ typedef enum hl_light_type {
 } hl_light_type;
 
 typedef enum hl_shadows {
-  HL_SHADOWS_DEFAULT = 0, /* for a light: the shadows that the render settings state */
+  HL_SHADOWS_DEFAULT = 0, /* a light's own setting: the light has the shadows that the render settings
+                           * state */
   HL_SHADOWS_OFF = 1,
   HL_SHADOWS_HARD = 2,
   HL_SHADOWS_SOFT = 3
@@ -30,8 +31,8 @@ typedef enum hl_shadows {
 typedef enum hl_falloff { HL_FALLOFF_NONE = 0, HL_FALLOFF_INVERSE_SQUARE = 1 } hl_falloff;
 
 /* An image that a light projects, like a slide (section 4 of the paper). It stands on a screen, a
- * parallelogram in space. Each ray of the light has over its whole length the colour that the image has where
- * the ray crosses the screen. Rays that miss the screen are dark. The image is interpolated bilinearly
+ * parallelogram in space. Each ray of the light has one colour over its whole length: the image's colour
+ * where the ray crosses the screen. Rays that miss the screen are dark. The image is interpolated bilinearly
  * between the middles of its pixels. */
 typedef struct hl_light_texture {
   const char *file;    /* where the pixels came from, for hl_scene_to_json; may be null */
@@ -39,16 +40,16 @@ typedef struct hl_light_texture {
   int width, height;
   double screen_center[3];
   double screen_right[3]; /* from the screen's centre to the middle of the image's right edge */
-  double screen_up[3];    /* from the centre to the middle of its top edge */
+  double screen_up[3];    /* from the screen's centre to the middle of the image's top edge */
 } hl_light_texture;
 
-/* An image on the surface of an extended light. Each point of the surface sends the image's colour there,
- * times the light's color and intensity. Soft shadows have the image's shape and colours; a light without
- * soft shadows has its mean colour. On a rect, edge1 points to the image's right edge and edge2 to its top.
- * On a disk or polygon the image fills the square or rectangle around it, with its top towards `up`, and is
- * not mirrored as seen from the side that the normal points to. On a sphere or a directional light, every
- * sample sees the image from its front. The image is interpolated bilinearly between the middles of its
- * pixels. */
+/* An image on the surface of an extended light. Each point of the surface sends the image's colour at this
+ * point, times the light's color and intensity. Soft shadows have the image's shape and colours; a light
+ * without soft shadows has the image's mean colour. On a rect, edge1 points to the image's right edge and
+ * edge2 to its top. On a disk or polygon the image fills the square or rectangle around the disk or polygon,
+ * with the image's top towards `up`. The image is not mirrored as seen from the side that the normal points
+ * to. On a sphere or a directional light, every sample sees the image from its front. The image is
+ * interpolated bilinearly between the middles of its pixels. */
 typedef struct hl_light_emission {
   const char *file;    /* where the pixels came from, for hl_scene_to_json; may be null */
   const float *pixels; /* [height][width][3]: linear RGB, top row first; null: the light is even */
@@ -66,8 +67,8 @@ typedef enum hl_light_frame {
 
 typedef struct hl_light {
   hl_light_type type;
-  hl_light_frame frame;        /* the axes in which all vectors below are given, also those of texture and
-                                * emission */
+  hl_light_frame frame;        /* the axes in which all vectors below are given, also the vectors in texture
+                                * and emission */
   double direction[3];         /* directional, spot: the way the light travels */
   double angular_diameter_deg; /* directional: above 0, its shadows can be soft */
   double position[3];          /* point, spot, rect, disk (its centre) */
@@ -86,7 +87,7 @@ typedef struct hl_light {
   hl_shadows shadows;
   hl_light_texture texture;   /* copied with its pixels by hl_scene_create() */
   hl_light_emission emission; /* the image on the light's own surface; copied with its pixels; a light has
-                                 this or a texture, not both */
+                               * either an emission image or a texture */
 } hl_light;
 
 typedef enum hl_sky_type {
@@ -97,17 +98,17 @@ typedef enum hl_sky_type {
   HL_SKY_IMAGE = 3     /* an environment: an equirectangular image */
 } hl_sky_type;
 
-/* Light from all directions, which everything that casts shadows attenuates. A surface receives diffuse / pi
- * times the integral of radiance x transmittance x cosine over all directions. A medium receives the mean of
- * radiance x transmittance x phase function over all directions. So where nothing hides an even sky of
- * radiance 1, a medium receives 1, and a surface receives its diffuse reflectance. A sky makes no
+/* Light from all directions. Everything that casts shadows attenuates this light. A surface receives diffuse
+ * / pi times the integral of radiance x transmittance x cosine over all directions. A medium receives the
+ * mean of radiance x transmittance x phase function over all directions. So from an even sky of radiance 1
+ * that nothing hides, a medium receives 1, and a surface receives its diffuse reflectance. A sky makes no
  * highlights.
  *
  * The image's top row is the zenith, and its bottom row the opposite point. Its middle column lies in the
- * direction up x right. The direction `right` is the world's x axis, made perpendicular to up; where up is
- * within 8 degrees of x, it is the y axis instead. So with up along z, the image's middle lies towards +y,
- * and seen from within the sky the image is not mirrored. The image is interpolated bilinearly between the
- * middles of its pixels. */
+ * direction of the cross product up x right. The direction `right` is the world's x axis, made perpendicular
+ * to up; where up is within 8 degrees of x, the y axis takes the place of x. So with up along z, the image's
+ * middle lies towards +y, and seen from within the sky the image is not mirrored. The image is interpolated
+ * bilinearly between the middles of its pixels. */
 typedef struct hl_sky {
   hl_sky_type type;
   double color[3];                         /* uniform: radiance */
@@ -120,8 +121,9 @@ typedef struct hl_sky {
   double up[3];        /* direction of the zenith, of any length; world */
   int hemisphere;      /* non-zero: nothing shines below the horizon */
   double strength;     /* a factor on all colours */
-  int suns; /* image: non-zero (the default): where the scene has shadows, up to four compact bright
-               spots of the image shine as parallel lights; all light together stays the same */
+  int suns; /* image: non-zero (the default): where the scene has shadows, up to four compact bright spots of
+             * the image shine as parallel lights instead of as parts of the image. The sum of all light stays
+             * the same */
 } hl_sky;
 
 #ifdef __cplusplus

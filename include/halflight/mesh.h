@@ -1,8 +1,7 @@
 /* halflight/mesh.h - triangles, spheres and tubes that share a scene with volumes.
  *
- * Meshes are immutable and reference-counted: hl_mesh_retain() and hl_mesh_release(). Counter-clockwise
- * vertices face the viewer.
- */
+ * Meshes are immutable and reference-counted: hl_mesh_retain() and hl_mesh_release(). A triangle shows its
+ * front where its vertices are counter-clockwise. */
 #ifndef HALFLIGHT_MESH_H
 #define HALFLIGHT_MESH_H
 
@@ -28,7 +27,8 @@ typedef struct hl_mesh_description {
   const float (*spheres)[4];       /* [sphere_count]; centre and radius; world units */
   const float (*sphere_colors)[4]; /* [sphere_count]; as colors; null: white */
   size_t sphere_count;
-  /* Lines that are drawn as tubes. Their points stand one line after the other. */
+  /* Lines, which are drawn as tubes. line_points has all points of the first line, then those of the next,
+   * and so on. */
   const float (*line_points)[4]; /* [line_point_count]; a point, and the tube's radius there; world units */
   const float (*line_colors)[4]; /* [line_point_count]; as colors; null: white */
   size_t line_point_count;
@@ -39,31 +39,30 @@ typedef struct hl_mesh_description {
 
 HL_API void hl_mesh_description_defaults(hl_mesh_description *description);
 
-/* Copies the arrays. A mesh has triangles, spheres or lines, or all of these. Triangles without an area,
- * spheres and points of lines without a radius, and those with a coordinate that is no number, are left out.
- * Spheres are exact; lines become closed tubes of twelve sides, whose triangles follow the given ones. An
- * index out of range is HL_ERROR_INPUT. *mesh is owned by the caller (release it). */
+/* Copies the arrays. A mesh has triangles, spheres or lines, or all of these. Triangles without an area are
+ * left out, and so are spheres and points of lines without a radius, and whatever has a coordinate that is
+ * not a number. Spheres are exact; lines become closed tubes of twelve sides, whose triangles follow the
+ * given ones. An index out of range is HL_ERROR_INPUT. *mesh is owned by the caller (release it). */
 HL_API HL_WARN_UNUSED hl_status hl_mesh_create(hl_context *context, const hl_mesh_description *description,
                                                hl_mesh **mesh, hl_error *error);
 
-/* Reads PLY (ASCII and binary), STL (ASCII and binary), OBJ with the colours of its materials, glTF 2.0
- * files (.gltf, .glb: the scene's triangles with base colours; textures are left out), VTK's PolyData
- * (.vtp, legacy .vtk) and the surfaces of VTK's unstructured grids (.vtu). Faces of more than three corners
- * become triangles that cover them, concave faces, too. Colours of 8 bits are sRGB, as other programs take
- * them.
+/* Reads PLY (ASCII and binary), STL (ASCII and binary), OBJ with the colours of its materials, glTF 2.0 files
+ * (.gltf, .glb: the scene's triangles with base colours; textures are left out), VTK's PolyData (.vtp, legacy
+ * .vtk) and the surfaces of VTK's unstructured grids (.vtu). Faces of more than three corners become
+ * triangles that cover them, concave faces, too. Colours of 8 bits are taken as sRGB, as other programs do.
  *
- * PolyData: vertices become spheres, lines tubes, with radii from the point array "radius" (without it, a
- * 400th of the diagonal of the points' box). Colours come from the active scalars, or else from the first
- * array of 8-bit RGB or RGBA, where arrays of points come before arrays of cells. Other scalars go through
- * the colormap viridis over their whole range. */
+ * PolyData: vertices become spheres, and lines become tubes. Their radii come from the point array "radius";
+ * without this array, the radius is a 400th of the diagonal of the box around all points. Colours come from
+ * the active scalars, or else from the first array of 8-bit RGB or RGBA; arrays of points come before arrays
+ * of cells. Other scalars go through the colormap viridis over their whole range. */
 HL_API HL_WARN_UNUSED hl_status hl_mesh_load(hl_context *context, const char *path, hl_mesh **mesh,
                                              hl_error *error);
 
-/* Whether hl_mesh_load() reads a file, as the ending of its name tells. For .vtk files, which may also hold
- * volumes, the file's first kilobyte tells. */
+/* Whether hl_mesh_load() reads files with this name, by the name's ending. A .vtk file may also hold a
+ * volume; for such a name, the file's first kilobyte decides. */
 HL_API int hl_mesh_reads_name(const char *path);
 
-/* The mesh's arrays, with the triangles of its tubes, valid as long as the mesh. Null for null. */
+/* The mesh's arrays, which include the triangles of its tubes; valid as long as the mesh. Null for null. */
 HL_API const hl_mesh_description *hl_mesh_describe(const hl_mesh *mesh);
 
 /* The least and greatest coordinates of the vertices; world units. */

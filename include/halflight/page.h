@@ -1,6 +1,5 @@
-/* halflight/page.h - a scene as a page of its own: one HTML file that holds the viewer, the scene and its
- * data, and that browsers open from a disk, with camera and light alive.
- */
+/* halflight/page.h - writes a scene as a page: one HTML file that holds the viewer, the scene and its data.
+ * Browsers open the page from a disk; its camera and lights can be moved. */
 #ifndef HALFLIGHT_PAGE_H
 #define HALFLIGHT_PAGE_H
 
@@ -12,9 +11,9 @@ extern "C" {
 
 /* Writes a scene as a page. viewer: path of the viewer's page without a scene, halflight.html, which
  * scripts/web makes (docs/web.md). title: UTF-8, the page's title. path: the file to write, which appears
- * whole or not at all. Volumes are cut to the box that shows anything, with a few voxels around it, and are
- * stored in 8 bits where 8 bits hold all values. For volumes with colours of their own, and for images, the
- * page holds their files as they are; without such a file the error is HL_ERROR_INPUT. */
+ * whole or not at all. Volumes are cut to the box of visible voxels and a few voxels around it. They are
+ * stored in 8 bits where 8 bits hold all values. Volumes with colours of their own, and images, are stored as
+ * their files are; where such a file is missing, the error is HL_ERROR_INPUT. */
 HL_API HL_WARN_UNUSED hl_status hl_scene_write_page(hl_context *context, const hl_scene *scene,
                                                     const char *viewer, const char *title, const char *path,
                                                     hl_error *error);

@@ -1,8 +1,7 @@
-/* halflight/reslice.h - planes of voxels out of a volume, at any angle and of any thickness.
+/* halflight/reslice.h - cuts planes of samples out of a volume, at any angle and of any thickness.
  *
- * A plane is a grid of samples, placed in the volume's own indices: voxel (i, j, k) has its centre at the
- * numbers i, j, k, and hl_volume_info tells where these lie in the world.
- */
+ * A plane is a grid of samples. It is placed by voxel numbers: voxel (i, j, k) has its centre at the
+ * coordinates i, j, k, and hl_volume_info tells where these lie in the world. */
 #ifndef HALFLIGHT_RESLICE_H
 #define HALFLIGHT_RESLICE_H
 
@@ -12,7 +11,7 @@
 extern "C" {
 #endif
 
-/* What becomes of the samples of a thick plane that lie behind each other. */
+/* How samples of a thick plane that lie behind each other become one value. */
 typedef enum hl_blend {
   HL_BLEND_MAXIMUM = 1, /* maximum intensity projection */
   HL_BLEND_MINIMUM = 2,
@@ -21,7 +20,7 @@ typedef enum hl_blend {
 
 typedef struct hl_reslice_options {
   size_t struct_size;          /* set by hl_reslice_options_defaults() */
-  size_t width, height, depth; /* numbers of the plane's samples: along a row, of rows, and of layers of a
+  size_t width, height, depth; /* number of samples along a row, number of rows, and number of layers of a
                                 * thick plane; each at least 1; default 1 */
   double origin[3]; /* place of the first sample of the first row of the first layer, as voxel numbers i,
                      * j, k; default 0 */
@@ -35,11 +34,11 @@ typedef struct hl_reslice_options {
 
 HL_API void hl_reslice_options_defaults(hl_reslice_options *options);
 
-/* The data values of a plane. values: the caller's, [height][width]; NaN where no finite voxel is met: a
- * sample beyond half a voxel around the grid meets none, and an interpolated sample none where one of its
- * voxels is not finite. At the voxels' centres, in a plane of one layer, the values are those of
- * hl_volume_value(), with and without interpolation. Numbers that are not finite, or beyond 1e9 voxels, are
- * HL_ERROR_ARGUMENT. */
+/* Finds the data values of a plane. values: the caller's, [height][width]. A value is NaN if all of its
+ * samples are without a value. A sample is without a value beyond half a voxel around the grid, at a voxel
+ * that is not finite, and, with interpolation, where one of the voxels that it needs is not finite. At the
+ * voxels' centres, in a plane of one layer, the values are those of hl_volume_value(), with and without
+ * interpolation. Numbers that are not finite, or beyond 1e9 voxels, are HL_ERROR_ARGUMENT. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_reslice(const hl_volume *volume, const hl_reslice_options *options,
                                                   double *values, hl_error *error);
 

@@ -1,8 +1,7 @@
 /* halflight/settings.h - the tables of settings: type, range, default and meaning of each key of a scene.
  *
- * One row per key. Reading and writing scene files, the checks of hl_scene_create() and the defaults follow
- * these rows; editors and documents can be made from them.
- */
+ * Each key has one row. Scene files are read and written by these rows; the checks of hl_scene_create() and
+ * the defaults follow from them. Editors and documents can be made from them, too. */
 #ifndef HALFLIGHT_SETTINGS_H
 #define HALFLIGHT_SETTINGS_H
 
@@ -12,8 +11,8 @@
 extern "C" {
 #endif
 
-/* The tables of settings. The comment at each says which struct has the fields, and where the keys stand in
- * a scene file. */
+/* The tables of settings. The comment at each table names the struct with its fields, and the place of its
+ * keys in a scene file. */
 typedef enum hl_setting_kind {
   HL_SETTINGS_SCENE = 0,             /* hl_scene_description; the file's top level */
   HL_SETTINGS_IMAGE = 1,             /* hl_scene_description; "image" */
@@ -30,7 +29,7 @@ typedef enum hl_setting_kind {
   HL_SETTINGS_CUT = 11               /* hl_cut; each of a volume's "cuts" */
 } hl_setting_kind;
 
-/* The type of the field, and of its value in a scene file. */
+/* The type of a setting. Each comment names the field's C type, and then the value in a scene file. */
 typedef enum hl_setting_type {
   HL_SETTING_FLAG = 0,      /* int, 0 or 1; true or false */
   HL_SETTING_WHOLE = 1,     /* int; a whole number, or one of the choices' names */
@@ -59,17 +58,17 @@ typedef struct hl_setting {
   size_t offset;                    /* of the field in the struct */
   unsigned only_for; /* for lights, cameras and skies: the types that have the key, as bits (1 << type); 0:
                       * all types */
-  int optional;      /* non-zero: hl_scene_to_json() leaves the key out where it has its default */
+  int optional;      /* non-zero: hl_scene_to_json() leaves the key out if the field has its default */
   const char *sentence;
   const char *mend;   /* the part of an error's text that asks for a value in range; {low} and {high} stand
                        * for the range's ends */
-  const char *option; /* of `halflight render`, without dashes; null: none */
+  const char *option; /* the option of `halflight render` that sets the field, without dashes; null: none */
 } hl_setting;
 
-/* The rows of a table; 0 for an unknown kind. */
+/* The number of rows in the table of a kind; 0 for an unknown kind. */
 HL_API size_t hl_setting_count(hl_setting_kind kind);
 
-/* A row, which stays valid: null past the last. */
+/* Row number `index` of a table. The row stays valid; null past the last. */
 HL_API const hl_setting *hl_setting_get(hl_setting_kind kind, size_t index);
 
 /* The row of a key; null: there is none. */

@@ -29,11 +29,12 @@ typedef enum hl_second_axis {
                            * continue */
 } hl_second_axis;
 
-/* Below, a point of a transfer function's plane is [value, second number]. Where a shape has the weight w,
- * matter has w times the extinction that follows from the shape's opacity. Where shapes overlap,
- * extinctions add up and colours are averaged by them. */
+/* The following shapes lie in the plane of a transfer function of two numbers, whose points are [value,
+ * second number]. Where a shape has the weight w, matter has w times the extinction that follows from the
+ * shape's opacity. Where shapes overlap, their extinctions add up, and their colours are averaged with the
+ * extinctions as weights. */
 
-/* A box. Its weight is 1 inside and rises from 0 at its border over the width `edge`; or it is a Gaussian. */
+/* A box. Its weight rises from 0 at its border to 1 over the width `edge`; or the weight is a Gaussian. */
 typedef struct hl_function_box {
   double low[2], high[2]; /* its corners belong to it */
   double color[3];        /* linear RGB */
@@ -45,7 +46,7 @@ typedef struct hl_function_box {
 
 /* A polygon, as of Kniss et al.: its weight falls, along straight lines, from the apex to 0 at the border. */
 typedef struct hl_function_polygon {
-  const double (*vertices)[2]; /* [vertex_count]; the apex sees all of its border */
+  const double (*vertices)[2]; /* [vertex_count]; the whole border must be visible from the apex */
   size_t vertex_count;
   double apex[2];
   double color[3]; /* linear RGB */
@@ -54,19 +55,20 @@ typedef struct hl_function_polygon {
                     * the apex on, 0: the border is hard */
 } hl_function_polygon;
 
-/* An image: bilinear between the middles of its pixels. Outside the image nothing is visible. */
+/* An image, which is interpolated bilinearly between the middles of its pixels. Outside the image nothing is
+ * visible. */
 typedef struct hl_function_image {
   const char *file;    /* where the pixels came from, for hl_scene_to_json; may be null */
   const float *pixels; /* [height][width][4]: linear RGB times opacity, and opacity per unit_distance; the top
                           row has the greatest second numbers; null: there is no image */
   int width, height;
-  double low[2], high[2]; /* the image covers the plane from `low` to `high`, the outer borders of its
-                           * outermost pixels */
+  double low[2], high[2]; /* the part of the plane that the image covers: from the outer border of its first
+                           * pixels to the outer border of its last ones */
 } hl_function_image;
 
 /* A transfer function of two numbers. */
 typedef struct hl_function_plane {
-  hl_second_axis second; /* HL_SECOND_NONE: there is no such function */
+  hl_second_axis second; /* HL_SECOND_NONE: the transfer function depends on the value alone */
   const char *volume;    /* HL_SECOND_VOLUME: the name of the other volume */
   const hl_function_box *boxes;
   size_t box_count;
@@ -97,8 +99,8 @@ typedef struct hl_transfer_function {
 /* ---- functions that make transfer functions: release their points with hl_transfer_function_release()
  * ---- */
 
-/* Makes a transfer function that follows from the volume's values: separates objects from their background
- * in CT, MR and simulations alike. */
+/* Makes a transfer function from the volume's values alone. It separates objects from their background in CT,
+ * MR and simulations alike. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_automatic(hl_context *context, const hl_volume *volume,
                                                                hl_transfer_function *function,
                                                                hl_error *error);
@@ -112,8 +114,8 @@ HL_API HL_WARN_UNUSED hl_status hl_transfer_function_colormap(hl_context *contex
                                                               double low, double high,
                                                               hl_transfer_function *function,
                                                               hl_error *error);
-/* The range that holds nearly all values that are visible with this function, from any side: a good range for
- * a colormap. Where nothing is visible, the volume's range. range[0] < range[1]. */
+/* Finds the range that holds nearly all values that are visible with this function, as seen from any side. It
+ * is a good range for a colormap. Where nothing is visible, it is the volume's range. range[0] < range[1]. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_seen_range(const hl_volume *volume,
                                                                 const hl_transfer_function *function,
                                                                 double range[2], hl_error *error);
@@ -127,29 +129,29 @@ typedef enum hl_range_scale {
   HL_RANGE_LINEAR = 0,
   HL_RANGE_LOG = 1 /* colours are spread evenly over the values' logarithms; the range must be above 0 */
 } hl_range_scale;
-/* Makes *to of `from` by moving its points, so that the values old[0] to old[1] become range[0] to
- * range[1]; the lengths of gradients are multiplied by the ratio of the ranges' widths. With HL_RANGE_LOG
- * the function gets further points, so that it follows the logarithm between points, too, and its values at
- * the range's ends hold beyond the range. Points of *to are owned by the caller. */
+/* Makes the function *to by moving the points of `from`: the values from old[0] to old[1] become those from
+ * range[0] to range[1]. Lengths of gradients are multiplied by the ratio of the ranges' widths. With
+ * HL_RANGE_LOG, *to gets further points, so that it follows the logarithm between points, too. Beyond the
+ * range, *to then stays as it is at the range's ends. The caller owns the points of *to. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_spread(hl_context *context,
                                                             const hl_transfer_function *from,
                                                             const double old[2], const double range[2],
                                                             hl_range_scale scale, hl_transfer_function *to,
                                                             hl_error *error);
-/* The same as hl_transfer_function_colormap(), but the colours spread over the values from range[0] to
- * range[1], evenly or by their logarithms. */
+/* Replaces the colours as hl_transfer_function_colormap() does, but spreads the colormap over the values from
+ * range[0] to range[1] evenly or by their logarithms. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_colormap_scaled(hl_context *context, const char *name,
                                                                      const double range[2],
                                                                      hl_range_scale scale,
                                                                      hl_transfer_function *function,
                                                                      hl_error *error);
-/* Reads Halflight's own JSON object, a scene (its first volume's function), ParaView's .json colour maps,
- * the boxes of its states (.pvsm), or Slicer's .vp.json, .vp, and presets.xml (path: FILE.xml:PRESET). From
- * a file with colours alone, opacity becomes null: take the opacity points from elsewhere. Slicer's lengths
- * of gradients are per mean voxel edge and end at a quarter of the range of values, as VTK's: they are
- * fitted to the volume; null: they are taken as if its voxels had edges of 1. From a .vp.json of several
- * components, the functions of the volume's component are read. If the volume is null or has another
- * component, this is an error. */
+/* Reads Halflight's own JSON object, a scene (its first volume's function), ParaView's .json colour maps, the
+ * boxes of ParaView's states (.pvsm), or Slicer's .vp.json, .vp, and presets.xml (path: FILE.xml:PRESET). If
+ * the file has only colours, opacity becomes null, and the caller must take opacity points from elsewhere.
+ * Slicer's lengths of gradients, like VTK's, are per mean voxel edge and end at a quarter of the range of
+ * values. They are converted for the volume; if it is null, as for voxels with edges of 1. From a .vp.json of
+ * several components, the functions of the volume's component are read; it is an error if the volume is null
+ * or has another component. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_load_for(hl_context *context, const char *path,
                                                               const hl_volume *volume,
                                                               hl_transfer_function *function,

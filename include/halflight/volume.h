@@ -21,16 +21,16 @@ typedef enum hl_voxel_type {
   HL_VOXEL_I32 = 6,
   HL_VOXEL_F32 = 7,
   HL_VOXEL_F64 = 8,
-  HL_VOXEL_U64 = 9, /* pictures round 64 and 32 bit integers and doubles to floats, which have 24 bits.
-                     * Labels, masks, hl_volume_value(), the range and hl_volume_save() keep whole numbers
-                     * exactly */
+  HL_VOXEL_U64 = 9, /* pictures round integers of 32 and 64 bits and doubles to floats, which have 24
+                     * significant bits. Labels, masks, hl_volume_value(), the range and hl_volume_save() keep
+                     * whole numbers exactly */
   HL_VOXEL_I64 = 10,
   HL_VOXEL_F16 = 11 /* IEEE 754 binary16, kept as float */
 } hl_voxel_type;
 
 typedef struct hl_volume hl_volume;
 
-/* Which way the world's axes x, y, z point in a patient's body, if the file tells. */
+/* Which way the world's axes x, y, z point in a patient's body, if the file says this. */
 typedef enum hl_space {
   HL_SPACE_UNKNOWN = 0,
   HL_SPACE_RAS = 1, /* the axes point to the body's right, front (anterior) and head (superior), as in
@@ -50,17 +50,17 @@ typedef struct hl_volume_description {
   double value_offset;       /* default 0 */
   const void *voxels;        /* voxel (0,0,0) */
   ptrdiff_t stride_bytes[3]; /* bytes from one voxel to the next along i, j, k; all 0: packed */
-  /* Non-zero: u8, u16 and f32 voxels are not copied, and must outlive the volume. The voxels of a row must
-   * adjoin. Rows and slices may lie apart, in rising order, slices by 64 MiB at most. The voxels shall not
-   * change: range, histogram, empty places and what a renderer keeps are found once. If voxels change all
-   * the same, pictures show new voxels in some places and old ones in others, and a pixel may be any number
-   * or NaN. Even then no call reads or writes other memory, and every call ends. For new voxels make a new
-   * volume. */
+  /* Non-zero: u8, u16 and f32 voxels are not copied, and must outlive the volume. The voxels of a row must be
+   * adjacent. There may be gaps between rows and between slices, which must lie in rising order; from one
+   * slice to the next are at most 64 MiB. The voxels must not change, because the range, the histogram, the
+   * empty places and a renderer's tables are computed only once. If voxels change nevertheless, pictures show
+   * new voxels in some places and old ones in others, and a pixel may be any number or NaN. Even then no call
+   * reads or writes other memory, and every call ends. For new voxels make a new volume. */
   int borrow;
   hl_space space; /* default unknown */
-  /* Called once when the library no longer reads `voxels`: when the volume's last reference is released, by
-   * the thread that releases it, or before hl_volume_create() returns where voxels were copied. Not called
-   * where hl_volume_create() fails. Default null. */
+  /* Called once, when the library no longer reads `voxels`. For borrowed voxels this is when the volume's
+   * last reference is released, by the thread that releases it. For copied voxels it is before
+   * hl_volume_create() returns. Not called if hl_volume_create() fails. Default null. */
   void (*release)(void *release_data, const void *voxels);
   void *release_data; /* for `release` */
 } hl_volume_description;
@@ -75,9 +75,9 @@ typedef struct hl_volume_info {
   double spacing[3];  /* length of each axis, world units */
   double origin[3];
   double direction[3][3];   /* direction[row][column]; columns are the unit axes */
-  double range[2];          /* least and greatest finite value; 0, 0 if there is none. For a mesh of cells
-                             * or a grid with refinement it is the range of the spline's coefficients,
-                             * which values between coefficients may exceed near a face */
+  double range[2];          /* least and greatest finite value; 0, 0 if there is none. For a mesh of cells or
+                             * an adaptive grid it is the range of the spline's coefficients; near a face, the
+                             * field's values may lie beyond this range */
   double mean;              /* over finite voxels */
   uint64_t nonfinite_count; /* NaN and infinite voxels: transparent when rendered */
   uint64_t histogram[HL_HISTOGRAM_BINS]; /* equal bins over range, finite voxels */
@@ -93,24 +93,24 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_create(hl_context *context,
                                                  hl_error *error);
 
 /* Reads a volume file: raw (by name), NRRD, MetaImage, NIfTI, VTK .vti, legacy .vtk, NumPy .npy (axes
- * [z][y][x]), MRC, TIFF, NanoVDB, OpenVDB (by the context's `convert`) and DICOM files, particles in
- * tables, dumps of LAMMPS and XYZ files (as log10 of their density: halflight/particles.h), and folders and
- * zip archives of DICOM files or of Zarr arrays (OME-Zarr). The format is recognised by the content, or by
- * the name where the content has no mark. Where a file has several arrays or components, one is read by
- * default (hl_volume_load_options), and a warning says which. */
+ * [z][y][x]), MRC, TIFF, NanoVDB, OpenVDB (by the context's `convert`) and DICOM files, and folders and zip
+ * archives of DICOM files or of Zarr arrays (OME-Zarr). Particles are read from tables, dumps of LAMMPS and
+ * XYZ files; the volume's values are then log10 of their density (halflight/particles.h). The format is
+ * recognised by the file's content, or by its name where the content has no mark. Where a file has several
+ * arrays or components, one is read by default (hl_volume_load_options), and a warning says which. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_load(hl_context *context, const char *path, hl_volume **volume,
                                                hl_error *error);
 
 /* Instead of the index of a component. */
 enum {
-  HL_COMPONENT_DEFAULT = -1,   /* the file's only component; else colours, where the file says that its
-                                * components are such; else the magnitude of vectors of 2 or 3; else the
-                                * first */
+  HL_COMPONENT_DEFAULT = -1,   /* the default: the file's only component; else all of them as colours, if the
+                                * file says that they are colours; else the magnitude of vectors of 2 or 3
+                                * components; else the first component */
   HL_COMPONENT_MAGNITUDE = -2, /* the square root of the sum of squares, as float */
   /* Three or four components (unsigned, 8 or 16 bits) are the voxels' own colours: red, green, blue (sRGB),
    * alpha. Colours are kept in 8 bits and multiply the transfer function's colours. The volume's values,
-   * which opacity comes from, are the alpha, or the luminance (luma with BT.709's weights) where there is
-   * no alpha or it is the same everywhere. */
+   * which opacity comes from, are the alpha. Where there is no alpha, or alpha is the same everywhere, the
+   * values are the luminance (luma with BT.709's weights). */
   HL_COMPONENT_COLOR = -3,
   HL_COMPONENT_LUMINANCE = -4 /* and the luminance in any case */
 };
@@ -122,36 +122,39 @@ HL_API const char *hl_component_name(int component);
  * text. */
 HL_API int hl_component_of_name(const char *name);
 
-/* In place of an index. A time step or channel is then the first. A resolution is the finest for which the
- * memory limit leaves room and whose detail the picture shows (`pixels`). */
+/* Stands for an index that the caller does not choose: the first time step or channel. For a resolution it is
+ * the finest one for which the memory limit leaves room, or a coarser one where the picture would not show
+ * its detail (`pixels`). */
 enum { HL_INDEX_DEFAULT = -1 };
 
 typedef struct hl_volume_load_options {
   size_t struct_size; /* set by hl_volume_load_options_defaults() */
-  const char *array;  /* the name of the array that is read, of several in a file; null: the array that the
+  const char *array;  /* the name of the array that is read, if the file has several; null: the array that the
                        * file calls active, else the first scalar array, else the first array */
-  int component;      /* the component that is read: a number from 0, or an HL_COMPONENT_ value; default
-                       * HL_COMPONENT_DEFAULT. The volumes of a series over time are components, too */
+  int component;      /* the component that is read: its number, from 0, or an HL_COMPONENT_ value; default
+                       * HL_COMPONENT_DEFAULT. In a file with a series of volumes over time, each volume
+                       * counts as a component */
   double spacing[3];  /* distance of voxels along i, j, k in world units, in place of the file's; all 0
                        * (default): the file's */
-  const void *bytes;  /* the file's content in memory, borrowed during the call: nothing is opened then, and
-                         path is only its name. Default null */
+  const void *bytes;  /* the file's content in memory, borrowed during the call; no file is opened, and path
+                       * is only a name. Default null */
   size_t byte_count;
-  const char *series; /* the series that is read, of several. DICOM: a series' number, UID or description;
-                       * null: the largest. OME-Zarr: an image's number, path or name; null: the first */
-  hl_space space;     /* the anatomical space into which the volume's world is turned, if the file tells
-                       * its own space; default unknown: the world is not turned */
-  int time, channel, level; /* the time step, channel and resolution (0: the finest) that are read, of
-                             * several; numbers from 0; default HL_INDEX_DEFAULT */
-  int pixels; /* the longer side, in pixels, of a picture that the volume will fill; 0 (default): unknown.
-               * Of several resolutions, the coarsest is read whose longest axis has at least as many
-               * voxels. Unused where `level` is given */
+  const char *series; /* the series that is read, if there are several. DICOM: a series' number, UID or
+                       * description; null: the largest series. OME-Zarr: an image's number, path or name;
+                       * null: the first image */
+  hl_space space;     /* the anatomical space to which the volume's world is converted, if the file tells its
+                       * own space; default unknown: the world is not converted */
+  int time, channel, level; /* the time step, channel and resolution (0: the finest) that are read, if the
+                             * file has several; numbers from 0; default HL_INDEX_DEFAULT */
+  int pixels; /* the longer side, in pixels, of the picture that the volume will fill; 0 (default): unknown.
+               * Of several resolutions, the coarsest one whose longest axis has at least so many voxels is
+               * read. Not used where `level` is given */
 } hl_volume_load_options;
 
 HL_API void hl_volume_load_options_defaults(hl_volume_load_options *options);
 
-/* Reads a volume as hl_volume_load() does, with options (null: the defaults). An array or component that
- * the file does not have is HL_ERROR_INPUT, and the message lists those it has. */
+/* Reads a volume as hl_volume_load() does, with options (null: the defaults). If the file does not have the
+ * array or component, the error is HL_ERROR_INPUT, and its message lists the file's arrays or components. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_load_with(hl_context *context, const char *path,
                                                     const hl_volume_load_options *options, hl_volume **volume,
                                                     hl_error *error);
@@ -159,26 +162,27 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_load_with(hl_context *context, const c
 /* How a volume is written. */
 typedef struct hl_volume_save_options {
   size_t struct_size; /* set by hl_volume_save_options_defaults() */
-  hl_voxel_type type; /* type of the written voxels; 0 (default): the volume's own type where it holds all
-                       * data values and the format has it; else the smallest integer type that holds them;
+  hl_voxel_type type; /* type of the written voxels; 0 (default): the volume's own type if it holds all data
+                       * values and the format has it; else the smallest integer type that holds all of them;
                        * else float */
   size_t begin[3], end[3]; /* the voxels begin[a] <= index < end[a] along axis a are written; end 0 (default):
                             * up to the last */
   size_t shrink; /* a written voxel is the mean of shrink^3 voxels, without those that are not finite;
                   * default 1 */
-  int labels;    /* non-zero: the volume holds labels, whose mean would be another label. A written voxel
-                  * has the value that most of the shrink^3 voxels have, the first of equally common
-                  * values. Default 0 */
+  int labels;    /* non-zero: the volume holds labels, and a mean of labels would be another label. A written
+                  * voxel then has the commonest value of the shrink^3 voxels; of equally common values, the
+                  * first one. Default 0 */
 } hl_volume_save_options;
 
 HL_API void hl_volume_save_options_defaults(hl_volume_save_options *options);
 
 /* Writes .nrrd (gzip), .nii, .nii.gz, .mha (zlib), .vti, .mrc, .mrc.gz, .raw or .raw.gz, by the name's
  * ending; the name of a raw file must state size and type, as for reading. Data values and placement are
- * kept: NIfTI's and MetaImage's worlds are turned into their anatomical spaces, and a grid that MRC cannot
- * hold is refused. Values are rounded to the nearest where the type holds whole numbers; warnings tell how
- * many were beyond its range or not finite (these become 0), and which parts of the placement the format
- * cannot state. options: null: the defaults. The file appears whole or not at all. */
+ * kept. For NIfTI and MetaImage, the world is converted to the format's anatomical space. A grid that MRC
+ * cannot hold is refused. Where the type holds whole numbers, values are rounded to the nearest, and values
+ * that are not finite become 0. Warnings tell how many values were beyond the type's range or not finite, and
+ * which parts of the placement the format cannot state. options: null: the defaults. The file appears whole
+ * or not at all. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_save_with(hl_context *context, const hl_volume *volume,
                                                     const char *path, const hl_volume_save_options *options,
                                                     hl_error *error);
@@ -187,10 +191,10 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_save_with(hl_context *context, const h
 HL_API HL_WARN_UNUSED hl_status hl_volume_save(hl_context *context, const hl_volume *volume, const char *path,
                                                hl_error *error);
 
-/* Makes a volume whose voxels are smoothed by a Gaussian of the standard deviation `sigma`, in voxels of
- * each axis, along thick slices, too: from 0 to 16. With 0 the volume is not smoothed, and pictures do not
- * smooth it by themselves either. Smoothed values are floats. Label maps, volumes with colours and volumes
- * larger than memory are refused. *smoothed is owned by the caller (release it). */
+/* Makes a volume whose voxels are smoothed by a Gaussian. sigma: the standard deviation, from 0 to 16, in
+ * voxels of each axis, also of an axis with thick slices. With 0 the volume is not smoothed, and
+ * hl_scene_for_volume() does not smooth it either. Smoothed values are floats. Label maps, volumes with
+ * colours and volumes larger than memory are refused. *smoothed is owned by the caller (release it). */
 HL_API HL_WARN_UNUSED hl_status hl_volume_smooth(hl_volume *volume, double sigma, hl_volume **smoothed,
                                                  hl_error *error);
 
@@ -227,12 +231,12 @@ typedef struct hl_volume_field_error {
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_field_error(const hl_volume *volume,
                                                           hl_volume_field_error *field_error);
 
-/* The box around a volume's voxels, half a voxel beyond their outermost centres, in the world of its file:
- * least and greatest x, y, z. Where one of the pointers is null, nothing is done. */
+/* The box around a volume's voxels, half a voxel beyond the centres of the outermost voxels, in the world of
+ * its file: least and greatest x, y, z. Where one of the pointers is null, nothing is done. */
 HL_API void hl_volume_world_box(const hl_volume_info *info, double low[3], double high[3]);
 
-/* The unit of lengths in the volume's world, as its file tells: "metre", "millimetre", "micrometre" or
- * "angstrom"; null where it is unknown. Static. */
+/* The unit of lengths in the volume's world, as the volume's file tells it: "metre", "millimetre",
+ * "micrometre" or "angstrom"; null where it is unknown. A constant text. */
 HL_API const char *hl_volume_unit(const hl_volume *volume);
 
 /* An array of the file that a volume was loaded from. */
@@ -254,9 +258,9 @@ HL_API size_t hl_volume_array_count(const hl_volume *volume);
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_array(const hl_volume *volume, size_t index,
                                                     hl_volume_array *array);
 
-/* The data values below which these percentages (0 to 100) of the finite voxels lie, exact and interpolated
- * between the two nearest voxels in order, as numpy.percentile() does; 0 where no voxel is finite.
- * values: [count]. Reads all voxels. */
+/* Finds percentiles of the finite voxels' data values: each of `percents` is from 0 to 100. The values are
+ * exact; between two voxels that follow each other in order they are interpolated, as by numpy.percentile().
+ * They are 0 where no voxel is finite. values: [count]. Reads all voxels. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_percentiles(const hl_volume *volume, const double *percents,
                                                       size_t count, double *values, hl_error *error);
 
@@ -271,7 +275,7 @@ typedef struct hl_volume_selection {
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_selection(const hl_volume *volume,
                                                         hl_volume_selection *selection);
 
-/* A channel of a file with several, as the file tells of it. */
+/* A channel of a file with several channels, as the file describes it. */
 typedef struct hl_volume_channel {
   size_t struct_size; /* set by the caller */
   const char *name;   /* "" where the file has none; the volume's */
@@ -281,16 +285,15 @@ typedef struct hl_volume_channel {
   int chosen;       /* the volume was read from this channel */
 } hl_volume_channel;
 
-/* Describes a channel of the volume's file. index: below the number of channels
- * (hl_volume_get_selection()). Where the file tells nothing of its channels, they have neither names nor
- * colours nor windows. */
+/* Describes a channel of the volume's file. index: below the number of channels (hl_volume_get_selection()).
+ * Where the file does not describe its channels, they have neither names nor colours nor windows. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_channel(const hl_volume *volume, size_t index,
                                                       hl_volume_channel *channel);
 
-/* A series of DICOM slices, of those that a folder or an archive holds. */
+/* A series of DICOM slices: one of those in a folder or an archive. */
 typedef struct hl_volume_series {
   size_t struct_size;                       /* set by the caller */
-  const char *uid, *modality, *description; /* "" where the files have none; the volume's */
+  const char *uid, *modality, *description; /* "" where the files have none; the texts belong to the volume */
   double number;                            /* NaN: none */
   size_t dimensions[3];                     /* columns, rows, slices of all its times */
   int chosen;                               /* the volume was read from this series */
@@ -306,7 +309,7 @@ typedef struct hl_volume_segment {
   size_t struct_size; /* set by the caller */
   const char *name;   /* "" where the file has none; the volume's */
   int64_t value;      /* of its voxels */
-  int layer;          /* the component whose voxels have it, from 0 */
+  int layer;          /* the component, from 0, whose voxels have the value */
   int has_color;
   double srgb[3]; /* 0 to 1; 0 without a colour */
 } hl_volume_segment;
@@ -316,16 +319,16 @@ HL_API size_t hl_volume_segment_count(const hl_volume *volume);
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_segment(const hl_volume *volume, size_t index,
                                                       hl_volume_segment *segment);
 
-/* The label maps that lie beside the volume in its file (the "labels" of OME-Zarr): the path of each within
- * the file, as "labels/cells". A label map is opened as a volume of its own. The text belongs to the
- * volume; null past the last. */
+/* The path, within the volume's file, of label map number `index` that lies beside the volume there (the
+ * "labels" of OME-Zarr), as "labels/cells". A label map is opened as a volume of its own. The text belongs to
+ * the volume; null past the last. */
 HL_API const char *hl_volume_label_map(const hl_volume *volume, size_t index);
 
 enum { HL_NUMBER_TEXT_BYTES = 64 };
 
 /* Writes the least (end 0) or the greatest (end 1) finite data value as a decimal number that reads back as
- * the same number. Whole numbers have all their digits, even where they have 64 bits, which a double would
- * round. text: has room for HL_NUMBER_TEXT_BYTES bytes. */
+ * the same number. Whole numbers have all their digits, even numbers of 64 bits, which a double would round.
+ * text: has room for HL_NUMBER_TEXT_BYTES bytes. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_write_range(const hl_volume *volume, int end, char *text);
 
 /* The data value of one voxel, NaN where it is not finite or outside the grid. */

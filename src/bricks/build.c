@@ -21,7 +21,7 @@ enum {
 typedef struct builder {
   const hl_bricks_source *source;
   const hl_bricks_leaf *leaves;
-  hl_bricks *bricks; /* the directory is filled; the pool has a place for each leaf */
+  hl_bricks *bricks; /* with a filled directory; its pool has room for the coefficients of each leaf */
   hl_pool *pool;
   float *scratch; /* owned; [threads][scratch_floats] */
   size_t scratch_floats;
@@ -47,7 +47,8 @@ static bool is_coarser(const hl_bricks *bricks, int level, const ptrdiff_t block
   return bricks->directory[(at[2] * n[1] + at[1]) * n[0] + at[0]].level > level;
 }
 
-/* The box of cells that decides which coefficients of a box are active. */
+/* The box of all cells on which the coefficients of a box depend, and which decide whether these are
+ * active. */
 static hl_lattice_box cells_of(const hl_lattice_box *box) {
   hl_lattice_box cells;
   for (int axis = 0; axis < 3; axis++) {
@@ -92,9 +93,9 @@ static void combine(unsigned char *own, size_t count, size_t step) {
   for (size_t n = 0; n < count; n++) own[n] = own[n] & own[n + step] & own[n + 2 * step] & own[n + 3 * step];
 }
 
-/* Says whether none, some or all coefficients of a box are active. own: scratch memory, a byte for each of
- * the cells on which the box depends (cells_of()). Where only some are active, own[(k * cells.count[1] + j) *
- * cells.count[0] + i] is 1 if coefficient (i, j, k) of the box is active, else 0. */
+/* How many coefficients of a box are active, as find_active() tells. own: scratch memory of one byte for each
+ * cell of cells_of(box). In the case ACTIVE_SOME, own[(k * cells.count[1] + j) * cells.count[0] + i] becomes
+ * 1 if coefficient (i, j, k) of the box is active, else 0. */
 typedef enum active_part { ACTIVE_NONE, ACTIVE_SOME, ACTIVE_ALL } active_part;
 
 static active_part find_active(const builder *b, int level, const hl_lattice_box *box, unsigned char *own) {
@@ -118,7 +119,7 @@ static active_part find_active(const builder *b, int level, const hl_lattice_box
 
 /* ---- assembling ---- */
 
-/* The size, in floats, of the scratch memory `own` of find_active(), which holds bytes. */
+/* The size of find_active()'s scratch memory `own`, counted in floats although it holds bytes. */
 static size_t mask_floats(const hl_lattice_box *box) {
   const hl_lattice_box cells = cells_of(box);
   return hl_lattice_points(&cells) / sizeof(float) + 1;
@@ -193,7 +194,7 @@ static hl_status fail_leaf(const hl_bricks_leaf *leaf, const char *subject, cons
                  leaf->brick[1], leaf->brick[2], leaf->level, what);
 }
 
-/* The directory's entries that belong to a leaf. blocks_of() returns false where the leaf lies outside of the
+/* The blocks of the directory that a leaf covers. blocks_of() returns false if the leaf lies outside of the
  * directory. */
 typedef struct leaf_blocks {
   size_t low[3], high[3]; /* blocks low .. high - 1 */
@@ -210,7 +211,7 @@ static bool blocks_of(const hl_bricks *bricks, const hl_bricks_leaf *leaf, leaf_
   return true;
 }
 
-/* Writes a leaf's entry. Fails if another leaf has one of its blocks. */
+/* Writes a leaf's entry into its blocks. first: fails if another leaf has one of them. */
 static bool set_entries(hl_bricks *bricks, const leaf_blocks *blocks, hl_brick_entry entry, bool first) {
   const size_t *n = bricks->directory_size;
   for (size_t k = blocks->low[2]; k < blocks->high[2]; k++)

@@ -3,11 +3,11 @@
  * In:  the list of bricks, each with its level, and a function that gives coefficients. Out: hl_bricks whose
  * field has continuous second derivatives, whatever the arrangement of levels is.
  *
- * The coefficient i of level l is active if the cells i - 2 .. i + 1 of that level, along all axes, lie in
- * bricks of level l or finer, or where there is no brick. An active coefficient is the source's own. Any
- * other coefficient is subdivided from the coefficients of level l + 1 (truncated hierarchical B-splines, see
+ * Coefficient i of level l depends on the cells i - 2 .. i + 1 of its level, along all axes. It is active if
+ * none of these cells lies in a brick of a coarser level. The source gives the active coefficients. Any other
+ * coefficient is subdivided from the coefficients of level l + 1 (truncated hierarchical B-splines, see
  * bricks.h). The field is then the coarser level's field plus a sum of B-splines of level l, each of which is
- * zero where a coarser brick lies: so no border shows. */
+ * zero in all coarser bricks. Therefore the borders between levels cannot be seen. */
 #ifndef HL_BRICKS_BUILD_H
 #define HL_BRICKS_BUILD_H
 
@@ -25,8 +25,9 @@ typedef struct hl_bricks_source {
   int shift;           /* side = 2^shift cells; 2 to 8 */
   int levels;          /* 1 .. BRICK_LEVELS_LIMIT */
   size_t dimension[3]; /* lattice points of level 0 along x, y, z */
-  /* The field's value where there is no leaf. The field ends there in a step, unless the source's own
-   * coefficients equal `outside` at the borders of the leaves beside: these coefficients are not changed. */
+  /* The field's value where there is no leaf. At the border of a leaf the field jumps to this value, unless
+   * the source's own coefficients at the border equal `outside`. The builder does not change these
+   * coefficients. */
   float outside;
   /* Gives the source's own coefficients of the points first .. first + count - 1 of a level: out is
    * [count[2]][count[1]][count[0]], x fastest. first may be below 0, and points may lie beyond the dimension.
@@ -34,11 +35,11 @@ typedef struct hl_bricks_source {
    * levels around its border. The function is called from all threads, and must give the same number for a
    * point in every call. */
   void (*fill)(void *data, int level, const ptrdiff_t first[3], const size_t count[3], float *out);
-  /* May be null. Narrows the places where a level has coefficients of its own, for sources whose data do not
-   * end at the borders of bricks. For each cell first .. first + count - 1 of a level, it sets covered[n],
-   * [count[2]][count[1]][count[0]], to 1 where there are data of this level or of a finer level, and to 0
-   * elsewhere. A coefficient is then active only if its cells i - 2 .. i + 1 are all covered. It is not
-   * called for the coarsest level. It is called from all threads. */
+  /* Says which cells have data, for sources whose data do not end at the borders of bricks. May be null. For
+   * each of the cells first .. first + count - 1 of a level, the function sets an element of covered,
+   * [count[2]][count[1]][count[0]]: to 1 where there are data of this level or of a finer level, else to 0. A
+   * coefficient is then active only if its cells i - 2 .. i + 1 are all covered. The function is called from
+   * all threads, and never for the coarsest level. */
   void (*cover)(void *data, int level, const ptrdiff_t first[3], const size_t count[3],
                 unsigned char *covered);
   void *data; /* for fill and cover */
@@ -49,16 +50,17 @@ typedef enum hl_bricks_choice { HL_BRICKS_NOTHING, HL_BRICKS_LEAF, HL_BRICKS_SPL
 
 /* Lists leaves by descending from the bricks of the coarsest level: `choose` is called for a brick and says
  * whether it is a leaf, is split into the eight bricks of the next finer level, or is left out. A brick of
- * level 0 that `choose` would split is a leaf. source: fill may be null. *leaves is in the order of the
+ * level 0 that `choose` would split is a leaf. source: its `fill` may be null. *leaves is in the order of the
  * descent, and is owned by the caller (hl_release). */
 hl_status hl_bricks_choose(hl_context *context, const hl_bricks_source *source,
                            hl_bricks_choice (*choose)(void *data, int level, const size_t brick[3]),
                            void *data, hl_bricks_leaf **leaves, size_t *count, hl_error *error);
 
-/* Makes the bricks of the leaves. Leaves may lie partly beyond the dimension. Two leaves that cover the same
- * place are refused. A brick whose coefficients are all the same number becomes a constant of the directory.
- * The bytes are the same for any number of threads. subject: starts error lines. *bricks is empty on failure.
- * Memory: the directory, and (side + 3)^3 floats for each leaf until constants are known. */
+/* Makes the bricks of the leaves. A leaf may lie partly beyond the source's dimension. Two leaves that cover
+ * the same place are refused. A brick whose coefficients are all the same number becomes a constant of the
+ * directory. The bytes are the same for any number of threads. subject: starts error lines. *bricks is empty
+ * on failure. Memory: the directory, and (side + 3)^3 floats for each leaf; floats of constant bricks are
+ * freed at the end. */
 hl_status hl_bricks_build(hl_context *context, hl_pool *pool, const hl_bricks_source *source,
                           const hl_bricks_leaf *leaves, size_t count, const char *subject, hl_bricks *bricks,
                           hl_error *error);

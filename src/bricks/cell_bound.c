@@ -1,14 +1,15 @@
 /* bricks/cell_bound.c - see cell_bound.h.
  *
- * Derived: within a mesh's cell let L be an affine function near the values. A spline of affine coefficients
- * is the affine function, so that field - L is, in one lattice cell, the spline of the differences c_i -
- * L(x_i). Such a piece of a spline is a polynomial, which lies between the least and the greatest of its
- * Bezier coefficients. The mesh's values are L itself in a tetrahedron. In a hexahedron, whose places and
- * values have the same weights, values - L is a mean of its corners' differences, and lies between them. Both
- * intervals bound field - values.
+ * Derived: let L be an affine function that is near the mesh's values in one of its cells. A spline whose
+ * coefficients are the values of L is L itself. Therefore field - L is the spline of the differences c_i -
+ * L(x_i). In one lattice cell this spline is a polynomial, which lies between the least and the greatest of
+ * its Bezier coefficients. In a tetrahedron the mesh's values equal L. In a hexahedron places and values are
+ * means of the corners' with the same weights, so values - L is such a mean, too, and lies between the
+ * differences at the corners. The intervals of field - L and values - L together bound field - values.
  *
- * The polynomial is halved where the bound is greater than what was found elsewhere: so pieces that lie
- * beyond the mesh's cell are left out. */
+ * Where the bound of a lattice cell is greater than the greatest found so far, the lattice cell is halved
+ * along each axis, up to HALVINGS times. Halves that lie beyond the mesh's cell are left out, which makes the
+ * bound tighter. */
 #include "bricks/cell_bound.h"
 
 #include <math.h>
@@ -35,7 +36,7 @@ typedef struct bound_job {
   double *bounds; /* owned; [leaf_count]; NaN: the leaf has no place where all coefficients are numbers */
 } bound_job;
 
-/* One leaf, and the mesh's cell that is looked at. */
+/* The search in one leaf, for one cell of the mesh at a time. */
 typedef struct cell_search {
   const hl_cell_mesh_field *field;
   const hl_bricks_leaf *leaf;
@@ -135,7 +136,7 @@ static void second_half(double *c, size_t step) {
   c[2 * step] = (d + e) / 2;
 }
 
-/* Calls a function for the coefficients' 16 lines along an axis. */
+/* Calls a function for each of the 16 lines along an axis in the cube of 4^3 coefficients. */
 static void along(double c[COEFFICIENTS], int axis, void (*change)(double *line, size_t step)) {
   static const size_t steps[3] = {1, TAPS, TAPS * TAPS};
   size_t one = steps[(axis + 1) % 3], other = steps[(axis + 2) % 3];
@@ -152,7 +153,8 @@ static bool may_be_greater(const cell_search *search, const double c[COEFFICIENT
   return !(*bound <= search->greatest);
 }
 
-/* Bounds the difference in the part of a cube that lies in the mesh's cell. c: Bezier coefficients. */
+/* Bounds the difference in that part of a cube which lies in the mesh's cell. c: Bezier coefficients of the
+ * cube. */
 static void bound_cube(cell_search *search, const double c[COEFFICIENTS], const double low[3], double size,
                        int halvings) {
   double bound;

@@ -20,10 +20,10 @@ typedef struct hl_cell_mesh_field {
   const hl_bricks *bricks;
 } hl_cell_mesh_field;
 
-/* Finds the bound. It holds at all places in cells of the tree, except in lattice cells with a coefficient
- * that is not a number: this coefficient lies outside of the mesh, and the field ends there. *bound is NaN if
- * all lattice cells have such a coefficient. It is the same for any number of threads. subject: starts error
- * lines. */
+/* Finds the bound. It holds at all places in cells of the tree, except in lattice cells that have a NaN among
+ * their coefficients: the field ends there, because a coefficient is NaN where its point lies outside of the
+ * mesh. *bound is NaN if all lattice cells have such a coefficient. The bound is the same for any number of
+ * threads. subject: starts error lines. */
 hl_status hl_cell_mesh_bound(hl_context *context, hl_pool *pool, const hl_cell_mesh_field *field,
                              const char *subject, double *bound, hl_error *error);
 

@@ -29,8 +29,8 @@ typedef struct hl_cells {
 /* Where a field's lattice stands: point i of level 0 is at origin + spacing * i along each axis. */
 typedef struct hl_cells_place {
   double origin[3], spacing[3];
-  double error; /* the field differs from the mesh's values by at most this number, in the units of the
-                 * values, wherever all coefficients on which the field depends lie within cells
+  double error; /* the greatest difference between the field and the mesh's values, in the units of the
+                 * values. It holds where all coefficients on which the field depends lie within cells
                  * (cell_bound.h). NaN: there is no such place */
 } hl_cells_place;
 

@@ -17,8 +17,8 @@ enum { SHIFT = 4, SIDE = 1 << SHIFT, STORED = SIDE + BRICK_MARGIN, LEVELS_MOST =
 
 /* The wanted number of lattice points along a cell's edge. */
 static const double POINTS_OF_AN_EDGE = 2;
-/* The part of the cells, the smallest ones, that may have shorter edges than the edge from which the finest
- * spacing is chosen. */
+/* The finest spacing follows from the edge of a small cell. This fraction of the cells may have shorter edges
+ * than that cell. */
 static const double FINEST_PART = 0.01;
 /* The most bytes that bricks take where there is no memory limit. */
 static const double BYTES_MOST = 1073741824.0;
@@ -81,7 +81,7 @@ static int bin_of(double edge) {
   return bin < 0 ? 0 : bin >= BINS ? BINS - 1 : bin;
 }
 
-/* The edge from which the finest spacing is chosen: the part FINEST_PART of the used cells have shorter
+/* The edge from which the finest spacing is chosen. A fraction FINEST_PART of the used cells have shorter
  * edges. */
 static double finest_edge(const cell_field *field, size_t used) {
   size_t counts[BINS] = {0}, sum = 0;
@@ -95,14 +95,15 @@ static double finest_edge(const cell_field *field, size_t used) {
 }
 
 static int level_of(double edge, double spacing) {
-  /* 0.25 is more than the error of the finest edge, which is known to a bin: an eighth of an octave */
+  /* The finest edge is known only to within its bin, an eighth of an octave. The summand 0.25 is greater than
+   * this error. */
   double level = floor(log2(edge / POINTS_OF_AN_EDGE / spacing) + 0.25);
   return level < 0 ? 0 : level > LEVELS_MOST - 1 ? LEVELS_MOST - 1 : (int)level;
 }
 
-/* Estimates the number of bytes that the bricks need. Counts the directory's bytes, and the coefficients
- * by the cells' volumes, times a factor for borders and partly filled bricks. size: the size of the
- * mesh's box. */
+/* Estimates the number of bytes that the bricks need: the bytes of the directory, and those of the
+ * coefficients. The number of coefficients follows from the cells' volumes; a factor accounts for borders and
+ * partly filled bricks. size: the size of the mesh's box. */
 static double bytes_of(const cell_field *field, double spacing, const double size[3]) {
   double points = 0, blocks = 1;
   for (int axis = 0; axis < 3; axis++) blocks *= ceil(size[axis] / spacing / SIDE) + 1;
@@ -175,7 +176,7 @@ static hl_status make_tree(cell_field *field, hl_error *error) {
         box.low[axis] = fminf(box.low[axis], (float)(at - margin));
         box.high[axis] = fmaxf(box.high[axis], (float)(at + margin));
       }
-    if (!sound) /* a cell that no brick shall meet gets a box far away from all others */
+    if (!sound) /* a cell that is left out gets a box far away from all others, so that no brick meets it */
       box = (hl_cell_box){{-3e30f, -3e30f, -3e30f}, {-3e30f, -3e30f, -3e30f}};
     boxes[n] = box;
   }

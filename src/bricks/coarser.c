@@ -9,8 +9,8 @@ typedef struct coarsening {
   hl_bricks_source source;
 } coarsening;
 
-/* The old field's number at a point of a new level. Where the old field has a brick of this spacing, it is
- * the brick's coefficient, else the field's value. */
+/* The coefficient at a point of a level of the new field. It is the coefficient of the old brick where this
+ * brick has the same spacing, else the old field's value. */
 static float number_at(const hl_bricks *fine, int level, const ptrdiff_t point[3]) {
   int64_t block[3];
   double at[3];
@@ -44,8 +44,8 @@ static bool is_outside(const coarsening *c, const hl_brick_entry *entry) {
   return entry->slot < 0 && entry->constant == c->source.outside;
 }
 
-/* Splits a brick where the old field has a finer brick than this one. Leaves a brick out where the
- * whole of the old field has the value that it has outside of its bricks. */
+/* Splits a brick where the old field has a finer brick. Leaves a brick out where the old field has, in all of
+ * it, the value that it has outside of its bricks. */
 static hl_bricks_choice choose(void *data, int level, const size_t brick[3]) {
   const coarsening *c = data;
   const size_t blocks = (size_t)2 << level, *size = c->fine->directory_size;

@@ -9,14 +9,14 @@ static int64_t clamp_whole(int64_t at, int64_t low, int64_t high) {
   return at < low ? low : at > high ? high : at;
 }
 
-/* The block of level 0 in whose brick the cell, or the coefficient, with this coordinate lies. at: a
- * coordinate of level 0. */
+/* The index, along an axis, of the block that holds the cell or the coefficient `at` of level 0. A
+ * coefficient beyond the directory's faces belongs to the block at the face. */
 static int64_t block_of(const hl_bricks *bricks, int axis, int64_t at) {
   return clamp_whole(at, 0, hl_bricks_cells(bricks, axis) - 1) >> bricks->shift;
 }
 
-/* Four coefficients along an axis of a brick, and their weights. They are counted from the first coefficient
- * that the brick stores. */
+/* Four coefficients along an axis of a brick, and their weights. The first coefficient that the brick stores
+ * has the index 0. */
 typedef struct taps {
   int64_t index[TAPS];
   double weight[TAPS];
@@ -29,12 +29,16 @@ static void place_taps(const hl_bricks *bricks, int level, int64_t block, int64_
   for (int tap = 0; tap < TAPS; tap++) found->index[tap] = clamp_whole(before - 1 + tap - first, 0, last);
 }
 
-/* The weights of the coefficients of a level in the coefficient of level 0 of one point. From level to level
- * an even coefficient 2 j is (d[j-1] + 6 d[j] + d[j+1]) / 8, and an odd one 2 j + 1 is (d[j] + d[j+1]) / 2
- * (E. Catmull, J. Clark, Recursively generated B-spline surfaces, 1978). That is the mask (1 + z)^4 / 8. The
- * masks of all levels have the product ((1 - z^n) / (1 - z))^4 / n^3, where n = 2^level, and the coefficient
- * of z^m in it is the sum over j of (-1)^j C(4, j) C(m - j n + 3, 3) / n^3. A point r of n behind a
- * coefficient has m = r - 2, r + n - 2, and the same two for s = n - r on the other side, so four taps
+/* Finds the weights of a level's coefficients in the sum that gives one point's coefficient of level 0.
+ *
+ * One step from a level to the next finer one gives the coefficients (d[j-1] + 6 d[j] + d[j+1]) / 8 at the
+ * even index 2 j, and (d[j] + d[j+1]) / 2 at the odd index 2 j + 1 (E. Catmull, J. Clark, Recursively
+ * generated B-spline surfaces, 1978). This is the mask (1 + z)^4 / 8. The product of the masks of all levels
+ * is ((1 - z^n) / (1 - z))^4 / n^3, where n = 2^level. In this product, z^m has the coefficient sum over j of
+ * (-1)^j C(4, j) C(m - j n + 3, 3) / n^3.
+ *
+ * Let the point lie r points of level 0 behind a coefficient of the level, and s = n - r before the next one.
+ * Then the weights are the product's coefficients at m = r - 2, r + n - 2, s - 2 and s + n - 2, so four taps
  * suffice (derived). The numerators are whole numbers, so the weights are exact. */
 static void weigh_subdivided(int level, int64_t point, double weight[TAPS]) {
   const int64_t n = (int64_t)1 << level, r = point & (n - 1), s = n - r;
@@ -64,8 +68,8 @@ static int64_t clamp_point(const hl_bricks *bricks, int axis, int64_t at) {
   return clamp_whole(at, -1, hl_bricks_cells(bricks, axis) + 1);
 }
 
-/* The number of points along an axis, from `at` on, that lie in one block. left: the most points that are
- * wanted. */
+/* The number of points along an axis, from `at` on, that lie in one block; at most RUN. left: the number of
+ * points that are wanted. */
 static int64_t run_length(const hl_bricks *bricks, int axis, int64_t at, int64_t left) {
   const int64_t block = block_of(bricks, axis, at), end = (block + 1) << bricks->shift;
   if (left > RUN) left = RUN;
@@ -95,8 +99,8 @@ static void copy_piece(const hl_bricks *bricks, const float *brick, const int64_
     }
 }
 
-/* Sums a brick's coefficients along x: one sum for each point of the piece along x and each row of the brick
- * from low[1] and low[2] to high[1] and high[2]. */
+/* Sums a brick's coefficients along x. The rows from low[1] and low[2] to high[1] and high[2] are summed,
+ * each once for every point of the piece along x. */
 static void sum_rows(const hl_bricks *bricks, const float *brick, const piece *piece, taps at[3][RUN],
                      const int64_t low[3], const int64_t high[3], double sums[SPAN][SPAN][RUN]) {
   size_t width = hl_brick_width(bricks);
@@ -112,9 +116,9 @@ static void sum_rows(const hl_bricks *bricks, const float *brick, const piece *p
     }
 }
 
-/* Computes a piece's coefficients by subdividing a brick of a coarser level. Neighbouring points share the
- * sums of rows. Each number is the one that is computed for its point alone, rounded to a float as in a brick
- * of level 0. */
+/* Computes a piece's coefficients by subdividing a brick of a coarser level. Neighbouring points use the same
+ * sums of rows. Each result has the same bits as if its point were computed alone; it is rounded to a float,
+ * as coefficients in bricks of level 0 are. */
 static void subdivide_piece(const hl_bricks *bricks, const hl_brick_entry *entry, const int64_t block[3],
                             const piece *piece) {
   double sums[SPAN][SPAN][RUN];
@@ -179,7 +183,7 @@ float hl_bricks_coefficient(const hl_bricks *bricks, const int64_t point[3]) {
 
 /* ---- values ---- */
 
-/* Taps without a weight are left out, because their coefficients may be NaN. */
+/* Taps of weight 0 are left out of the sum, because their coefficients may be NaN. */
 static double sum_taps(const hl_bricks *bricks, const float *brick, const taps at[3]) {
   size_t width = hl_brick_width(bricks);
   double sum = 0;
@@ -219,7 +223,8 @@ double hl_bricks_value(const hl_bricks *bricks, const double point[3]) {
   return sum_taps(bricks, hl_brick_pool(bricks, entry->slot), found);
 }
 
-/* Widens a range to the coefficients of a brick on which the cells first .. last of level 0 depend. */
+/* Widens a range so that it holds those coefficients of a brick on which the cells first .. last of level 0
+ * depend. */
 static void widen_to_brick(const hl_bricks *bricks, const hl_brick_entry *entry, const int64_t block[3],
                            const int64_t first[3], const int64_t last[3], float range[2]) {
   size_t width = hl_brick_width(bricks), from[3], to[3];

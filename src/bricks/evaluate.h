@@ -47,8 +47,8 @@ void hl_bricks_range(const hl_bricks *bricks, const int64_t first[3], const int6
 /* Whether all coefficients and constants are finite. Numbers that are not finite stand for places without
  * data. */
 bool hl_bricks_are_finite(const hl_bricks *bricks);
-/* Copies bricks, with `empty` in place of numbers that are not finite. filled: its directory and pool must
- * have room for the bricks' directory and pool; the function sets its other members. */
+/* Copies bricks, and replaces numbers that are not finite by `empty`. filled: must have a directory and a
+ * pool as large as those of `bricks`; the function sets all other members. */
 void hl_bricks_fill_holes(const hl_bricks *bricks, float empty, hl_bricks *filled);
 
 /* The bytes of the directory and the pool. */

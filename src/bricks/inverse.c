@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-/* How far outside of a cell a point may lie and still count as inside, as a fraction of the cell. Without it,
- * a point could fall between two cells. */
+/* The distance from a cell, as a fraction of the cell, up to which a point counts as inside. Without this
+ * margin, rounding could place a point on a border into neither of the two cells. */
 static const double MARGIN = 1e-7;
 static const double CONVERGED = 1e-10;
 enum { STEPS_MOST = 20 };
@@ -82,7 +82,8 @@ double hl_cell_volume(const hl_cell_shape *shape) {
   return fabs(determinant(matrix));
 }
 
-/* The slopes of the values within the unit cell; for a hexahedron they are the slopes at its middle. */
+/* The slopes of the values along the axes of the unit cell. In a hexahedron, where slopes vary, they are the
+ * slopes in the middle. */
 static void unit_slopes(const hl_cell_shape *shape, const double values[8], double slopes[3]) {
   static const double middle[3] = {0.5, 0.5, 0.5};
   double weights[8], corner_slopes[8][3];
@@ -135,7 +136,8 @@ bool hl_cell_weights(const hl_cell_shape *shape, const double point[3], double w
     for (int axis = 0; axis < 3; axis++) {
       double change = 0;
       for (int row = 0; row < 3; row++) change += inverse[axis][row] * (point[row] - value[row]);
-      at[axis] = fmin(fmax(at[axis] + change, -1), 2); /* a point that lies farther outside is outside */
+      at[axis] = fmin(fmax(at[axis] + change, -1), 2); /* keeps the iteration near the cell; points beyond lie
+                                                        * outside */
       step = fmax(step, fabs(change));
     }
   }

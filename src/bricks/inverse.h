@@ -9,7 +9,8 @@
 typedef struct hl_cell_shape {
   bool is_tetrahedron;
   double corner[8][3];
-  double inverse[3][3]; /* for a tetrahedron: maps differences from the first corner to weights */
+  double inverse[3][3]; /* of a tetrahedron: maps the vector from the first corner to a point to the point's
+                         * weights */
 } hl_cell_shape;
 
 /* Completes a shape whose corners are set. False if the cell has no volume. */
@@ -19,14 +20,15 @@ bool hl_cell_shape_ready(hl_cell_shape *shape);
  * lies outside. */
 bool hl_cell_weights(const hl_cell_shape *shape, const double point[3], double weights[8]);
 
-/* Affine functions for a cell: one that is near the values which the cell interpolates (in a tetrahedron it
- * equals them), and the cell's own coordinates, which bound the cell. */
+/* Affine functions of the coordinates that describe a cell. One function approximates the values that the
+ * cell interpolates; in a tetrahedron it equals them. The other three give the cell's unit coordinates, whose
+ * ranges bound the cell. */
 typedef struct hl_cell_affine {
   double middle[3];   /* the mean of the corners */
   double value;       /* the function's, at `middle` */
   double slope[3];    /* the function's, along x, y, z */
-  double place[3][3]; /* slopes, along x, y, z, of the cell's three unit coordinates; for a hexahedron those
-                       * near its middle */
+  double place[3][3]; /* slopes, along x, y, z, of the cell's three unit coordinates; in a hexahedron, the
+                       * slopes in its middle */
 } hl_cell_affine;
 
 /* Fits the affine functions of hl_cell_affine to a cell. The shape must have been completed by

@@ -27,7 +27,7 @@ static hl_status add_leaf(descent *d, int level, const size_t brick[3]) {
   return HL_OK;
 }
 
-/* The number of bricks of a level along an axis. The last brick holds the last point. */
+/* The number of bricks of a level that are needed along an axis to hold all lattice points. */
 static size_t bricks_along(const hl_bricks_source *source, int level, int axis) {
   return ((source->dimension[axis] - 1) >> (source->shift + level)) + 1;
 }

@@ -19,7 +19,7 @@ typedef struct cell_block {
 
 /* The blocks of one level. */
 typedef struct block_table {
-  cell_block **blocks; /* [size]; the table owns the array and the blocks; null for a free place */
+  cell_block **blocks; /* owned, with all blocks; [size]; null where a place is free */
   size_t size, count;  /* size: a power of two, or 0 */
 } block_table;
 
@@ -81,7 +81,8 @@ static bool grow_table(hl_context *context, block_table *table) {
   return true;
 }
 
-/* The block at a place; it is made where there is none. Null where there is no memory. */
+/* The block at the coordinates `at` of a level. If the table has none, the block is made. Null if memory is
+ * short. */
 static cell_block *make_block(hl_patches *patches, int level, const uint32_t at[3]) {
   block_table *table = &patches->table[level];
   if (2 * (table->count + 1) > table->size && !grow_table(patches->context, table)) return NULL;
@@ -187,13 +188,14 @@ static hl_status average(hl_patches *patches, const char *subject, hl_error *err
 
 /* ---- the source of the field ---- */
 
-/* A cell's coordinate along an axis; beyond the domain's ends, that of its first or last cell. */
+/* Clamps a cell's coordinate along an axis to the domain. Cells beyond an end are replaced by the last cell
+ * before it. */
 static size_t clamp_cell(const hl_patches *patches, int level, int axis, ptrdiff_t cell) {
   size_t cells = patches->domain[axis] >> level;
   return cell < 0 ? 0 : (size_t)cell < cells ? (size_t)cell : cells - 1;
 }
 
-/* The block that was looked up last. Neighbouring cells mostly lie in the same block. */
+/* The result of the last search for a block, kept because neighbouring cells mostly lie in the same block. */
 typedef struct last_block {
   uint32_t at[3];
   const cell_block *block;
@@ -211,16 +213,16 @@ static float cell_value(const hl_patches *patches, int level, const size_t cell[
   return last->block != NULL ? last->block->value[cell_in_block(cell[0], cell[1], cell[2])] : NAN;
 }
 
-/* AROUND: the number of cells around a corner along an axis that enter the corner's coefficient, with their
- * weights. The mean of the two middle cells would blur: means over cells, means at corners and the cubic
- * B-spline have the variances 1/12, 1/4 and 1/3 of the squared edge of a cell. The weights -1/6, 2/3, 2/3,
- * -1/6 have the variance -5/12, so that the field equals the source to the fourth order of the edge
- * (derived). */
+/* AROUND: the number of cells along an axis whose values make the coefficient of a corner. `around` has their
+ * weights. A plain mean of the two cells beside the corner would blur. Derived: the mean over a cell, the
+ * mean of two cells and the cubic B-spline are kernels with the variances 1/12, 1/4 and 1/3, in squared edges
+ * of a cell. The weights -1/6, 2/3, 2/3, -1/6 have the variance -5/12, which cancels 1/12 + 1/3. Therefore
+ * the field equals the source to the fourth order of the edge. */
 enum { AROUND = 4 };
 static const double around[AROUND] = {-1.0 / 6, 2.0 / 3, 2.0 / 3, -1.0 / 6};
 
-/* The coefficient of a corner. It is limited to the range of the eight cells that meet at the corner, so that
- * a shock makes no values that no cell has. */
+/* The coefficient of a corner. It is limited to the range of the eight cells that meet at the corner.
+ * Otherwise the negative weights would make values beside a shock that no cell has. */
 static float corner_value(const hl_patches *patches, int level, const ptrdiff_t corner[3], last_block *last) {
   double sum = 0, nearest = 0;
   float least = INFINITY, greatest = -INFINITY;
@@ -300,11 +302,13 @@ typedef struct difference_job {
   const hl_patches *patches;
   const hl_bricks *bricks;
   int level;
-  double *differences; /* owned; [size of the level's table]; NaN: nothing was compared */
+  double *differences; /* owned; [size of the level's table]; the greatest difference in each block; NaN:
+                        * nothing was compared */
 } difference_job;
 
-/* The field's mean over a cell of a level, of bricks of this level or finer ones; NaN where a coefficient is
- * not a number. Derived: the integrals of the four pieces of the cubic B-spline are 1, 11, 11 and 1 of 24. */
+/* The mean of the field over a cell of a level. The bricks that cover the cell must be of this level or
+ * finer. The result is NaN if a coefficient is NaN. Derived: the integrals of the four pieces of the cubic
+ * B-spline are 1/24, 11/24, 11/24 and 1/24. */
 static double mean_over_cell(const hl_bricks *bricks, int level, const size_t cell[3]) {
   static const double integral[4] = {1.0 / 24, 11.0 / 24, 11.0 / 24, 1.0 / 24};
   const size_t width = hl_brick_width(bricks), side = (size_t)1 << bricks->shift;

@@ -1,9 +1,9 @@
 /* bricks/patches.h - adaptive grids: patches of cells at levels of refinement, as a field at levels.
  *
  * A cell's value is the mean over the cell. The field's coefficients stand at the corners of cells, because
- * these nest: a coefficient is the mean of the eight cells around its corner. Cells that finer patches cover
- * count as the means of the finer cells. Beyond a domain's faces the values of the cells along the faces
- * continue.
+ * every corner of a coarse cell is a corner of a finer cell, too. A coefficient is a weighted mean of the
+ * cells around its corner. Where finer patches cover a cell, its value is the mean of the finer cells. Beyond
+ * a domain's faces the values of the cells along the faces continue.
  *
  * In:  boxes of cells with values (readers of files, arrays of callers). Out: hl_bricks whose level 0 is the
  * finest level of refinement. */
@@ -29,11 +29,11 @@ void hl_patches_destroy(hl_patches *patches); /* patches may be null */
 hl_status hl_patches_add(hl_patches *patches, int level, const size_t first[3], const size_t count[3],
                          const float *values, const char *subject, hl_error *error);
 
-/* Makes the field. *bricks is empty on failure. Its origin is {.5, .5, .5}: voxels of level 0 are cells.
- * Where no patch has a value, the field is NaN. *difference: the greatest difference of a cell's value and
- * the field's mean over the cell, over all cells that no finer cells cover and over which the field has a
- * mean; NaN if there is no such cell. Call the function only once: it overwrites coarser cells by means of
- * finer ones, so that a second call would make another field. */
+/* Makes the field. *bricks is empty on failure. Its origin is {.5, .5, .5}, so that the voxels are the cells
+ * of level 0. Where no patch has a value, the field is NaN. *difference: the greatest difference between a
+ * cell's value and the mean of the field over the cell. Cells that finer cells cover, and cells in which the
+ * field is NaN somewhere, are not compared; NaN if no cell is compared. Call the function only once: it
+ * overwrites coarser cells by means of finer ones, so that a second call would make another field. */
 hl_status hl_patches_build(hl_patches *patches, hl_pool *pool, const char *subject, hl_bricks *bricks,
                            double *difference, hl_error *error);
 

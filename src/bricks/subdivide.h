@@ -32,9 +32,10 @@ size_t hl_subdivision_scratch(const hl_lattice_box *box);
  * number. */
 void hl_subdivide(const hl_lattice_box *box, const float *coarse, float *scratch, float *fine);
 
-/* The field at a lattice point, where the cubic B-spline is 1/6, 2/3, 1/6 along each axis. first: the
- * coefficient one before the point along each axis. row, slice: floats from one row, and from one slice, to
- * the next. The result is NaN where one of the 27 coefficients is NaN. */
+/* The field's value at a lattice point, where the weights of the cubic B-spline are 1/6, 2/3 and 1/6 along
+ * each axis. first: the first of the 27 coefficients, which is one before the point along each axis. row,
+ * slice: number of floats from one row, and from one slice, to the next. The result is NaN if one of the
+ * coefficients is NaN. */
 double hl_field_at_point(const float *first, size_t row, size_t slice);
 
 #endif

@@ -68,8 +68,7 @@ typedef struct image_pair {
   char **paths;    /* A and B */
   hl_image *a, *b; /* owned */
   hl_image_difference difference;
-  double mean; /* for each channel, the absolute value of the mean difference is found; this is the greatest
-                * of these values */
+  double mean; /* the greatest, over the four channels, of the absolute values of their mean differences */
 } image_pair;
 
 /* The measured value that a limit is for. */
@@ -82,8 +81,8 @@ static double measured(const image_pair *comparison, int limit) {
   }
 }
 
-/* True if the limit is not given, or not exceeded. A measured NaN, from a picture that holds one, exceeds
- * every limit. */
+/* True if the limit is not given, or not exceeded. A measured value of NaN, which comes from a NaN in a
+ * picture, exceeds every limit. */
 static bool within(const image_pair *comparison, int limit) {
   const cli_value *value = &comparison->values[limit];
   return !value->given || measured(comparison, limit) <= value->number[0];
@@ -137,8 +136,8 @@ static int print_text(const image_pair *comparison) {
   return finish_stdout();
 }
 
-/* Writes |b - a| times a factor, as an opaque picture. A colour channel shows the difference of alpha where
- * that difference is greater than the channel's own. */
+/* Writes |b - a| times a factor, as an opaque picture. A colour channel shows the difference of alpha instead
+ * of its own where the former is greater. */
 static int write_picture(cli_host *host, const image_pair *comparison) {
   const char *path = comparison->values[DIFF_OUTPUT].text;
   const cli_value *amplify = &comparison->values[DIFF_AMPLIFY];

@@ -46,7 +46,8 @@ static const cli_option export_options[EXPORT_OPTION_COUNT] = {
 
 static const char *const page_extensions[] = {".html", NULL};
 
-/* The page that is installed with the program: in share/halflight beside bin, or in the Python package. */
+/* The path of the page without a scene that is installed with the program: in share/halflight beside bin, or
+ * in the Python package. */
 static const char *const installed_pages[] = {"/../share/halflight/halflight.html", "/../page/halflight.html",
                                               NULL};
 

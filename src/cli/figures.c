@@ -11,7 +11,8 @@
 #include "input.h"
 #include "message.h"
 
-/* Folders of the scenes: installed beside the program, and beside the folder of a build. */
+/* The folders of the installed scenes, relative to the program's folder: for an installed program, and for a
+ * program in a build folder. */
 static const char *const places[] = {"/../share/halflight/examples", "/../../../examples", NULL};
 
 /* The options of render that suit pictures of many scenes. */

@@ -1,5 +1,6 @@
-/* cli/frames.c - shared by commands that make many pictures. A picture carries its scene, so that a run
- * goes on where the last one stopped, and several runs can share a folder. */
+/* cli/frames.c - shared by commands that make many pictures. A picture carries its scene; a picture that
+ * carries the right scene is not rendered again. So a run goes on where the last run stopped, and several
+ * runs can share a folder. */
 #define _GNU_SOURCE
 #include "frames.h"
 

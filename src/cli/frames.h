@@ -1,5 +1,5 @@
-/* cli/frames.h - functions for commands that make many pictures: parts of the work, pictures that exist
- * already, a bar with an estimate. */
+/* cli/frames.h - functions for commands that make many pictures: dividing the pictures among runs, finding
+ * pictures that exist already, and a progress bar with an estimated time. */
 #ifndef HL_CLI_FRAMES_H
 #define HL_CLI_FRAMES_H
 
@@ -24,8 +24,9 @@
     .help = "leave the scene, with the names of its files, out of\nthe pictures" \
   }
 
-/* Reads --part K/N: *part becomes K - 1. Without the option there is one part, number 0. ranks: the option
- * --frames-over-ranks, with which a launcher's environment variables give K and N. Returns the exit code. */
+/* Reads --part K/N: *part becomes K - 1, and *parts N. Without the option there is one part, number 0. With
+ * the option --frames-over-ranks (ranks), K and N come from the launcher's environment variables. Returns the
+ * exit code. */
 int frames_read_part(const cli_value *value, const cli_value *ranks, int *part, int *parts);
 
 /* A picture's bytes, owned by the caller (free); null where it cannot be read. */
@@ -34,8 +35,8 @@ unsigned char *frames_read_picture(const char *path, size_t *length);
 /* Whether a picture is there and carries this scene. */
 bool frames_have_scene(const cli_host *host, const char *path, const hl_scene *scene);
 
-/* Draws the bar. done, wanted: the number of pictures that are there, and of all pictures. rendered: the
- * number of pictures that this run made, in `seconds`. */
+/* Draws the progress bar. done, wanted: the number of pictures that are finished, and of all pictures.
+ * rendered: the number of pictures that this run has rendered in `seconds`. */
 void frames_draw_bar(cli_host *host, int done, int wanted, int rendered, double seconds);
 
 /* How pictures are written. */

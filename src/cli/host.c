@@ -84,7 +84,7 @@ static hl_status on_convert(void *user_data, const char *format, const char *pat
   return openvdb_convert(path, host->memory_limit, on_cancelled, user_data, bytes, byte_count, error);
 }
 
-/* Fetches files of a store that the command line names. */
+/* Fetches files of a Zarr store whose URL is an INPUT of the command line. */
 static hl_status on_fetch(void *user_data, const char *url, const char *const *names, size_t count,
                           uint64_t most, hl_fetched_file *files, hl_error *error) {
   const cli_host *host = user_data;
@@ -115,7 +115,8 @@ static void listen_to_signals(void) {
   struct sigaction action, before;
   memset(&action, 0, sizeof action);
   action.sa_handler = on_signal;
-  action.sa_flags = SA_RESTART; /* an interrupted system call goes on; the cancel callback ends the work */
+  action.sa_flags = SA_RESTART; /* SA_RESTART lets interrupted system calls go on; the cancel callback ends
+                                 * the work */
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);

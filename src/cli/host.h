@@ -12,7 +12,8 @@ typedef struct cli_host {
   hl_context *context;
   bool quiet;   /* the program prints no warnings, no bar and no summary */
   bool bar;     /* stderr is a terminal that can redraw a line */
-  bool own_bar; /* the command draws the bar itself: each call of the library is a part of a longer run */
+  bool own_bar; /* the command draws the progress bar itself, because each call of the library is only a part
+                 * of the command's work */
   bool color;
   bool drawn;              /* a bar is on the line now */
   double drawn_at;         /* seconds; bars are redrawn ten times a second at most */
@@ -37,12 +38,12 @@ typedef struct cli_host_options {
   void (*progressed)(const char *stage, double fraction); /* receives the progress of a library call, on the
                                                            * thread that made the call; may be null */
   const char *data_folder;                                /* null: HALFLIGHT_DATA, or ../shared/data */
-  char *const *operands; /* the command line's INPUTs, null-terminated; the array must stay where it is. Files
-                          * are fetched only from INPUTs that are URLs. May be null */
+  char *const *operands; /* the command line's INPUTs, ended by null; the array must outlive the context.
+                          * Files are fetched only from INPUTs that are URLs. May be null */
 } cli_host_options;
 
-/* Rows of a subcommand's table of options, for what the context needs to know. heading: the group that begins
- * with the row, or null. */
+/* Rows for the table of options of a subcommand: the options of the context. heading: the heading of the
+ * group that begins with the row, or null. */
 #define HOST_OPTION_DATA(heading)                                                                           \
   {                                                                                                         \
     .name = "data", .kind = OPTION_TEXT, .argument = "FOLDER", .group = (heading),                          \

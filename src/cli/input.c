@@ -89,7 +89,7 @@ static int read_whole(cli_input *input, int descriptor, uint64_t limit) {
 
 /* ---- kinds of input ---- */
 
-/* False where the name does not tell the kind. */
+/* Finds the kind of an input by the ending of its name. False where the name does not tell the kind. */
 static bool kind_by_name(const char *path, input_kind *kind) {
   static const char *const volumes[] = {".raw",  ".gz",  ".nrrd", ".nhdr", ".mha",  ".mhd",
                                         ".nii",  ".vti", ".vtk",  ".npy",  ".mrc",  ".map",
@@ -117,8 +117,8 @@ static int open_standard_input(cli_input *input, uint64_t limit) {
 }
 
 /* Opens an input that is an ordinary file: finds out its kind. Reads the file into memory if it is a picture,
- * or a scene whose path begins with "/dev/": such a path says nothing of the folder in which the names of the
- * scene's files start. If the file is missing (descriptor < 0), a later reader reports the error. */
+ * or a scene whose path begins with "/dev/", because such a path does not tell the folder to which names in
+ * the scene are relative. If the file is missing (descriptor < 0), a later reader reports the error. */
 static int open_file(cli_input *input, int descriptor, uint64_t limit) {
   unsigned char first[1024];
   ssize_t got = descriptor >= 0 ? pread(descriptor, first, sizeof first, 0) : 0;
@@ -227,8 +227,9 @@ static hl_status load_volume_scene(hl_context *context, const cli_input *input,
   return status;
 }
 
-/* Relative file names in a picture's scene start in the picture's folder. If one of the files is not there,
- * all names start in the current folder, as on the command line that made the picture. */
+/* Relative file names in a picture's scene are relative to the picture's folder. If one of these files does
+ * not exist, all names are relative to the current folder instead, as on the command line that made the
+ * picture. */
 static hl_status load_picture_scene(hl_context *context, const cli_input *input, hl_scene **scene,
                                     hl_error *error) {
   char *text = NULL, *folder = strdup(input->path);

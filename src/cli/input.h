@@ -1,9 +1,8 @@
 /* cli/input.h - INPUT of a subcommand: a scene, a picture that carries a scene, or a bare volume, for which a
  * scene is made.
  *
- * A pipe ("-" is standard input) is read once, into memory: its first bytes tell its kind, and readers can go
- * back in it.
- */
+ * A pipe ("-" is standard input) is read once, into memory, because its first bytes must tell its kind before
+ * a reader reads it from the beginning. */
 #ifndef HL_CLI_INPUT_H
 #define HL_CLI_INPUT_H
 
@@ -68,15 +67,15 @@ typedef struct cli_input {
     .help = "distance of voxels in world units (default: the\nfile's)", .count = 3, .separator = ',', \
     .low = 0, .above = true, .high = INFINITY                                                         \
   }
-/* The rows of all options for reading except the channel and the spacing, in this order, beginning with row
- * `first`. */
+/* Rows for the table of options of a subcommand: all options of enum input_reading except the channel, from
+ * row `first` on. */
 #define INPUT_OPTIONS(first, heading)                                                         \
   [first] = INPUT_OPTION_ARRAY(heading), [(first) + READ_COMPONENT] = INPUT_OPTION_COMPONENT, \
   [(first) + READ_SERIES] = INPUT_OPTION_SERIES, [(first) + READ_TIME] = INPUT_OPTION_TIME,   \
   [(first) + READ_LEVEL] = INPUT_OPTION_LEVEL
 extern const cli_choice input_components[];
 
-/* The order in which a subcommand's table has these options. */
+/* The options that choose what is read of a file, in the order of the rows in a subcommand's table. */
 enum input_reading { READ_ARRAY, READ_COMPONENT, READ_SERIES, READ_TIME, READ_CHANNEL, READ_LEVEL };
 
 /* Finds out the kind of an input, by its name or, if the name does not tell, by its first bytes; reads pipes
@@ -85,36 +84,38 @@ enum input_reading { READ_ARRAY, READ_COMPONENT, READ_SERIES, READ_TIME, READ_CH
 int input_open(const char *path, uint64_t limit, cli_input *input);
 void input_close(cli_input *input);
 
-/* The load options that the options of enum input_reading and --spacing ask for. spacing null: the command
- * does not have --spacing. For `render`, the channels are a text (render_load_options()). */
+/* Finds the load options that the options of enum input_reading and --spacing ask for. reading: the values of
+ * enum input_reading. spacing: null if the command does not have --spacing. `render` reads its channels by
+ * render_load_options(), because its --channel is a text. */
 void input_load_options(const cli_value *reading, const cli_value *spacing, hl_volume_load_options *options);
 
-/* Reads an input that is a volume. options: all but `bytes`, which the input has; null: the defaults. */
+/* Reads an input that is a volume. options: null means the defaults; `bytes` is not used, because the input
+ * has them. */
 hl_status input_load_volume(hl_context *context, const cli_input *input,
                             const hl_volume_load_options *options, hl_volume **volume, hl_error *error);
 
 /* Replaces a volume by the smoothed volume that --smooth asks for. */
 hl_status input_smooth(double sigma, hl_volume **volume, hl_error *error);
 
-/* Writes into a scene's volume the options with which it was read, for the scene's text. Its strings are
- * borrowed. */
+/* Writes into a scene's volume the options with which it was read, so that the scene's text has them. The
+ * strings are borrowed. */
 void input_name_source(const hl_volume_load_options *options, hl_scene_volume *volume);
 
-/* The scene of an input: read from it, or made for a bare volume, which is read by `options` (null: the
- * defaults). */
+/* Makes the scene of an input: reads the scene in it or, for a bare volume, reads the volume by `options`
+ * (null: the defaults) and makes a scene for it. */
 hl_status input_load(hl_context *context, const cli_input *input, const hl_volume_load_options *options,
                      hl_scene **scene, hl_error *error);
 
-/* Whether a file holds a mesh: a VTK file of cells that have a volume and values, or of particles, is a
- * volume. */
+/* Whether a file holds a mesh. A VTK file of particles, or of cells that enclose a volume and have values, is
+ * a volume. */
 bool is_mesh_file(hl_context *context, const char *path);
 
 /* Orders names (char **) by the numbers in them, for qsort(). */
 int compare_by_number(const void *a, const void *b);
 
-/* Finds a file or a folder that is installed with the program. places: paths from the program's folder on,
- * each less than 64 bytes and with a slash before it; null ends them. Returns whether one of them is
- * readable; path is the first that is. */
+/* Finds a file or a folder that is installed with the program. places: paths relative to the program's
+ * folder, each less than 64 bytes long and with a slash at its beginning; null ends them. Returns whether one
+ * of them is readable; path becomes the first readable one. */
 bool find_installed(const char *const *places, char path[PATH_MAX]);
 
 #endif

@@ -81,17 +81,17 @@ static int run_command(const cli_command *command, int argument_count, char **ar
   return help ? print_topic(command->name) : command->run(values, operands);
 }
 
-/* Opens /dev/null for standard streams that the shell closed. Otherwise the picture's file would get the free
- * number, and messages would be written into the picture. A closed standard output stays unwritable, so that
- * writing to it is reported as an error. */
+/* Opens /dev/null for standard streams that the shell closed. Otherwise the picture's file would get the
+ * descriptor of a closed stream, and messages would be written into the picture. A closed standard output
+ * gets a descriptor that cannot be written, so that writing to it is reported as an error. */
 static void keep_standard_streams(void) {
   for (int descriptor = 0; descriptor < 3; descriptor++)
     if (fcntl(descriptor, F_GETFD) == -1 && errno == EBADF)
       (void)open("/dev/null", descriptor == 1 ? O_RDONLY : O_RDWR);
 }
 
-/* Without these signals, a closed pipe or a limit on file sizes fails the write, and the program can print
- * why; with them, the system would end the program silently. */
+/* Ignores signals that would end the program silently when a pipe is closed or a limit on file sizes is
+ * reached. The write then fails instead, and the program can print why. */
 static void take_errors_for_signals(void) {
   signal(SIGPIPE, SIG_IGN);
   signal(SIGXFSZ, SIG_IGN);

@@ -1,4 +1,4 @@
-/* cli/message.h - exit codes, and the one line on stderr that goes with each but success. */
+/* cli/message.h - exit codes, and the line on stderr that is printed with every exit code except success. */
 #ifndef HL_CLI_MESSAGE_H
 #define HL_CLI_MESSAGE_H
 
@@ -23,12 +23,12 @@ __attribute__((format(printf, 1, 2))) void warn(const char *format, ...);
 /* Prints a line on stderr, control characters replaced. */
 __attribute__((format(printf, 1, 2))) void say(const char *format, ...);
 
-/* The phase in which a library call failed; it decides whether the user's options, a file or the system is to
- * blame, and so the exit code. */
+/* The phase in which a library call failed. The phase decides whether the user's options, a file or the
+ * system caused the failure, and so decides the exit code. */
 typedef enum cli_phase {
-  PHASE_SETUP,  /* the library is being set up; the user's options alone are to blame */
+  PHASE_SETUP,  /* the library is being set up; only the user's options can be the cause */
   PHASE_READ,   /* reading a file that the user named */
-  PHASE_CHANGE, /* applying options to a scene that was good */
+  PHASE_CHANGE, /* options are applied to a scene that has no faults */
   PHASE_RUN     /* rendering, writing */
 } cli_phase;
 

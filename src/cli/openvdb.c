@@ -1,7 +1,8 @@
 /* cli/openvdb.c - runs a converter, our own openvdb_helper.cpp or else Debian's nanovdb_convert, in a
  * temporary folder and gives its file as memory.
  *
- * The converter sees only names that this file chooses: it gets the input as a link in the folder. */
+ * The converter gets the input as a link in this folder, so that it sees only names that this file
+ * chooses. */
 #define _GNU_SOURCE
 #include "openvdb.h"
 

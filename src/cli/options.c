@@ -30,7 +30,8 @@ static const cli_option *option_in(const cli_command *command, size_t row) {
   return command->has_shared(row) ? &command->shared[row] : NULL;
 }
 
-/* Names of options for suggestions; options that the command lacks, and reserved options, are passed over. */
+/* The names of options, for suggestions. Options that the command does not have, and reserved options, are
+ * skipped. */
 static const char *option_name(const void *data, size_t index) {
   const cli_command *command = data;
   size_t count = row_count(command);
@@ -191,13 +192,13 @@ static bool is_number(const char *text) {
   return text[0] != '\0' && text[strspn(text, "0123456789+-.eE")] == '\0';
 }
 
-/* Whether a name, of which the first `length` characters count, is this word. word: may be null. */
+/* Whether the first `length` characters of a name are this word. word: may be null. */
 static bool is_word(const char *word, const char *name, size_t length) {
   return word != NULL && strlen(word) == length && strncmp(word, name, length) == 0;
 }
 
-/* The row of an option, by its name or by another word for it; the number of rows: there is none. A name
- * counts before another option's other word. */
+/* Finds the row of an option by its name or its other word (cli_option.also). An option with this name comes
+ * before an option with this other word. Returns the number of rows if there is no such option. */
 static size_t find_option(const cli_command *command, const char *name, size_t length) {
   size_t row = 0, also = row_count(command);
   for (; row < row_count(command); row++) {
@@ -218,8 +219,8 @@ static size_t find_letter(const cli_command *command, char letter) {
   return row;
 }
 
-/* A copy of an option that has the range and the choices of its scene setting, or the choices of the
- * library's option of the same name. */
+/* A copy of an option. It has the range and the choices of its scene setting; without a setting, the choices
+ * of the library's option of the same name. */
 static cli_option with_setting(const cli_option *option) {
   cli_option full = *option;
   const hl_setting *setting = option->setting != NULL ? hl_setting_find(option->setting_kind, option->setting)

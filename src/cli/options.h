@@ -37,16 +37,17 @@ typedef struct cli_option {
   const char *argument; /* the option's value as help shows it; null: the option is a switch, or help lists
                          * its choices */
   const char *help;     /* lines, the first one short */
-  const char *group;    /* heading above this option in help; null: the option belongs to the group of the
-                         * option before */
+  const char *group;    /* heading above this option in help; null: the option belongs to the same group as
+                         * the option before it */
   const cli_choice *choices;
   int count;           /* OPTION_NUMBERS: how many numbers, 1 to 3 */
   char separator;      /* between the numbers: ',' or 'x' */
   bool whole;          /* whole numbers only */
   bool above;          /* low itself is excluded */
-  bool percent;        /* OPTION_NUMBERS: each may also be a percentile, from 0% to 100% */
+  bool percent;        /* OPTION_NUMBERS: each number may also be a percentile, from 0% to 100% */
   double low, high;    /* the accepted range */
-  const char *setting; /* key of a scene's setting, whose range and choices replace these; or null */
+  const char *setting; /* key of a scene's setting, whose range and choices take the place of the members
+                        * above; or null */
   hl_setting_kind setting_kind;
   bool optional;   /* OPTION_NUMBERS: the numbers may be left out; they are then 0, and `count` is 0 */
   bool repeatable; /* OPTION_TEXT: may be given again; every text is kept */
@@ -76,8 +77,8 @@ typedef struct cli_command {
   const char *description;
   const cli_option *options;
   size_t option_count;
-  const cli_option *shared; /* another subcommand's table; this subcommand has some of its options, too;
-                             * null: none */
+  const cli_option *shared; /* the table of another subcommand, of whose options this subcommand has some,
+                             * too; null: none */
   size_t shared_count;
   bool (*has_shared)(size_t row); /* whether this subcommand has the option in this row of `shared` */
   /* values: [option_count + shared_count]; values for the command's own table come first. operands: ended by

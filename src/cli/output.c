@@ -128,7 +128,7 @@ static bool make_room(cli_read_files *read) {
 
 void read_files_add(cli_read_files *read, const char *path) {
   struct stat about;
-  if (stat(path, &about) != 0) return; /* the file is gone already: there is nothing to protect */
+  if (stat(path, &about) != 0) return; /* the file does not exist any more, so it cannot be overwritten */
   if (make_room(read)) read->files[read->count++] = (cli_file_identity){about.st_dev, about.st_ino};
   else read->incomplete = true;
 }

@@ -29,13 +29,13 @@ int output_to_stdout(const unsigned char *bytes, size_t length);
 hl_status output_scene_text(hl_context *context, const hl_scene *scene, const char *path, char **text,
                             hl_error *error);
 
-/* "head.png", in the current folder, for "scans/head.nii.gz" and ".png"; of a URL without its query. Owned by
- * the caller (free), null without memory. */
+/* Makes the default name of an output: "head.png", in the current folder, for "scans/head.nii.gz" and ".png".
+ * A URL's query does not become part of the name. Owned by the caller (free); null without memory. */
 char *output_default_name(const char *input, const char *extension);
 
 /* ---- files that the run has read: it must write over none of them ---- */
 
-/* Identifies a file whichever of its names or links is used. */
+/* Identifies a file, by whichever of its names or links it is opened. */
 typedef struct cli_file_identity {
   dev_t device;
   ino_t inode;
@@ -44,14 +44,14 @@ typedef struct cli_file_identity {
 typedef struct cli_read_files {
   cli_file_identity *files; /* owned; [count] */
   size_t count, capacity;
-  bool incomplete; /* memory was short: at least one file is not in the list */
+  bool incomplete; /* memory was short: at least one of the read files is not in the list */
 } cli_read_files;
 
 void read_files_add(cli_read_files *read, const char *path);
 void read_files_release(cli_read_files *read);
 
-/* Refuses to write to a path that leads to one of the files that were read, or that is too long. reader:
- * the input that needs these files ("scene.json"). Returns the exit code. */
+/* Refuses to write to a path that leads to one of the files that were read, or that is too long. reader: the
+ * input, named in the error, that needs these files ("scene.json"). Returns the exit code. */
 int read_files_protect(const cli_read_files *read, const char *path, const char *reader);
 
 #endif

@@ -26,7 +26,7 @@ bool overlay_is_any(const cli_overlay *overlay) {
   return overlay->drawn || overlay->width > 0 || overlay->pixels_per_inch > 0;
 }
 
-/* The picture's page. image may be null: then width and height are the scene's. */
+/* Describes the page that the picture fills. */
 static void make_figure(const cli_overlay *overlay, const hl_image *image, const hl_scene *scene,
                         hl_figure *figure, hl_figure_panel *panel) {
   double width = overlay->width;
@@ -56,8 +56,8 @@ hl_status overlay_check_scene(hl_context *context, const cli_overlay *overlay, c
   return status;
 }
 
-/* Begins a picture's file by setting the size that a file of pixels states. False: the picture is written
- * as it is, without a figure. */
+/* Begins to write a picture's file: describes its page and sets the physical size that a file of pixels
+ * states. False: the picture is written as it is, without a figure. */
 static bool begin(const cli_overlay *overlay, const hl_image *image, const hl_scene *scene, bool vectors,
                   hl_image_write_options *options, hl_figure *figure, hl_figure_panel *panel) {
   if (overlay == NULL) return false;

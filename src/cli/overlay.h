@@ -8,27 +8,27 @@
 #define MILLIMETRES_PER_INCH 25.4
 
 typedef struct cli_overlay {
-  hl_overlay overlay; /* its texts are borrowed from the options, or from the members below */
+  hl_overlay overlay; /* its texts are borrowed from the options, or from `texts` and `unit` */
   hl_annotation notes[MAXIMUM_REPEATS];
   char *texts[MAXIMUM_REPEATS]; /* owned; of `notes` */
   char unit[40];                /* unit of --scale-bar */
   double width;                 /* width from --width, millimetres; 0: not stated */
-  double pixels_per_inch;       /* the pixels per inch that files state, as --dpi gives them; 0: chosen by
-                                 * --width, or none */
+  double pixels_per_inch;       /* the pixels per inch that files state, from --dpi; 0: they follow from
+                                 * --width, or files state none */
   double font_points;           /* 0: the default */
   bool drawn;                   /* anything is drawn over pictures */
 } cli_overlay;
 
-/* The millimetres of a unit of lengths on paper: "mm", "cm", "in" or "pt"; 0 for another text. */
+/* The length of a unit on paper in millimetres: "mm", "cm", "in" or "pt"; 0 for any other text. */
 double overlay_unit(const char *name);
 
 void overlay_release(cli_overlay *overlay);
 
-/* Whether a picture differs from the picture that its scene alone describes, by overlays or by the size on
- * paper that its file states. */
+/* Whether overlays, or a physical size that the file states, make a picture's file different from what its
+ * scene alone describes. */
 bool overlay_is_any(const cli_overlay *overlay);
 
-/* Finds out whether everything can be drawn over a picture of the scene, before the picture is made. */
+/* Finds out, before a picture of the scene is made, whether all overlays can be drawn over it. */
 hl_status overlay_check_scene(hl_context *context, const cli_overlay *overlay, const hl_scene *scene,
                               hl_error *error);
 

@@ -7,8 +7,8 @@
 
 #include "message.h"
 
-/* The launchers that are known: Open MPI; MPICH, Intel MPI and MVAPICH; and Slurm's srun, which starts
- * processes for either. */
+/* The known launchers: that of Open MPI; that of MPICH, Intel MPI and MVAPICH; and Slurm's srun, which starts
+ * processes of either kind. */
 static const launcher launchers[] = {
     {.rank_name = "OMPI_COMM_WORLD_RANK", .size_name = "OMPI_COMM_WORLD_SIZE", .mpi = HL_MPI_OPEN_MPI},
     {.rank_name = "PMI_RANK", .size_name = "PMI_SIZE", .mpi = HL_MPI_MPICH},

@@ -8,22 +8,22 @@
  * variables of the environment. */
 typedef struct launcher {
   const char *rank_name, *size_name; /* names of the variables */
-  const char *rank, *size;           /* values of these variables, which must be checked */
-  hl_mpi mpi;                        /* the MPI library by which the launcher's processes join */
+  const char *rank, *size;           /* the values of these variables as text, not checked yet */
+  hl_mpi mpi;                        /* the MPI library that the launcher belongs to */
 } launcher;
 
 /* Finds the launcher that started this process. False: no launcher did. */
 bool launcher_of_process(launcher *found);
 
-/* The MPI library that a context's options name: that of the process's launcher. */
+/* The MPI library for a context's options: that of the process's launcher. */
 hl_mpi launcher_mpi(void);
 
 /* Joins the processes that mpirun has started. option: for error lines. Returns the exit code;
  * call hl_ranks_leave() in any case. */
 int ranks_begin(cli_host *host, const char *option, hl_ranks **ranks);
 
-/* Ends the other ranks, too, where the exit code stands for a failure, so that nobody waits for a rank that
- * has failed. Call it before anything that the other ranks use is released. ranks: may be null. */
+/* If the exit code stands for a failure, ends the other ranks, too, so that no rank waits for this one. Call
+ * it before anything that the other ranks use is released. ranks: may be null. */
 void ranks_check(hl_ranks *ranks, int exit_code);
 
 #endif

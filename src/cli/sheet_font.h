@@ -1,5 +1,5 @@
-/* cli/sheet_font.h - letters of five by seven dots, and two below the line, for the words under the pictures
- * of a contact sheet. */
+/* cli/sheet_font.h - letters for the words under the pictures of a contact sheet. A letter has five by seven
+ * dots, and two rows of dots below its line. */
 #ifndef HL_CLI_SHEET_FONT_H
 #define HL_CLI_SHEET_FONT_H
 

@@ -102,8 +102,7 @@ static bool has_word(const char *words, const char *word) {
   return false;
 }
 
-/* Whether the options include the option that a word means. The word's meaning may be an option followed by
- * a value. */
+/* Whether the list of options has the option in `meaning`, which may be followed by a value. */
 static bool takes(const char *(*option)(const void *data, size_t index), const void *data,
                   const char *meaning) {
   const char *known;

@@ -18,7 +18,7 @@ typedef enum hl_ask {
   HL_ASK_ZOOM,
   HL_ASK_FOVY,
   HL_ASK_ORTHO,
-  HL_ASK_LOOK, /* this option and the next ones, up to HL_ASK_SHADING: the look of volumes */
+  HL_ASK_LOOK, /* from this option to HL_ASK_SHADING: options for the look of volumes */
   HL_ASK_TF,
   HL_ASK_COLORMAP,
   HL_ASK_RANGE,
@@ -44,7 +44,7 @@ typedef enum hl_ask {
   HL_ASK_LIGHT_RIG,
   HL_ASK_LIGHT,
   HL_ASK_LIGHT_SIZE,
-  HL_ASK_SHADOWS, /* this option and all that follow: settings of hl_render_settings */
+  HL_ASK_SHADOWS, /* from this option to the last one: settings of hl_render_settings */
   HL_ASK_SOFT_METHOD,
   HL_ASK_LIGHT_SAMPLES,
   HL_ASK_SHADOW_RESOLUTION,
@@ -76,7 +76,8 @@ enum {
 /* The value of one option. */
 typedef struct hl_asked {
   bool given;
-  const char *text; /* the text as it was given; the last text where an option is repeated */
+  const char *text; /* the value as it was given; for an option that was given several times, the last
+                     * value */
   const char *texts[HL_ASK_MOST_TEXTS]; /* [count] */
   int count;
   bool chosen; /* one of the choices was given; `choice` is its value */
@@ -103,7 +104,7 @@ extern const hl_option_row hl_option_rows[HL_ASK_COUNT];
 /* Reads options into asked: [HL_ASK_COUNT]. The texts in it are borrowed from the options. */
 hl_status hl_options_read(const hl_option *options, size_t count, hl_asked *asked, hl_error *error);
 
-/* The choices of a row. Where the row has none, they are the choices of its setting; null: there are none. */
+/* The choices of a row: its own or, if it has none, those of its setting; null: neither has choices. */
 const hl_setting_choice *hl_row_choices(const hl_option_row *row);
 
 #endif

@@ -38,8 +38,8 @@ static void change_projection(const hl_asked *asked, hl_camera *camera) {
   camera->fovy_deg = asked[HL_ASK_FOVY].number[0];
 }
 
-/* The view to change: the one that "view" and "up" ask for; without them the view of the scene's camera, or
- * the automatic view of a bare volume. */
+/* Finds the view to change. It is the view that "view" and "up" ask for. Without these options it is the view
+ * of the scene's camera; for a bare volume it is the automatic view. */
 static hl_status choose_view(const hl_composer *composer, const hl_scene_description *description,
                              hl_view *view) {
   const hl_asked *asked = composer->asked, *up = &asked[HL_ASK_UP];
@@ -60,7 +60,7 @@ static hl_status choose_view(const hl_composer *composer, const hl_scene_descrip
       hl_view_choose(description, side, up->given ? vector : NULL, view, composer->error));
 }
 
-/* Sets the angles that are given; false if none of them changes the view. */
+/* Sets the angles that options give; false if the view stays as it was. */
 static bool turn_view(const hl_asked *asked, hl_view *view) {
   const hl_view before = *view;
   if (asked[HL_ASK_AZIMUTH].given) view->azimuth_deg = asked[HL_ASK_AZIMUTH].number[0];
@@ -76,7 +76,8 @@ hl_status hl_frame_anew(hl_scene_description *description, hl_error *error) {
   return status == HL_OK ? hl_camera_frame_view(description, &view, 1, &description->camera, error) : status;
 }
 
-/* Frames the camera before it is turned. So all frames of a turn have the same target and distance. */
+/* Places the camera. It frames the volumes before it is turned, so that all frames of a turn have the same
+ * target and distance. */
 static hl_status place(const hl_composer *composer, bool framed, hl_scene_description *description) {
   const hl_asked *asked = composer->asked;
   hl_view view;

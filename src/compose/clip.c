@@ -1,14 +1,14 @@
 /* compose/clip.c - "clip" AXIS=LO:HI: keeps a part of each volume along an axis of its file's world.
  *
  * A bare number is a fraction of the box around the volume's voxels; a number with a unit is a coordinate. An
- * end that is left out stays at the end of the scene's own clip box; without a clip box it stays at the end
- * of the volume. */
+ * end that is left out stays where the scene's own clip box has it; without a clip box it is the end of the
+ * volume. */
 #include <string.h>
 
 #include "compose/composer.h"
 #include "compose/coordinates.h"
 
-/* Reads a text that must be a range to its end. */
+/* Reads a text that must be a range and nothing else. */
 static bool read_range(const char *text, hl_axis_range *range) {
   return hl_read_range(&text, range) && *text == '\0';
 }

@@ -1,7 +1,7 @@
 /* compose/compose.c - hl_scene_compose(): the order in which options change a scene.
  *
- * A scene cannot be changed: its description is copied, and another scene is made of the copy. Only arrays
- * that change (lights, volumes, transfer functions) are copied, too. */
+ * A scene cannot be changed. So its description is copied, the copy is changed, and another scene is made of
+ * it. Only arrays that change (lights, volumes, transfer functions) are copied, too. */
 #include <halflight/compose.h>
 #include <limits.h>
 #include <math.h>
@@ -14,17 +14,16 @@
 #include "core/door.h"
 #include "core/memory.h"
 
-/* The changed description and its own arrays. */
+/* The changed copy of the description, and the arrays that this copy owns. */
 typedef struct scene_change {
   hl_scene_description description;
   hl_changed_volumes volumes;
   hl_light *lights;      /* owned; [description.light_count] */
-  hl_scene_mesh *meshes; /* owned, with the mesh of the floor, which is the last one; null: no floor is
-                          * added */
+  hl_scene_mesh *meshes; /* owned; the last mesh is the floor; null: no floor is added */
   float *sky;            /* owned; the pixels of the image of "sky"; null: none */
 } scene_change;
 
-/* "floor": adds a mesh below everything that is seen. The camera must have been placed before. */
+/* "floor": adds a floor, a mesh below everything that is seen. The camera must have been placed before. */
 static hl_status add_floor(const hl_composer *composer, scene_change *change) {
   hl_scene_description *description = &change->description;
   if (!composer->asked[HL_ASK_FLOOR].given) return HL_OK;
@@ -47,7 +46,7 @@ static hl_status add_floor(const hl_composer *composer, scene_change *change) {
   return HL_OK;
 }
 
-/* Writes each option for a render setting into the setting's field. */
+/* Sets each render setting for which an option is given. */
 static void change_render_settings(const hl_asked *asked, hl_render_settings *render) {
   for (int which = HL_ASK_SHADOWS; which < HL_ASK_COUNT; which++) {
     if (!asked[which].given) continue;
@@ -72,8 +71,8 @@ static void change_settings(const hl_asked *asked, hl_scene_description *descrip
     memcpy(description->background, background->number, sizeof description->background);
 }
 
-/* Gives smooth labels the kernel that makes splines' coefficients of them. The scene of a bare label map was
- * made for numbers of labels, which are not interpolated by splines. */
+/* Gives scenes of smooth labels the B-spline, whose coefficients smooth labels are. The scene of a bare label
+ * map has the linear kernel, which was chosen for the numbers of labels. */
 static void smooth_labels(const hl_composer *composer, hl_scene_description *description) {
   bool labels = false;
   for (size_t v = 0; v < description->volume_count; v++) labels |= description->volumes[v].label_count > 0;
@@ -83,7 +82,7 @@ static void smooth_labels(const hl_composer *composer, hl_scene_description *des
 
 static hl_status change_all(const hl_composer *composer, scene_change *change) {
   hl_scene_description *description = &change->description;
-  /* the volumes come first, because the camera frames the visible part of them */
+  /* volumes are changed before the camera is placed, because the camera frames their visible part */
   hl_status status = hl_compose_volumes(composer, description, &change->volumes);
   bool seen = change->volumes.seen || (composer->flags & HL_COMPOSE_CHANGED) != 0;
   if (status == HL_OK) smooth_labels(composer, description);

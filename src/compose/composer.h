@@ -1,5 +1,5 @@
-/* compose/composer.h - one call of hl_scene_compose(), and the functions that the files of this room do for
- * each other. */
+/* compose/composer.h - one call of hl_scene_compose(), and the functions that the files of src/compose
+ * share. */
 #ifndef HL_COMPOSE_COMPOSER_H
 #define HL_COMPOSE_COMPOSER_H
 
@@ -15,7 +15,7 @@ typedef struct hl_composer {
   hl_error *error;       /* may be null */
 } hl_composer;
 
-/* The status of a failed call for whose failure options are to blame, and not a file. */
+/* The status of a failed call whose failure options have caused, not a file. */
 static inline hl_status hl_blame_options(hl_status status) {
   return status == HL_ERROR_INPUT ? HL_ERROR_ARGUMENT : status;
 }
@@ -26,20 +26,20 @@ static inline hl_status hl_blame_options(hl_status status) {
 bool hl_asks_for_functions(const hl_asked *asked);
 
 /* The transfer function of volume number `index` with the options applied. Where color is not null and no
- * "colormap" is given for this volume, the function has this colour. Its points are owned by the caller,
- * after a failure too. */
+ * "colormap" is given for this volume, the function has this colour. The caller owns the function's points,
+ * also after a failure. */
 hl_status hl_compose_function(const hl_composer *composer, const hl_scene_description *description,
                               size_t index, const char *color, hl_transfer_function *function);
 
 /* Refuses "tf", "colormap" and "iso" with a NAME= that no volume has. */
 hl_status hl_check_volume_names(const hl_composer *composer, const hl_scene_description *description);
 
-/* Whether a text, with NAME= or without a name, is for volume number `index`. *rest: the text after the
- * name. */
+/* Whether an option's value, which may begin with NAME=, is for volume number `index`. *rest: the text after
+ * NAME=. */
 bool hl_text_is_for(const hl_composer *composer, const char *text, const hl_scene_volume *volume,
                     size_t index, const char **rest);
 
-/* The value that an option, which may be given several times, gives one volume. The last value for this
+/* The value of an option for one volume. The option may be given several times, and the last value for this
  * volume counts; null: there is none. */
 const char *hl_text_for(const hl_composer *composer, hl_ask option, const hl_scene_volume *volume,
                         size_t index);
@@ -49,9 +49,9 @@ const char *hl_text_for(const hl_composer *composer, hl_ask option, const hl_sce
 /* Refuses values of "iso" that cannot be read. */
 hl_status hl_check_isosurfaces(const hl_asked *iso, hl_error *error);
 
-/* Gives volume number `index` its surfaces of "iso". Where no option sets its transfer function, whose points
- * belong to the caller, the function becomes clear. surfaces: an array for all values of "iso"; the volume
- * borrows it. */
+/* Gives volume number `index` the surfaces of "iso". If no option sets the volume's transfer function, the
+ * function becomes transparent; its points belong to the caller. surfaces: an array with room for all values
+ * of "iso"; the volume borrows it. */
 hl_status hl_compose_isosurfaces(const hl_composer *composer, size_t index, hl_scene_volume *volume,
                                  hl_isosurface *surfaces);
 
@@ -65,56 +65,57 @@ hl_status hl_check_cuts(const hl_asked *asked, hl_error *error);
 /* The number of cuts that the options ask for. */
 size_t hl_count_cuts(const hl_asked *asked);
 
-/* Adds the options' cuts to a volume's own cuts. cuts: an array for all of them; the volume borrows it. */
+/* Adds the options' cuts to a volume's own cuts. cuts: an array with room for both; the volume borrows it. */
 hl_status hl_compose_cuts(const hl_composer *composer, hl_scene_volume *volume, hl_cut *cuts);
 
 /* Adds the options' cuts to a scene's own cuts, which cut all volumes. Numbers without a unit are fractions
- * of the box around all volumes. cuts: an array for all of them; the scene borrows it. */
+ * of the box around all volumes. cuts: an array with room for both; the scene borrows it. */
 hl_status hl_compose_scene_cuts(const hl_composer *composer, hl_scene_description *scene, hl_cut *cuts);
 
 /* ---- sky.c ---- */
 
 hl_status hl_check_sky(const hl_asked *sky, hl_error *error);
 
-/* Gives the scene the sky of "sky" where it is asked for. Where the scene had no sky, the new sky is upright
- * as the camera is.
- * *pixels: the pixels of an image, borrowed by the description; the caller releases them. */
+/* Gives the scene the sky that "sky" asks for. If the scene had no sky, the new sky's zenith is the camera's
+ * up. *pixels: the pixels of the sky's image, if it has one; the description borrows them, and the caller
+ * releases them. */
 hl_status hl_compose_sky(const hl_composer *composer, hl_scene_description *description, float **pixels);
 
 /* ---- camera.c ---- */
 
-/* Places the camera. seen: whether the visible part of the volumes has changed; if so, an automatic camera
- * frames them anew. */
+/* Places the camera. seen: the visible part of the volumes has changed; the camera of a bare volume then
+ * frames the volumes anew. */
 hl_status hl_compose_camera(const hl_composer *composer, bool seen, hl_scene_description *description);
 
-/* Moves the camera along its direction and zooms, so that everything in the scene fits into the picture. */
+/* Places the camera anew, without changing its direction, so that everything in the scene fits into the
+ * picture. */
 hl_status hl_frame_anew(hl_scene_description *description, hl_error *error);
 
 /* ---- values.c ---- */
 
-/* Turns those bare label maps back into volumes of values whose values the options ask for. *scene: a new
- * scene of the description; null: there is no such label map. */
+/* Turns a bare label map back into a volume of values, if options ask for its values. *scene: a new scene of
+ * the description; null: there is no such label map. */
 hl_status hl_compose_values(const hl_composer *composer, const hl_scene_description *description,
                             hl_scene **scene);
 
 /* ---- rest.c ---- */
 
-/* Turns a mask's rest, which "show" gives as a fraction of opacity, into the factor of extinction. */
+/* Converts hl_mask.rest, which "show" gives as a fraction of opacity, to a factor of extinction. */
 void hl_compose_rest(hl_scene_volume *volume);
 
 /* ---- labels.c ---- */
 
-/* Whether hl_compose_labels() has work: the options ask for a label map, or the only volume is bare and is
- * one of several layers of labels. */
+/* Whether hl_compose_labels() changes the scene: options ask for a label map, or the only volume is a bare
+ * label map that is one of several layers in its file. */
 bool hl_asks_for_labels(const hl_composer *composer, const hl_scene_description *description);
 
-/* Replaces *scene by a scene with the label map of "labels" or the mask of "mask", or by a scene in which
- * the bare volume is shown as a label map. */
+/* Replaces *scene by a scene that also has the label map of "labels" or the mask of "mask", or in which the
+ * bare volume is shown as a label map. */
 hl_status hl_compose_labels(const hl_composer *composer, hl_scene **scene);
 
 /* ---- idle.c ---- */
 
-/* Logs options that were given and change nothing. */
+/* Logs the options that were given but change nothing. */
 void hl_warn_of_idle_options(const hl_composer *composer, const hl_scene_description *description);
 
 #endif

@@ -16,11 +16,12 @@ typedef struct hl_coordinate {
 /* Reads "0.25", "10mm" or nothing, and moves *text past it. False if something else is there. */
 bool hl_read_coordinate(const char **text, hl_coordinate *coordinate);
 
-/* The coordinate in the file's world. otherwise: the result where the text has no number. low, high: the
- * ends of the volume's box. */
+/* The coordinate in the file's world. otherwise: the result if the text has no number. low, high: the ends of
+ * the box around the volume's voxels. */
 double hl_coordinate_of(const hl_coordinate *coordinate, double otherwise, double low, double high);
 
-/* A range along an axis, as "x=LO:HI". The function moves *text past it; false if something else is there. */
+/* Reads a range along an axis, as "x=LO:HI", and moves *text past it. False if the text has something else
+ * there. */
 typedef struct hl_axis_range {
   int axis;
   hl_coordinate ends[2];

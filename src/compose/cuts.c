@@ -1,6 +1,6 @@
 /* compose/cuts.c - "cut-plane" POINT:NORMAL or AXIS=AT, "cut-box" RANGES and "cut-sphere" CENTRE:RADIUS:
- * parts that are cut out of volumes. For one volume they are given in its file's world, for all volumes of a
- * scene in the scene's world. */
+ * parts that are cut out of volumes. In a scene of one volume, the options' numbers are in the world of the
+ * volume's file; in a scene of several volumes, they are in the scene's world. */
 #include <math.h>
 #include <string.h>
 
@@ -39,9 +39,8 @@ static bool read_normal(const char *text, double normal[3]) {
   return normal[0] != 0 || normal[1] != 0 || normal[2] != 0;
 }
 
-/* Reads a plane across an axis. The texts "x=AT" and "x=AT:" cut away the part from AT on, and "x=:AT" the
- * part before AT. The point of the plane has AT as its coordinate along the axis; its other two coordinates
- * do not matter. */
+/* Reads a plane across an axis. The texts "x=AT" and "x=AT:" cut away the part from AT on, and "x=:AT" cuts
+ * away the part before AT. Only the coordinate along the axis matters in the plane's point: it is AT. */
 static bool read_axis_plane(const char *text, typed_cut *cut) {
   hl_axis_range away = {.axis = *text - 'x'};
   const char *at = text + 2;
@@ -107,8 +106,8 @@ size_t hl_count_cuts(const hl_asked *asked) {
   return count;
 }
 
-/* Places a cut. low, high: the box around the volume's voxels. Where the text leaves an end of a cut box out,
- * this end lies beyond the voxels. */
+/* Places a cut. low, high: the box around the volume's voxels. Where the text gives no end for a side of a
+ * cut box, the box ends beyond the voxels there. */
 static void place_cut(const typed_cut *typed, const double low[3], const double high[3], hl_cut *cut) {
   double longest = 0;
   for (int a = 0; a < 3; a++) {
@@ -123,7 +122,7 @@ static void place_cut(const typed_cut *typed, const double low[3], const double 
   cut->radius = typed->radius.fraction ? typed->radius.number * longest : typed->radius.number;
 }
 
-/* Adds the cuts of the options, placed in the box. */
+/* Converts the options' cuts to places in the box, and adds them. */
 static void add_cuts(const hl_asked *asked, const double low[3], const double high[3], hl_cut *cuts,
                      size_t *count) {
   for (int type = 0; type < CUT_TYPES; type++)
@@ -132,14 +131,14 @@ static void add_cuts(const hl_asked *asked, const double low[3], const double hi
       typed_cut typed;
       hl_cut_defaults(cut);
       cut->type = (hl_cut_type)type;
-      /* A text that cannot be read was refused before. */
+      /* hl_check_cuts() has refused a text that cannot be read. */
       if (!read_cut(cut->type, asked[option_of[type]].texts[n], &typed)) continue;
       place_cut(&typed, low, high, cut);
       ++*count;
     }
 }
 
-/* Extends a box so that it contains a volume, too; in the scene's world. */
+/* Extends a box in the scene's world so that it contains the box of a volume. */
 static hl_status extend_box(const hl_scene_volume *volume, double low[3], double high[3], hl_error *error) {
   double ends[2][3];
   hl_volume_info info = {.struct_size = sizeof info};

@@ -96,8 +96,8 @@ static void name_of(const hl_scene_volume *volume, size_t index, char *name, siz
   }
 }
 
-/* The text after "NAME="; null: the text has no name and is for every volume. A text that is the name of an
- * existing file stands for this file, even if it has a '=' in it. */
+/* The text after "NAME="; null: the text has no name, and is for every volume. If a file has the whole text
+ * as its name, the text is that file's name, even with a '=' in it. */
 static const char *after_name(const hl_context *context, const char *text) {
   const char *equals = strchr(text, '=');
   return equals == NULL || hl_file_kind(context, text) != 0 ? NULL : equals + 1;
@@ -132,7 +132,8 @@ static void list_names(const hl_scene_description *description, char *names, siz
   }
 }
 
-/* Refuses a NAME= that no volume has. many: the option may be given several times for one volume. */
+/* Refuses values with a NAME= that no volume has. many: the option may be given several times for one
+ * volume. */
 static hl_status check_names(const hl_composer *composer, hl_ask option, bool many,
                              const hl_scene_description *description) {
   char names[600];
@@ -170,7 +171,8 @@ const char *hl_text_for(const hl_composer *composer, hl_ask option, const hl_sce
 
 /* ---- colormaps in a list ---- */
 
-/* Whether "colormap" lists colormaps and colours, one for each volume. R,G,B is one colour. */
+/* Whether the value of "colormap" is a list, with a colormap or a colour for each volume. R,G,B is one
+ * colour, and no list. */
 static bool is_list(const hl_composer *composer, const hl_asked *colormap) {
   double color[3];
   return colormap->count == 1 && strchr(colormap->text, ',') != NULL &&
@@ -184,7 +186,7 @@ static size_t count_items(const char *list) {
   return count;
 }
 
-/* Copies the item of a list that is for volume number `index`. */
+/* Copies the item of a list that belongs to volume number `index`. */
 static hl_status copy_item(const hl_composer *composer, const hl_scene_description *description,
                            const char *list, size_t index, char *item, size_t size) {
   const size_t count = count_items(list);
@@ -215,8 +217,8 @@ static hl_status load_function(const hl_composer *composer, const char *name, co
 }
 
 /* Makes values below the threshold clear, and values from the threshold on nearly opaque over a voxel's edge.
- * A ramp below the threshold lets surfaces be shaded without stairs. The ramp is a twentieth of the volume's
- * range wide, but at most half the way from the least value to the threshold. */
+ * Opacity rises on a ramp below the threshold, so that surfaces are shaded without stairs. The ramp is a
+ * twentieth of the volume's range wide, but at most half the way from the least value to the threshold. */
 static hl_status make_opaque_from(const hl_composer *composer, const hl_volume *volume, double threshold,
                                   hl_transfer_function *function) {
   enum { POINTS = 2 };
@@ -242,7 +244,8 @@ static hl_status make_opaque_from(const hl_composer *composer, const hl_volume *
   return HL_OK;
 }
 
-/* Gives a function the points of `loaded`. Where `loaded` has no opacity, the function keeps its own. */
+/* Gives a function the points of the loaded function. If the loaded function has no opacity, the function
+ * keeps its own. */
 static hl_status replace(const hl_composer *composer, const hl_transfer_function *loaded,
                          hl_transfer_function *function) {
   hl_transfer_function both = *loaded, copy = {0};
@@ -299,7 +302,7 @@ static hl_status spread(const hl_composer *composer, const hl_volume *volume, co
   return hl_blame_options(status);
 }
 
-/* Gives all values one colour. ramp, for maximum projections: colours go from black at range[0] to this
+/* Gives all values one colour. ramp: for maximum projections, the colours go from black at range[0] to this
  * colour at range[1]. */
 static hl_status color_plainly(const hl_composer *composer, const double color[3], bool ramp,
                                const double range[2], hl_transfer_function *function) {

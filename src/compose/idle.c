@@ -1,4 +1,4 @@
-/* compose/idle.c - logs options that were given and change nothing. */
+/* compose/idle.c - logs options that were given but change nothing. */
 #include "compose/composer.h"
 #include "core/context.h"
 
@@ -7,7 +7,7 @@ static const hl_ask of_light[] = {
     HL_ASK_LIGHT,         HL_ASK_LIGHT_RIG,         HL_ASK_LIGHT_SIZE,    HL_ASK_SHADOWS, HL_ASK_SOFT_METHOD,
     HL_ASK_LIGHT_SAMPLES, HL_ASK_SHADOW_RESOLUTION, HL_ASK_SHADOW_LOOKUP, HL_ASK_AMBIENT, HL_ASK_SHADING};
 
-/* Where the picture is made without light, warns of options that concern light, and returns true. */
+/* If the picture is made without light, warns of options that concern light, and returns true. */
 static bool warn_of_no_light(const hl_composer *composer, const hl_scene_description *description) {
   const hl_asked *asked = composer->asked;
   bool maximum = description->render.compositing == HL_COMPOSITING_MAXIMUM;

@@ -1,5 +1,5 @@
-/* compose/isosurfaces.c - "iso" [NAME=]VALUE[:COLOR[:OPACITY]]: surfaces on which a volume has one value, in
- * place of what its transfer function shows. */
+/* compose/isosurfaces.c - "iso" [NAME=]VALUE[:COLOR[:OPACITY]]: surfaces on which a volume has one value.
+ * They take the place of the matter that its transfer function shows. */
 #include <math.h>
 #include <string.h>
 
@@ -30,7 +30,7 @@ static bool read_iso(const char *text, hl_isosurface *surface) {
   return rest != opacity && *rest == '\0' && surface->opacity >= 0 && surface->opacity <= 1;
 }
 
-/* The text after "NAME=". The value of an "iso" has no other '='. */
+/* The text after "NAME=", or the whole text. A value of "iso" has no '=' of its own. */
 static const char *text_of_surface(const char *text) {
   const char *equals = strchr(text, '=');
   return equals != NULL ? equals + 1 : text;
@@ -60,7 +60,7 @@ static hl_status warn_of_range(const hl_composer *composer, const hl_scene_volum
   return HL_OK;
 }
 
-/* Hides everything of a volume but its surfaces. */
+/* Hides all matter of a volume, so that only its surfaces show. */
 static void clear_function(hl_transfer_function *function) {
   for (size_t n = 0; n < function->opacity_count; n++) ((hl_opacity_point *)function->opacity)[n].opacity = 0;
 }

@@ -1,5 +1,5 @@
-/* compose/labels.c - "labels", "mask", "label-table" and "show": a label map as one more volume, as a mask
- * over the volumes, or made of the bare volume itself. */
+/* compose/labels.c - "labels", "mask", "label-table" and "show": a label map becomes one more volume, or a
+ * mask over the volumes, or the bare volume itself is shown as a label map. */
 #include <string.h>
 
 #include "compose/composer.h"
@@ -19,8 +19,8 @@ static size_t layers_of(const hl_volume *volume) {
   return 1;
 }
 
-/* Loads one layer and its labels. reading: the options for reading the file; the layer is a component of the
- * file. */
+/* Loads one layer and its labels. reading: the options for reading the file; a layer is read as a component
+ * of the file. */
 static hl_status load_layer(hl_context *context, const char *file, const char *table,
                             const hl_volume_load_options *reading, hl_label_layers *layers, hl_error *error) {
   hl_volume_load_options options = *reading;
@@ -42,7 +42,7 @@ static hl_status load_layer(hl_context *context, const char *file, const char *t
   return status;
 }
 
-/* Loads the layers of the file that have labels, and shows the labels that the list names. */
+/* Loads the layers that have labels, and shows the labels that the list names. */
 static hl_status load_layers(const hl_composer *composer, const char *path, const char *table,
                              const hl_volume_load_options *reading, hl_shown_list *show,
                              hl_label_layers *layers) {
@@ -66,7 +66,7 @@ static void release_layers(hl_context *context, hl_label_layers *layers) {
   }
 }
 
-/* Replaces *scene by a new scene, of the description. */
+/* Replaces *scene by a new scene, made of the description. */
 static hl_status make(const hl_composer *composer, const hl_scene_description *description,
                       hl_scene **scene) {
   hl_scene *made = NULL;
@@ -91,7 +91,8 @@ static hl_status add_layers(const hl_composer *composer, const hl_label_layers *
   description.volumes = volumes;
   hl_status status = make(composer, &description, scene);
   if (status == HL_OK && composer->bare) {
-    description = *hl_scene_describe(*scene); /* the labels have become transfer functions */
+    description = *hl_scene_describe(*scene); /* in the new scene's description, transfer functions were made
+                                               * from the labels; framing uses them */
     status = hl_frame_anew(&description, composer->error);
     if (status == HL_OK) status = make(composer, &description, scene);
   }
@@ -99,9 +100,9 @@ static hl_status add_layers(const hl_composer *composer, const hl_label_layers *
   return status;
 }
 
-/* The options with which the file of labels is read. itself: the label map takes the place of the scene's
- * only, bare volume and is read as this volume was. Otherwise the map is turned into the space of the
- * scene's first volume. */
+/* The options for reading the file of labels. itself: the label map takes the place of the scene's only
+ * volume, which is bare, and is read with the options of this volume. Otherwise the map is converted to the
+ * anatomical space of the scene's first volume. */
 static hl_volume_load_options reading_of(const hl_scene_description *description, bool itself) {
   hl_volume_load_options reading;
   hl_volume_info info = {.struct_size = sizeof info};
@@ -117,8 +118,8 @@ static hl_volume_load_options reading_of(const hl_scene_description *description
   return reading;
 }
 
-/* The factor that "show" gives the matter outside of a mask's labels, by "rest:FACTOR"; 0 where it gives
- * none. */
+/* The fraction of opacity that "rest:FRACTION" in "show" gives the matter outside a mask's labels; 0 if
+ * "show" does not have it. */
 static double rest_of(hl_shown_list *show) {
   double rest = 0;
   for (size_t s = 0; s < show->count; s++) {
@@ -144,8 +145,8 @@ static hl_status put_on_mask(const hl_composer *composer, const hl_mask *mask, h
   return status;
 }
 
-/* Moves the labels that show to the front; labels that do not show belong to the rest. Returns the number of
- * labels that show. */
+/* Moves the labels that show to the front of the list. Labels that do not show are left out, and their matter
+ * belongs to the rest. Returns the number of labels that show. */
 static size_t keep_shown(hl_label *labels, size_t count) {
   size_t kept = 0;
   for (size_t n = 0; n < count; n++)
@@ -199,7 +200,7 @@ static hl_status add_map(const hl_composer *composer, hl_shown_list *show, hl_la
                          : status;
 }
 
-/* Whether the scene's only volume was read without options that choose a part of its file. */
+/* Whether the scene's only volume was read without options that select a part of its file. */
 static bool is_read_plainly(const hl_scene_volume *volume) {
   hl_scene_volume plain;
   hl_scene_volume_defaults(&plain);
@@ -208,8 +209,8 @@ static bool is_read_plainly(const hl_scene_volume *volume) {
          !(volume->spacing[0] > 0);
 }
 
-/* Whether the only volume is a bare label map whose file has further layers of labels, which shall show,
- * too. */
+/* Whether the scene's only volume is a bare label map whose file has further layers of labels. These are then
+ * shown, too. */
 static bool is_layered(const hl_composer *composer, const hl_scene_description *description) {
   const hl_scene_volume *only = description->volume_count == 1 ? &description->volumes[0] : NULL;
   if (!composer->bare || (composer->flags & HL_COMPOSE_CHANGED) != 0 || only == NULL || only->file == NULL ||

@@ -41,7 +41,7 @@ static hl_status change_first_light(const hl_composer *composer, hl_scene_descri
   return HL_OK;
 }
 
-/* "shadows": sets the scene's shadows, and lets every light that casts shadows follow this setting. */
+/* "shadows": sets the scene's shadows. Every light that casts shadows then follows this setting. */
 static void change_shadows(const hl_composer *composer, hl_scene_description *description, hl_light *lights) {
   if (!composer->asked[HL_ASK_SHADOWS].given) return;
   hl_shadows shadows = (hl_shadows)composer->asked[HL_ASK_SHADOWS].choice;
@@ -50,8 +50,8 @@ static void change_shadows(const hl_composer *composer, hl_scene_description *de
     if (lights[i].shadows != HL_SHADOWS_OFF) lights[i].shadows = HL_SHADOWS_DEFAULT;
 }
 
-/* Automatic light is made for the whole volume as its transfer function shows it. A bare volume that is cut
- * open, has isosurfaces or stands in a light rig gets light that suits its visible part. */
+/* The light of a bare volume was chosen for the whole volume and its transfer function. If the volume is cut,
+ * has isosurfaces or is in a light rig, the light's strength is chosen anew for its visible part. */
 static hl_status expose_anew(const hl_composer *composer, hl_scene_description *description,
                              hl_light *lights) {
   double factor = 1;

@@ -4,13 +4,13 @@
 
 #include "compose/composer.h"
 
-/* Gives the description changed lights. *lights: owned by the caller, who must release them after a failure,
- * too. */
+/* Changes the description's lights by the options. *lights: the changed lights, owned by the caller, who must
+ * release them also after a failure. */
 hl_status hl_compose_lights(const hl_composer *composer, hl_scene_description *description,
                             hl_light **lights);
 
-/* "ambient": sets the ambient light, which replaces the sky that was chosen for a bare volume. With "shadows"
- * off, this sky casts no shadow, either. */
+/* "ambient": sets the ambient light. It takes the place of the sky that was chosen for a bare volume. If
+ * "shadows" is off, constant light without shadows takes the place of that sky. */
 void hl_compose_ambient(const hl_composer *composer, hl_scene_description *description);
 
 #endif

@@ -8,7 +8,7 @@
 #include "core/context.h"
 #include "image/srgb.h"
 
-/* The linear value of middle grey; on a brighter background, the projection ends in black. */
+/* The linear value of middle grey. On a background brighter than this, a maximum projection ends in black. */
 #define MIDDLE_GREY 0.18
 
 static bool is_maximum(const hl_asked *asked) {
@@ -52,10 +52,10 @@ hl_status hl_compose_volume_look(const hl_composer *composer, hl_scene_volume *v
   return HL_OK;
 }
 
-/* Fits the greys of a maximum projection to the background. Derived: a grey of the preset, when encoded,
- * lies at the fraction t of the way from black to white. The new colour lies at the same fraction, in
- * encoded values, of the way from the background to the end colour. Where the way goes from black to white,
- * the new colour is the grey itself. */
+/* Fits the greys of a maximum projection to the background. Derived: a grey of the preset, when encoded, lies
+ * at the fraction t of the way from black to white. The new colour lies at the same fraction of the way from
+ * the background to the end colour, also in encoded values. For a black background and a white end, the new
+ * colour is the grey itself. */
 void hl_fit_projection(const hl_composer *composer, hl_transfer_function *function) {
   const hl_asked *background = &composer->asked[HL_ASK_BACKGROUND];
   if (!background->given || background->chosen) return;

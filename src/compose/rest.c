@@ -1,8 +1,9 @@
-/* compose/rest.c - "rest:FRACTION" of "show" beside a mask: the rest is seen at this fraction of its opacity.
+/* compose/rest.c - "rest:FRACTION" in "show", with a mask: the matter outside the labels shows at this
+ * fraction of its opacity.
  *
- * hl_mask.rest multiplies extinction. Derived: matter of the optical depth d along a way has the opacity 1 -
- * exp(-d), and 1 - exp(-f d) where its extinction is multiplied by f. The second opacity is the fraction r of
- * the first one for f = -ln(1 - r (1 - exp(-d))) / d. This factor is r where d is small, and 1 for r = 1. */
+ * hl_mask.rest multiplies extinction. Derived: matter of the optical depth d along a path has the opacity 1 -
+ * exp(-d). If its extinction is multiplied by f, the opacity is 1 - exp(-f d). This is the fraction r of the
+ * first opacity if f = -ln(1 - r (1 - exp(-d))) / d. This factor is r where d is small, and 1 for r = 1. */
 #include <math.h>
 
 #include "compose/composer.h"
@@ -10,11 +11,11 @@
 #include "scene/geometry/placement.h"
 #include "volume/volume.h"
 
-/* A limit of opacities, because an opacity of 1 has no finite extinction per unit of distance. */
+/* A limit of opacities. It is below 1, because an opacity of 1 has an infinite extinction. */
 #define MOST_OPACITY 0.9999
 
-/* The optical depth along a typical way: the mean extinction of the visible voxels times the edge of a cube
- * of as many voxels. The result is 0 where opacity does not depend on the value alone. */
+/* The optical depth along a typical path: the mean extinction of the visible voxels, times the edge of a cube
+ * that has as many voxels. It is 0 if opacity does not depend on the value alone. */
 static double typical_depth(const hl_scene_volume *seen) {
   const hl_volume *volume = seen->volume;
   const hl_transfer_function *function = &seen->transfer_function;

@@ -60,7 +60,7 @@ static bool is_whole(const hl_label *label, const hl_shown_label *shown) {
   return label->name != NULL && strcmp(label->name, shown->whole) == 0;
 }
 
-/* Whether a label has the name that is asked for, in upper or lower case unless `exactly`. */
+/* Whether a label has the name of the item. Upper and lower case count as the same, unless `exactly`. */
 static bool has_name(const hl_label *label, const hl_shown_label *shown, bool exactly) {
   if (label->name == NULL) return false;
   return exactly ? strcmp(label->name, shown->name) == 0 : hl_plain_equal(label->name, shown->name);
@@ -74,10 +74,11 @@ static bool is_named(const hl_label *label, const hl_shown_label *shown, bool ex
          (hl_text_whole(shown->name, &number) && number == label->value);
 }
 
-/* Shows the labels that the list names, if it names any. "all" shows every label but those that a table
- * hides. */
+/* Shows the labels that the list names. An empty list changes nothing. "all" shows every label except those
+ * that a table hides. */
 void hl_show_labels(hl_shown_list *list, hl_label *labels, size_t count) {
-  bool exactly[HL_MOST_SHOWN] = {false}; /* atlases have names that differ in their case alone */
+  bool exactly[HL_MOST_SHOWN] = {false}; /* whether an item is exactly the name of a label; atlases have names
+                                          * that differ only in case */
   for (size_t s = 0; s < list->count; s++)
     for (size_t n = 0; n < count; n++) exactly[s] |= has_name(&labels[n], &list->labels[s], true);
   for (size_t n = 0; n < count && list->count > 0; n++) {
@@ -92,7 +93,7 @@ void hl_show_labels(hl_shown_list *list, hl_label *labels, size_t count) {
       labels[n].opacity = whole ? 1 : shown->opacity;
       if (!shown->colored || whole) continue;
       memcpy(labels[n].color, shown->color, sizeof labels[n].color);
-      labels[n].tint = 1; /* in a mask, the label's colour tints the matter */
+      labels[n].tint = 1; /* in a mask, matter takes the label's colour */
     }
   }
 }
@@ -108,8 +109,8 @@ static const char *name_of_label(const void *data, size_t index) {
   return NULL;
 }
 
-/* Writes the labels of the layers by name, or else by value: "liver, tumour, 7". Where not all fit, the last
- * words give the number of the others. */
+/* Writes the labels of the layers, by name or else by value: "liver, tumour, 7". If there is no room for all
+ * labels, the text ends with the number of further labels. */
 static void list_labels(const hl_label_layers *layers, char *text, size_t size) {
   enum { LISTED = 12 };
   size_t used = 0, count = 0;

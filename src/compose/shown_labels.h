@@ -6,9 +6,10 @@
 
 /* One of the labels that "show" names: NAME|NUMBER|all|rest[=COLOR][:OPACITY]. */
 typedef struct hl_shown_label {
-  char name[128], whole[128]; /* the name alone, and the whole text, which may itself be a name with ":" or
-                               * "=" in it */
-  const char *wrong; /* advice for an error, where the text is no valid name; null: the text is valid */
+  char name[128], whole[128]; /* the name alone, and the whole text; the whole text may itself be the name of
+                               * a label, with ":" or "=" in it */
+  const char *wrong; /* an error's advice on how to mend the text, if it is no valid name; null: the text is
+                      * valid */
   bool all, colored, found;
   double color[3], opacity;
 } hl_shown_label;
@@ -20,7 +21,7 @@ typedef struct hl_shown_list {
   size_t count;
 } hl_shown_list;
 
-/* The layers of a label map's file, as volumes whose labels and voxels are owned here. */
+/* The layers of a label map's file as volumes. The structure owns their labels and voxels. */
 typedef struct hl_label_layers {
   hl_scene_volume volumes[HL_MOST_LABEL_LAYERS];
   size_t count;
@@ -28,11 +29,11 @@ typedef struct hl_label_layers {
 
 hl_status hl_read_shown(const hl_asked *show, hl_shown_list *list, hl_error *error);
 
-/* Shows the labels that the list names, if it names any. "all" shows every label but those that a table
- * hides. */
+/* Shows the labels that the list names. An empty list changes nothing. "all" shows every label except those
+ * that a table hides. */
 void hl_show_labels(hl_shown_list *list, hl_label *labels, size_t count);
 
-/* Refuses names that no layer had. The error has the nearest name, or all names. */
+/* Refuses names that no label of any layer has. The error suggests the nearest name, or lists all names. */
 hl_status hl_check_shown(const hl_shown_list *list, const hl_label_layers *layers, hl_error *error);
 
 #endif

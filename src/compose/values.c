@@ -1,4 +1,5 @@
-/* compose/values.c - bare label maps whose values the options ask for: they are not drawn by their labels. */
+/* compose/values.c - draws a bare label map by its values, instead of by its labels, if options ask for its
+ * values. */
 #include <string.h>
 
 #include "compose/composer.h"
@@ -7,8 +8,7 @@
 #include "guess/looks.h"
 #include "scene/function/transfer_function.h"
 
-/* Whether options say how values are drawn, or mask them. (Only volumes that are no label maps have a
- * mask.) */
+/* Whether options say how values are drawn, or ask for a mask, which only volumes of values can have. */
 static bool asks_for_values(const hl_composer *composer, const hl_scene_volume *volume, size_t index) {
   static const hl_ask named[] = {HL_ASK_TF, HL_ASK_COLORMAP, HL_ASK_ISO};
   const hl_asked *asked = composer->asked;
@@ -19,9 +19,10 @@ static bool asks_for_values(const hl_composer *composer, const hl_scene_volume *
          (asked[HL_ASK_LOOK].given && asked[HL_ASK_LOOK].choice == HL_LOOK_MIP);
 }
 
-/* Takes the labels off each volume whose values are asked for, and gives it the function and material for its
- * values. The scene gets the kernel for the first volume's values. functions: [description->volume_count],
- * zeroed; their points belong to the caller, after a failure too. */
+/* Makes volumes of values of those label maps whose values options ask for: removes their labels, and gives
+ * them the transfer function and material for their values. The scene's kernel is then the one for the first
+ * volume's values. functions: [description->volume_count], zeroed; the caller owns their points, also after a
+ * failure. */
 static hl_status take_labels_off(const hl_composer *composer, hl_scene_volume *volumes,
                                  hl_transfer_function *functions, hl_scene_description *description) {
   for (size_t v = 0; v < description->volume_count; v++) {

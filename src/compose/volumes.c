@@ -41,20 +41,20 @@ static hl_status change_volume(const hl_composer *composer, const hl_scene_descr
   return hl_compose_isosurfaces(composer, index, volume, own);
 }
 
-/* The number of planes by which hl_scene_for_volume() has cut bare volumes. Call it before the options' cuts
- * are added. */
+/* The number of planes by which hl_scene_for_volume() has cut bare volumes. Must be called before the
+ * options' cuts are added. */
 static size_t count_holder_planes(const hl_scene_description *description) {
   size_t planes = 0;
   for (size_t v = 0; v < description->volume_count; v++) planes += description->volumes[v].cut_count;
   return planes;
 }
 
-/* Whether the parts beside the object that hl_scene_for_volume() cut off are to be shown again. */
+/* Whether "whole" asks to show the parts that hl_scene_for_volume() has cut off. */
 static bool shows_whole(const hl_composer *composer, const hl_scene_description *description) {
   return composer->bare && composer->asked[HL_ASK_WHOLE].given && count_holder_planes(description) > 0;
 }
 
-/* Logs which parts of a bare volume are cut off. */
+/* Logs that parts of a bare volume are cut off. */
 static void tell_of_holders(const hl_composer *composer, const hl_scene_description *description) {
   size_t planes = count_holder_planes(description);
   if (composer->bare && planes > 0 && !shows_whole(composer, description))
@@ -63,7 +63,7 @@ static void tell_of_holders(const hl_composer *composer, const hl_scene_descript
            planes == 1 ? "" : "s");
 }
 
-/* Refuses options for the look of volumes where there are none. */
+/* Refuses options for the look of volumes in a scene without volumes. */
 static hl_status refuse_looks(const hl_composer *composer) {
   for (int which = HL_ASK_LOOK; which <= HL_ASK_SHADING; which++)
     if (composer->asked[which].given)
@@ -80,8 +80,9 @@ static bool changes_any(const hl_composer *composer) {
          asked[HL_ASK_CUT_CASTS_SHADOW].given;
 }
 
-/* Allocates the arrays for everything that may change. The array of cuts holds the cuts of the one volume, or
- * of a scene with several volumes, and the options' cuts. */
+/* Allocates the arrays for everything that may change. The array of cuts has room for the options' cuts and
+ * for the cuts that are there already: those of the only volume or, in a scene of several volumes, those of
+ * the scene. */
 static hl_status make_room(const hl_composer *composer, const hl_scene_description *description,
                            hl_changed_volumes *changed) {
   hl_context *context = composer->context;

@@ -10,12 +10,14 @@ typedef struct hl_changed_volumes {
   hl_scene_volume *volumes;        /* [count] */
   hl_transfer_function *functions; /* [count]; with their points */
   hl_isosurface *surfaces;         /* [count][values of "iso"] */
-  hl_cut *cuts; /* cuts of the one volume, or of a scene with several volumes, and the cuts of the options */
+  hl_cut *cuts; /* the options' cuts, after the cuts of the only volume or, in a scene of several volumes, of
+                 * the scene */
   size_t count;
   bool seen; /* the visible part of the volumes has changed */
 } hl_changed_volumes;
 
-/* Changes the description's volumes and cuts, which borrow the arrays. Release them even after a failure. */
+/* Changes the description's volumes and cuts. The description then borrows the arrays. Release the arrays
+ * even after a failure. */
 hl_status hl_compose_volumes(const hl_composer *composer, hl_scene_description *description,
                              hl_changed_volumes *changed);
 void hl_changed_volumes_release(hl_context *context, hl_changed_volumes *changed);

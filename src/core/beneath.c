@@ -1,5 +1,5 @@
-/* core/beneath.c - see beneath.h. Linux's openat2() resolves a name below a folder in one step, so that
- * nobody can put a link in its way meanwhile. */
+/* core/beneath.c - see beneath.h. Linux's openat2() resolves a whole name below a folder in one step, so that
+ * nobody can put a link into the path while it is resolved. */
 #define _GNU_SOURCE
 #include "core/beneath.h"
 
@@ -13,8 +13,8 @@
 #include <linux/openat2.h>
 #endif
 
-/* Takes the next component of a path, without slashes, and moves *name past it. False if the component is
- * too long. */
+/* Reads the next component of a path, without slashes, and moves *name past it. False if the component is too
+ * long. */
 static int next_component(const char **name, char component[NAME_MAX + 1]) {
   const char *begin = *name + strspn(*name, "/");
   size_t length = strcspn(begin, "/");
@@ -50,7 +50,7 @@ int hl_beneath_open_by_components(int folder, const char *name, int flags) {
 
 int hl_beneath_open(int folder, const char *name, int flags) {
 #ifdef SYS_openat2
-  enum { ATTEMPTS = 100 }; /* EAGAIN: a folder on the way was renamed meanwhile */
+  enum { ATTEMPTS = 100 }; /* EAGAIN: meanwhile a folder of the path was renamed */
   const struct open_how how = {.flags = (unsigned)(flags | O_CLOEXEC),
                                .resolve = RESOLVE_BENEATH | RESOLVE_NO_MAGICLINKS};
   for (int attempt = 0; attempt < ATTEMPTS; attempt++) {

@@ -1,4 +1,5 @@
-/* core/beneath.h - files below a folder, opened so that neither their name nor a link leads out of it. */
+/* core/beneath.h - opens files below a folder. Neither a file's name nor a link can lead out of the
+ * folder. */
 #ifndef HL_CORE_BENEATH_H
 #define HL_CORE_BENEATH_H
 

@@ -8,19 +8,20 @@
 #include <halflight/context.h>
 
 struct hl_context {
-  hl_context_options options;       /* allocate and release are never null; instruction_set is never AUTO */
-  atomic_uint_least64_t held, peak; /* bytes of the context's blocks of memory: at present, and the most so
-                                     * far */
+  hl_context_options options;       /* `allocate` and `release` are never null; `instruction_set` is never
+                                     * AUTO */
+  atomic_uint_least64_t held, peak; /* bytes of the context's blocks of memory: those that are held now, and
+                                     * the most that were held at one time */
   char *scratch_folder;             /* owned; the folder given to hl_context_limit_memory(); may be null */
   atomic_uint_least64_t paged; /* bytes of the pages of scratch files (volume/store/pages.h) held in memory */
   struct hl_ranks *ranks;      /* borrowed; the ranks over which loaded volumes lie (halflight/ranks.h);
                                 * may be null */
-  struct hl_context *whole; /* the context that counts this one's memory: for a confined context the context
-                             * that made it, else itself */
-  int folder;               /* a confined context's folder, as a descriptor; -1 if the context may open no
-                             * file */
-  atomic_size_t users;      /* for a confined context: its owner counts as one user, and each of its blocks of
-                             * memory as one */
+  struct hl_context *whole;    /* the context that counts this context's memory: for a confined context the
+                                * context from which it was made, else the context itself */
+  int folder;                  /* a confined context's folder, as a descriptor; -1 if the context may open no
+                                * file */
+  atomic_size_t users;         /* for a confined context: its number of users, which are its owner and each of
+                                * its blocks of memory */
 };
 
 /* Whether the context opens only files below a folder. */

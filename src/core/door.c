@@ -1,6 +1,6 @@
-/* core/door.c - see door.h. Reading and writing the whole environment takes about a hundred nanoseconds,
- * which counts in functions that hosts call for each voxel. On x86 the two control words tell in a few
- * whether there is anything to change, and the flags are in one of them. */
+/* core/door.c - see door.h. To read and write the whole floating-point environment takes about a hundred
+ * nanoseconds, which is too long in functions that hosts call for each voxel. On x86 two control words tell
+ * in a few nanoseconds whether anything must be changed. One of them also has the flags. */
 #include "core/door.h"
 
 #if defined(__x86_64__)
@@ -15,8 +15,8 @@ static const unsigned int VECTOR_CONTROL = 0xffc0, VECTOR_DEFAULT = 0x1f80;
 static const unsigned short SCALAR_CONTROL = 0x0f3f, SCALAR_DEFAULT = 0x033f;
 
 static bool is_default(unsigned int vector) {
-  unsigned short scalar = 0; /* set to 0 first, because the memory sanitizer does not see that the
-                              * instruction writes the variable */
+  unsigned short scalar = 0; /* set to 0 because the memory sanitizer does not see that the instruction writes
+                              * this variable */
   __asm__ volatile("fnstcw %0" : "=m"(scalar));
   return (vector & VECTOR_CONTROL) == VECTOR_DEFAULT && (scalar & SCALAR_CONTROL) == SCALAR_DEFAULT;
 }

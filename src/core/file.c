@@ -23,11 +23,11 @@ static hl_status fail_system(hl_error *error, const char *path, const char *verb
   return hl_fail(error, HL_ERROR_IO, "%s: cannot %s: %s", path, verb, strerror(errno));
 }
 
-/* Opens a file if the context may open it. Returns -1, with errno set, if it may not or if the file cannot be
- * opened. */
+/* Opens a file if the context may open it. Returns -1, with errno set, if the context may not, or if the file
+ * cannot be opened. */
 static int open_allowed(const hl_context *context, const char *path, int flags) {
   flags |= O_CLOEXEC;
-  /* with these flags, opening does not wait for the writer of a pipe, or for a device */
+  /* with these flags, open() waits neither for the writer of a pipe nor for a device */
   if ((flags & O_PATH) == 0) flags |= O_NONBLOCK | O_NOCTTY;
   if (!hl_is_confined(context)) return open(path[0] != 0 ? path : ".", flags);
   errno = EXDEV;
@@ -101,7 +101,7 @@ typedef struct file_reading {
   size_t length, capacity;
 } file_reading;
 
-/* Enlarges the block as soon as only one byte is free. This byte is kept for the terminating zero. */
+/* Enlarges the block when only one byte of it is free, because this byte is kept for the terminating zero. */
 static hl_status make_room(file_reading *file, hl_error *error) {
   if (file->length + 1 < file->capacity) return HL_OK;
   if (file->judge != NULL) {
@@ -168,8 +168,8 @@ hl_status hl_file_read_judged(hl_context *context, const char *path, hl_file_jud
 
 /* ---- outputs ---- */
 
-/* Makes "folder/name.XXXXXX" from "folder/name". Shortens the name, between two characters, where the result
- * would be longer than the system allows names to be. */
+/* Makes "folder/name.XXXXXX" from "folder/name". If the result would be longer than the system allows, the
+ * name is cut between two characters. */
 static char *temporary_path(hl_context *context, const char *path) {
   static const char suffix[] = ".XXXXXX";
   const char *slash = strrchr(path, '/'), *name = slash != NULL ? slash + 1 : path;
@@ -185,9 +185,9 @@ static char *temporary_path(hl_context *context, const char *path) {
   return made;
 }
 
-/* Creates a file under a free name; the last letters of `path` are replaced. The mode is the one that the
- * process's umask leaves. mkstemp() would make the file private, and the umask cannot be read without
- * changing it. */
+/* Creates a file under a free name; the last letters of `path` are replaced. The file's mode is what the
+ * process's umask leaves. mkstemp() is not used: it would make the file private, and its mode could not be
+ * corrected afterwards, because the umask cannot be read without changing it. */
 static int create_temporary(char *path) {
   static const char letters[] = "abcdefghijklmnopqrstuvwxyz234567"; /* 32 letters */
   enum { LETTERS = 6, TRIES = 1000 };
@@ -332,7 +332,8 @@ char *hl_path_join(hl_context *context, const char *folder, const char *path) {
   if (folder == NULL || folder[0] == 0)
     folder = path[0] == '/' || path[0] == '\\'
                  ? "."
-                 : NULL; /* "//server" may be no path, and must not become one */
+                 : NULL; /* on Windows, "//server" names a computer in the network and is no absolute path; it
+                          * becomes a name in the current folder */
   if (hl_path_is_absolute(path) || hl_plain_is_url(path) || folder == NULL)
     return hl_copy_text(context, path);
   size_t folder_length = strlen(folder), path_length = strlen(path);

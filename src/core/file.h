@@ -1,4 +1,4 @@
-/* core/file.h - whole files in, and outputs that appear complete or not at all. */
+/* core/file.h - reads whole files, and writes outputs that appear complete or not at all. */
 #ifndef HL_CORE_FILE_H
 #define HL_CORE_FILE_H
 
@@ -11,8 +11,8 @@
 /* Opens a file for reading and calls the context's `reads` callback. Does not block on a pipe that has no
  * writer. */
 hl_status hl_file_open(hl_context *context, const char *path, int *descriptor, hl_error *error);
-/* Opens a file like hl_file_open(), but does not call `reads`. It is for threads other than the caller's,
- * which may not call `reads`, and for files that were reported to `reads` before. */
+/* Opens a file like hl_file_open(), but does not call `reads`. Threads other than the caller's use it,
+ * because they may not call `reads`; it also serves for files that were reported to `reads` before. */
 hl_status hl_file_open_again(hl_context *context, const char *path, int *descriptor, hl_error *error);
 /* Opens a folder, for hl_beneath_open() and fdopendir(). "" is the current folder, or the folder of a
  * confined context. */
@@ -30,8 +30,8 @@ hl_status hl_file_pull(hl_context *context, int descriptor, const char *path, vo
 hl_status hl_file_read(hl_context *context, const char *path, size_t limit, unsigned char **bytes,
                        size_t *length, hl_error *error);
 
-/* Given the first `length` bytes of a file, sets *limit to the greatest accepted length of the complete file,
- * in bytes, or refuses the file. Called after 64 KiB and again each time the number of bytes read has
+/* Judges a file by its first `length` bytes: sets *limit to the greatest length, in bytes, that the complete
+ * file may have, or refuses the file. Called after 64 KiB and again each time the number of bytes read has
  * doubled; never called for files shorter than 64 KiB. */
 typedef hl_status (*hl_file_judge)(const char *path, const unsigned char *bytes, size_t length, size_t *limit,
                                    hl_error *error);
@@ -54,7 +54,7 @@ hl_status hl_output_begin(hl_context *context, const char *path, hl_output *outp
 /* Flushes, closes and renames the file. On failure, removes the temporary file and leaves an older file of
  * the final name as it was. */
 hl_status hl_output_commit(hl_output *output, hl_error *error);
-/* Closes and removes the temporary file; harmless after a commit. */
+/* Closes and removes the temporary file. After a commit it does nothing. */
 void hl_output_abort(hl_output *output);
 
 /* An output in growing memory, for encoders that write to a FILE. */
@@ -66,17 +66,17 @@ typedef struct hl_output_memory {
   hl_byte_stream stream; /* the stream that writes to this memory */
 } hl_output_memory;
 
-/* `memory` must stay at its address until commit or abort. */
+/* `memory` must stay at its address until the commit or abort. */
 hl_status hl_output_memory_begin(hl_context *context, const char *name, hl_output_memory *memory,
                                  hl_error *error);
 /* Gives the written bytes to the caller, who owns *bytes (hl_release). *bytes is untouched on failure. */
 hl_status hl_output_memory_commit(hl_output_memory *memory, unsigned char **bytes, size_t *length,
                                   hl_error *error);
-/* Releases everything; harmless after a commit. */
+/* Releases everything. After a commit it does nothing. */
 void hl_output_memory_abort(hl_output_memory *memory);
 
-/* folder + "/" + path, or `path` itself if it is absolute or a URL, or if `folder` is null or empty. Owned
- * by the caller; null if memory is short. */
+/* Joins folder + "/" + path. The result is `path` itself if it is absolute or a URL, or if `folder` is null
+ * or empty. Owned by the caller; null if memory is short. */
 char *hl_path_join(hl_context *context, const char *folder, const char *path);
 /* The folder part of a path ("" if none), owned by the caller; null without memory. */
 char *hl_path_folder(hl_context *context, const char *path);

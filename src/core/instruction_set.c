@@ -12,10 +12,10 @@
 
 #if ON_X86
 
-/* Bits of the answers of CPUID, and of the register XCR0, which says which registers the system keeps when
- * it changes threads. Intel 64 and IA-32 Architectures Software Developer's Manual, volume 2A, CPUID;
- * volume 1, 13.3. __builtin_cpu_supports() asks the compiler's runtime library, and the one of ziglang for
- * Windows knows no processor. */
+/* Bits of the results of CPUID, and of the register XCR0, which says which registers the system saves when it
+ * switches threads. Intel 64 and IA-32 Architectures Software Developer's Manual, volume 2A, CPUID; volume 1,
+ * 13.3. __builtin_cpu_supports() is not used, because it relies on the compiler's runtime library, and
+ * ziglang's library for Windows recognises no processor. */
 enum { FMA = 1 << 12, OSXSAVE = 1 << 27 };                                         /* leaf 1, ecx */
 enum { AVX2 = 1 << 5, AVX512F = 1 << 16, AVX512DQ = 1 << 17, AVX512BW = 1 << 30 }; /* leaf 7, ebx */
 static const unsigned AVX512VL = 1u << 31;

@@ -10,9 +10,9 @@ void hl_key_add(hl_key *key, const void *bytes, size_t count) {
   key->count += count;
 }
 
-/* Stores doubles so that their bytes sort as the numbers do. The bits of a double, read as a whole number,
- * grow with the double's magnitude. So all bits of a negative number are inverted, and of other numbers the
- * sign bit alone. The highest byte comes first. */
+/* Stores doubles so that their bytes sort as the numbers do: the highest byte comes first. The bits of a
+ * double, read as a whole number, grow with the double's magnitude. So of a negative number all bits are
+ * inverted, and of any other number only the sign bit. */
 void hl_key_add_numbers(hl_key *key, const double *numbers, size_t count) {
   for (size_t n = 0; n < count; n++) {
     uint64_t bits;
@@ -24,8 +24,8 @@ void hl_key_add_numbers(hl_key *key, const double *numbers, size_t count) {
   }
 }
 
-/* Computes a hash of the bytes: Fowler, Noll and Vo's FNV-1a, over words of 64 bits. Four sums run beside
- * each other, so that one need not wait for another. */
+/* Computes a hash of the bytes: Fowler, Noll and Vo's FNV-1a, over words of 64 bits. Four sums are computed
+ * side by side, so that the steps of one need not wait for those of another. */
 uint64_t hl_key_mark(const void *bytes, size_t count) {
   enum { WORD = sizeof(uint64_t), SUMS = 4 };
   const uint64_t prime = 0x100000001b3u;
@@ -35,7 +35,7 @@ uint64_t hl_key_mark(const void *bytes, size_t count) {
     uint64_t word = 0, *sum = &sums[at / WORD % SUMS];
     memcpy(&word, from + at, count - at < WORD ? count - at : WORD);
     *sum = (*sum ^ word) * prime;
-    *sum ^= *sum >> 32; /* mixes the bits, so that high bits count, too */
+    *sum ^= *sum >> 32; /* mixes the bits, so that the high bits have an effect on the low ones, too */
   }
   for (int s = 1; s < SUMS; s++) sums[0] = (sums[0] ^ sums[s]) * prime;
   return (sums[0] ^ count) * prime;

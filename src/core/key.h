@@ -1,5 +1,5 @@
-/* core/key.h - keys of results that are kept. A key consists of the bytes of everything that its result
- * depends on. */
+/* core/key.h - keys of results that are kept from one use to the next. A key has the bytes of everything on
+ * which its result depends. */
 #ifndef HL_CORE_KEY_H
 #define HL_CORE_KEY_H
 
@@ -10,14 +10,14 @@
 #include "core/vector.h"
 
 typedef struct hl_key {
-  unsigned char *bytes; /* owned; null if added bytes are only counted */
+  unsigned char *bytes; /* owned; null: the bytes are only counted */
   size_t count;
 } hl_key;
 
 void hl_key_add(hl_key *key, const void *bytes, size_t count);
 
-/* Adds numbers so that memcmp() of two keys sorts them as the numbers: -2, -1, 0, 1, 2. This order does not
- * change when all numbers are multiplied by one positive factor. */
+/* Adds numbers so that memcmp() of two keys sorts them as the numbers: -2, -1, 0, 1, 2. Multiplying all
+ * numbers by one positive factor does not change this order. */
 void hl_key_add_numbers(hl_key *key, const double *numbers, size_t count);
 
 static inline void hl_key_add_whole(hl_key *key, int64_t number) { hl_key_add(key, &number, sizeof number); }
@@ -27,16 +27,16 @@ static inline void hl_key_add_affine(hl_key *key, const affine3 *map) {
   hl_key_add_numbers(key, &map->offset.x, 3);
 }
 
-/* A number that stands for some bytes in keys. The chance that other bytes have the same number is one in
- * 2^64. */
+/* A number that stands for some bytes in keys: a hash. The chance that other bytes have the same number is
+ * one in 2^64. */
 uint64_t hl_key_mark(const void *bytes, size_t count);
 
 /* Adds everything that a result depends on to a key. Must add the same bytes each time it is called for the
  * same data. */
 typedef void hl_key_write(const void *data, hl_key *key);
 
-/* Tells whether the kept key is the key of the data. If not, it becomes the key of the data. After a failure
- * the kept key is unchanged. */
+/* Tells whether the kept key is the key of the data, so that the kept result can be used. If not, the data's
+ * key becomes the kept key. After a failure the kept key is unchanged. */
 hl_status hl_key_renew(hl_context *context, hl_key_write *write, const void *data, hl_key *kept, bool *same,
                        hl_error *error);
 

@@ -43,9 +43,11 @@ typedef struct reserve_block {
 
 typedef struct hl_reserve {
   hl_context *context;
-  bool keeps;                          /* if false, every block is allocated and released anew */
+  bool keeps;                          /* false: every block is allocated anew, and released when it is
+                                        * returned */
   int taken;                           /* blocks requested in this frame so far */
-  reserve_block block[RESERVE_BLOCKS]; /* the n-th is a frame's n-th block; 0 bytes: none */
+  reserve_block block[RESERVE_BLOCKS]; /* block[n] is the n-th block that each frame takes; 0 bytes: there is
+                                        * no block */
 } hl_reserve;
 
 /* Takes a block of count * size uninitialised bytes from the reserve, or else from hl_allocate(); null when
@@ -58,7 +60,7 @@ void hl_reserve_return(hl_reserve *reserve, void *memory);
 void hl_reserve_drop_idle(hl_reserve *reserve);
 /* Ends a frame, after all blocks were returned: releases the blocks that this frame did not take. */
 void hl_reserve_end_frame(hl_reserve *reserve);
-/* Releases all blocks; none may be lent at the time. */
+/* Releases all blocks, which must all have been returned. */
 void hl_reserve_release(hl_reserve *reserve);
 
 /* ---- Memory that is planned once ----
@@ -79,14 +81,15 @@ typedef struct hl_layout {
   unsigned char *base; /* aligned to 64 bytes; null: counts only */
   size_t bytes;        /* bytes taken at present; SIZE_MAX: overflow */
   size_t most;         /* the most bytes that were taken at one time */
-  size_t counted;      /* the bytes of the block; for hl_layout_pass() alone */
+  size_t counted;      /* the bytes that the first pass counted, which are the block's size; used by
+                        * hl_layout_pass() alone */
   int passes;          /* of hl_layout_pass() */
 } hl_layout;
 
 /* Begins the next pass over a layout. The first pass counts bytes, and the second takes arrays from a block
- * of the counted size. Returns true before each of the two passes, and then false. `base` is null in the end
- * if the block could not be allocated, or if the second pass took another number of bytes than the first:
- * arrays might then lie beyond the block. The caller owns the block. */
+ * of the counted size. Returns true before each of the two passes, and false after them. In the end `base` is
+ * null if the block could not be allocated. It is also null if the second pass took another number of bytes
+ * than the first, because arrays might then lie beyond the block. The caller owns the block. */
 bool hl_layout_pass(hl_layout *layout, hl_context *context);
 
 /* Takes count * size bytes, aligned to 64; returns null while counting. */
@@ -102,7 +105,7 @@ static inline void *hl_layout_take(hl_layout *layout, size_t count, size_t size)
   return taken;
 }
 
-/* In a pass that counts: gives back all bytes that were taken since layout->bytes had the value `bytes`. */
+/* In a counting pass: gives back all bytes that were taken after layout->bytes had the value `bytes`. */
 static inline void hl_layout_give_back(hl_layout *layout, size_t bytes) {
   if (layout->bytes != SIZE_MAX) layout->bytes = bytes;
 }

@@ -1,19 +1,20 @@
-/* core/pool.c - the thread team. Jobs follow each other quickly (two for each sheet), so workers spin for a
- * while before they sleep; with more threads than processors they sleep at once.
+/* core/pool.c - the thread team. Jobs follow each other quickly (two for each sheet). So a worker without
+ * work spins for a while before it sleeps; with more threads than processors it sleeps at once.
  *
  * Each thread owns a share: a run of consecutive indices of the job. In all jobs of one length a thread has
- * the same run, so that it meets the same memory again. A share is one 64-bit word on its own cache line:
- * generation, end, next index. The owner claims indices from one end by compare-and-swap; a thread whose own
- * share is empty claims indices from the other end of another thread's share. Every second thread starts with
- * its last index: two threads with neighbouring shares then meet near the border of their shares, and the
- * indices that one thread takes from the other are mostly those that it took in the job before. No thread
- * waits for a worker that the system has not woken yet: on a busy machine the caller does all the work. Jobs
- * alternate between two slots, by the generation's parity. A job's description stays in its slot until all
- * workers have reported the indices that they claimed; only then can a later job of the same parity start.
+ * the same run, so that it uses the same memory again. A share is one 64-bit word on its own cache line:
+ * generation, end, next index. The owner claims indices from one end by compare-and-swap. A thread whose own
+ * share is empty claims indices from the other end of another thread's share. Every second thread begins with
+ * the last index of its share. Two threads with neighbouring shares then meet near the border of their
+ * shares, and a thread mostly takes the same indices of the other share as in the job before. No thread waits
+ * for a worker that the system has not woken yet, so that on a busy machine the caller does all the work.
+ * Jobs alternate between two slots, by the parity of their generation. A job's description stays in its slot
+ * until all workers have reported the indices that they claimed; only then can a later job of the same parity
+ * start.
  *
- * An offer has shares of its own. Where the current job has no index left, workers claim one of the offer's
- * indices, and then look for a new job. The caller, for whom jobs wait, claims none of them before it ends
- * the offer. */
+ * An offer is a second job with shares of its own (hl_pool_offer()). When the current job has no index left,
+ * a worker claims one of the offer's indices, and then looks for a new job. The caller has further jobs to
+ * begin, and so claims none of the offer's indices before it finishes the offer. */
 #define _GNU_SOURCE
 #include "core/pool.h"
 
@@ -32,11 +33,11 @@
 
 enum { MAXIMUM_THREADS = 256, SPINS = 4000 };
 
-/* Time between two calls of the cancel callback while a job runs: far less than a person notices, far more
- * than a call takes. */
+/* Time between two calls of the cancel callback while a job runs. It is much less than a person notices, and
+ * much more than a call takes. */
 static const int64_t NANOSECONDS_BETWEEN_QUESTIONS = 2000000;
-/* The clock is read again after this many calls, or earlier where these calls may take longer than
- * NANOSECONDS_BETWEEN_READINGS. */
+/* The clock is read again after MOST_UNREAD calls at most. It is read earlier if so many calls could take
+ * longer than NANOSECONDS_BETWEEN_READINGS. */
 static const int64_t NANOSECONDS_BETWEEN_READINGS = 50000;
 enum { MOST_UNREAD = 15 };
 
@@ -49,7 +50,7 @@ typedef struct worker {
 typedef struct job {
   void (*function)(void *, size_t, int);
   void *data;
-  size_t base;                     /* the job's index that index 0 of the shares stands for */
+  size_t base;                     /* the index of the job to which index 0 of the shares belongs */
   _Alignas(64) atomic_size_t done; /* the number of indices that workers have reported as finished */
 } job;
 
@@ -76,7 +77,8 @@ struct hl_pool {
   int started;     /* threads running, the caller included */
   pid_t process;   /* the process that started the threads */
   share *shares;   /* owned; [share_count] of the jobs, then [share_count] of the offer */
-  int share_count; /* requested number of threads; some may not have started */
+  int share_count; /* requested number of threads, and number of shares; some of the threads may not have
+                    * started */
   job jobs[2];
   offer offer;
   atomic_uint_least64_t generation; /* number of the last job whose shares are filled */
@@ -88,10 +90,10 @@ struct hl_pool {
   /* Used by the calling thread only. */
   _Alignas(64) int64_t asked,
       read;       /* when the cancel callback was last called and the clock was last read, in nanoseconds */
-  uint64_t waits; /* how often the caller waited for other threads, at the end of a part of a run or of an
-                   * offer */
-  int readings, unread; /* number of calls between two readings of the clock; number of calls that are left
-                         * until the next reading */
+  uint64_t waits; /* how often the caller waited for other threads, at the end of an offer or of a run; a run
+                   * with more indices than a share can hold counts several times */
+  int readings, unread; /* number of calls between two readings of the clock, and number of calls until the
+                         * next reading */
 };
 
 static inline void relax(void) {
@@ -169,8 +171,9 @@ static bool claim_index(const hl_pool *pool, share *shares, int number, claim *c
   return false;
 }
 
-/* Claims and runs indices until no share has any left. A job does not end before its workers have reported
- * their finished indices, so that all indices claimed between two reports belong to one job. */
+/* Claims and runs indices of the current job until no share has any left. A job ends only when its workers
+ * have reported their finished indices. So all indices that a worker claims between two reports belong to one
+ * job. */
 static void work(hl_pool *pool, int number) {
   claim claimed;
   while (claim_index(pool, pool->shares, number, &claimed)) {
@@ -188,7 +191,7 @@ static bool is_idle(hl_pool *pool, uint64_t generation) {
   return atomic_load(&pool->generation) == generation && !atomic_load(&pool->stop);
 }
 
-/* Claims and runs indices of the offer until a new job begins or none is left. */
+/* Claims and runs indices of the offer until a new job begins or no index is left. */
 static void work_on_offer(hl_pool *pool, int number, uint64_t generation) {
   job *job = &pool->offer.job;
   size_t done = 0;
@@ -266,7 +269,7 @@ static void run_part(hl_pool *pool, size_t base, size_t count, void (*function)(
 }
 
 void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *, size_t, int), void *data) {
-  pool->readings = pool->unread = 0; /* nothing is known yet of how long the next job's indices take */
+  pool->readings = pool->unread = 0; /* it is not known yet how long the next job's indices take */
   if (pool->threads == 1 || count <= 1) {
     for (size_t index = 0; index < count && !hl_pool_stops(pool, 0); index++) function(data, index, 0);
     return;
@@ -284,8 +287,8 @@ void hl_pool_offer(hl_pool *pool, size_t count, void (*function)(void *, size_t,
   job->function = function;
   job->data = data;
   pool->offer.count = count;
-  /* an offer has its own generation, 2 above the last job's: the parity is the same, and the last job's
-   * shares are empty */
+  /* The generation of an offer is 2 above that of the last job. So the parity is the same, and the last job's
+   * shares are empty. */
   begin_job(pool, job, pool->offer.shares, atomic_load(&pool->generation) + 2, count);
 }
 

@@ -1,10 +1,10 @@
-/* core/pool.h - a team of threads with one verb: run a function for every index.
+/* core/pool.h - a team of threads, which runs a function for every index.
  *
  * The caller is worker 0 and works too. Any worker may get any index, so the function's results must not
  * depend on the worker, and no two indices may write to the same output.
  *
- * Between two indices the caller polls the context's cancel callback, at most once every few milliseconds.
- * Once the callback says stop, the pool skips all indices that have not begun, in this run and in all later
+ * Between two indices the caller polls the context's cancel callback, at most once every few milliseconds. If
+ * the callback asks to stop, the pool skips all indices that have not begun, in this run and in all later
  * runs. The results are then incomplete: call hl_pool_cancelled before using them. */
 #ifndef HL_CORE_POOL_H
 #define HL_CORE_POOL_H
@@ -21,12 +21,12 @@ typedef struct hl_pool hl_pool;
 hl_status hl_pool_create(hl_context *context, int threads, hl_pool **pool, hl_error *error);
 void hl_pool_destroy(hl_pool *pool); /* null is allowed */
 
-/* Whether the pool belongs to this process. A child process made by fork() has no threads of the pool:
- * there the result is false, and the pool can only be destroyed. */
+/* Whether the pool belongs to this process. In a child process made by fork() the result is false: the child
+ * has no threads of the pool, and can only destroy it. */
 bool hl_pool_is_own(const hl_pool *pool);
 int hl_pool_threads(const hl_pool *pool);
-/* How often, since the pool was made, the caller waited for other threads: at the end of each run that they
- * could take part in, and of each offer. */
+/* How often the caller has waited for other threads since the pool was made: at the end of each run with
+ * several threads, and of each offer. */
 uint64_t hl_pool_waits(const hl_pool *pool);
 
 /* Calls function(data, index, worker) for each index in [0, count), worker in [0, threads). Returns when
@@ -34,10 +34,10 @@ uint64_t hl_pool_waits(const hl_pool *pool);
 void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *data, size_t index, int worker),
                  void *data);
 
-/* Offers the calls that hl_pool_run() would make. Threads that have nothing to do in later runs make them;
- * the calls of later runs come first. Returns at once; with one thread, makes all the calls itself.
- * hl_pool_finish_offer() makes the calls that are left, and waits for the others. Before it returns, the
- * memory that the calls read must not be written, and nothing else may be offered. */
+/* Offers the calls that hl_pool_run() would make, and returns at once; with one thread, makes all the calls
+ * itself. While later runs go on, threads that have nothing to do in them make the offered calls.
+ * hl_pool_finish_offer() makes the calls that are left, and waits until other threads have finished theirs.
+ * Before it returns, the memory that the calls read must not be written, and nothing else may be offered. */
 void hl_pool_offer(hl_pool *pool, size_t count, void (*function)(void *data, size_t index, int worker),
                    void *data);
 void hl_pool_finish_offer(hl_pool *pool); /* returns at once if nothing is offered */
@@ -55,11 +55,11 @@ bool hl_pool_cancelled(hl_pool *pool);
  * HL_OK. */
 hl_status hl_pool_check(hl_pool *pool, const char *doing, hl_error *error);
 
-/* Whether work must stop, for functions that spend long on a single index. The call is cheap: only worker 0
- * polls the cancel callback. */
+/* Whether work must stop. Functions call it that take long for a single index. The call is cheap: only worker
+ * 0 polls the cancel callback. */
 bool hl_pool_stops(hl_pool *pool, int worker);
 
-/* Clears the pool's stop state, so that it works again. */
+/* Clears the pool's stop state, so that the pool runs indices again. */
 void hl_pool_resume(hl_pool *pool);
 
 #endif

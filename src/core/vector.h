@@ -65,8 +65,8 @@ static inline mat3 mat3_transpose(mat3 m) { return mat3_from_columns(m.row[0], m
 static inline double mat3_row_sizes(mat3 m) {
   return vec3_length(m.row[0]) * vec3_length(m.row[1]) * vec3_length(m.row[2]);
 }
-/* Inverts a matrix. Returns false if m is singular to working precision, whatever the scales of its rows
- * and columns. */
+/* Inverts a matrix. Returns false if m is singular to working precision; the scales of its rows and columns
+ * do not matter. */
 static inline bool mat3_invert(mat3 m, mat3 *inverse) {
   vec3 c0 = vec3_cross(m.row[1], m.row[2]), c1 = vec3_cross(m.row[2], m.row[0]),
        c2 = vec3_cross(m.row[0], m.row[1]);

@@ -6,7 +6,7 @@
 
 #include "fetch.h"
 
-/* The most bytes that all copies of files may have together. */
+/* The greatest number of bytes of all copies together. */
 static const uint64_t COPIES_LIMIT = (uint64_t)4 << 30;
 
 void fetch_choose_cache_folder(char *folder, size_t bytes) {

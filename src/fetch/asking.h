@@ -1,6 +1,6 @@
 /* fetch/asking.h - which servers the program and the Python package ask, and where copies of files lie.
  *
- * Only a store whose URL the user named is asked. A URL that a file names is refused. */
+ * A server is asked only if the user named its URL. A URL that stands in a file is refused. */
 #ifndef HL_FETCH_ASKING_H
 #define HL_FETCH_ASKING_H
 
@@ -10,16 +10,18 @@
 
 typedef struct fetch_permission {
   bool named;          /* the user named the URL */
-  const char *instead; /* for the refusal of other URLs: which servers are asked, and what to do */
+  const char *instead; /* text for the error that refuses a URL in a file: which servers are asked, and what
+                        * the user can do */
   int (*cancelled)(void *user_data); /* asked while files are fetched */
   void *user_data;
 } fetch_permission;
 
-/* Fetches files of a store, as hl_context_options.fetch must do, or refuses to. */
+/* Fetches files of a store, as hl_context_options.fetch must do. Fails if the user did not name the URL. */
 hl_status fetch_if_named(const fetch_permission *permission, const char *url, const char *const *names,
                          size_t count, uint64_t most, hl_fetched_file *files, hl_error *error);
 
-/* The user's folder for files that can be made again, [bytes]; empty where the environment tells none. */
+/* Writes the user's cache folder for Halflight to `folder`, which has room for `bytes` bytes. The text is
+ * empty if the environment names no such folder. */
 void fetch_choose_cache_folder(char *folder, size_t bytes);
 
 #endif

@@ -26,8 +26,8 @@ static hl_status fail(hl_error *error, const char *path) {
   return HL_ERROR_IO;
 }
 
-/* The name of a URL's copy: two hashes FNV-1a (Fowler, Noll, Vo) of 64 bits with different beginnings. The
- * URL in the copy tells whether two URLs have one name. */
+/* Makes the name of a URL's copy from two 64-bit FNV-1a hashes (Fowler, Noll, Vo) with different initial
+ * values. Two URLs may have the same name; the URL that is stored in the copy tells them apart. */
 static void copy_path(const char *folder, const char *url, char path[COPIES_PATH_BYTES]) {
   uint64_t hash[2] = {0xcbf29ce484222325u, 0x9e3779b97f4a7c15u};
   for (int h = 0; h < 2; h++)
@@ -37,7 +37,8 @@ static void copy_path(const char *folder, const char *url, char path[COPIES_PATH
 
 /* ---- one copy ---- */
 
-/* Reads the lines at the end of a copy. False if they are another URL's, or if the copy is cut short. */
+/* Reads the lines at the end of a copy. Returns false if the lines name another URL, or if the copy is cut
+ * short. */
 static bool read_lines(int descriptor, const char *url, uint64_t *size, char *condition) {
   struct stat about;
   char lines[LINES_MOST + 1], expected[LINES_MOST];

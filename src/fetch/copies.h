@@ -1,7 +1,7 @@
-/* fetch/copies.h - a folder of copies of files on servers, the user's alone.
+/* fetch/copies.h - a folder with copies of files from servers, which only the user can read.
  *
- * A copy is a file that holds the server's bytes and, after them, lines that name their URL, their length and
- * the condition under which the server is to send them again. Copies appear whole or not at all. */
+ * A copy holds the server's bytes. Lines after them state the URL, the number of bytes, and the condition
+ * under which the server is to send the file again. Copies appear whole or not at all. */
 #ifndef HL_FETCH_COPIES_H
 #define HL_FETCH_COPIES_H
 
@@ -9,8 +9,8 @@
 
 enum { COPIES_PATH_BYTES = 4096 };
 
-/* Makes the folder, and removes the copies that were not used for longest until all have at most `limit`
- * bytes. */
+/* Makes the folder. If its copies have more than `limit` bytes together, removes those that were not used for
+ * longest. */
 hl_status copies_open(const char *folder, uint64_t limit, hl_error *error);
 
 /* Opens the copy of a URL. *file: {-1, 0} if there is none. condition: [FETCH_CONDITION_BYTES]. */
@@ -19,7 +19,8 @@ void copies_find(const char *folder, const char *url, hl_fetched_file *file, cha
 /* Notes that a copy was used. */
 void copies_touch(const char *folder, const char *url);
 
-/* Makes an empty file for new bytes, with a name of its own. path: [COPIES_PATH_BYTES]. */
+/* Makes an empty file with a new name, into which the server's bytes are to be written. path:
+ * [COPIES_PATH_BYTES]. */
 hl_status copies_begin(const char *folder, char *path, hl_error *error);
 
 /* Turns a file of copies_begin() into the copy of a URL, and opens it. */

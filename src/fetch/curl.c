@@ -71,7 +71,8 @@ static bool copy_line(const char *line, char *text, size_t size) {
   return true;
 }
 
-/* The condition under which the server is to send a file again: by the file's tag, else by its date. */
+/* Makes the header line under whose condition the server is to send a file again. It names the file's tag if
+ * the server gave one, else the file's date. */
 static void read_condition(const char *tag, const char *date, char condition[FETCH_CONDITION_BYTES]) {
   char text[FETCH_CONDITION_BYTES - 32];
   condition[0] = '\0';
@@ -83,7 +84,7 @@ static void read_condition(const char *tag, const char *date, char condition[FET
 
 enum { TAG, DATE, SAID, LINES };
 
-/* Reads the lines of one transfer after its first line. */
+/* Reads the lines that curl writes about a transfer, except the first one. */
 static void read_result(FILE *said, curl_transfer *transfer) {
   char *lines[LINES] = {NULL};
   size_t room[LINES] = {0};
@@ -96,8 +97,8 @@ static void read_result(FILE *said, curl_transfer *transfer) {
   for (int n = 0; n < LINES; n++) free(lines[n]);
 }
 
-/* Reads the first line of a transfer: "transfer NUMBER PROBLEM ANSWER". Returns the transfer; null if the
- * line is no such line. */
+/* Reads the first line that curl writes about a transfer: "transfer NUMBER PROBLEM ANSWER". Returns the
+ * transfer, or null if the line has another form. */
 static curl_transfer *read_first_line(const char *line, curl_transfer *transfers, size_t count) {
   static const char word[] = "transfer ";
   char *end;

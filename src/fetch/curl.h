@@ -12,17 +12,19 @@ enum { CURL_TOO_LONG = 63 };
 typedef struct curl_transfer {
   char url[FETCH_URL_BYTES];             /* printable ASCII */
   const char *output;                    /* borrowed; the file that curl writes to */
-  char condition[FETCH_CONDITION_BYTES]; /* a line of the request's header that lets the server find out
+  char condition[FETCH_CONDITION_BYTES]; /* a line for the request's header, by which the server can tell
                                           * whether its file has changed; "" for none */
   /* Results. */
   int problem; /* curl's exit code for this transfer; -1 if curl ended before the transfer did */
   int answer;  /* the server's status code; 0 without an answer */
-  char next_condition[FETCH_CONDITION_BYTES]; /* the condition for the next request; "" if there is none */
+  char next_condition[FETCH_CONDITION_BYTES]; /* the condition for the next request of this file; "" if there
+                                               * is none */
   char said[FETCH_SAID_BYTES];                /* curl's words about the problem */
 } curl_transfer;
 
-/* Makes the transfers. most: the most bytes of each file. Fails if there is no curl or the run is cancelled;
- * problems of transfers are among their results. */
+/* Makes the transfers. most: the greatest number of bytes of each file. Fails if there is no curl, or if the
+ * run is cancelled. A transfer that fails is no failure of the function: its `problem` and `answer` tell
+ * it. */
 hl_status curl_run(const fetcher *f, curl_transfer *transfers, size_t count, uint64_t most, hl_error *error);
 
 #endif

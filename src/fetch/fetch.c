@@ -1,8 +1,9 @@
-/* fetch/fetch.c - fetches files of a store. The server is asked for each file, even if there is a copy, and
- * is asked again if a transfer failed in a way that may pass.
+/* fetch/fetch.c - fetches files of a store. The server is asked for each file, even if there is a copy. It is
+ * asked again if a transfer failed for a reason that may be temporary.
  *
  * The server answers 304 if the copy is up to date. It answers 404 or 410 where there is no file. Any other
- * answer without a whole file is an error, because an absent file has a meaning in a store. */
+ * answer without a whole file is an error. It must not count as an absent file, because absent files have a
+ * meaning in a store. */
 #define _GNU_SOURCE
 #include "fetch.h"
 
@@ -43,7 +44,7 @@ static bool is_unreserved(char c) {
          (c != '\0' && strchr("-._~/", c) != NULL);
 }
 
-/* Whether a URL can go into curl's list as it is. */
+/* Whether a URL can be written into curl's list without escapes. */
 static bool is_plain(const char *url) {
   for (const char *c = url; *c != '\0'; c++)
     if ((unsigned char)*c <= ' ' || (unsigned char)*c > '~' || *c == '"' || *c == '\\' || *c == '#')
@@ -87,7 +88,7 @@ static hl_status begin(fetching *t, wanted *file) {
   return status;
 }
 
-/* Whether a transfer that ended in this way may succeed later. */
+/* Whether a transfer failed for a reason that may be temporary. */
 static bool may_pass(const curl_transfer *transfer) {
   if (transfer->problem == CURL_TOO_LONG) return false;
   return transfer->problem != 0 || transfer->answer == 408 || transfer->answer == 429 ||
@@ -111,7 +112,8 @@ static hl_status fail_transfer(const fetching *t, const wanted *file, bool tried
   return fail(t, file->name, what);
 }
 
-/* Takes the result of a transfer: the file has come, is absent, or must be asked for again. */
+/* Takes the result of a transfer. A file that has come or is absent is done; others will be asked for again,
+ * unless the failure is permanent. */
 static hl_status take(fetching *t, wanted *file, hl_fetched_file *result) {
   curl_transfer *transfer = &file->transfer;
   bool whole = transfer->problem == 0;

@@ -1,4 +1,5 @@
-/* fetch/fetch_absent.c - in place of fetch.c where the system lacks what it needs: servers are not asked. */
+/* fetch/fetch_absent.c - built in place of fetch.c on systems that lack what fetch.c needs: no server is
+ * asked. */
 #include <stdio.h>
 
 #include "fetch.h"

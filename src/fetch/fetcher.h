@@ -1,12 +1,13 @@
-/* fetch/fetcher.h - what fetching needs to know of its caller. */
+/* fetch/fetcher.h - the parameters of fetching: where copies lie, and how a run is cancelled. */
 #ifndef HL_FETCH_FETCHER_H
 #define HL_FETCH_FETCHER_H
 
 #include <halflight/context.h>
 
 typedef struct fetcher {
-  const char *folder; /* the folder of copies, which is made where its parent folder is there */
-  uint64_t limit;     /* in bytes; older copies are removed if all copies together have more */
+  const char *folder; /* the folder of copies; it is made if its parent folder exists */
+  uint64_t limit;     /* greatest number of bytes of all copies together; the oldest copies are removed to
+                       * keep it */
   int (*cancelled)(void *user_data); /* asked while curl runs */
   void *user_data;
 } fetcher;

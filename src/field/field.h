@@ -1,14 +1,15 @@
-/* field/field.h - light in a lattice of cells over the whole content, which does not depend on the eye.
+/* field/field.h - the absorption and the light in a lattice of cells over the whole content. They do not
+ * depend on the eye.
  *
  * In: the grids and classifiers of a frame's volumes, its meshes, its sky. Out: how much light each cell
  * absorbs along each axis (opacity.c), and the sky's light that reaches each cell (sky_field.c). Samples look
- * this light up (lookup_lanes.h).
+ * up the sky's light (lookup_lanes.h).
  *
  * A lattice is walked in slices: planes of cells at a right angle to an axis. A slice's rows lie along
  * `across`, one below the other along `down`, and are padded to whole vectors of lanes.
  *
- * Volumes fill cells: a cell takes a part of the light that crosses it. Surfaces fill nothing: they cut the
- * links between the middles of cells (surface_links.h). */
+ * The matter of volumes fills cells, and a cell absorbs a part of the light that crosses it. Surfaces fill no
+ * cells: they cut the links between the middles of cells (surface_links.h). */
 #ifndef HL_FIELD_FIELD_H
 #define HL_FIELD_FIELD_H
 
@@ -20,7 +21,7 @@
 enum {
   FIELD_LANES = 16,
   FIELD_HARMONICS = 9,   /* spherical harmonics up to the second degree */
-  FIELD_DIRECTIONS = 36, /* number of directions into which the light from one end of an axis is divided */
+  FIELD_DIRECTIONS = 36, /* number of directions of light that come from one end of an axis */
   FIELD_SAMPLES = 4      /* the most samples along an edge of a cell */
 };
 
@@ -54,13 +55,13 @@ typedef struct field_matter {
   const classifier *classifier;
   float to_index[3][4];  /* frame space to index space */
   float low[3], high[3]; /* the volume's box; index space */
-  float cast;            /* extinction towards lights over extinction towards the eye; 0: the volume casts no
-                          * shadow */
+  float cast;            /* the extinction for lights divided by the extinction for the eye; 0: the volume
+                          * casts no shadow */
   int visible;
   int smooth; /* the voxels are coefficients of the interpolating kernel */
 } field_matter;
 
-/* How much light is lost in each cell, for each axis along which light crosses the cell. */
+/* The optical depth of each cell, for each axis along which light crosses the cell. */
 typedef struct opacity_field {
   field_lattice lattice;
   float *depth[3]; /* [slices][rows][3][stride]; the optical depth d of the cell for light along the slices'
@@ -97,17 +98,18 @@ typedef struct field_block {
  * through. */
 typedef void field_opacity_function(const field_block *block, float depth[3][FIELD_LANES]);
 
-/* A direction of the sky, as the slices at one end of an axis see it. */
+/* A direction from which the sky's light comes, as the slices meet it that are swept from one end of an
+ * axis. */
 typedef struct sky_direction {
-  int32_t offset;     /* A cell gets this direction's light from four cells of the slice before. This is the
-                       * offset, in floats, from the cell to the first of the four */
-  float weight[4];    /* weights of the first of the four cells, of the next one across, and of the two below
-                       * these */
+  int32_t offset;     /* A cell gets this direction's light from four cells of the slice before. `offset` is
+                       * the distance, in floats, from the cell to the first of the four */
+  float weight[4];    /* weights of the four cells: the first cell, the next cell across, and the two cells
+                       * below these two */
   int link;           /* the number of the link to the first of the four cells: 3 (1 + down) + 1 + across */
   float across, down; /* squares of the distances, in cells, by which the light moves across and down while it
                        * crosses a slice */
-  int slope; /* the number of the first direction with the same `across` and `down`. The two are mirror images
-              * of each other, so a cell has one transmittance for both */
+  int slope; /* the number of the first direction with the same `across` and `down`. The two directions are
+              * mirror images of each other, so a cell has one transmittance for both */
   const float *basis; /* [channels x FIELD_HARMONICS]; for each channel and harmonic, the integral of the
                        * sky's radiance times the harmonic over the solid angle of this direction */
 } sky_direction;
@@ -130,8 +132,9 @@ typedef struct sky_slice {
   float *field;        /* the slice's first cell */
   size_t across, down; /* numbers of floats from a cell to the next cell in its row, and to the cell in the
                         * next row */
-  int passing; /* index, among a cell's floats, of the cell's transmittance. A third of the transmittance
-                * along the slices' axis is added there; 0: nothing is added */
+  int passing; /* index, among a cell's floats, of the mean of the cell's transmittances along three axes, to
+                * which the sweep adds a third of the transmittance along the slices' axis; 0: the sweep adds
+                * nothing */
   const unsigned char *cut; /* [rows][stride / FIELD_LANES]; null: there are no surfaces */
   unsigned char cut_here;   /* LINKS_BEFORE or LINKS_AFTER: the side from which the light comes through
                              * links */
@@ -140,8 +143,8 @@ typedef struct sky_slice {
 } sky_slice;
 
 /* Moves the light of all directions to the next slice, in one row, and adds it to those cells near which
- * something is visible. Where the light of a direction is below SKY_FAINT in all cells of a block, it counts
- * as 0 and is not moved on. */
+ * something is visible. In a block of cells that all get less than SKY_FAINT of a direction's light, this
+ * light counts as 0 and is not moved on. */
 typedef void sky_row_function(const sky_slice *slice, int32_t row);
 
 typedef struct field_functions {

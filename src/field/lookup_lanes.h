@@ -1,8 +1,8 @@
-/* field/lookup_lanes.h - the sky's light at samples: read between the cells of its field.
+/* field/lookup_lanes.h - the sky's light at samples, interpolated between the cells of the sky's field.
  *
- * A cell's harmonics are numbers of 16 bits, and fill a line of the cache (sky_field.h). Two neighbouring
- * cells along x are multiplied by their weights and added at once. Four such pairs are the harmonics at a
- * sample: sums of whole numbers, the same on every processor. */
+ * A cell's harmonics are numbers of 16 bits, and fill one cache line (sky_field.h). Two neighbouring cells
+ * along x are multiplied by their weights and added at once. The sums of four such pairs are the harmonics at
+ * a sample. They are sums of whole numbers, and so the same on every processor. */
 #ifndef HL_FIELD_LOOKUP_LANES_H
 #define HL_FIELD_LOOKUP_LANES_H
 
@@ -27,8 +27,8 @@ LANES_INLINE lanes place_between_cells(const sky_light *sky, int axis, lanes pos
   return whole;
 }
 
-/* The least factor on a cell's trilinear weight. It is also the least weight of the cell that no surface
- * separates from the position. */
+/* The least factor by which a cell's trilinear weight is multiplied. It is also the least weight of the cell
+ * that no surface separates from the position. */
 static const float LEAST_COUNTED = 1.0f / 1024;
 
 /* The weight of a cell among the cells around a position. In media and on meshes (surface: 0) it is the
@@ -47,8 +47,9 @@ typedef struct sky_cells {
   lanes fraction[3];                   /* fraction of the way to the next cell along each axis */
 } sky_cells;
 
-/* The distances, in numbers of 16 bits, from the first of a lane's eight cells to the first cell of each
- * pair: in the same row, in the next row, in the next slice, and in the next row of the next slice. */
+/* The distances, in numbers of 16 bits, from the first of a lane's eight cells to the first cell of each of
+ * the four pairs: the pair in the same row, in the next row, in the next slice, and in the next row of the
+ * next slice. */
 typedef struct sky_steps {
   size_t to_pair[4];
 } sky_steps;
@@ -182,8 +183,7 @@ LANES_INLINE void find_cells(const sky_light *sky, lanes3 position, sky_cells *c
   memcpy(cells->columns, &column, sizeof cells->columns);
 }
 
-/* Fetches the cells around positions into the processor's cache. Without this, samples would mostly wait for
- * memory. */
+/* Prefetches the cells around positions. Without this, samples would mostly wait for memory. */
 LANES_INLINE void fetch_sky(const sky_light *sky, lanes3 position, uint32_t active) {
   const sky_steps steps = steps_of_sky(sky);
   sky_cells cells;

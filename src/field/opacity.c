@@ -5,8 +5,8 @@
 
 #include "field/surface_links.h"
 
-/* NEAR_CELLS: cells within this distance of something visible receive light. Look-ups are lifted by up to
- * FIELD_LIFT cells, and read the cells around them. */
+/* NEAR_CELLS: cells within this distance of something visible receive light. A look-up is moved off a surface
+ * by up to FIELD_LIFT cells, and then reads the eight cells around its position. */
 enum { NEAR_CELLS = 3, MOST_CELLS_ALONG = 512, MOST_MATTER = 256 };
 
 field_lattice hl_field_lattice(const vec3 *points, int count, double voxel, double most_cells) {

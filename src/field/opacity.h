@@ -26,7 +26,7 @@ typedef struct opacity_scratch {
   unsigned char *seen; /* [z][y][x] */
 } opacity_scratch;
 
-/* Takes the arrays of a field whose lattice is set, and of its scratch memory. */
+/* Takes the arrays of a field, whose lattice is set, and of its scratch memory from a layout. */
 void hl_opacity_lay_out(opacity_field *field, opacity_scratch *scratch, hl_layout *layout);
 
 /* Fills the field's arrays. Where processes share a picture, each of them samples the volumes in some

@@ -1,8 +1,8 @@
 /* field/opacity_lanes.h - how much light sixteen cells absorb along the axes.
  *
- * A cell is sampled on a lattice of its own. The cell's transmittance along an axis is the mean of the
- * transmittances of its rows of samples, so that a cell that is half filled with dense matter lets half of
- * the light through (derived). */
+ * A cell is sampled on a small lattice within the cell. The cell's transmittance along an axis is the mean of
+ * the transmittances of its rows of samples, so that a cell that is half filled with dense matter lets half
+ * of the light through (derived). */
 #ifndef HL_FIELD_OPACITY_LANES_H
 #define HL_FIELD_OPACITY_LANES_H
 
@@ -32,10 +32,10 @@ typedef struct voxel_window {
   double voxels[WINDOW_VOXELS]; /* [size[2]][size[1]][size[0]] */
 } voxel_window;
 
-/* Fills the window with the voxels on which values between two corners depend; index space. before: a value
- * depends, along each axis, on the voxel at or below its position, on `before` voxels below that one, and on
- * before + 1 above it. The window stays empty where the voxels do not fit into it, or where samples read no
- * more voxels when each looks up its own. */
+/* Fills the window with the voxels on which the values in a box depend. low, high: the box's corners; index
+ * space. before: along each axis, a value depends on the voxel at or below its position, on `before` voxels
+ * below this voxel, and on before + 1 voxels above it. The window stays empty where the voxels do not fit
+ * into it, or where the samples together read no more voxels without a window. */
 LANES_INLINE void fill_window(const grid *grid, const float low[3], const float high[3], int32_t before,
                               int samples, voxel_window *window) {
   const int64_t side = 2 * before + 2;
@@ -196,7 +196,7 @@ LANES_INLINE float extinction_at_position(const field_matter *matter, hl_storage
   return extinction;
 }
 
-/* Adds a volume's extinction to the samples of a cell. Returns whether any was added. */
+/* Adds a volume's extinction to the samples of a cell. Returns whether any extinction was added. */
 LANES_INLINE int sample_cell(const field_block *block, const field_matter *matter, hl_storage storage,
                              int lane, float (*samples)[FIELD_LANES]) {
   int n = block->samples, any = 0;

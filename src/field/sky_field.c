@@ -1,14 +1,15 @@
 /* field/sky_field.c - sweeps the light of a sky through a lattice, along the three axes and back.
  *
- * The sphere of directions is cut like a cube. Each face of it is one end of an axis, and is cut into squares
- * of equal angles. Light of one direction moves from slice to slice (sky_lanes.h). Cells keep the sum over
- * directions of transmittance times the integrals of radiance and spherical harmonics. This is enough for the
- * mean over a cosine or a phase function (lookup_lanes.h; Ramamoorthi and Hanrahan, "An efficient
- * representation for irradiance environment maps", 2001). The sums of a cell always have the same order.
+ * The sphere of directions is divided like the surface of a cube. Each face of the cube belongs to one end of
+ * an axis, and is divided into squares of equal angles. Light of one direction moves from slice to slice
+ * (sky_lanes.h). Cells keep the sum over directions of transmittance times the integrals of radiance and
+ * spherical harmonics. This is enough for the mean over a cosine or a phase function (lookup_lanes.h;
+ * Ramamoorthi and Hanrahan, "An efficient representation for irradiance environment maps", 2001). The sums of
+ * a cell always have the same order.
  *
  * Processes that share a picture divide two parts of the work by slabs of cells: sampling the volumes, and
- * adding the light up. Moving light from slice to slice, a fifth of the work, is done by each process for
- * all light. */
+ * adding the light up. Moving light from slice to slice is a fifth of the work, and each process does all of
+ * it. */
 #include "field/sky_field.h"
 
 #include <string.h>
@@ -18,7 +19,7 @@
 #include "field/surface_links.h"
 #include "scene/light/sky.h"
 
-/* Cells by which look-ups are lifted off a surface. */
+/* The number of cells by which look-ups are moved off a surface. */
 static const double LIFT_CELLS = 0.5;
 
 /* SIDE: number of squares along each side of a cube's face. With fewer squares, edges of the light of
@@ -43,8 +44,8 @@ static int samples_of_sky(const hl_sky *sky) {
   return pixels < 8 ? 8 : pixels > SIDE_SAMPLES ? SIDE_SAMPLES : pixels;
 }
 
-/* The direction of a point of a face. x, y: from -1 to 1 in equal angles. slope: how far a ray moves aside
- * while it moves by 1 along the axis. */
+/* The direction of a point of a face. x, y: from -1 to 1 in equal angles. slope: receives how far a ray moves
+ * aside, along both other axes, while it moves by 1 along the face's axis. */
 static vec3 direction_of(const field_slices *s, int sign, double x, double y, double slope[2]) {
   double v[3] = {0, 0, 0};
   slope[0] = tan(HL_PI / 4 * x);
@@ -295,8 +296,9 @@ static bool attenuates_in_color(const sky_content *content) {
   return false;
 }
 
-/* Finds the links along an axis. Stores, in one of each cell's last three floats, where a surface cuts the
- * way to the next cell along the axis. Returns null where there are no surfaces. */
+/* Finds the links that surfaces cut along an axis. Where a surface cuts the way from a cell to the next cell
+ * along the axis, stores the place of the cut in one of the cell's last three floats. Returns null where
+ * there are no surfaces. */
 static const surface_links *find_links(const sky_content *content, const surface_links *links,
                                        const sky_target *target, float *field, int axis, hl_pool *pool) {
   const field_content *of = &content->content;
@@ -391,8 +393,8 @@ static void store_cell(const store_rows *rows, const float *cell, int16_t number
 }
 
 /* Stores a row of cells along x. A cell's numbers overwrite floats of this cell and of cells before it, which
- * have been converted already. Most cells are dark. Where their numbers go, memory is zero already, unless it
- * held the floats of a cell with light. */
+ * have been converted already. Most cells are dark, and their numbers are zeros. Memory for these numbers is
+ * zero already, except where it held the floats of a cell with light. */
 static void store_row(void *data, size_t row, int worker) {
   const store_rows *rows = data;
   const size_t size = rows->cell_floats;

@@ -58,8 +58,8 @@ typedef struct sky_content {
   field_content content;
   const double (*colors)[3]; /* attenuation colours */
   field_lattice lattice;
-  int channels; /* number of channels: 3 where the light of the channels comes from different directions or
-                 * is attenuated differently; else 1 */
+  int channels; /* number of channels: 3 where the light of the channels comes from different directions, or
+                 * where matter attenuates the channels differently; else 1 */
   const light_exchange
       *exchange; /* exchange with processes that each find a part of the field; null: there are none */
 } sky_content;

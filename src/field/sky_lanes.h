@@ -2,9 +2,9 @@
  *
  * The light of one direction that reaches a cell's middle is interpolated between four cells of the slice
  * before. The cell's own matter attenuates only the light that goes on to the next slice. Surfaces absorb a
- * part of the light that comes from each of the four cells. Beyond the lattice nothing hides the light.
- * Behind matter and within it most blocks of cells are dark for most directions; these directions are left
- * out there. */
+ * part of the light on its way from each of the four cells. Beyond the lattice nothing hides the light.
+ * Behind and within matter, most blocks of cells are dark for most directions; a block leaves out the
+ * directions for which it is dark. */
 #ifndef HL_FIELD_SKY_LANES_H
 #define HL_FIELD_SKY_LANES_H
 
@@ -23,8 +23,8 @@ typedef struct sky_reaching {
   int count;
 } sky_reaching;
 
-/* Adds each direction's light to the harmonics of sixteen cells, multiplied by the direction's integrals.
- * Three sums at a time stay in registers while the directions go by; FIELD_HARMONICS is a multiple of
+/* Adds each direction's light to the harmonics of sixteen cells, multiplied by the direction's integrals. One
+ * loop over the directions computes three sums, which stay in registers; FIELD_HARMONICS is a multiple of
  * three. */
 LANES_INLINE void add_harmonics(const sky_slice *slice, const sky_reaching *reaching, int32_t column,
                                 float *cells, int count) {
@@ -130,7 +130,7 @@ LANES_INLINE void move_light(const sky_slice *slice, size_t block, size_t at, co
     const sky_direction *direction = &slice->directions[d];
     const size_t here = at + (size_t)(d * slice->light_stride);
     const float *from = slice->old + here + direction->offset;
-    /* the next row reads this; beyond the last row nothing does */
+    /* prefetches the light that the next row reads; after the last row, nothing reads it */
     __builtin_prefetch(slice->old + here + 2 * row);
     lanes light = open == NULL ? light_from(from, row, direction)
                                : light_past_surfaces(from, row, direction, open);

@@ -1,9 +1,9 @@
 /* field/surface_links.h - which links between the cells of a lattice the surfaces of meshes cut.
  *
  * A link is the straight line between the middles of two cells in slices that follow each other: a cell has
- * nine links to the slice before. Light moves from cell to cell along links. A surface takes its part of the
+ * nine links to the slice before. Light moves from cell to cell along links. A surface absorbs a part of the
  * light of each link that it meets. So a closed wall lets no light through, however thin it is and whatever
- * its direction, and it counts as no thicker than it is. */
+ * its direction. Nor does a thin wall fill whole cells. */
 #ifndef HL_FIELD_SURFACE_LINKS_H
 #define HL_FIELD_SURFACE_LINKS_H
 

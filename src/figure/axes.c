@@ -24,8 +24,7 @@ static const axis_names *names_of(hl_space space) {
   }
 }
 
-/* The direction of a world's axis as the picture shows it: its parts to the right, up, and towards the eye.
- */
+/* A world's axis as the picture shows it: its components to the right, up, and towards the eye. */
 static vec3 seen(const hl_map *map, int axis) {
   vec3 unit = {axis == 0, axis == 1, axis == 2};
   return (vec3){vec3_dot(unit, map->right), vec3_dot(unit, map->up), -vec3_dot(unit, map->forward)};
@@ -33,7 +32,7 @@ static vec3 seen(const hl_map *map, int axis) {
 
 /* ---- arrows ---- */
 
-/* An arrow to (x, y) from the origin, whose head is filled. */
+/* Draws an arrow with a filled head, from (from_x, from_y) along (x, y). */
 static void draw_arrow(const hl_ink *ink, double from_x, double from_y, double x, double y) {
   const double length = hypot(x, y), head = fmin(0.5 * ink->size, length);
   cairo_new_path(ink->cairo);
@@ -53,7 +52,8 @@ static void draw_arrows(const hl_ink *ink, const hl_overlay_place *place) {
   const double length = 2.1 * ink->size, room = length + 1.1 * ink->size;
   const double x = place->picture.left + place->picture.width - place->margin - room;
   const double y = place->picture.top + place->picture.height - place->margin - room;
-  int order[3] = {0, 1, 2}; /* the numbers of the axes, the one that points farthest from the eye first */
+  int order[3] = {0, 1, 2}; /* the indices of the axes; the axis that points farthest away from the eye comes
+                             * first */
   for (int a = 0; a < 2; a++)
     for (int b = 0; b < 2; b++)
       if (seen(&place->map, order[b]).z > seen(&place->map, order[b + 1]).z) {
@@ -76,8 +76,8 @@ static void draw_arrows(const hl_ink *ink, const hl_overlay_place *place) {
 
 /* ---- letters ---- */
 
-/* Names a direction of the picture by one axis or two. An axis is named if the direction's part along it is
- * at least 0.4; the axis with the greater part comes first. */
+/* Names a direction of the picture by one axis or two. An axis is named if the direction's component along it
+ * is at least 0.4; the axis with the greater component comes first. */
 static void name_direction(const hl_overlay_place *place, const axis_names *names, vec3 way, char name[8]) {
   double part[3] = {way.x, way.y, way.z};
   name[0] = '\0';

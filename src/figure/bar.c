@@ -1,9 +1,9 @@
 /* figure/bar.c - the scale bar: how long a length of the world is in the picture.
  *
- * The unit is the one in the volumes' files, or the one that the overlay names; no unit is invented. All
- * visible volumes must have the same unit, after the scales that the scene gives them. In a perspective
- * picture the scale differs with depth: the bar is right at one depth, which the overlay chooses and the bar
- * names. */
+ * The unit is the one in the volumes' files, or the one that the overlay names; without either, the bar is
+ * refused. All visible volumes must have the same unit, after the scales that the scene gives them. In a
+ * perspective picture the scale changes with depth. The bar is then right at one depth, which the overlay
+ * chooses and the bar's text names. */
 #include <stdio.h>
 #include <string.h>
 
@@ -17,7 +17,7 @@ enum { LABEL_BYTES = 96 };
 typedef struct bar_unit {
   const char *name;    /* the unit's name in the files */
   const hl_unit *unit; /* null: the name is not known */
-  double per_scene;    /* the length, in the files' unit, of one length unit of the scene's world */
+  double per_scene;    /* the length of one unit of the scene's world, in the files' unit */
 } bar_unit;
 
 static const char *name_of(const hl_scene_volume *volume) {
@@ -73,7 +73,7 @@ static hl_status find_scale(const hl_overlay_place *place, double *scale, hl_err
   return HL_OK;
 }
 
-/* Finds the length, in the files' unit, of the unit in which the bar's text is written. */
+/* Finds the length of the unit in which the bar's text is written, in the files' unit. */
 static hl_status length_of(const hl_unit *written, const bar_unit *unit, double *length, hl_error *error) {
   if (written == unit->unit) *length = 1;
   else if (unit->unit != NULL) *length = written->metres / unit->unit->metres;
@@ -87,7 +87,7 @@ static hl_status length_of(const hl_unit *written, const bar_unit *unit, double 
 static hl_status choose_length(const hl_overlay *overlay, const bar_unit *unit, double longest,
                                double *length, char label[LABEL_BYTES], hl_error *error) {
   const hl_unit *written = unit->unit;
-  double in_files = 1; /* the length, in the files' unit, of the unit in which the bar's text is written */
+  double in_files = 1; /* the length of the unit in which the bar's text is written, in the files' unit */
   hl_status status = HL_OK;
   const char *name = overlay->scale_bar_unit;
   if (name != NULL) {

@@ -158,7 +158,7 @@ hl_status hl_figure_get_format(size_t index, hl_file_format *format) {
   return HL_OK;
 }
 
-/* The options with which the figure's pixels are written as a picture. */
+/* The options for writing the figure's pixels as a picture. */
 static hl_image_write_options picture_options(const hl_figure *figure, const hl_image_write_options *given) {
   hl_image_write_options options;
   hl_image_write_options_defaults(&options);

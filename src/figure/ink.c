@@ -101,7 +101,7 @@ void hl_ink_bar(const hl_ink *ink, hl_rectangle bar) {
   const double rim = ink->size * halo_width / 2;
   set_grey(ink->cairo, ink->halo, halo_alpha);
   cairo_rectangle(ink->cairo, bar.left - rim, bar.top - rim, bar.width + 2 * rim, bar.height + 2 * rim);
-  /* The bar's rectangle runs backwards, so that the bar is left out of the halo. */
+  /* The bar's own rectangle runs in the opposite sense, so that it is left out of the halo. */
   cairo_rectangle(ink->cairo, bar.left + bar.width, bar.top, -bar.width, bar.height);
   cairo_fill(ink->cairo);
   set_grey(ink->cairo, ink->color, 1);

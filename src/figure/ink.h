@@ -1,5 +1,5 @@
-/* figure/ink.h - draws texts, lines and fills over a picture. Each has a halo, so that it shows on any
- * ground. */
+/* figure/ink.h - draws texts, lines and fills over a picture. Each has a halo, so that it can be seen on a
+ * ground of any colour. */
 #ifndef HL_FIGURE_INK_H
 #define HL_FIGURE_INK_H
 
@@ -19,12 +19,11 @@ typedef struct hl_ink {
 typedef struct hl_line_of_text {
   const char *text;
   double x, y;             /* points */
-  double align_x, align_y; /* which part of the text lies at (x, y): 0: its left or top edge; 1: its right or
-                            * bottom edge; between: a part in between */
+  double align_x, align_y; /* the part of the text that lies at (x, y): 0: its left or top edge; 1: its right
+                            * or bottom edge; a number between: a place between the edges */
   double scale;            /* factor of the letters' size; 0 counts as 1 */
   bool bold;
-  bool paragraphs;  /* a line break begins a new line; where this is false, a line break is drawn as a
-                     * character */
+  bool paragraphs;  /* a line break begins a new line; false: a line break is drawn as a character */
   double wide_most; /* the greatest width of a line, points; a longer line is cut and ends in "..."; 0: any
                      * width */
 } hl_line_of_text;

@@ -45,7 +45,7 @@ static size_t count_rows(const hl_scene_volume *volume) {
   return count;
 }
 
-/* The title of a volume's part of the legend; null: it has none. */
+/* The title of a volume's part of the legend; null: the part has no title. */
 static const char *title_of(const hl_overlay_place *place, const hl_scene_volume *volume, bool first) {
   if (first && place->overlay->legend_title != NULL) return place->overlay->legend_title;
   if (volume->name != NULL && volume->name[0] != '\0') return volume->name;
@@ -136,8 +136,8 @@ static void add_stop(cairo_pattern_t *pattern, const double range[2], double val
   cairo_pattern_add_color_stop_rgb(pattern, (value - range[0]) / (range[1] - range[0]), r, g, b);
 }
 
-/* Adds the function's colours between two neighbouring points. They are linear in light, so that in sRGB they
- * need several stops. */
+/* Adds the function's colours between two neighbouring points to the gradient. The colours are linear in
+ * light, and so need several stops in sRGB. */
 static void add_stretch(cairo_pattern_t *pattern, const double range[2], const hl_color_point *from,
                         const hl_color_point *to, cairo_t *scratch) {
   const int steps = to->value > from->value ? STEPS_BETWEEN_POINTS : 1;

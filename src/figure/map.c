@@ -1,7 +1,7 @@
 /* figure/map.c - where points of a scene's world lie on the page.
  *
- * Derived from the camera's definition: a picture of height h shows, orthographically, camera->height units
- * of the world; in perspective, at the depth d, 2 d tan(fovy / 2). */
+ * Derived from the camera's definition: the height of an orthographic picture is camera->height units of the
+ * world; the height of a perspective picture, at the depth d, is 2 d tan(fovy / 2) units. */
 #include "figure/map.h"
 
 #include "scene/geometry/camera.h"

@@ -23,8 +23,8 @@ typedef struct hl_map {
 
 hl_map hl_map_of(const hl_camera *camera, hl_rectangle picture);
 
-/* Points on the page per unit of the world. depth: distance from the eye; it matters only for perspective
- * cameras. */
+/* Points on the page per unit of the world. depth: the distance from the eye, which only perspective cameras
+ * need. */
 double hl_map_scale(const hl_map *map, double depth);
 
 /* Finds where a point of the world lies on the page. False: it lies behind the eye. */

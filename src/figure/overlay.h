@@ -6,7 +6,7 @@
 #include "figure/ink.h"
 #include "figure/map.h"
 
-/* The place of the picture over which an overlay is drawn. */
+/* The picture over which an overlay is drawn, and its place on the page. */
 typedef struct hl_overlay_place {
   const hl_overlay *overlay;
   const hl_scene_description *scene; /* null: none */

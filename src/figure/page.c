@@ -1,8 +1,8 @@
 /* figure/page.c - draws a figure's panels, through cairo, on pixels, PDF or SVG.
  *
- * In: the figure, checked. Out: a picture, or the bytes of a file. The unit of length is always the
- * point. Pictures are drawn into their rectangles as 8-bit sRGB. A picture is not resampled where its
- * pixels are as large as the page's. Cairo allocates its surfaces outside of the context's memory. */
+ * In: the figure, checked. Out: a picture, or the bytes of a file. The unit of length is always the point.
+ * Pictures are drawn into their rectangles as 8-bit sRGB. A picture whose pixels are as large as the page's
+ * is not resampled. Cairo allocates its surfaces outside of the context's memory. */
 #include "figure/page.h"
 
 #include <cairo-pdf.h>
@@ -105,7 +105,7 @@ static hl_status draw_picture(hl_context *context, cairo_t *cairo, const hl_figu
   cairo_translate(cairo, place.left, place.top);
   if (!exact) cairo_scale(cairo, place.width / width, place.height / height);
   cairo_set_source_surface(cairo, surface, 0, 0);
-  /* Pixels beyond the picture's edges repeat the edges, which so stay opaque. */
+  /* Beyond the picture's edges, the pixels at the edges repeat, so that the edges stay opaque. */
   if (pixels && !exact) cairo_pattern_set_extend(cairo_get_source(cairo), CAIRO_EXTEND_PAD);
   cairo_pattern_set_filter(cairo_get_source(cairo), exact ? CAIRO_FILTER_NEAREST : CAIRO_FILTER_GOOD);
   cairo_rectangle(cairo, 0, 0, width, height);
@@ -228,7 +228,7 @@ hl_status hl_page_write(const hl_figure *figure, bool pdf, hl_output *output, hl
                                  : cairo_svg_surface_create_for_stream(on_write, output->file, width, height);
   if (pdf) {
     cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATOR, "Halflight");
-    /* Without a time of creation, one figure has the same bytes whenever it is made. */
+    /* The file has no time of creation, so that a figure has the same bytes whenever it is made. */
     cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "");
   }
   cairo_t *cairo = cairo_create(surface);

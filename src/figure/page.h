@@ -17,7 +17,7 @@ hl_status hl_page_draw(hl_context *context, const hl_figure *figure, int width, 
 /* Writes the figure as PDF, or as SVG, to output->file. */
 hl_status hl_page_write(const hl_figure *figure, bool pdf, hl_output *output, hl_error *error);
 
-/* The name of the libraries that drawing lacks: "cairo and pango" in builds without them, else null. */
+/* The name of the libraries for drawing that the build lacks: "cairo and pango"; null if it has them. */
 const char *hl_page_missing(void);
 
 #endif

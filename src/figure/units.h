@@ -14,8 +14,8 @@ typedef struct hl_unit {
 /* The unit with this name; null: no known unit has it. */
 const hl_unit *hl_unit_find(const char *name);
 
-/* The unit in which a length's number lies from 1 to 1000. Where no unit gives such a number, the unit whose
- * number comes closest to that range. */
+/* The unit for a length: the one in which its number is from 1 to 1000. If there is no such unit, it is the
+ * one whose number comes closest to that range. */
 const hl_unit *hl_unit_for(double metres);
 
 /* The greatest number of the form 1, 2 or 5 times a power of ten that is at most `most`. */

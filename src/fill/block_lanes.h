@@ -13,8 +13,8 @@
 typedef struct block_points {
   lanes3 position;   /* in index space, clamped to [-1, n) */
   lanes_int cell[3]; /* floor(position): -1 .. n-1 */
-  int32_t low[3];    /* the least cell along each axis; set only where it is needed (lowest_of_block) */
-  lanes_int inside;  /* lanes whose point lies in the grid or at most GRID_MARGIN outside */
+  int32_t low[3];    /* the least cell along each axis; set only where lowest_of_block() is called */
+  lanes_int inside;  /* lanes whose point lies in the grid, or at most GRID_MARGIN outside the grid */
 } block_points;
 
 /* The lanes whose density is above all densities that come before the first visible one, and so may be
@@ -34,8 +34,8 @@ LANES_INLINE block_points find_points(const fill_source *source, int x, int y) {
   for (int a = 0; a < 3; a++) {
     float count = (float)grid->dimension[a];
     points.inside &= (axis[a] > -0.5f - GRID_MARGIN) & (axis[a] < count - 0.5f + GRID_MARGIN);
-    /* outside the grid, the values at the border continue smoothly; below -1 and above n densities are
-     * constant */
+    /* outside the grid, the values at the border continue smoothly; where a coordinate is below -1 or above
+     * n, the density is constant */
     axis[a] = lanes_clamp(axis[a], -1.0f, count * (1 - 1e-6f));
     points.cell[a] = lanes_floor(axis[a]);
   }
@@ -71,9 +71,9 @@ LANES_INLINE void lowest_of_block(const lanes_int cell[3], int32_t low[3]) {
 #endif
 }
 
-/* Whether the taps of all pixels of a tile lie in the grid, with room for rounding. The area of the sheet
+/* Whether the taps of all pixels of a tile lie in the grid, with a margin for rounding. The area of the sheet
  * that a tile covers has straight edges. So all of the tile's points lie between the points at its corners,
- * unless some points lie behind the view. */
+ * unless some points lie behind the view's origin. */
 LANES_INLINE int tile_is_inside(const fill_source *source, int x, int y) {
   const sheet_rays *rays = &source->rays;
   const float spare = 1.0f / 64;
@@ -115,10 +115,10 @@ static __attribute__((noinline)) int cells_visible_anywhere(const grid *grid, co
 }
 
 #if defined(__AVX2__) && !defined(__AVX512F__)
-/* Whether the bit of any of sixteen cells is set; all of them lie in the 2x2x2 bricks from `first_brick` on.
- * within: the cells' coordinates counted from the first cell of these bricks, a byte each. The bits of two
- * neighbouring bricks along x are sixteen bytes; a byte holds the bits of four cells along x and two along y.
- * The byte of each cell is looked up among the sixteen. */
+/* Whether the bit of any of sixteen cells is set. All of these cells lie in the 2x2x2 bricks from
+ * `first_brick` on. within: the cells' coordinates counted from the first cell of these bricks, a byte each.
+ * The bits of two neighbouring bricks along x are sixteen bytes; each byte holds the bits of four cells along
+ * x and two along y. A byte shuffle looks up, for each cell, the byte that holds its bit. */
 LANES_INLINE int cells_visible_in_bricks(const grid *grid, size_t first_brick, const __m128i within[3]) {
   size_t row = (size_t)grid->brick_count[0], layer = row * (size_t)grid->brick_count[1];
   const uint64_t *bits = grid->cell_bits + first_brick;
@@ -177,8 +177,8 @@ typedef lanes_int cell_offsets;
 #endif
 
 /* Whether any of a block's points lies in a cell that may show something. cell: the floors of the points'
- * coordinates, clamped as in find_points(). low: the least floor along each axis. Usually all cells lie in
- * the 2x2x2 bricks that begin with the brick of the least cell. */
+ * coordinates, clamped as in find_points(). low: the least of these floors along each axis. Usually all cells
+ * lie in 2x2x2 bricks, of which the first holds the cell with the least coordinates. */
 LANES_INLINE int cells_visible(const grid *grid, const lanes_int cell[3], const int32_t low[3]) {
   int32_t first_cell[3];
   cell_offsets within[3];
@@ -196,15 +196,15 @@ LANES_INLINE int cells_visible(const grid *grid, const lanes_int cell[3], const 
 
 /* ---- samples of several blocks in one vector ---- */
 
-/* The active lanes, except those of the last block that has any. starts: the first lane of each block, one
- * bit each. */
+/* Removes from the active lanes the lanes of one block: the last block that has active lanes. starts: the
+ * first lane of each block, one bit each. */
 LANES_INLINE uint32_t drop_last_block(uint32_t active, uint32_t starts) {
   /* the bits up to and including the last active lane */
   uint32_t below = (2u << (31 - __builtin_clz(active))) - 1;
   return active & ((1u << (31 - __builtin_clz(starts & below))) - 1);
 }
 
-/* Copies the lanes whose bits are set from `some` to `slope`. */
+/* Copies from `some` to `slope` those lanes whose bits are set. */
 LANES_INLINE void join_slopes(uint32_t bits, lanes3 some, lanes3 *slope) {
   lanes_int mask = lanes_from_bits(bits);
   *slope = (lanes3){lanes_select(mask, some.x, slope->x), lanes_select(mask, some.y, slope->y),

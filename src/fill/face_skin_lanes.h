@@ -1,7 +1,7 @@
-/* fill/face_skin_lanes.h - how much the matter that a light's rays reach belongs to a face that cuts it: a
- * face of the volume's box, or of a cut. In: a run's rays, box and cuts (fill.h). Out: a number from 0 to 1,
- * the skin. It is 1 at a face and up to a voxel behind the face, and 0 from FACE_VOXELS behind the face on.
- * Only faces through which light comes in count. */
+/* fill/face_skin_lanes.h - how much of the matter that a light's rays reach belongs to a face that cuts the
+ * matter. The face is a face of the volume's box, or of a cut. In: a run's rays, box and cuts (fill.h). Out:
+ * a number from 0 to 1, the skin. It is 1 at a face and up to a voxel behind the face, and 0 from FACE_VOXELS
+ * behind the face on. Only faces through which light comes in count. */
 #ifndef HL_FILL_FACE_SKIN_LANES_H
 #define HL_FILL_FACE_SKIN_LANES_H
 
@@ -9,16 +9,16 @@
 #include "grid/faces.h"
 #include "view/rays_lanes.h"
 
-/* How much matter belongs to one face (its skin), in the middle of the part of a ray that lies behind the
- * face in a slab. before, depth: how deep the ray lies behind the face on the slab's first and last sheet;
- * in voxels. */
+/* The skin of one face, in the middle of the part of a ray that lies behind the face in a slab: how much of
+ * the matter belongs to the face. before, depth: how deep the ray lies behind the face on the slab's first
+ * and last sheet; in voxels. */
 LANES_INLINE lanes skin_of_depth(lanes before, lanes depth) {
   lanes middle = (lanes_max(before, lanes_set(0)) + depth) * 0.5f;
   return lanes_keep(depth > before, lanes_clamp(FACE_VOXELS - middle, 0, 1));
 }
 
-/* How much matter belongs to either of two opposite faces, at the places low and high of an axis. scale:
- * voxels per unit of the axis. */
+/* The skin of two opposite faces, which lie at the places low and high of an axis. scale: voxels per unit of
+ * the axis. */
 LANES_INLINE lanes skin_of_axis(lanes from, lanes to, lanes low, lanes high, lanes scale) {
   return lanes_max(skin_of_depth((from - low) * scale, (to - low) * scale),
                    skin_of_depth((high - from) * scale, (high - to) * scale));
@@ -38,9 +38,9 @@ LANES_INLINE lanes distance_to_shape(const run_cut *cut, lanes3 at, const float 
                    (lanes_abs(at.z) - 1.0f) * scale[2]);
 }
 
-/* How much matter belongs to a face of a cut (its skin). In a box whose inside is left, light may come in
- * through one face close to another face. So all faces of such a box are tested, and not only the nearest
- * one. */
+/* The skin of a cut: how much of the matter belongs to one of its faces. In a box whose inside is left, light
+ * may come in through one face close to another face. So all faces of such a box are tested, and not only the
+ * nearest one. */
 LANES_INLINE lanes skin_of_cut(const run_cut *cut, lanes3 from, lanes3 to, float voxel) {
   const float scale[3] = {1.0f / (cut->size[0] * voxel), 1.0f / (cut->size[1] * voxel),
                           1.0f / (cut->size[2] * voxel)};
@@ -54,7 +54,7 @@ LANES_INLINE lanes skin_of_cut(const run_cut *cut, lanes3 from, lanes3 to, float
   return cut->shape->keep_inside ? skin_of_depth(-before, -depth) : skin_of_depth(before, depth);
 }
 
-/* How much matter on the rays of a block belongs to a face (its skin), in slab number `slab` of a run. */
+/* The skin of all faces on the rays of a block, in slab number `slab` of a run. */
 LANES_INLINE lanes skin_of_faces(const slab_run *run, int slab, lanes u, lanes v) {
   const grid *grid = run->grid;
   lanes3 from = rays_positions(&run->rays[slab], u, v), to = rays_positions(&run->rays[slab + 1], u, v);

@@ -45,13 +45,13 @@ typedef struct slab_run {
   float low[3], high[3];          /* corners in index space; between them the volume's box cuts nothing */
   const run_cut *cuts;            /* [cut_count] */
   int cut_count;
-  float beside;   /* the distance beside the slabs up to which cuts count; frame units */
+  float beside;   /* the distance from the slabs up to which cuts count; frame units */
   float voxel;    /* the grid's smallest edge; frame units */
   float steps[3]; /* the distances between voxels along the axes, in units of `voxel` */
 } slab_run;
 
-/* For each slab of a run: the needed blocks of a tile in which the slab may hold something visible, and
- * whether neither the volume's box nor a cut cuts any visible block of the tile. */
+/* blocks: for each slab of a run, the needed blocks of a tile in which the slab may hold something visible.
+ * uncut: whether neither the volume's box nor a cut cuts the slab in these blocks. */
 typedef struct relevant_blocks {
   uint16_t blocks[RUN_SLABS];
   uint16_t uncut; /* one bit for each slab */

@@ -21,8 +21,8 @@ LANES_INLINE const unsigned char *window_row(const grid *grid, const tap_window 
   return window->voxels + (size_t)z * grid->slice_bytes + (size_t)y * grid->row_bytes;
 }
 
-/* Adds up the weighted taps. The loops are not unrolled: they would outgrow the instruction cache and take a
- * compiler minutes. */
+/* Adds up the weighted taps. The loops are not unrolled: unrolled code would outgrow the instruction cache
+ * and take a compiler minutes. */
 LANES_INLINE lanes sum_taps(const grid *grid, hl_storage storage, const tap_window *window,
                             const lanes weight[3][4]) {
   lanes sum = lanes_set(0);
@@ -113,7 +113,7 @@ LANES_INLINE int axes_to_fold(const grid *grid, const lanes_int cell[3], uint32_
 }
 
 /* The window of every lane's taps. Offsets are counted from the first active lane's cell, so that they fit 32
- * bits in any volume. Idle lanes read the taps of that cell. */
+ * bits in any volume. Inactive lanes read the taps of the first active lane's cell. */
 LANES_INLINE tap_window window_at(const grid *grid, const lanes_int cell[3], uint32_t active) {
   int first = __builtin_ctz(active);
   int32_t reference[3];
@@ -144,8 +144,8 @@ LANES_INLINE lanes sum_in_memory(const grid *grid, const lanes_int cell[3], cons
   return sum_f32(grid, &window, weight);
 }
 
-/* Makes *view, a grid of the page that holds the taps of the first active lane. Returns the active lanes
- * whose taps lie in this page, one bit each. cell: tap 0 is at cell - 1. */
+/* Makes *view: a grid of one page, the page that holds the taps of the first active lane. Returns the active
+ * lanes whose taps lie in this page, one bit each. cell: tap 0 is at cell - 1. */
 LANES_INLINE uint32_t lanes_in_page(const grid *grid, const lanes_int cell[3], uint32_t active,
                                     struct grid *view, hl_page_reading *reading) {
   int first = __builtin_ctz(active);
@@ -179,19 +179,19 @@ static __attribute__((noinline)) lanes sum_in_pages(const grid *grid, const lane
 
 /* ---- fields in bricks ---- */
 
-/* The lanes whose points lie in one brick, and the points' places in the brick. */
+/* The lanes whose points lie in one brick, and the positions of these points in the brick. */
 typedef struct brick_lanes {
   const hl_brick_entry *entry;
   uint32_t bits;
-  lanes_int cell[3]; /* cells of the brick's level, counted from its first cell, plus 1: tap 0 is at cell - 1
-                      * of the coefficients that the brick stores */
-  lanes part[3];     /* the point's place between the cell's corners, 0 to 1 */
-  float step;        /* number of cells of the brick's level along a cell of level 0: 1 or a fraction */
+  lanes_int cell[3]; /* the cells of the brick's level that hold the points, counted from the brick's first
+                      * cell, plus 1: tap 0 is at cell - 1 of the coefficients that the brick stores */
+  lanes part[3];     /* the position of each point between its cell's corners, 0 to 1 */
+  float step;        /* number of cells of the brick's level along a cell of level 0: 1 or less */
 } brick_lanes;
 
-/* Finds the brick that holds the point of the first of the lanes `left`, and all lanes of `left` whose points
- * lie in this brick. cell, part: the cells of level 0 in which the lanes' points lie, and the points' places
- * in these cells. */
+/* Takes the first of the lanes `left`, and finds the brick that holds its point. Then finds all lanes of
+ * `left` whose points lie in this brick. cell, part: the cells of level 0 that hold the lanes' points, and
+ * the points' positions in these cells. */
 LANES_INLINE void lanes_in_brick(const hl_bricks *bricks, const lanes_int cell[3], const lanes part[3],
                                  uint32_t left, brick_lanes *found) {
   int first = __builtin_ctz(left);
@@ -280,7 +280,7 @@ LANES_INLINE lanes gather_block(const fill_source *source, const block_points *p
   const lanes(*weights)[4] = (const lanes(*)[4])weight;
   int outside = inside ? 0 : axes_to_fold(grid, cell, active);
   if (outside != 0) {
-    /* weights are rounded before they are folded, as in splatting */
+    /* weights are rounded before they are folded at the grid's border, as in splatting */
     if (has_integer_weights(storage)) round_to_weights(weight[0]);
     if (grid->dimension[0] < 4 || grid->dimension[1] < 4 || grid->dimension[2] < 4)
       return sum_in_thin_grid(grid, cell, active, weights);
@@ -321,9 +321,9 @@ LANES_INLINE block_points points_in_tile(const fill_source *source, int tile_x, 
   return points;
 }
 
-/* Fills the blocks in `need`, and those in `others` whose cells may show something. It tests all cells before
- * it fills any block. If tests and sums took turns, the processor would mispredict branches and begin sums in
- * vain. inside: the result of tile_is_inside(). */
+/* Fills the blocks in `need`, and those blocks in `others` whose cells may show something. It tests all cells
+ * before it fills any block: if tests and sums alternated, the processor would mispredict branches and begin
+ * sums in vain. inside: the result of tile_is_inside(). */
 LANES_INLINE filled_blocks gather_blocks(const fill_source *source, int tile_x, int tile_y, uint32_t need,
                                          uint32_t others, int inside, float *density) {
   block_points points[TILE_BLOCKS];

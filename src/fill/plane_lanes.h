@@ -49,8 +49,8 @@ LANES_INLINE lanes values_of_degree(const grid *grid, const kernel *kernel, int 
   return values_in_memory(grid, cell, active, starts, weights);
 }
 
-/* A volume's values at points of its index space, in stored units, for the active lanes. At least one lane is
- * active. starts: the first lane of each block of pixels, one bit each. */
+/* A volume's values at points of its index space, in stored units, set in the active lanes. At least one lane
+ * is active. starts: the first lane of each block of pixels, one bit each. */
 static __attribute__((noinline)) lanes values_at(const grid *grid, const kernel *kernel, lanes3 point,
                                                  uint32_t active, uint32_t starts) {
   return kernel->degree == HL_BSPLINE_DEGREE
@@ -60,9 +60,9 @@ static __attribute__((noinline)) lanes values_at(const grid *grid, const kernel 
 
 /* ---- the row of the second number ---- */
 
-/* The row of a function of two numbers at sixteen points: the place of the second number in the table. slope:
- * the volume's gradient there, in stored units per frame unit, which is not read if the second number is
- * another volume's value. point: frame space. */
+/* The row, in the table of a function of two numbers, that belongs to the second number at sixteen points.
+ * slope: the volume's gradient at the points, in stored units per frame unit; it is not read if the second
+ * number is another volume's value. point: frame space. */
 LANES_INLINE lanes row_of_matter(const plane_table *table, const kernel *kernel, lanes3 slope, lanes3 point,
                                  uint32_t active, uint32_t starts) {
   lanes second, scale = lanes_set(table->row_scale);
@@ -93,8 +93,8 @@ LANES_INLINE lanes column_of(const plane_table *table, lanes coordinate) {
   return lanes_line(coordinate, table->column_scale, table->column_offset);
 }
 
-/* The lanes in which the function depends on the second number somewhere on the way from one coordinate in
- * the classifier's tables to another. */
+/* The lanes in which the function depends on the second number for some value between two coordinates in the
+ * classifier's tables. */
 LANES_INLINE lanes_int depends_on_row(const plane_table *table, lanes from, lanes to) {
   return lanes_max(column_of(table, from), column_of(table, to)) >= table->even_before;
 }
@@ -116,8 +116,8 @@ LANES_INLINE void sums_at_column(const plane_table *table, plane_row row, lanes 
   for (int i = 0; i < 2; i++) sums[i] = lanes_fma(of_row[1][i] - of_row[0][i], row.part, of_row[0][i]);
 }
 
-/* Two coordinates that are closer than this many columns get the mean of both ends: a difference of integrals
- * would lose digits, and the mean is as accurate. */
+/* Where two coordinates are closer than this many columns, the mean of the values at both is used: a
+ * difference of integrals would lose digits, and this mean is as accurate. */
 static const float CLOSE_COLUMNS = 2;
 
 /* The mean extinction in a row between two coordinates in the classifier's tables. */
@@ -156,11 +156,11 @@ LANES_INLINE void colors_between(const plane_table *table, plane_row row, lanes 
   for (int i = 0; i < 4; i++) sums[i] = high[i] - low[i];
 }
 
-/* The least sum of opacities over columns from which the part that shows gets a colour of its own. Where the
- * sum is smaller, the colour is the mean over the whole way. */
+/* The visible part of a way gets a colour of its own where the sum of opacities over its columns is at least
+ * this great. Where the sum is smaller, the colour is the mean over the whole way. */
 static const float SOME_OPACITY = 1e-4f;
 
-/* The colour in a row where matter shows, in linear RGB: the mean over the part of a way that shows and one
+/* The colour in a row where matter is visible, in linear RGB: the mean over the visible part of a way and one
  * column on either side. If the function shows nothing there, the colour is the mean over the whole way. The
  * way runs from one coordinate in the classifier's tables to another. Only active lanes get a result. */
 static __attribute__((noinline, unused)) void color_in_row(const plane_table *table, lanes row,

@@ -1,6 +1,7 @@
 /* fill/relevant_blocks_lanes.h - finds which blocks of a tile may show something between two sheets. The box
  * around each block's rays is looked up among the visible cells, sixteen blocks at a time. Several
- * consecutive slabs are examined together, as they share boxes and the cells that are read. */
+ * consecutive slabs are examined together, because neighbouring slabs share the boxes on their common sheet
+ * and mostly read the same cells. */
 #ifndef HL_FILL_RELEVANT_BLOCKS_LANES_H
 #define HL_FILL_RELEVANT_BLOCKS_LANES_H
 
@@ -32,9 +33,9 @@ LANES_INLINE lanes_box box_on_sheet(const sheet_rays *rays, lanes u, lanes v) {
   return box;
 }
 
-/* The lanes whose box may show something, found by one look-up each. *wide: the lanes whose box spans more
- * units than a look-up covers; they are left out of the result. shift: converts cells to units. low, high:
- * the box's first and last cells. */
+/* The lanes whose box may show something. One look-up answers for each lane. *wide: receives the lanes whose
+ * box spans more units than a look-up covers; the result leaves these lanes out. shift: converts cells to
+ * units. low, high: the box's first and last cells. */
 LANES_INLINE lanes_int box_visible(const cell_lookup *lookup, int shift, const lanes_int low[3],
                                    const lanes_int high[3], lanes_int inside, lanes_int *wide) {
   lanes_int first = lanes_set_int(0), bit = first, fits = lanes_set_int(-1);
@@ -106,7 +107,7 @@ LANES_INLINE sides_of_cut sides_of_boxes(const run_cut *cut, const lanes_box *bo
   return (sides_of_cut){far<1.0f, near> 1.0f};
 }
 
-/* Removes the blocks that cuts remove from `visible`, and the blocks near a cut's face from `uncut`. */
+/* Clears in `visible` the blocks that cuts remove, and in `uncut` the blocks near a cut's face. */
 LANES_INLINE void apply_cuts(const slab_run *run, const lanes_box *box, uint32_t *visible, uint32_t *uncut) {
   for (int i = 0; i < run->cut_count; i++) {
     sides_of_cut sides = sides_of_boxes(&run->cuts[i], box, run->beside);
@@ -137,7 +138,7 @@ static void relevant_blocks_tile(const slab_run *run, int tile_x, int tile_y, ui
     lanes_box box = box_of_slab(&on_sheet[slab], &on_sheet[slab + 1]);
     uint32_t visible = visible_boxes(run->grid, &box), whole = uncut_blocks(run, &box);
     apply_cuts(run, &box, &visible, &whole);
-    /* blocks are also cut where the slab contains the eye, because the rays begin within the slab */
+    /* blocks also count as cut where the slab contains the eye, because the rays begin within the slab */
     int uncut = rays[0].step * rays[1].step > 0 && (visible & ~whole) == 0;
     found->uncut = (uint16_t)((found->uncut & ~(1u << slab)) | (uint32_t)uncut << slab);
     found->blocks[slab] = (uint16_t)(visible & need);

@@ -10,8 +10,8 @@
 /* Weights along x of u8 and u16 voxels are integers, so that the weighted sum of four taps is exact on every
  * instruction set. The sum is at most 255 * 32766 for u8, which a float holds exactly, and 65535 * 32766 for
  * u16, which 32 bits hold. A weight is never negative and fits a signed 16-bit number. A slope is the
- * derivative of a weight. It fits a signed 16-bit number, too, because the slopes of all kernels and the sums
- * of slopes are below 1.08 in magnitude. */
+ * derivative of a weight. It fits a signed 16-bit number as well: the slopes of all kernels, and the sums of
+ * slopes, are below 1.08 in magnitude. */
 enum { WEIGHT_UNITS = 32766, SLOPE_UNITS = 30000 };
 static const float WEIGHT_INVERSE = 1.0f / WEIGHT_UNITS, SLOPE_INVERSE = 1.0f / SLOPE_UNITS;
 
@@ -19,16 +19,16 @@ typedef struct integer_weights {
   lanes_int tap[4];
 } integer_weights;
 
-/* x in units, rounded to the nearest integer. Results are below 2^22. The last bit of a float from 2^23 to
- * 2^24 stands for 1, so that adding 3 * 2^22 rounds to integers. */
+/* Returns the product of x and `units`, rounded to the nearest integer. Results are below 2^22. The last bit
+ * of a float from 2^23 to 2^24 stands for 1, so that adding 3 * 2^22 rounds to integers. */
 LANES_INLINE lanes_int round_to_units(lanes x, int units) {
   const float shift = 3 << 22;
   return (lanes_int)lanes_line(x, (float)units, shift) - (lanes_int)lanes_set(shift);
 }
 
-/* Rounds the sums of weights from the first tap on, not each weight. The error of a row of voxels is then
- * half a unit times the differences between neighbours, and constant rows are exact. total: the sum of all
- * four weights. */
+/* Rounds weights to integers: it rounds the sums of weights from the first tap on, and not each weight. The
+ * error of a row of voxels is then half a unit times the differences between neighbours, and constant rows
+ * are exact. total: the sum of all four weights. */
 LANES_INLINE integer_weights round_weights(const lanes weight[4], int units, int total) {
   lanes_int first = round_to_units(weight[0], units), two = round_to_units(weight[0] + weight[1], units);
   lanes_int last = round_to_units(weight[3], units);
@@ -43,15 +43,15 @@ LANES_INLINE void round_to_weights(lanes weight[4]) {
 
 /* ---- u8 voxels ---- */
 
-/* The functions below weight and add four u8 taps in a 32-bit word. Weights are split into the parts that the
- * processor's instructions multiply. */
+/* The functions below weight and add four u8 taps, which are packed in a 32-bit word. Weights are split into
+ * the parts that the processor's instructions multiply. */
 #if defined(__AVX512VBMI__) && defined(__AVX512VBMI2__) && defined(__AVX512VNNI__)
 #define HL_PERMUTES_BYTES 1
 
-/* Each weight or slope of a lane is two bytes: digit[0] holds the higher bytes of the lane's four numbers,
- * digit[1] the lower bytes. The processor multiplies unsigned bytes by signed bytes. Weights are unsigned,
- * and are multiplied by voxels less 128, which are signed. Slopes are signed, and are multiplied by unsigned
- * voxels. */
+/* A lane has four weights or slopes. Each of these numbers is two bytes: digit[0] holds the higher bytes of
+ * the lane's four numbers, digit[1] the lower bytes. The processor multiplies unsigned bytes by signed bytes.
+ * Weights are unsigned; they are multiplied by voxels reduced by 128, which are signed. Slopes are signed;
+ * they are multiplied by unsigned voxels. */
 typedef struct byte_weights {
   __m512i digit[2];
 } byte_weights;
@@ -78,8 +78,8 @@ LANES_INLINE byte_weights split_weights(const integer_weights *integers) {
   return (byte_weights){{higher_bytes(even, odd), lower_bytes(even, odd)}};
 }
 
-/* Splits slopes into bytes. A slope is d0 * 256 + d1, where both bytes are signed; where d1 is negative, d0
- * is the slope's higher byte plus 1. */
+/* Splits slopes into bytes. A slope is d0 * 256 + d1, where both bytes are signed. Where d1 is negative, d0
+ * is 1 more than the slope's higher byte. */
 LANES_INLINE byte_slopes split_slopes(const integer_weights *integers) {
   const __m512i sign = _mm512_set1_epi16((short)0x8080);
   __m512i even = _mm512_add_epi16(two_words(integers->tap[0], integers->tap[2]), sign);
@@ -92,7 +92,7 @@ LANES_INLINE byte_slopes split_slopes(const integer_weights *integers) {
 LANES_INLINE lanes_int taps_with_sign(lanes_int taps) { return taps ^ (int32_t)0x80808080; }
 
 LANES_INLINE lanes_int weigh_signed_bytes(lanes_int less_128, const byte_weights *weights) {
-  /* shifted left by a byte, `half` is 128 times the sum of all weights */
+  /* WEIGHT_UNITS / 2 becomes 128 times the sum of all weights when the sum is shifted left by a byte */
   const __m512i half = _mm512_set1_epi32(WEIGHT_UNITS / 2);
   __m512i sum = _mm512_dpbusd_epi32(half, weights->digit[0], (__m512i)less_128);
   return (lanes_int)_mm512_dpbusd_epi32(_mm512_slli_epi32(sum, 8), weights->digit[1], (__m512i)less_128);
@@ -143,7 +143,7 @@ LANES_INLINE lanes_int slope_of_bytes(lanes_int taps, const byte_slopes *slopes)
 
 /* ---- u16 voxels ---- */
 
-/* The functions below weight and add four u16 taps in two 32-bit words. */
+/* The functions below weight and add four u16 taps, which are packed in two 32-bit words. */
 #if defined(__AVX2__)
 /* The weights of taps 0 and 1 share a word, and so do the weights of taps 2 and 3. One instruction multiplies
  * pairs of signed 16-bit numbers and adds the two products. Voxels are signed numbers: 32768 is subtracted
@@ -162,8 +162,8 @@ LANES_INLINE short_weights pair_weights(const integer_weights *integers) {
 }
 LANES_INLINE short_slopes pair_slopes(const integer_weights *integers) { return pair_weights(integers); }
 
-/* The sum of a lane's four voxels, each multiplied by its slope. The voxels are given less 32768. The four
- * slopes add up to 0, so the sum is the same as without this subtraction. */
+/* The sum of a lane's four voxels, each multiplied by its slope. The voxels must have been reduced by 32768.
+ * The four slopes add up to 0, so the sum is the same as that of the original voxels. */
 LANES_INLINE lanes_int slope_of_signed(lanes_int low, lanes_int high, const short_slopes *slopes) {
   return lanes_multiply_shorts(low, slopes->pair[0]) + lanes_multiply_shorts(high, slopes->pair[1]);
 }
@@ -187,8 +187,8 @@ LANES_INLINE lanes_int weigh_shorts(lanes_int low, lanes_int high, const short_w
   return ((low & 65535) * weights->tap[0] + ((low >> 16) & 65535) * weights->tap[1]) +
          ((high & 65535) * weights->tap[2] + ((high >> 16) & 65535) * weights->tap[3]);
 }
-/* 32768 is subtracted from the voxels, so that all sums fit 32 bits. The result is the same, because the four
- * slopes add up to 0. */
+/* The voxels are reduced by 32768, so that all sums fit 32 bits. This does not change the result, because the
+ * four slopes add up to 0. */
 LANES_INLINE lanes_int slope_of_shorts(lanes_int low, lanes_int high, const short_slopes *slopes) {
   return (((low & 65535) - 32768) * slopes->tap[0] + (((low >> 16) & 65535) - 32768) * slopes->tap[1]) +
          (((high & 65535) - 32768) * slopes->tap[2] + (((high >> 16) & 65535) - 32768) * slopes->tap[3]);

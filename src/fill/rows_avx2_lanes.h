@@ -22,7 +22,7 @@ typedef struct sums_of_rows {
   __m256i of_two[4][4];
 } sums_of_rows;
 
-/* Transposes four registers with four rows of two lanes each to four rows with eight lanes each, as
+/* Transposes four registers, each with four rows of two lanes, to four rows of eight lanes; converts them to
  * floats. */
 LANES_INLINE void turn_rows(const __m256i of_two[4], __m256 row[4]) {
   __m256i a = _mm256_unpacklo_epi32(of_two[0], of_two[1]), b = _mm256_unpacklo_epi32(of_two[2], of_two[3]);
@@ -85,8 +85,8 @@ LANES_INLINE void store_half(half_slope of, int half, lanes3 *slope) {
 
 /* ---- u16 voxels, straight from the volume ---- */
 
-/* Finds the taps of lanes k and k + 4. voxels, offsets: address of the voxels, and bytes to every lane's
- * first tap. */
+/* Finds the taps of lanes k and k + 4. voxels: address of the voxels. offsets: bytes from there to each
+ * lane's first tap. */
 LANES_INLINE pair_of_taps short_taps_of_pair(const unsigned char *voxels, const lanes_offsets *offsets,
                                              int half, int k) {
   const int32_t *at = offsets->at + 8 * half + k;
@@ -100,7 +100,7 @@ LANES_INLINE __m128i two_short_rows(const unsigned char *first, size_t row_bytes
   memcpy(&row[1], first + row_bytes, sizeof row[1]);
   return _mm_castpd_si128(_mm_set_pd(row[1], row[0]));
 }
-/* Two rows of each of two lanes' taps, less 32768. */
+/* Two rows of the taps of each of two lanes, reduced by 32768. */
 LANES_INLINE __m256i short_rows_of_two(const pair_of_taps *taps, size_t at, size_t row_bytes) {
   __m256i rows = _mm256_castsi128_si256(two_short_rows(taps->first + at, row_bytes));
   rows = _mm256_inserti128_si256(rows, two_short_rows(taps->second + at, row_bytes), 1);
@@ -117,8 +117,8 @@ LANES_INLINE short_slice short_slice_of_two(const pair_of_taps *taps, size_t at,
                        short_rows_of_two(taps, at + 2 * row_bytes, row_bytes)};
 }
 
-/* The weights along x, or the slopes, of two lanes for two rows of taps. Each lane's four numbers are in the
- * register twice, once for each row. */
+/* The weights along x, or the slopes, of two lanes for two rows of taps. The register holds each lane's four
+ * numbers twice, once for each row. */
 LANES_INLINE __m256i short_weights_of_pair(const short_weights *weights, int half, int k) {
   __m256i low = _mm256_loadu_si256((const __m256i *)(const void *)&weights->pair[0] + half);
   __m256i high = _mm256_loadu_si256((const __m256i *)(const void *)&weights->pair[1] + half);
@@ -126,7 +126,7 @@ LANES_INLINE __m256i short_weights_of_pair(const short_weights *weights, int hal
   return k % 2 == 0 ? _mm256_unpacklo_epi64(both, both) : _mm256_unpackhi_epi64(both, both);
 }
 
-/* The sums of a slice's rows, weighted by slopes. */
+/* Sums the rows of a slice, weighted by slopes. */
 LANES_INLINE __m256i slope_short_slice(const short_slice *slice, __m256i weights) {
   return _mm256_hadd_epi32(_mm256_madd_epi16(slice->upper, weights),
                            _mm256_madd_epi16(slice->lower, weights));
@@ -135,8 +135,8 @@ LANES_INLINE __m256i weigh_short_slice(const short_slice *slice, __m256i weights
   return _mm256_add_epi32(slope_short_slice(slice, weights), _mm256_set1_epi32(LESS_BY));
 }
 
-/* The weighted sums of all lanes' 64 taps. voxels, offsets: address of the voxels, and bytes to every lane's
- * first tap. */
+/* The weighted sums of all lanes' 64 taps. voxels: address of the voxels. offsets: bytes from there to each
+ * lane's first tap. */
 LANES_INLINE lanes sum_short_rows(const grid *grid, const unsigned char *voxels, const lanes_offsets *offsets,
                                   const lanes weight[3][4]) {
   size_t row_bytes = grid->row_bytes, slice_bytes = grid->slice_bytes;

@@ -1,8 +1,8 @@
-/* fill/splat_lanes.h - splatting: each voxel's kernel, cut by the sheet, is added to a tile (steps 8 to 11 of
- * the paper).
+/* fill/splat_lanes.h - splatting: the cross-section of each voxel's kernel with the sheet is added to a tile
+ * (steps 8 to 11 of the paper).
  *
- * There is no table of footprints: the kernel is evaluated at each pixel's point on the sheet, which is exact
- * at any orientation, perspective and spacing. */
+ * The kernel is evaluated at each pixel's point on the sheet, and not looked up in a table of footprints.
+ * This is exact for any orientation, perspective and spacing of sheets. */
 #ifndef HL_FILL_SPLAT_LANES_H
 #define HL_FILL_SPLAT_LANES_H
 
@@ -56,7 +56,7 @@ LANES_INLINE uint32_t blocks_in_reach(const tile_points *tile, float x, float y,
   return lanes_bits(mask);
 }
 
-/* The weights along x of voxel x at a block's pixels. */
+/* The weights along x, at a block's pixels, of the voxels with the coordinate x. */
 LANES_INLINE lanes weight_along_x(const fill_source *source, const tile_points *tile, int block, int degree,
                                   int32_t x) {
   const block_points *points = &tile->block[block];

@@ -1,5 +1,6 @@
-/* fill/steepness_lanes.h - the factor on a volume's extinction that follows from the length of the volume's
- * gradient, from its mask, and from the second number of its transfer function. */
+/* fill/steepness_lanes.h - the factor by which a volume's extinction is multiplied. The factor follows from
+ * the length of the volume's gradient, from the volume's mask, and from the second number of its transfer
+ * function. */
 #ifndef HL_FILL_STEEPNESS_LANES_H
 #define HL_FILL_STEEPNESS_LANES_H
 
@@ -33,12 +34,13 @@ typedef struct matter_way {
   const kernel *kernel;
   const classifier *classifier;
   const float (*to_index)[4]; /* maps frame space to index space */
-  lanes3 point;               /* the point where the matter is seen if extinction depends on the value alone;
-                               * frame space */
+  lanes3 point;               /* frame space; the point where the matter would be seen if extinction depended
+                               * on the value alone */
   lanes from, to;             /* coordinates in the tables where a sample's part of the ray begins and ends */
-  lanes extinction;           /* the mean extinction on the way if extinction depends on the value alone */
-  uint32_t active, starts;    /* active: the lanes with extinction, at least one; starts: the first lane of
-                               * each block; one bit each */
+  lanes extinction;           /* the mean extinction on the way, as if extinction depended on the value
+                               * alone */
+  uint32_t active, starts;    /* active: the lanes with extinction, of which there is at least one; starts:
+                               * the first lane of each block of pixels; both: one bit for each lane */
   int wants_slope;            /* whether the caller reads the slope, even where the factor does not depend on
                                * it */
 } matter_way;
@@ -51,7 +53,7 @@ typedef struct matter_factor {
   lanes row;    /* the row of the second number in the table of a function of two numbers */
 } matter_factor;
 
-/* This function is not inlined: it is large, and frames that do not need it should not carry it. */
+/* This large function is not inlined, so that frames that do not need it do not carry its code. */
 static __attribute__((noinline)) matter_factor factor_of_matter(const matter_way *way) {
   const classifier *classifier = way->classifier;
   const plane_table *plane = &classifier->plane;

@@ -1,8 +1,8 @@
 /* fill/voxel_lists.c - a counting sort by (tile, bucket), in three passes: count, write, order.
  *
- * Voxels are numbered in the grid padded by two voxels on every side, where the values at the border
- * continue. Threads write the entries of a bucket in any order; sorting each bucket by index afterwards makes
- * the sums, and so the picture, independent of the threads. */
+ * The numbers of voxels count a grid that is padded by two voxels on every side; in the padding, the values
+ * at the border continue. Threads write the entries of a bucket in any order; sorting each bucket by index
+ * afterwards makes the sums, and so the picture, independent of the threads. */
 #include "fill/voxel_lists.h"
 
 #include <string.h>
@@ -15,8 +15,8 @@ typedef struct sort_job {
   footprint_map map;
   double support; /* the kernel's radius in voxels */
   voxel_lists *lists;
-  uint32_t *cursor; /* [tiles * buckets + 1]; at first the number of entries of each bucket, later the index
-                     * of the bucket's next entry */
+  uint32_t *cursor; /* [tiles * buckets + 1]; in the first pass, the number of entries of each bucket; in the
+                     * second, the index of the bucket's next entry */
   bool writing;     /* if false, voxels are only counted */
 } sort_job;
 
@@ -94,7 +94,7 @@ static void visit_slice(void *data, size_t index, int worker) {
   }
 }
 
-/* Sorts the buckets of one tile by index. Buckets are short, so that insertion sort does. */
+/* Sorts the buckets of one tile by index. Buckets are short, so insertion sort is fast enough. */
 static void order_tile(void *data, size_t index, int worker) {
   (void)worker;
   const sort_job *job = data;

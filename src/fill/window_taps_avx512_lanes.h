@@ -15,14 +15,15 @@ typedef struct window_taps {
   __m512i part[4];
 } window_taps;
 
-/* A set of lanes: one bit for each unit of the lanes' taps that a permutation moves, such as a byte. */
+/* A set of lanes, as a mask for permutations: one bit for each unit that a permutation moves, such as a
+ * byte. */
 typedef __mmask64 window_lanes;
 
 enum { WINDOW_ROWS = GRID_COLUMN - 1 }; /* number of rows in a window of u16 or f32 voxels */
 
 /* ---- u16: two taps a word ---- */
 
-/* The indices of each lane's first two taps, computed from the coordinates of its first tap in the window. */
+/* The indices of each lane's first two taps. x, y: the coordinates of each lane's first tap in the window. */
 LANES_INLINE __m512i index_u16(__m512i x, __m512i y) {
   __m512i first = _mm512_add_epi32(_mm512_slli_epi32(y, 3), x);
   return _mm512_add_epi32(_mm512_or_si512(first, _mm512_slli_epi32(first, 16)),
@@ -31,7 +32,7 @@ LANES_INLINE __m512i index_u16(__m512i x, __m512i y) {
 
 LANES_INLINE __m128i row_of_shorts(const unsigned char *row) { return _mm_loadu_si128((const __m128i *)row); }
 
-/* Loads a slice of voxels less 32768: four rows, and the three rows below them. */
+/* Loads a slice of voxels, reduced by 32768: four rows, and the three rows below them. */
 LANES_INLINE window_slice slice_u16(const unsigned char *row, size_t row_bytes) {
   window_slice slice;
   __m512i upper = _mm512_castsi128_si512(row_of_shorts(row)),
@@ -46,8 +47,8 @@ LANES_INLINE window_slice slice_u16(const unsigned char *row, size_t row_bytes) 
   return slice;
 }
 
-/* The four rows from row y on. They hold tap row y of every lane, as a lane's first tap lies in one of four
- * rows. */
+/* The four rows from row y on. These rows hold tap row y of every lane, because the first tap of each lane
+ * lies in one of the first four rows. */
 LANES_INLINE window_slice rows_u16(const window_slice *slice, int y) {
   window_slice rows;
   rows.part[0] = y == 0   ? slice->part[0]
@@ -75,7 +76,7 @@ LANES_INLINE window_lanes starting_u16(__m512i start, int slice) {
   return _mm512_cmpeq_epi16_mask(both, _mm512_set1_epi16((short)slice));
 }
 
-/* Replaces the taps of some lanes by taps from another slice. */
+/* Replaces the taps of the lanes `some` by taps from another slice. */
 LANES_INLINE void replace_taps_u16(window_taps *taps, window_lanes some, const window_slice *rows,
                                    __m512i index) {
   taps->part[0] = _mm512_mask_permutexvar_epi16(taps->part[0], (__mmask32)some, index, rows->part[0]);
@@ -114,7 +115,7 @@ LANES_INLINE __m512i rows_f32(const window_slice *slice, int y) {
   return y % 2 == 0 ? pair[0] : _mm512_alignr_epi64(pair[1], pair[0], 4);
 }
 
-/* Takes the four taps of every lane in tap row y. They lie in the four rows from row y on. */
+/* Takes the four taps of every lane in tap row y. The taps lie in the four rows from row y on. */
 LANES_INLINE window_taps taps_f32(const window_slice *slice, __m512i index, int y) {
   __m512i upper = rows_f32(slice, y), lower = rows_f32(slice, y + 2);
   window_taps taps;

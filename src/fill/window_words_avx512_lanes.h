@@ -5,9 +5,9 @@
 
 #include "fill/window_taps_avx512_lanes.h"
 
-enum { WINDOW_WIDTH = GRID_COLUMN - 1 }; /* number of voxels along x in which taps are looked up */
+enum { WINDOW_WIDTH = GRID_COLUMN - 1 }; /* number of voxels along x among which taps are looked up */
 
-/* The index of each lane's word in tap row 0, computed from the coordinates of its first tap in the
+/* The index of each lane's word in tap row 0. x, y: the coordinates of each lane's first tap in the
  * window. */
 LANES_INLINE __m512i index_u8(__m512i x, __m512i y) {
   __m512i pair = _mm512_slli_epi32(_mm512_srli_epi32(x, 1), 4),
@@ -15,10 +15,10 @@ LANES_INLINE __m512i index_u8(__m512i x, __m512i y) {
   return _mm512_or_si512(_mm512_or_si512(pair, second), _mm512_slli_epi32(y, 1));
 }
 
-/* Joins two columns to eight rows of eight voxels, as words of four voxels. The rows begin `shift` bits after
- * the left column's first voxel. Each row gives four words: the words from its voxels 0 and 1 on lie in the
- * first register, the words from its voxels 2 and 3 on in the second. Every lane's taps are one of these 32
- * words. */
+/* Joins a left and a right column to eight rows of eight voxels, as words of four voxels. The rows begin
+ * `shift` bits after the left column's first voxel. Each row gives four words: the words that begin at its
+ * voxels 0 and 1 go to the first register, the words that begin at its voxels 2 and 3 to the second. The four
+ * taps of every lane are one of these 32 words. */
 LANES_INLINE window_slice join_columns(__m512i left, __m512i right, __m512i shift) {
   const __mmask16 odd = 0xaaaa;
   __m512i rows = _mm512_or_si512(_mm512_srlv_epi64(left, shift),
@@ -54,7 +54,7 @@ LANES_INLINE window_lanes starting_u8(__m512i start, int slice) {
   return _mm512_cmpeq_epi32_mask(start, _mm512_set1_epi32(slice));
 }
 
-/* Replaces the taps of some lanes by taps from another slice. */
+/* Replaces the taps of the lanes `some` by taps from another slice. */
 LANES_INLINE void replace_taps_u8(window_taps *taps, window_lanes some, const window_slice *slice,
                                   __m512i index) {
   taps->part[0] = _mm512_mask_mov_epi32(taps->part[0], (__mmask16)some, taps_u8(slice, index).part[0]);

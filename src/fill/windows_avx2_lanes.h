@@ -1,8 +1,8 @@
 /* fill/windows_avx2_lanes.h - sums over windows of u8 voxels with AVX2 (windows_lanes.h).
  *
- * A slice of a window, 8x8 voxels of the grid's columns, is copied three or five times, each time beginning a
- * voxel further along x and four voxels wide: four rows of four taps are then sixteen bytes in a row, one
- * load. Two lanes' taps share a register (rows_avx2_lanes.h). */
+ * A slice of a window has 8x8 voxels from the grid's columns. Three or five copies of it are made, each four
+ * voxels wide; each copy begins one voxel further along x than the copy before. So four rows of four taps are
+ * sixteen consecutive bytes, which one load takes. Two lanes' taps share a register (rows_avx2_lanes.h). */
 #ifndef HL_FILL_WINDOWS_AVX2_LANES_H
 #define HL_FILL_WINDOWS_AVX2_LANES_H
 
@@ -12,9 +12,9 @@
 
 enum {
   WINDOW_SIDE = GRID_COLUMN,       /* in voxels */
-  WINDOW_SPREAD = WINDOW_SIDE - 4, /* the greatest distance between lanes' first taps, in voxels */
-  USUAL_SPREAD = 2,                /* the greatest distance that most blocks need; because it is a constant,
-                                    * the compiler unrolls loops */
+  WINDOW_SPREAD = WINDOW_SIDE - 4, /* the greatest distance, in voxels, between the first taps of lanes */
+  USUAL_SPREAD = 2,                /* the greatest distance between first taps in most blocks; because it is a
+                                    * constant, the compiler unrolls loops */
   USUAL_SLICES = 4 + USUAL_SPREAD
 };
 enum { COPY_BYTES = 4 * WINDOW_SIDE, SLICE_BYTES = (WINDOW_SPREAD + 1) * COPY_BYTES };
@@ -24,9 +24,10 @@ typedef struct voxel_window {
   size_t slice_bytes;
   size_t beside;      /* bytes to the next column; 0 where the window lies within one column */
   int shift;          /* bits from the column's first voxel to the window's first voxel, in every row */
-  int slices, copies; /* number of slices; number of copies of each slice, which is one more than the distance
-                       * of lanes' first taps along x */
-  __m256i taps;       /* bytes to each lane's first tap in the copies, in the order of simd/narrow.h */
+  int slices, copies; /* slices: number of slices; copies: number of copies of each slice, which is one more
+                       * than the greatest distance along x between the first taps of lanes */
+  __m256i taps;       /* bytes to each lane's first tap in the copies, in the order of lanes in
+                       * simd/narrow.h */
 } voxel_window;
 
 typedef struct window_copies {
@@ -39,7 +40,8 @@ LANES_INLINE int has_windows(const grid *grid) {
 }
 
 /* Opens a window in a grid that has windows. cell: tap 0 is at cell - 1; all taps of active lanes lie in the
- * grid. lowest: the least cell along each axis. False where the taps do not fit a window. */
+ * grid. lowest: the least of the active lanes' cells along each axis. Returns false where the taps do not fit
+ * a window. */
 LANES_INLINE int open_window_at(const grid *grid, const lanes_int cell[3], const int32_t lowest[3],
                                 uint32_t active, voxel_window *window) {
   const int32_t side[3] = {WINDOW_SIDE, WINDOW_SIDE, USUAL_SLICES};
@@ -90,7 +92,7 @@ LANES_INLINE __m256i rows_apart(const unsigned char *first) {
       rows, _mm_loadu_si128((const __m128i *)(const void *)(first + 4 * GRID_COLUMN)), 1);
 }
 
-/* Stores the lower or upper half of each row, in the order of rows. */
+/* Stores the lower or upper half of each row, in the order of the rows. */
 LANES_INLINE void store_copy(unsigned char *copy, const __m256i rows[2], int upper) {
   __m256 a = _mm256_castsi256_ps(rows[0]), b = _mm256_castsi256_ps(rows[1]);
   _mm256_store_ps((float *)(void *)copy,
@@ -132,8 +134,8 @@ LANES_INLINE __m256i lanes_of_two(const lanes_int *x, int half, int k) {
   return _mm256_shuffle_epi8(eight, _mm256_set1_epi32(0x03020100 + k * 0x04040404));
 }
 
-/* The weights along x, or slopes, of two lanes, in the pairs of byte_weights. Each lane's weights fill half a
- * register, once for each row. */
+/* The weights along x, or slopes, of two lanes, paired as in byte_weights. Each lane's weights fill half a
+ * register, repeated for each row. */
 typedef struct weights_of_two {
   __m256i pair[2];
 } weights_of_two;
@@ -150,7 +152,7 @@ LANES_INLINE pair_of_taps copied_taps_of_pair(const window_copies *copies, const
   return (pair_of_taps){&copies->slice[0][0] + at[0], &copies->slice[0][0] + at[NARROW_SECOND]};
 }
 
-/* A slice of two lanes' taps, four rows of four taps each, as 16-bit numbers in the pairs of byte_weights. */
+/* A slice of two lanes' taps, four rows of four taps each, as 16-bit numbers, paired as in byte_weights. */
 typedef struct taps_of_two {
   __m256i pair[2];
 } taps_of_two;
@@ -228,8 +230,8 @@ static __attribute__((noinline)) lanes3 slopes_of_copies(const window_copies *co
 _Static_assert(LANES * sizeof(window_copies) <= INT16_MAX,
                "signed 16-bit numbers hold offsets in the copies of sixteen windows");
 
-/* Sums gradients over windows. Each window holds as many blocks as fit; one sum takes taps from the copies of
- * all windows. False where a single block does not fit. */
+/* Sums gradients over windows. Each window holds as many blocks as fit into it; then one sum takes taps from
+ * the copies of all windows. Returns false where a single block does not fit a window. */
 static __attribute__((unused)) int slopes_of_windows(const grid *grid, const lanes_int cell[3],
                                                      uint32_t active, uint32_t starts,
                                                      const tap_slope_weights *w, lanes3 *slope) {

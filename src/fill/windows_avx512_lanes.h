@@ -12,11 +12,12 @@
 
 enum {
   WINDOW_SIDE = GRID_COLUMN,      /* voxels */
-  WINDOW_SPREAD = WINDOW_SIDE - 4 /* voxels: the greatest distance between lanes' first taps */
+  WINDOW_SPREAD = WINDOW_SIDE - 4 /* the greatest distance, in voxels, between the first taps of lanes */
 };
 
 typedef struct voxel_window {
-  const unsigned char *first; /* the window's first row; for u8 voxels, its place in their column */
+  const unsigned char *first; /* the window's first row; for u8 voxels, the address of this row in its
+                               * column */
   size_t row_bytes, slice_bytes;
   size_t beside; /* for u8: bytes to the next column; 0 where the window lies within one column */
   __m512i shift; /* for u8: bits from the column's first voxel to the window's first voxel, in every row */
@@ -60,7 +61,8 @@ LANES_INLINE int has_windows(const grid *grid) {
 }
 
 /* Opens a window in a grid that has windows. cell: tap 0 is at cell - 1; all taps of active lanes lie in the
- * grid. lowest: the least cell along each axis. False where the taps do not fit a window. */
+ * grid. lowest: the least of the active lanes' cells along each axis. Returns false where the taps do not fit
+ * a window. */
 LANES_INLINE int open_window_at(const grid *grid, const lanes_int cell[3], const int32_t lowest[3],
                                 uint32_t active, voxel_window *window) {
   __mmask16 lanes_mask = (__mmask16)active, fits = (__mmask16)active;
@@ -100,9 +102,9 @@ LANES_INLINE window_slice slice_of_window(hl_storage storage, const voxel_window
 
 /* ---- u8 and u16: each lane's own four slices ---- */
 
-/* Slices of a window, from which each lane takes the taps of its own four slices. For each tap row y and tap
- * slice z, the taps of all lanes are taken first and then weighted once. A lane whose first tap lies in the
- * window's slice s takes them from slice s + z; s is at most `spread`. This needs fewer sums than a sum for
+/* Slices of a window. Each lane takes its taps from four of them: a lane whose first tap lies in slice s
+ * takes the taps of tap slice z from slice s + z, where s is at most `spread`. For each tap row y and each z,
+ * the taps of all lanes are collected first and then weighted once. This needs fewer sums than one sum for
  * each slice of the window would. */
 typedef struct own_slices {
   window_slice voxels[WINDOW_SIDE];
@@ -275,8 +277,8 @@ static __attribute__((noinline)) lanes3 slopes_of_window_f32(const voxel_window 
   return sum;
 }
 
-/* Sums gradients over windows. Each window holds as many blocks as fit. False where a single block does not
- * fit. */
+/* Sums gradients over windows. Each window holds as many blocks as fit into it. Returns false where a single
+ * block does not fit a window. */
 static __attribute__((unused)) int slopes_of_windows(const grid *grid, const lanes_int cell[3],
                                                      uint32_t active, uint32_t starts,
                                                      const tap_slope_weights *w, lanes3 *slope) {

@@ -1,7 +1,7 @@
 /* film/film.c - the scenes of a film's frames.
  *
- * The scene's text is parsed once. A frame is a copy of it with the keys' values written in, read again by
- * the library, which checks it like any other scene; then the camera is turned.
+ * The scene's text is parsed once. For each frame, the keys' values are written into a copy of it. The
+ * library reads and checks this copy like any other scene. Then the camera is turned.
  */
 #define _GNU_SOURCE
 #include "film.h"
@@ -42,7 +42,8 @@ static int turn_of(const char *path) {
   return -1;
 }
 
-/* The light and the angle that "lights.N.azimuth" or ".elevation" names. */
+/* Finds which light's angle a path names, as "lights.N.azimuth" or "lights.N.elevation". False if it names
+ * none. */
 static bool is_light_turn(const char *path, size_t *light, bool *azimuth) {
   int used = 0;
   unsigned number;
@@ -68,7 +69,7 @@ static json_t *step_into(json_t *at, const char *name) {
   return json_array_get(at, strtoul(name, NULL, 10));
 }
 
-/* Makes a number of JSON. Where the scene has a whole number, the value is rounded to a whole number. */
+/* Makes a JSON number of a value. If the scene's number is whole, the value is rounded to a whole number. */
 static json_t *number_like(const json_t *before, double value) {
   return json_is_integer(before) ? json_integer(llround(value)) : json_real(value);
 }
@@ -118,7 +119,7 @@ static void zoom(hl_camera *camera, double factor) {
       camera->position[k] = camera->target[k] + (camera->position[k] - camera->target[k]) / factor;
 }
 
-/* Turns a camera as the keys say at a frame. given: whether each of the camera's turns has keys. */
+/* Turns the camera by the angles that the turntable and the keys give at a frame, and zooms it. */
 static hl_status turn_camera(const film *f, int frame, hl_camera *camera,
                              const hl_scene_description *description, hl_error *error) {
   hl_view view;
@@ -144,15 +145,15 @@ static hl_status turn_camera(const film *f, int frame, hl_camera *camera,
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/* The direction of a light at these angles, in the light's frame. */
+/* The direction of a light at these angles, in the frame of the light (world or camera). */
 static void direction_at(const hl_light *light, const hl_camera *camera, double azimuth, double elevation,
                          double direction[3]) {
   if (light->frame == HL_LIGHT_FRAME_CAMERA) hl_light_direction_beside(azimuth, elevation, direction);
   else hl_light_direction(camera, azimuth, elevation, direction);
 }
 
-/* The angles of a light: the inverse of hl_light_direction(), whose directions at (0, 0), (90, 0) and (0, 90)
- * are at right angles. */
+/* Finds the angles of a light from its direction, as the inverse of direction_at(). The directions at (0, 0),
+ * (90, 0) and (0, 90) degrees are perpendicular, and so are the axes of the angles. */
 static void angles_of(const hl_light *light, const hl_camera *camera, double *azimuth, double *elevation) {
   double ahead[3], aside[3], above[3];
   direction_at(light, camera, 0, 0, ahead);
@@ -253,8 +254,8 @@ static hl_status parse_scene(film *f, hl_error *error) {
   return f->text != NULL ? HL_OK : no_memory(error);
 }
 
-/* Makes the first and the last frame's scene, so that a mistake in a key is reported before any frame is
- * rendered. */
+/* Makes the scene of a frame and releases it. It is called for the first and the last frame, so that a
+ * mistake in a key is reported before any frame is rendered. */
 static hl_status try_frame(const film *f, int frame, hl_error *error) {
   hl_scene *scene = NULL;
   hl_status status = film_scene(f, frame, &scene, error);

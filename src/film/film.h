@@ -25,8 +25,8 @@ typedef struct film_options {
                   * pace */
   int turntable; /* the number of frames in which the camera turns once about the picture's vertical axis; 0:
                   * no turn; FILM_WHOLE_TURN: all frames of the film */
-  int frames;    /* number of frames; 0: as many as the turntable has, or else up to the last frame that has a
-                  * key */
+  int frames;    /* number of frames; 0: as many as the turntable takes, or without a turntable, up to the
+                  * last frame that has a key */
 } film_options;
 
 /* Makes a film. Fails where keys cannot be read or no number lies at their paths (HL_ERROR_ARGUMENT), or

@@ -16,8 +16,8 @@ enum { MOST_WORDS = 48, MOST_CODEC_WORDS = 12 };
 
 struct movie {
   char *path, *unfinished; /* owned */
-  char *target; /* owned; the unfinished file's name in ffmpeg's syntax; without it, ffmpeg may take a name
-                 * for a protocol */
+  char *target; /* owned; "file:" and the name of the unfinished file. Without "file:", ffmpeg may take a part
+                 * of the name for a protocol */
   int pipe;     /* a pipe into ffmpeg; -1 if closed */
   process ffmpeg;
 };

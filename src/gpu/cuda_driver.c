@@ -297,7 +297,7 @@ static void release_cuda(gpu_device *device, gpu_buffer *buffer) {
   *buffer = (gpu_buffer){0};
 }
 
-/* CUDA copies memory that is not pinned to a buffer of its own before it returns. */
+/* Before CUDA returns, it copies memory that is not pinned to a buffer of its own. */
 static bool upload_cuda(gpu_device *device, const gpu_buffer *buffer, size_t offset, const void *from,
                         size_t bytes) {
   const cuda_device *state = device->state;

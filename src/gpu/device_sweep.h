@@ -1,9 +1,9 @@
-/* gpu/device_sweep.h - one sweep of a frame as plain data: everything that a device needs except voxels and
- * tables.
+/* gpu/device_sweep.h - one sweep of a frame as plain data. It is everything that a device needs, except
+ * voxels and tables.
  *
  * The structs have only members of 32 bits, and no pointers. The host fills them (render/device_plan.c), and
- * the kernels read the same text: it is C17, OpenCL C 1.2 and CUDA C++. Lengths are in frame units, positions
- * in frame space, where no comment says otherwise. */
+ * the kernels include this same header: its text is valid C17, OpenCL C 1.2 and CUDA C++. Lengths are in
+ * frame units, positions in frame space, where no comment says otherwise. */
 #ifndef HL_GPU_FRAME_PLAN_H
 #define HL_GPU_FRAME_PLAN_H
 
@@ -13,7 +13,7 @@
 #define PLAN_CODES         256
 
 /* The rays of pixels at one sheet: the members of sheet_rays (view/view.h), and the sheet's height above the
- * first one. */
+ * first sheet. */
 typedef struct plan_rays {
   int perspective;
   float base[3], p0[3], pu[3], pv[3];
@@ -34,15 +34,15 @@ typedef struct plan_box {
   int sphere;
 } plan_box;
 
-/* A cut of the volume, as the eye or a light sees it. */
+/* A cut of the volume, as it applies to the eye's view or to a light's view. */
 typedef struct plan_cut {
   int shape; /* CUT_BOX and so on, as hl_cut_type */
   int keep_inside;
   float rows[3][4];     /* frame space to the shape's own space (scene/geometry/cut.h) */
   float in_index[3][4]; /* index space to the shape's own space */
   float scale[3];       /* voxels per unit of each axis of the shape's own space */
-  float margin[3];      /* only in a light's view: as `margin` of plan_light, along the axes of the shape's
-                         * own space and in its units */
+  float margin[3];      /* only in a light's view: the distances that `margin` of plan_light gives, here along
+                         * the axes of the shape's own space and in its units */
   plan_box rays;        /* rays in the shape */
 } plan_cut;
 
@@ -56,8 +56,8 @@ typedef struct plan_light {
   float towards[3];  /* parallel: unit direction to the light */
   float position[3]; /* not parallel: the light's centre */
   float color[3];    /* colour times intensity */
-  float of_sky;      /* where the light is a sun of the sky: the fraction of its light that lights media; else
-                      * 0 */
+  float of_sky;      /* where the light is a sun of the sky: the fraction of its light that lights media; for
+                      * other lights 0 */
   float path;        /* as in shade_light (render/slab.h) */
   float through[3];  /* as in attenuate_job (shadow/attenuate.h) */
   float cone_axis[3], cone_outer, cone_scale;
@@ -66,26 +66,28 @@ typedef struct plan_light {
   /* the shadow buffer */
   int width, height;  /* size in pixels */
   int tiles_x, tiles; /* number of its tiles */
-  int first_tile;     /* index of the light's first tile among the tiles of all lights */
+  int first_tile;     /* index of this light's first tile among the tiles of all lights */
   int first_slab;     /* the first slab that the light reaches */
   int stride;         /* floats from row to row of a plane */
-  int plane, origin;  /* number of floats of a plane, and the place of pixel (0, 0) in it */
-  /* Where the light's planes begin, in units of 16 floats: [ring][1 or 2][channels][plane]. The first planes
-   * of a sheet are the transmittance, the second ones the light at the outside of surfaces. */
+  int plane, origin;  /* plane: number of floats of a plane; origin: the index of pixel (0, 0) in a plane */
+  /* The offset of the light's first plane, in units of 16 floats. The planes are [ring][1 or
+   * 2][channels][plane]. The first planes of a sheet hold the transmittance, the second ones the light at the
+   * outside of surfaces. */
   unsigned planes;
   float map[3][4]; /* frame space to (w, w u, w v) of the buffer */
   float slab_path; /* as path in attenuate_job (shadow/attenuate.h) */
   plan_box box, content;
-  float margin[3]; /* in voxels, along each axis. If a sample is farther than this from the box's faces, light
-                    * that passes beside the faces does not reach the pixels around the sample */
-  int first_cut, cut_count; /* the cuts that count for the light, among the sweep's cuts */
+  float margin[3]; /* in voxels, along each axis. If a sample is farther than this from the faces of the box,
+                    * light that passes beside the faces does not reach the buffer's pixels around the
+                    * sample */
+  int first_cut, cut_count; /* the cuts that count for the light: their range among the sweep's cuts */
 } plan_light;
 
 /* The brick of a field that covers a block of cells of level 0: the members of hl_brick_entry
  * (bricks/bricks.h). */
 typedef struct plan_brick {
-  int slot; /* number of the brick among the bricks that have coefficients; -1: the field is `value` all over
-             * the brick */
+  int slot; /* number of the brick among the bricks that have coefficients; -1: the field is `value`
+             * everywhere in the brick */
   int level;
   float value;
 } plan_brick;
@@ -112,9 +114,9 @@ typedef struct plan_volume {
   int bends; /* there is a table of bent colours */
   int several_surfaces;
   float only_beginning;
-  /* surfaces at the faces of the box and of cuts (shade_volume in render/slab.h) */
+  /* surfaces at the faces of the volume's box and of cuts (shade_volume in render/slab.h) */
   int any_face;   /* the eye may see faces at which the box or a cut cuts visible matter */
-  int faces_take; /* such faces are surfaces for the light, too */
+  int faces_take; /* faces that cut visible matter are surfaces for the light, too */
   int cut_shading, cut_count;
   int face_cuts[6]; /* [axis][low, high] */
   /* the material (shade_volume in render/slab.h) */
@@ -122,34 +124,35 @@ typedef struct plan_volume {
   float anisotropy;
   float albedo[3];
   int absorbs, receives_shadow;
-  float cast[3];   /* extinction towards the lights over extinction towards the eye */
-  float weight[3]; /* extinction in shadow buffers over extinction towards the eye */
+  float cast[3];   /* the extinction for lights divided by the extinction for the eye */
+  float weight[3]; /* the extinction in shadow buffers divided by the extinction for the eye */
   float voxel;
 } plan_volume;
 
-/* One sweep: all slabs of one slicing direction. */
+/* One sweep: all slabs of one slicing direction, from the first to the last. */
 typedef struct device_sweep {
-  int sheets, ring;                  /* number of sheets, and number of sheets whose planes a shadow buffer
-                                      * keeps: the planes of sheet k are number k % ring */
+  int sheets, ring;                  /* sheets: number of sheets; ring: number of sheets whose planes a shadow
+                                      * buffer keeps. The planes of sheet k are number k % ring */
   int width, height, tiles_x, tiles; /* size of the picture */
   int light_count, light_tiles;
   float spacing, path;
   float through[3], towards_eye[3], normal[3];
   float ambient[3], emission;
   plan_volume volume;
-  plan_box box, content; /* rays in the volume's box, and in the box of its bricks that show something */
+  plan_box box, content; /* box: the rays in the volume's box; content: the rays in the box around the bricks
+                          * that show something */
   plan_light lights[PLAN_LIGHTS];
 } device_sweep;
 
-/* The variant for which kernels are compiled. A member is the value of the macro that has the same name in
- * capitals. */
+/* The variant for which kernels are compiled. Each member gives the value of the macro that has the member's
+ * name in capitals. */
 typedef struct plan_variant {
   int storage; /* 0: u8, 1: u16, 2: f32 */
   int bricks;  /* the volume is a field in bricks, of f32 */
   int bspline; /* 1: the kernel is the cubic B-spline; else it is any polynomial of degree 5 */
   int eye_perspective;
   int phong, lit, shadowed;
-  int outside; /* the lights' buffers keep the light at the outside of surfaces, too */
+  int outside; /* the lights' buffers also keep the light at the outside of surfaces */
   int boxed;   /* the volume's box or a cut cuts visible matter */
   int cuts;    /* the volume has cuts */
   int steep;   /* the volume has gradient opacity */
@@ -158,8 +161,9 @@ typedef struct plan_variant {
   int channels; /* number of channels of light attenuation: 1 or 3 */
 } plan_variant;
 
-/* Number of entries of each table. The tables follow each other: first sums, color and shown, with four
- * numbers for each entry, then outside, bent and steepness, with one number for each entry. */
+/* PLAN_ENTRIES: number of entries of each table. The tables follow each other. First come sums, color and
+ * shown, with four numbers for each entry; then outside, bent and steepness, with one number for each
+ * entry. */
 #define PLAN_ENTRIES      4096
 #define PLAN_TABLE_ROWS   (PLAN_ENTRIES + 2)
 #define PLAN_TABLE_FLOATS (PLAN_TABLE_ROWS * 15)

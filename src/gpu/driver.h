@@ -1,5 +1,5 @@
-/* gpu/driver.h - the interface to a system's GPUs that a back end uses. It is CUDA (cuda_driver.c) or OpenCL
- * (opencl_driver.c), which are loaded when a device is asked for.
+/* gpu/driver.h - the interface by which a back end uses a system's GPUs. A driver is CUDA (cuda_driver.c) or
+ * OpenCL (opencl_driver.c). Its library is loaded when a device is asked for.
  *
  * Functions that can fail return false and leave a line in the device's `problem`. */
 #ifndef HL_GPU_DRIVER_H
@@ -18,7 +18,7 @@ typedef struct gpu_device_info {
   char name[GPU_NAME_BYTES];    /* for example "NVIDIA H100 80GB HBM3" */
   char version[GPU_NAME_BYTES]; /* version of the driver and the compiler */
   uint64_t memory_bytes;
-  bool processor; /* the device computes on the machine's own processors (PoCL) */
+  bool processor; /* the device is the machine's own processors (PoCL) */
 } gpu_device_info;
 
 typedef struct gpu_driver gpu_driver;
@@ -58,7 +58,7 @@ typedef struct gpu_argument {
 
 struct gpu_driver {
   const char *name; /* "cuda" or "opencl" */
-  /* Loads the system's library once. False where there is none. */
+  /* Loads the driver's library once. Returns false where the system has none. */
   bool (*load)(void **library, char *problem);
   void (*unload)(void *library);
   /* The number of devices. */
@@ -76,26 +76,27 @@ struct gpu_driver {
   void (*release_program)(gpu_device *device, gpu_program *program);
   bool (*allocate)(gpu_device *device, size_t bytes, gpu_buffer *buffer);
   void (*release)(gpu_device *device, gpu_buffer *buffer);
-  /* Starts a copy to a buffer. The copy may still be going on when the function returns; the driver has then
-   * made its own copy of `from`. */
+  /* Starts a copy to a buffer. The copy may still be going on when the function returns. The caller may
+   * change `from` then, because the driver has made its own copy of it. */
   bool (*upload)(gpu_device *device, const gpu_buffer *buffer, size_t offset, const void *from, size_t bytes);
   /* Waits for all earlier work, and copies a buffer to `to`. */
   bool (*download)(gpu_device *device, const gpu_buffer *buffer, size_t offset, void *to, size_t bytes);
-  /* Launches a kernel. Launches of one line run one after the other; launches of the two lines may run at the
-   * same time. Copies belong to line 0. groups: number of groups of GPU_GROUP members. */
+  /* Launches a kernel on one of two lines. Launches of one line run one after the other; launches of
+   * different lines may run at the same time. Copies belong to line 0. groups: number of groups of GPU_GROUP
+   * members. */
   bool (*launch)(gpu_device *device, const gpu_program *program, int kernel, int line, uint32_t groups,
                  const gpu_argument *arguments, int argument_count);
-  /* Lets the next launches of a line begin only when all earlier launches of the other line have ended. */
+  /* Lets the next launches of a line wait until all earlier launches of the other line have ended. */
   bool (*follow)(gpu_device *device, int line, int other);
   bool (*finish)(gpu_device *device);
-  /* Marks a moment between launches. After finish(), the milliseconds between moments 0 and 1 are known. */
+  /* Marks a moment between launches. finish() then finds the milliseconds between moments 0 and 1. */
   bool (*mark)(gpu_device *device, int moment);
   double (*milliseconds)(gpu_device *device);
 };
 
 extern const gpu_driver hl_cuda_driver, hl_opencl_driver;
 
-/* Opens the first shared library of a list that exists. names: ends with null. */
+/* Opens the first shared library of a list of names that the system has. names: ends with null. */
 void *hl_load_library(const char *const *names, char *problem);
 
 #endif

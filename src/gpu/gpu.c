@@ -33,8 +33,8 @@ enum buffer_use {
   BUFFER_RAYS,
   BUFFER_VOXELS,
   BUFFER_DISTANCES,
-  BUFFER_DISTANCES_MADE, /* distances of bricks after the first and after the third pass; kernels read the
-                          * latter */
+  BUFFER_DISTANCES_MADE, /* distances of bricks, after the first and after the third pass over the bricks;
+                          * kernels read the distances after the third pass */
   BUFFER_CELL_BITS,
   BUFFER_TABLES,
   BUFFER_PIXELS,
@@ -63,13 +63,13 @@ struct hl_gpu {
   gpu_device device;
   const char *cache_folder;
   gpu_buffer buffers[BUFFERS];
-  uint64_t version, tables_version; /* versions of the voxels and of the tables on the device; 0: there are
-                                     * none */
+  uint64_t version, tables_version; /* versions of the voxels and of the tables that are on the device; 0:
+                                     * there are no voxels or tables */
   known_program programs[MOST_VARIANTS];
   int program_count, launches;
   int32_t brick_count[3];
-  bool has_distances; /* the distances of bricks are made; else BUFFER_DISTANCES holds which bricks are
-                       * relevant */
+  bool has_distances; /* BUFFER_DISTANCES_MADE holds the distances of bricks; else they must be found first
+                       * from BUFFER_DISTANCES, which holds the relevant bricks */
 };
 
 const gpu_device *hl_gpu_device(const hl_gpu *gpu) { return &gpu->device; }
@@ -97,7 +97,7 @@ static bool find_of_driver(const gpu_driver *driver, gpu_found *found, void *dat
   bool goes_on = true;
   for (int i = 0; i < driver->count(library) && goes_on; i++)
     if (driver->describe(library, i, &info)) goes_on = found(data, driver, library, i, &info);
-  if (goes_on) driver->unload(library); /* otherwise the caller keeps the library open */
+  if (goes_on) driver->unload(library); /* if `found` returned false, the caller keeps the library open */
   return goes_on;
 }
 
@@ -115,7 +115,7 @@ void hl_gpu_find(const char *driver, gpu_found *found, void *data, char *problem
                                of_driver[d]);
 }
 
-/* The name that is searched for, and the device that was opened. */
+/* The name that is searched for, and the device that was opened for it. */
 typedef struct gpu_search {
   const char *wanted;
   gpu_device device;
@@ -123,7 +123,7 @@ typedef struct gpu_search {
   bool met;
 } gpu_search;
 
-/* Turns an ASCII letter into a small letter, whatever the locale. */
+/* Converts an ASCII letter to lower case, whatever the locale. */
 static char small_letter(char c) { return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c; }
 
 static bool has_word(const char *text, const char *word) {
@@ -188,7 +188,7 @@ void hl_gpu_close(hl_gpu *gpu) {
 
 /* ---- memory ---- */
 
-/* Makes room for a number of bytes in a buffer. Where the buffer has to grow, its content is lost. */
+/* Makes room for a number of bytes in a buffer. If the buffer has to grow, its content is lost. */
 static bool reserve(hl_gpu *gpu, enum buffer_use use, size_t bytes) {
   gpu_buffer *buffer = &gpu->buffers[use];
   if (bytes < 64) bytes = 64;
@@ -218,10 +218,10 @@ size_t hl_gpu_row_bytes(const gpu_volume *volume) {
   return ((size_t)volume->dimension[0] * storage_bytes(volume->storage) + 15) / 16 * 16 | 16;
 }
 
-/* The bytes that kernels may read behind the last voxel. */
+/* READ_BEHIND: the number of bytes that kernels may read behind the last voxel. */
 enum { READ_BEHIND = 16, STAGE_BYTES = 1 << 20 };
 
-/* Copies a row of the volume's voxels. number: the row's number, counted through all slices. */
+/* Copies a row of the volume's voxels. number: the index of the row among the rows of all slices. */
 static void load_row(const gpu_volume *volume, size_t number, size_t packed, unsigned char *row) {
   const size_t rows = (size_t)volume->dimension[1];
   if (volume->load_row != NULL) volume->load_row(volume->pages, number % rows, number / rows, row);
@@ -454,11 +454,12 @@ static bool reset(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *progra
   return done;
 }
 
-/* The two lines of launches. LINE_AHEAD finds the samples of a run and takes the lights' buffers through the
- * run's slabs; LINE_PICTURE lights and composites the samples. */
+/* The two lines of launches. LINE_AHEAD finds the samples of a run, and composites the run's slabs into the
+ * lights' buffers. LINE_PICTURE lights the samples and composites them into the picture. */
 enum { LINE_PICTURE, LINE_AHEAD };
 
-/* The greatest number of members that light samples of a run; it is enough to fill any device. */
+/* The greatest number of members that light the samples of a run. This number is enough to fill any
+ * device. */
 enum { SHADING_MEMBERS = 1 << 18 };
 
 /* A run of slabs. */
@@ -495,8 +496,8 @@ static bool launch_kernel(hl_gpu *gpu, const gpu_program *program, int kernel, s
 }
 
 /* Launches a run. While the samples of one run are lit, LINE_AHEAD works on the next run. Its work on run r
- * begins after run r - 2 was lit, and writes planes of the ring and lists that the lighting of run r - 1 does
- * not read. It may find samples of a pixel that run r - 1 makes opaque; these samples are then lit in
+ * begins when run r - 2 has been lit. It writes planes of the ring and lists that are not read while run r -
+ * 1 is lit. LINE_AHEAD may find samples of a pixel that run r - 1 makes opaque; these samples are then lit in
  * vain. */
 static bool launch_run(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *program, device_run run) {
   const gpu_driver *driver = gpu->device.driver;

@@ -1,10 +1,10 @@
 /* gpu/gpu.h - the back end for GPUs: a device that keeps a volume, runs the sweeps of a frame and gives their
  * pixels.
  *
- * A frame: hl_gpu_prepare() brings the volume and its tables to the device, unless they are there;
- * hl_gpu_run() runs one sweep, and hl_gpu_read() waits for its pixels. Functions that can fail return false
- * and leave a line in hl_gpu_problem(). After a failure the device is closed, and the processors make the
- * frame. */
+ * The steps of a frame are: hl_gpu_prepare() copies the volume and its tables to the device, unless the
+ * device has them already; hl_gpu_run() starts one sweep; hl_gpu_read() waits for the sweep's pixels.
+ * Functions that can fail return false and leave a line in hl_gpu_problem(). After a failure the device is
+ * closed, and the processors make the frame. */
 #ifndef HL_GPU_GPU_H
 #define HL_GPU_GPU_H
 
@@ -22,9 +22,9 @@ typedef bool gpu_found(void *data, const gpu_driver *driver, void *library, int 
 void hl_gpu_find(const char *driver, gpu_found *found, void *data, char *problem);
 
 /* Opens a device. wanted: "gpu" or "auto" mean the first device that is no processor; "cuda" or "opencl" mean
- * the first device of this driver; any other text means the first device with this text in its name, in large
- * or small letters. cache_folder: folder of compiled kernels; borrowed; null: none are kept. Returns null
- * after a failure, and `problem`, [GPU_PROBLEM_BYTES], says why. */
+ * the first device of this driver; any other text means the first device with this text in its name; upper
+ * and lower case are the same. cache_folder: folder of compiled kernels; borrowed; null: compiled kernels are
+ * not kept. Returns null after a failure, and `problem`, [GPU_PROBLEM_BYTES], says why. */
 hl_gpu *hl_gpu_open(hl_context *context, const char *wanted, const char *cache_folder, char *problem);
 void hl_gpu_close(hl_gpu *gpu); /* gpu may be null */
 
@@ -37,14 +37,15 @@ typedef struct gpu_volume {
                                      * transfer function */
   const void *voxels;               /* [z][y][x], rows packed; or, for a field in bricks, the coefficients
                                      * [slots][z][y][x] */
-  /* For a volume whose voxels are not in memory: copies a row of `pages`; else null. */
+  /* Copies a row of `pages`; set for a volume whose voxels are not in memory, else null. */
   void (*load_row)(const void *pages, size_t y, size_t z, void *row);
   const void *pages;
   const plan_brick *directory;  /* [z][y][x]; null: the volume is no field in bricks */
   const size_t *directory_size; /* number of entries along x, y, z */
   const unsigned char *colors;  /* [z][y][x][4]; null: the voxels have no colours */
   size_t color_bytes;
-  size_t slots, brick_width; /* number of bricks, and of their coefficients along an axis */
+  size_t slots, brick_width; /* slots: number of bricks that have coefficients; brick_width: number of a
+                              * brick's coefficients along an axis */
   int storage;               /* as in plan_variant */
   const int32_t *dimension, *brick_count;
   const unsigned char *relevant;           /* [bricks] */
@@ -58,7 +59,8 @@ typedef struct gpu_volume {
 size_t hl_gpu_row_bytes(const gpu_volume *volume);
 
 bool hl_gpu_prepare(hl_gpu *gpu, const gpu_volume *volume);
-/* Forgets the volume on the device: the next volume is another one, whatever its versions are. */
+/* Forgets the volume on the device: the next volume counts as a different volume, whatever its versions
+ * are. */
 void hl_gpu_forget(hl_gpu *gpu);
 
 /* Computes the trial's results for some numbers (gpu/kernels/trial.h). numbers: [count][3]; results:
@@ -74,7 +76,7 @@ typedef struct gpu_sweep {
   size_t cut_count;
   const int32_t *shown_from; /* [tiles][16 blocks]; where slabs are composited from back to front: the first
                               * visible slab of each block; null: slab 1 for all blocks */
-  size_t plane_floats;       /* floats of the planes of all lights together */
+  size_t plane_floats;       /* number of floats of the planes of all lights together */
   int slabs;                 /* number of slabs of a run */
 } gpu_sweep;
 
@@ -87,7 +89,7 @@ typedef struct gpu_times {
 
 bool hl_gpu_run(hl_gpu *gpu, const gpu_sweep *sweep);
 /* Waits for the sweep's pixels, and copies them to `pixels`, [tiles][16 blocks][R G B A][16] floats. times:
- * the times of the sweep are added to it. */
+ * raised by the times of the sweep. */
 bool hl_gpu_read(hl_gpu *gpu, const gpu_sweep *sweep, float *pixels, gpu_times *times);
 
 #endif

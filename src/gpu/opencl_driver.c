@@ -131,7 +131,7 @@ static bool load_opencl(void **library, char *problem) {
 }
 
 /* Releases the table of functions. The library itself stays loaded, because drivers start threads that go on
- * running in it. */
+ * running in the library. */
 static void unload_opencl(void *library) { free(library); }
 
 static int count_opencl(void *library) { return ((const opencl_library *)library)->device_count; }
@@ -303,7 +303,7 @@ static bool download_opencl(gpu_device *device, const gpu_buffer *buffer, size_t
                 "reading memory");
 }
 
-/* A single queue, in order, serves both lines. */
+/* OpenCL uses a single in-order queue for both lines. */
 static bool launch_opencl(gpu_device *device, const gpu_program *program, int kernel, int line,
                           uint32_t groups, const gpu_argument *arguments, int argument_count) {
   (void)line;

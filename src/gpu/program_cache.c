@@ -1,8 +1,8 @@
 /* gpu/program_cache.c - see program_cache.h. A file holds the key's length, the key, a number made from the
  * program's bytes, and the program. The file is written under another name and then renamed, so that it
- * appears as a whole. A driver crashes on a damaged program, so a program whose number is wrong is not used.
- * A driver trusts a program, so files are not read that belong to other users, or that other users may
- * write. */
+ * appears as a whole. A program whose number is wrong is not used, because a driver may crash on a damaged
+ * program. A file that belongs to another user, or that other users may write, is not read, because drivers
+ * run whatever the program says. */
 #define _POSIX_C_SOURCE 200809L
 #include "gpu/program_cache.h"
 
@@ -52,7 +52,7 @@ static bool write_all(int file, const void *from, size_t bytes) {
   return true;
 }
 
-/* Reads a file's program if its key is the wanted key. */
+/* Reads the program in a file if the file's key is the wanted key. */
 static bool read_program(int file, size_t size, const char *key, gpu_binary *binary) {
   char held[PROGRAM_KEY_BYTES];
   uint32_t length = 0;

@@ -8,14 +8,15 @@
  * removed. */
 enum { PROGRAM_CACHE_BYTES = 64 << 20, PROGRAM_KEY_BYTES = 1024 };
 
-/* Reads the program that hl_program_store() stored under a key. False where there is none, or where it is not
- * the user's own. folder: may be null, which means that there is none. */
+/* Reads the program that hl_program_store() stored under a key. Returns false where there is no such program,
+ * or where its file is not the user's own. folder: may be null; then there is no program. */
 bool hl_program_stored(const char *folder, const char *key, gpu_binary *binary);
 
-/* Stores a program; a failure does no harm. The file, and a new folder, are readable by the user only. */
+/* Stores a program. A failure is ignored. Only the user can read the file and a folder that this function
+ * makes. */
 void hl_program_store(const char *folder, const char *key, const gpu_binary *binary);
 
-/* A number made from a text: FNV-1a (Fowler, Noll, Vo), 64 bits. */
+/* A hash of a text: FNV-1a (Fowler, Noll, Vo), 64 bits. */
 uint64_t hl_program_number(const char *text);
 
 #endif

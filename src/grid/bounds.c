@@ -27,12 +27,12 @@ typedef struct brick_job {
   float *columns;        /* [threads][2][dimension 0] */
   unsigned char *copies; /* [threads][WINDOW * WINDOW][copy_bytes]; copies of rows, for grids with pages */
   size_t copy_bytes;
-  size_t first; /* the first layer of bricks that is bounded here; over ranks, other ranks bound the layers
-                 * before it */
+  size_t first; /* the first layer of bricks of this job. Over ranks, other ranks bound the layers before
+                 * it */
 } brick_job;
 
-/* Stores the least and the greatest value of a brick in the voxels' type. low and high are floats, which
- * represent the values of every voxel type exactly. */
+/* Stores the least and the greatest value of a brick, converted to the voxels' type. low and high are floats,
+ * which represent the values of every voxel type exactly. */
 static void store_bounds(const grid *grid, size_t brick, float low, float high) {
   if (grid->storage == HL_STORAGE_U8) {
     uint8_t *bounds = (uint8_t *)grid->brick_bounds + 2 * brick;
@@ -102,7 +102,7 @@ static void bound_layer_of_bricks(void *data, size_t index, int worker) {
                     job->copies + (size_t)worker * WINDOW * WINDOW * job->copy_bytes);
 }
 
-/* The bounds that were found while the volume's voxels were stored; null: there are none. */
+/* The bounds that were found while the volume's voxels were stored; null: there are no such bounds. */
 static void *stored_bounds(const grid *grid) {
   const hl_brick_bounds *bricks = grid->pages != NULL ? grid->pages->bricks : NULL;
   return bricks != NULL && hl_brick_bounds_whole(bricks) ? bricks->bounds : NULL;
@@ -117,8 +117,8 @@ void hl_bricks_lay_out(grid *grid, hl_layout *layout) {
   grid->relevant_list = hl_layout_take(layout, bricks, sizeof *grid->relevant_list);
 }
 
-/* Bounds a layer of the grid's bricks by the coefficients of a field in bricks. Its cells are the cells of
- * the field's lattice. */
+/* Finds the bounds of a layer of the grid's bricks from the coefficients of a field in bricks. The grid's
+ * cells are the cells of the field's lattice. */
 static void bound_layer_of_field(void *data, size_t index, int worker) {
   (void)worker;
   const grid *grid = ((const brick_job *)data)->grid;
@@ -190,8 +190,8 @@ static void set_cell_range(const hl_volume *volume, grid *grid) {
   grid->cell_step = grid->storage == HL_STORAGE_U8 ? 1 : high > low ? fmaxf((high - low) / 255, FLT_MIN) : 1;
 }
 
-/* The bounds of cells are computed slice by slice and kept packed, for all later transfer functions. Packing
- * saves memory because most bricks of a volume are empty or even. */
+/* Finds the bounds of all cells. They are computed slice by slice and kept packed, for all later transfer
+ * functions. Packing saves memory because most bricks of a volume are empty or even. */
 enum { CELL_LAYERS = HL_BRICK_CELLS / HL_LOOKUP_CELLS, LAYERS_A_TASK = 4 };
 
 typedef struct cell_job {
@@ -227,9 +227,9 @@ static void bound_slice(const cell_job *job, int32_t z, float *rows, float *padd
   }
 }
 
-/* Rounds bounds outwards to 255 steps of the volume's range, with a tolerance of a ten-thousandth of a step.
- * The errors of float sums are far smaller, and an entry of the transfer function's table is sixteen times
- * finer than a step. */
+/* Rounds bounds outwards to 255 steps of the volume's range. A bound that lies beyond a step by less than a
+ * ten-thousandth of a step is rounded to this step. The errors of float sums are far smaller than this
+ * tolerance, and an entry of the transfer function's table is sixteen times finer than a step. */
 static void round_bounds(const grid *grid, const float *low, const float *high, size_t count,
                          unsigned char *to_low, unsigned char *to_high) {
   float inverse = 1 / grid->cell_step;
@@ -253,7 +253,8 @@ static size_t greatest_layer_bytes(const grid *grid) {
 /* The four rows of groups of 2x2x2 cells in a row of bricks: two rows in each of two layers. */
 typedef const unsigned char *cell_rows[2 * CELL_LAYERS];
 
-/* Copies the bounds of the eight groups of cells of a brick, of two groups along x at a time. */
+/* Copies the bounds of the eight groups of cells of a brick. A row gives two groups, which are neighbours
+ * along x. */
 static void gather_cells(const cell_rows rows, int32_t x, int32_t count, unsigned char cells[BRICK_CELLS]) {
   int32_t next = x + 1 < count ? x + 1 : x;
   for (int row = 0; row < 2 * CELL_LAYERS; row++) {
@@ -266,8 +267,8 @@ static bool all_alike(const unsigned char cells[BRICK_CELLS]) {
   return memcmp(cells, cells + 1, BRICK_CELLS - 1) == 0;
 }
 
-/* Packs a layer of bricks (bounds.h). Returns the number of bytes. bounds: [CELL_LAYERS][2][plane], lower and
- * upper. */
+/* Packs the bounds of a layer of bricks (bounds.h). Returns the number of bytes. bounds:
+ * [CELL_LAYERS][2][plane]; lower, then upper bounds. */
 static size_t pack_layer(const grid *grid, const unsigned char *bounds, size_t plane, unsigned char *to) {
   const int32_t *count = grid->lookup[0].count;
   unsigned char *next = to + even_bytes(grid);
@@ -311,16 +312,16 @@ void hl_cell_bounds_at(const grid *grid, const int32_t cell[3], float *low, floa
 
 /* ---- building ---- */
 
-/* One worker's scratch memory: slices of voxels, bounded along x and y, and the bounds of cells made from
- * them. */
+/* One worker's scratch memory: bounds of slices of voxels along x and y, and the bounds of cells made from
+ * these. */
 typedef struct bound_slices {
   float *slices;           /* [CELL_TAPS][2][plane]; slice z of the volume is element z % CELL_TAPS */
   float *out;              /* [2][plane] */
   float *rows, *padded;    /* scratch memory of bound_slice() */
   unsigned char *bounds;   /* [CELL_LAYERS][2][plane]; bounds of a layer of bricks */
   unsigned char *packed;   /* the same bounds, packed */
-  int32_t held[CELL_TAPS]; /* for each element of `slices`, the number of the volume's slice that it holds;
-                            * -1: it holds none */
+  int32_t held[CELL_TAPS]; /* for each element of `slices`, the number of the volume's slice that the element
+                            * holds; -1: it holds no slice */
 } bound_slices;
 
 /* Computes the bounds of a slice of cells. */
@@ -382,8 +383,8 @@ void hl_cells_lay_out(grid *grid, hl_layout *layout) {
   grid->cell_bounds = hl_layout_take(layout, (size_t)grid->brick_count[2], sizeof *grid->cell_bounds);
 }
 
-/* Lays out the scratch memory of all threads. A pass that only counts bytes sets no member of *job but
- * `plane`. */
+/* Lays out the scratch memory of all threads. In a pass that only counts bytes, `plane` is the only member of
+ * *job that is set. */
 static void lay_out_slices(cell_job *job, int threads, hl_layout *layout) {
   const grid *grid = job->grid;
   size_t width = (size_t)grid->lookup[0].count[0], plane = width * (size_t)grid->lookup[0].count[1];

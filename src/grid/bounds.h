@@ -2,11 +2,11 @@
  * cells, can have. Found once for each volume.
  *
  * A brick is bounded by the voxels that its cells and the cells around it depend on. Cells are bounded more
- * tightly: between four neighbouring voxels a cubic B-spline lies within its Bezier points. For the cell
- * between the voxels b and c of four voxels a b c d along an axis, these points are (a + 4 b + c) / 6, (2 b +
- * c) / 3, (b + 2 c) / 3 and (b + 4 c + d) / 6. All weights are non-negative, so bounds found along one axis
- * can serve as input along the next. In noise around a threshold, these bounds mark half as many cells as the
- * least and greatest voxel would. The other kernels use the least and greatest voxel. */
+ * tightly: in a cell, a cubic B-spline lies between the least and the greatest of its Bezier points. For the
+ * cell between the voxels b and c of four voxels a b c d along an axis, these points are (a + 4 b + c) / 6,
+ * (2 b + c) / 3, (b + 2 c) / 3 and (b + 4 c + d) / 6. All weights are non-negative, so bounds found along one
+ * axis can serve as input along the next. In noise around a threshold, these bounds mark half as many cells
+ * as the least and greatest voxel would. The other kernels use the least and greatest voxel. */
 #ifndef HL_GRID_BOUNDS_H
 #define HL_GRID_BOUNDS_H
 
@@ -26,8 +26,8 @@ void hl_bounds_of_brick(const grid *grid, size_t brick, float bounds[2]);
 
 /* ---- cells ---- */
 
-/* Takes the memory of the grid's look-ups and cell_bounds, and sets the look-ups' counts. dimension and
- * brick_count must be set. Takes nothing where 32 bits cannot number the cells. */
+/* Takes the memory of the grid's look-ups and cell_bounds, and sets the counts of the look-ups. dimension and
+ * brick_count must be set. Takes no memory where 32 bits cannot number the cells. */
 void hl_cells_lay_out(grid *grid, hl_layout *layout);
 /* Fills the grid's cell_bounds, which must be null: each layer is allocated when packing has found the
  * layer's size. smooth: whether the kernel is the B-spline. */
@@ -35,12 +35,13 @@ hl_status hl_cells_bound(hl_context *context, hl_pool *pool, const grid_function
                          const hl_volume *volume, grid *grid, hl_error *error);
 void hl_cell_bounds_release(hl_context *context, grid *grid);
 
-/* Counts what hl_bricks_bound() and then hl_cells_bound() take, for a grid that is laid out: packed layers
- * of the greatest size, and the scratch memory of each function, which is released at its end. */
+/* Counts the memory that hl_bricks_bound() and then hl_cells_bound() take, for a grid that is laid out. This
+ * is the memory of packed layers, at their greatest size, and the scratch memory of each function, which is
+ * released at the function's end. */
 void hl_bounds_count(const grid *grid, int threads, hl_layout *layout);
 
-/* The bounds of the group of 2x2x2 cells with the coordinates `cell`, in stored units. Slow: walks through a
- * layer. */
+/* The bounds of the group of 2x2x2 cells with the coordinates `cell`, in stored units. This is slow, because
+ * it walks through the packed bounds of a layer. */
 void hl_cell_bounds_at(const grid *grid, const int32_t cell[3], float *low, float *high);
 
 /* The form of the packed bounds of a layer of bricks. They begin with a bit for each brick; each row of

@@ -76,7 +76,7 @@ LANES_INLINE void greatest_of_four(const lanes v[CELL_BIT_TAPS], lanes greatest[
 
 /* ---- a brick ---- */
 
-/* Finds bounds along z: [cell z][y][x]. The last of the eight rows only fills the lanes. */
+/* Finds bounds along z: [cell z][y][x]. There are seven rows; the eighth only fills the lanes. */
 LANES_INLINE void bits_along_z(const grid *grid, hl_storage storage, const int32_t brick[3], float sign,
                                float bounds[HL_BRICK_CELLS][BITS_ROWS][BITS_ROW]) {
   const int32_t *count = grid->dimension;

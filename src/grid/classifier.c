@@ -5,7 +5,8 @@
 
 #include "core/memory.h"
 
-/* The extinction of an opacity: sigma = -ln(1 - alpha) / u, with alpha clamped to 0.9999. */
+/* The extinction sigma that belongs to an opacity alpha: sigma = -ln(1 - alpha) / u. alpha is clamped to
+ * 0.9999. */
 static double extinction_of(const hl_transfer_function *function, double value) {
   double alpha = hl_transfer_function_opacity(function, value);
   if (alpha <= 0) return 0;
@@ -18,8 +19,8 @@ double hl_transparent_below(const hl_volume *volume, const hl_transfer_function 
   return below_all ? (empty + volume->minimum) / 2 : -INFINITY;
 }
 
-/* Integrates the table exactly, as it is piecewise linear. Over one step the mean extinction is (e0 + e1) /
- * 2, and its moment about the step's start is (e0 + 2 e1) / 6 (derived). */
+/* Integrates the table exactly: extinction is linear between entries. Over one step the mean extinction is
+ * (e0 + e1) / 2, and the extinction's moment about the step's start is (e0 + 2 e1) / 6 (derived). */
 static void integrate(classifier *classifier) {
   double integral = 0, moment = 0;
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES + 1; entry++) {
@@ -32,8 +33,9 @@ static void integrate(classifier *classifier) {
   }
 }
 
-/* Integrates extinction times colour, and extinction. Over one step from e0, c0 to e1, c1, both linear, the
- * integral of extinction times colour is (e0 (2 c0 + c1) + e1 (c0 + 2 c1)) / 6 (derived). */
+/* Integrates extinction times colour, and extinction alone. Over one step both are linear: extinction goes
+ * from e0 to e1, the colour from c0 to c1. The integral of extinction times colour is then (e0 (2 c0 + c1) +
+ * e1 (c0 + 2 c1)) / 6 (derived). */
 static void integrate_colors(classifier *classifier) {
   double integral[4] = {0, 0, 0, 0};
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES + 1; entry++) {
@@ -48,11 +50,12 @@ static void integrate_colors(classifier *classifier) {
   }
 }
 
-/* Fills the table of colours. Also stores, in classifier->bent, how much the slope of the colours changes at
- * each entry. */
+/* Fills the table of colours. Also stores, in classifier->bent, the change of the colours' slope at each
+ * entry. */
 static void fill_colors(const hl_transfer_function *function, double low, double high,
                         classifier *classifier) {
-  double last[3][3]; /* the colours of entries n, n - 1 and n - 2; entry n is stored at n % 3 */
+  double last[3][3]; /* a ring of colours: those of entries n, n - 1 and n - 2; the colour of entry n is
+                      * stored at n % 3 */
   classifier->bent[0] = classifier->bent[CLASSIFIER_ENTRIES] = classifier->bent[CLASSIFIER_ENTRIES + 1] = 0;
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES; entry++) {
     const double *second = last[(entry + 1) % 3], *before = last[(entry + 2) % 3];
@@ -68,9 +71,9 @@ static void fill_colors(const hl_transfer_function *function, double low, double
          sizeof classifier->color[0]);
 }
 
-/* Turns the changes of slope into sums from entry 0, over entries that are visible or beside visible ones. If
- * the changes are so small that no way through the table can have CLASSIFIER_LEAST_BENDING, no sums are
- * kept. */
+/* Turns the changes of slope into sums from entry 0 on. Only entries that are visible or beside visible
+ * entries count. If the changes are so small that no way through the table can have CLASSIFIER_LEAST_BENDING,
+ * there are no sums, and classifier->bent becomes null. */
 static void sum_bends(classifier *classifier) {
   double sum = 0;
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES + 1; entry++) {
@@ -87,8 +90,9 @@ static void sum_bends(classifier *classifier) {
  * surface's foot. */
 static const double SECOND_RISE = 1.5, LEVEL_PART = 0.05;
 
-/* Finds at which values surfaces begin, on one side of the empty value. It looks at the table's entries one
- * by one, from entry `first` on, away from the empty value. step: 1 or -1, the way to the next entry. */
+/* Finds where surfaces begin, for the values on one side of the empty value. It looks at the table's entries
+ * one by one, from entry `first` on, away from the empty value. step: 1 or -1, the direction of the next
+ * entry. */
 static void fill_side(classifier *classifier, int first, int step) {
   const float(*sums)[4] = (const float(*)[4])classifier->sums;
   float foot = classifier->offset, level = 0;
@@ -112,8 +116,8 @@ static void fill_side(classifier *classifier, int first, int step) {
   }
 }
 
-/* Fills the table of surfaces. For values above the empty value, the outside of matter has lower values; for
- * values below the empty value, it has higher values. */
+/* Fills the table of surfaces. A value above the empty value lies in matter whose outside has lower values; a
+ * value below the empty value lies in matter whose outside has higher values. */
 static void fill_outside(classifier *classifier) {
   const int empty = (int)ceilf(classifier->offset);
   fill_side(classifier, empty, 1);
@@ -123,14 +127,14 @@ static void fill_outside(classifier *classifier) {
   }
 }
 
-/* The integral of extinction over the coordinate of the tables, which counts entries, from 0 to x. */
+/* The integral of extinction from 0 to x. x is a coordinate of the tables, which counts entries. */
 static float integral_to(const classifier *classifier, float x) {
   const float *at = classifier->sums[(int)x], *next = classifier->sums[(int)x + 1];
   return at[1] + (next[1] - at[1]) * (x - (float)(int)x);
 }
 
-/* Finds where surfaces begin, as integrals of extinction over the table (integral_to()), and whether there
- * are several surfaces. */
+/* Finds, for each surface, the integral of extinction up to the coordinate where the surface begins
+ * (integral_to()), and whether there are several surfaces. */
 static void fill_beginnings(classifier *classifier) {
   float only = 0, only_side = 0;
   int surfaces = 0;
@@ -182,7 +186,8 @@ static float normal_edge(const hl_scene_volume *volume, double entries_per_value
                     ? 0
                     : function->opacity[function->opacity_count - 1].value - function->opacity[0].value;
   if (!(span > 0)) span = 1;
-  mat3 placed = volume->volume->index_to_world.linear; /* the rotation is left out, since it keeps lengths */
+  mat3 placed = volume->volume->index_to_world.linear; /* the map's rotation is left out, because it keeps
+                                                        * lengths */
   for (int axis = 0; axis < 3; axis++)
     placed.row[axis] = vec3_scale(placed.row[axis], volume->axis_scale[axis]);
   double edge = mat3_shortest_column(placed) * volume->scale;
@@ -190,7 +195,7 @@ static float normal_edge(const hl_scene_volume *volume, double entries_per_value
 }
 
 /* The narrowest range of values that tables cover, as a multiple of value_scale. A float could not hold the
- * scale of a narrower range. Such a range is widened, and its values share one entry. */
+ * scale of a narrower range. A narrower range is widened, and its values then share one entry. */
 static const double NARROWEST_RANGE = 1e-34;
 
 void hl_classifier_lay_out(const hl_transfer_function *function, classifier *classifier, hl_layout *layout) {
@@ -206,8 +211,8 @@ void hl_classifier_lay_out(const hl_transfer_function *function, classifier *cla
   hl_plane_table_lay_out(function, &classifier->plane, layout);
 }
 
-/* Fills the factors of gradient opacity. The table reaches from a gradient of 0 to the gradient of the last
- * point. Where all factors are 1, there is no table. */
+/* Fills the factors of gradient opacity. The table covers gradients from 0 to the gradient of the last point.
+ * Where all factors are 1, there is no table. */
 static void fill_steepness(const hl_transfer_function *function, double value_scale, classifier *classifier) {
   size_t count = function->gradient_opacity_count;
   if (count == 0) return;
@@ -258,7 +263,7 @@ bool hl_classifier_span_visible(const classifier *classifier, const grid *grid, 
   float a = (low - grid->empty) * classifier->scale + classifier->offset;
   float b = (high - grid->empty) * classifier->scale + classifier->offset;
   float least = fminf(a, b), greatest = fmaxf(a, b);
-  /* a voxel that its owner has changed may be NaN; then the bound is taken to be an end of the tables'
+  /* if the caller has changed a voxel to NaN, a bound may be NaN; it then counts as an end of the tables'
    * range */
   int32_t first = !(least > 0) ? 0 : least >= CLASSIFIER_ENTRIES ? CLASSIFIER_ENTRIES : (int32_t)least;
   int32_t last = !(greatest > 0)                  ? 1

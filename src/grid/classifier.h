@@ -2,9 +2,9 @@
  *
  * The tables map density on a sheet (stored units, relative to the grid's empty value) to extinction and
  * colour, linear between CLASSIFIER_ENTRIES equal steps over all values that the volume can take. Along a ray
- * from one sheet to the next, density changes from a to b. The mean extinction between them is the integral
- * of the table from a to b, divided by (b - a). The classifier therefore keeps the table's integral too, and
- * no narrow peak of a transfer function is lost between two sheets. */
+ * from one sheet to the next, density changes from a to b. The mean extinction on this way is the integral of
+ * the table from a to b, divided by (b - a). The classifier therefore keeps the table's integral too, and no
+ * narrow peak of a transfer function is lost between two sheets. */
 #ifndef HL_GRID_CLASSIFIER_H
 #define HL_GRID_CLASSIFIER_H
 
@@ -15,42 +15,45 @@
 
 enum { CLASSIFIER_ENTRIES = 4096, STEEPNESS_ENTRIES = 4096 };
 
-/* The least bending of a way through the table for which the colour is a mean over the way. A way's bending
- * is the change of a colour's slope along it, times the way's length in entries. Where the bending is less,
- * the colour at the mean entry is taken. It differs from the mean by at most a quarter of the bending, 1/1024
- * (derived: the difference is greatest for one bend in the middle and half of the weight at either end). */
+/* The least bending of a way through the table for which the colour is computed as a mean over the way. The
+ * bending is the change of a colour's slope along the way, times the way's length in entries. For less
+ * bending, the colour at the mean entry is taken. This colour differs from the mean by at most a quarter of
+ * the bending, 1/1024 (derived: the difference is greatest for one bend in the middle and half of the weight
+ * at either end). */
 #define CLASSIFIER_LEAST_BENDING (1.0f / 256)
 
 typedef struct classifier {
   float scale, offset; /* table coordinate = density * scale + offset, clamped to [0, CLASSIFIER_ENTRIES] */
-  /* Tables of CLASSIFIER_ENTRIES + 2 entries in one block, which sums owns. */
-  float (*sums)[4];  /* [0]: extinction per world unit. [1]: its integral over entries, from entry 0. [2]: the
-                      * integral of extinction times the entry's number. [3]: the integral [1] at the
-                      * coordinate `outside` of this entry */
+  /* The tables have CLASSIFIER_ENTRIES + 2 entries each. They lie in one block, and `sums` owns the block. */
+  float (*sums)[4];  /* [0]: extinction per world unit. [1]: the integral of extinction over entries, from
+                      * entry 0. [2]: the integral of extinction times the entry's number. [3]: the integral
+                      * [1] up to the coordinate that `outside` has for this entry */
   float (*color)[4]; /* linear RGB; 0 */
-  float (*shown)[4]; /* integrals over entries, from entry 0: [0] to [2] of extinction times linear RGB, [3]
-                      * of extinction */
-  /* For each entry, the sum of the changes of the colour's slope at entries up to this one that are visible
-   * or beside visible ones. A slope is the change of a channel from entry to entry; the channel whose slope
-   * changes most counts. Null if the slope changes little everywhere. */
+  float (*shown)[4]; /* integrals over entries, from entry 0: [0] to [2] integrate extinction times linear
+                      * RGB, [3] extinction alone */
+  /* Sums, from entry 0 to each entry, of the changes of the colour's slope. Only changes at entries count
+   * that are visible or beside visible entries. A slope is the difference of a channel between neighbouring
+   * entries; at each entry the channel counts whose slope changes most. Null if the slope changes little
+   * everywhere. */
   float *bent;
-  int32_t *next_visible; /* for each entry, the first entry from there on with extinction > 0 */
-  /* For values from each entry to the next one, the table coordinate at which their surface begins. On the
-   * way from these values to the empty value it is the nearest value that has no extinction, or the least
-   * extinction before a second rise; or the empty value if there is no such value. */
+  int32_t *next_visible; /* for each entry, the first entry with extinction > 0 that is not before it */
+  /* For the values from each entry to the next one, the table coordinate at which their surface begins. It is
+   * found on the way from these values to the empty value: the nearest value that has no extinction, or the
+   * nearest least extinction before a second rise. If there is neither, it is the empty value. */
   float *outside;
   bool several_surfaces; /* whether the surfaces of visible values begin at more than one coordinate */
-  float only_beginning;  /* where several_surfaces is false: the integral of extinction up to the
+  float only_beginning;  /* where several_surfaces is false: the integral of extinction up to the one
                           * coordinate at which all surfaces begin */
-  float first_visible, last_visible; /* table coordinates outside of which nothing has extinction */
+  float first_visible, last_visible; /* table coordinates; no value below first_visible or above last_visible
+                                      * has extinction */
   /* [STEEPNESS_ENTRIES + 2], in the same block; gradient opacity: for each length of the gradient, the factor
    * that multiplies extinction. Null if the factor is 1 everywhere. Table coordinate = length *
    * steepness_scale, clamped to [0, STEEPNESS_ENTRIES]; the length is in stored units per frame unit. */
   float *steepness;
   float steepness_scale;
   mask_lattice mask; /* the mask of the frame's scene */
-  plane_table plane; /* a function of two numbers; the other tables then hold bounds over all second
-                      * numbers */
+  plane_table plane; /* the tables of a function of two numbers; for such a function the other tables hold
+                      * bounds over all second numbers */
   float normal_edge; /* the least gradient (table entries per frame unit) that counts as a surface */
 } classifier;
 
@@ -59,7 +62,7 @@ static inline bool hl_classifier_is_weighed(const classifier *classifier) {
   return classifier->steepness != NULL || classifier->mask.factors != NULL || classifier->plane.sums != NULL;
 }
 
-/* Whether the factor that multiplies extinction depends on the gradient. */
+/* Whether the factor that multiplies extinction depends on the gradient of the volume. */
 static inline bool hl_classifier_needs_gradient(const classifier *classifier) {
   return classifier->steepness != NULL ||
          (classifier->plane.sums != NULL && classifier->plane.axis == HL_SECOND_GRADIENT);
@@ -70,18 +73,19 @@ static inline bool hl_classifier_needs_gradient(const classifier *classifier) {
 hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volume,
                                const hl_scene_volume *second, const grid *grid, classifier *classifier,
                                hl_error *error);
-/* Takes the memory of a classifier's arrays from a layout. They are one block, which begins with `sums`. */
+/* Takes the memory of a classifier's arrays from a layout. The arrays form one block, which begins with
+ * `sums`. */
 void hl_classifier_lay_out(const hl_transfer_function *function, classifier *classifier, hl_layout *layout);
 void hl_classifier_release(hl_context *context, classifier *classifier);
 
-/* Data values below the result are transparent, whatever the transfer function says. If the transfer function
- * shows even the empty value, and the empty value lies below all values, the result is the middle between the
- * empty and the least value; else -infinity. */
+/* The data value below which everything is transparent, whatever the transfer function says. If the transfer
+ * function shows even the empty value, and the empty value lies below all values, the result is the middle
+ * between the empty value and the least value; else it is -infinity. */
 double hl_transparent_below(const hl_volume *volume, const hl_transfer_function *function, double empty);
 
 /* True if some stored value in [low, high] is visible. */
 bool hl_classifier_span_visible(const classifier *classifier, const grid *grid, float low, float high);
-/* True if some stored value in [low, high], or between them and empty, is visible. */
+/* True if some stored value in the range from low to high, widened to include the empty value, is visible. */
 bool hl_classifier_range_visible(const classifier *classifier, const grid *grid, float low, float high);
 
 #endif

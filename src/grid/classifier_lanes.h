@@ -29,18 +29,18 @@ LANES_INLINE void table_values(float (*table)[4], table_coordinate at, lanes val
   for (int i = 0; i < 3; i++) values[i] = lanes_fma(b[i] - a[i], at.fraction, a[i]);
 }
 
-/* Two coordinates that are closer than this many entries get the mean of both ends: a difference of integrals
- * would lose digits, and the mean is as accurate. */
+/* Where two coordinates are closer than this many entries, the mean of the values at both is used: a
+ * difference of integrals would lose digits, and this mean is as accurate. */
 static const float CLOSE_ENTRIES = 4;
 
-/* Integrals I of a table from coordinate a to coordinate b. */
+/* Integrals of a table from coordinate a to coordinate b. */
 typedef struct way_sums {
   lanes extinction; /* the mean, (I(b) - I(a)) / (b - a) */
   lanes integral;   /* I(b) - I(a), 0 where the ends are close */
   lanes moment;     /* the integral of extinction times the entry's number */
 } way_sums;
 
-/* The integrals of extinction over entries, from entry 0 to the ends of a way. */
+/* The integrals of extinction over entries, from entry 0 to each of the two ends of a way. */
 typedef struct way_ends {
   lanes to_a, to_b;
 } way_ends;
@@ -69,7 +69,7 @@ LANES_INLINE lanes_int may_be_visible(const classifier *classifier, table_coordi
   return (lanes_max(a.x, b.x) > classifier->first_visible) & (lanes_min(a.x, b.x) < classifier->last_visible);
 }
 
-/* The integral of extinction over the coordinate of the tables, which counts entries, from 0 to x. */
+/* The integral of extinction from 0 to x. x is a coordinate of the tables, which counts entries. */
 LANES_INLINE lanes integral_to(const classifier *classifier, lanes x) {
   lanes values[3];
   table_values(classifier->sums, split_coordinate(x), values);
@@ -77,11 +77,12 @@ LANES_INLINE lanes integral_to(const classifier *classifier, lanes x) {
 }
 
 /* Light may come from the matter of one surface into another surface, which begins at the value `foot`. In a
- * blurred edge values rise through those of the first surface to those of the second. There the two are one
- * surface, and the light that the first surface has absorbed lights the second one, too. A first surface
- * whose optical depth on the light's way is up to SAME_RAMP times that of a straight ramp of values is such
- * an edge; from OTHER_LAYER times on it is a layer of its own, and the light that it has absorbed does not
- * count. */
+ * blurred edge, values rise through the values of the first surface to the values of the second. There the
+ * two are one surface, and the light that the first surface has absorbed lights the second one, too. The
+ * optical depth of the first surface on the light's way is compared with the depth of a straight ramp of
+ * values. Up to SAME_RAMP times this depth, the two surfaces are such an edge. From OTHER_LAYER times this
+ * depth on, the first surface is a layer of its own, and the light that it has absorbed does not light the
+ * second one. */
 static const float SAME_RAMP = 1.2f, OTHER_LAYER = 1.6f;
 
 typedef struct second_surface {
@@ -106,8 +107,8 @@ LANES_INLINE second_surface kept_at_foot(const classifier *classifier, lanes fir
                           ahead / lanes_max(rise, lanes_set(1e-9f))};
 }
 
-/* The density's mean distances from a and from b, weighted by extinction between the two, in entries. Both
- * are 1 where a and b are close or nothing between them has extinction. */
+/* The mean distances of the densities on a way from the way's two ends a and b, weighted by extinction; in
+ * entries. Both distances are 1 where a and b are close, or where nothing between them has extinction. */
 typedef struct way_means {
   lanes from_a, from_b;
 } way_means;

@@ -7,7 +7,7 @@
 #include "grid/field.h"
 #include "grid/relevant.h"
 
-/* The two axes along a face that lies across an axis. */
+/* The two axes along a face that is perpendicular to an axis. */
 static int row_axis(int axis) { return axis == 0 ? 1 : 0; }
 static int column_axis(int axis) { return axis == 2 ? 1 : 2; }
 
@@ -37,10 +37,11 @@ static float value_at(const face_job *job, const field_taps *column, const field
   return (float)sum;
 }
 
-/* Whether the brick of a point may be visible. The point has a voxel's coordinates along the face. */
+/* Whether the brick that holds a point of the face may be visible. row, column: the voxel coordinates of the
+ * point along the face. */
 static bool may_be_visible(const face_job *job, int32_t row, int32_t column) {
   int32_t at[3];
-  /* the lower voxel of the cell that holds the point; a face at the end of the last cell belongs to the last
+  /* the lower voxel of the cell that holds the point; a point at the end of the last cell belongs to the last
    * cell */
   at[job->axis] = job->across.first + 1 < job->last_cell ? job->across.first + 1 : job->last_cell;
   at[row_axis(job->axis)] = row;

@@ -3,7 +3,7 @@
 
 #include "bricks/evaluate.h"
 
-/* The kernel's value at a distance, and its derivative with respect to the coordinate. */
+/* The kernel's value at a distance, and the value's derivative with respect to the coordinate. */
 static void kernel_at(const kernel *kernel, double distance, double *value, double *slope) {
   double a = fabs(distance), sum = 0, rise = 0;
   *value = *slope = 0;

@@ -1,6 +1,7 @@
 /* grid/field.h - the field that the kernel makes of a grid's voxels: its value and gradient at any point.
  *
- * Points are in index space, values in stored units. Beyond the grid's faces the border's voxels continue. */
+ * Points are in index space, values in stored units. Beyond the grid's faces the values of the border's
+ * voxels continue. */
 #ifndef HL_GRID_FIELD_H
 #define HL_GRID_FIELD_H
 
@@ -19,7 +20,7 @@ field_taps hl_field_taps(const kernel *kernel, double at);
 /* Copies a box of voxels to `values`, [size[2]][size[1]][size[0]]. */
 void hl_field_window(const grid *grid, const int32_t first[3], const int32_t size[3], double *values);
 
-/* The field's value at a point. *slope: the derivative by index coordinates. */
+/* The field's value at a point. *slope: receives the derivatives with respect to the index coordinates. */
 double hl_field_value_and_slope(const grid *grid, const kernel *kernel, vec3 at, vec3 *slope);
 
 #endif

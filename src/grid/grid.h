@@ -2,8 +2,8 @@
  * that tell where the transfer function shows something.
  *
  * Densities on sheets are differences from the grid's empty value, in stored units (the units of the voxels).
- * Where no voxel is splatted the density is 0, the empty value. Where only some of a point's voxels are
- * splatted, the sum lies between the empty value and values that are transparent as well.
+ * Where no voxel is splatted the density is 0, the empty value. Where only some of the voxels around a point
+ * are splatted, the sum lies between the empty value and other transparent values.
  *
  * The cell of a point p (index space, clamped to [-1, n)) has the coordinates floor(p) + 1, from 0 to n along
  * each axis. A brick is 4x4x4 cells. A point's density depends on the 4x4x4 voxels around its cell. */
@@ -20,18 +20,18 @@
 
 enum {
   HL_BRICK_CELLS = 4,
-  HL_LOOKUP_CELLS = 2, /* number of cells along an edge of a group of 2x2x2 cells, the finer unit of bounds
-                        * and look-ups */
+  HL_LOOKUP_CELLS = 2, /* number of cells along an edge of a group of 2x2x2 cells. Such a group is the finer
+                        * unit of bounds and look-ups */
   GRID_COLUMN = 8,     /* width of a column in voxels */
-  /* The distance outside its box up to which a grid has values, in voxels, for slabs that cross the box's
-   * faces. */
+  /* The distance, in voxels, outside of its box up to which a grid has values. Slabs that cross the box's
+   * faces need them. */
   GRID_MARGIN = 4
 };
 
-/* Tells which small boxes of the grid show something. There are two look-ups: the unit of one is a group of
- * 2x2x2 cells, the unit of the other a brick. Eight boxes begin at each unit; each is two or three units long
- * along each axis. A unit has a byte with a bit for each of the eight boxes: bit i + 2 j + 4 k tells whether
- * the box of 2 + i by 2 + j by 2 + k units shows something. */
+/* A table that tells which small boxes of the grid show something. There are two tables: the unit of one is a
+ * group of 2x2x2 cells, the unit of the other a brick. Eight boxes begin at each unit; each is two or three
+ * units long along each axis. A unit has a byte with a bit for each of the eight boxes: bit i + 2 j + 4 k
+ * tells whether the box of 2 + i by 2 + j by 2 + k units shows something. */
 enum { LOOKUP_SIZES = 2, LOOKUP_REACH = 3 /* units along an axis that one look-up covers */ };
 typedef struct cell_lookup {
   int32_t count[3];
@@ -45,22 +45,26 @@ typedef struct grid {
   const void *voxels;    /* [dimension[2]][dimension[1]][dimension[0]]; stored values: the volume's own or
                           * finite_voxels; rows are packed. Null with pages or bricks */
   const hl_pages *pages; /* the volume's pages (volume/store/pages.h), or value_pages; null if the voxels are
-                          * in memory. With pages, only bricks tell where something is visible */
+                          * in memory. Where a grid has pages, only its bricks tell where something is
+                          * visible */
   /* The field in bricks; borrowed from the volume; null if there are voxels. The lattice's coordinate is one
    * more than the grid's, so that cells of the grid (floor(p) + 1) are cells of the lattice. The grid's
-   * "voxels" are the field's coefficients of level 0. A field in bricks has, like pages, no look-ups of 2x2x2
-   * cells: only bricks tell where something is visible */
+   * "voxels" are the field's coefficients of level 0. A grid with a field in bricks has no look-ups of 2x2x2
+   * cells: only its bricks tell where something is visible */
   const hl_bricks *bricks;
-  hl_bricks *finite_bricks; /* in the grid's memory; a copy of the field with the empty value where it has no
-                             * data; null if the field has data everywhere */
-  double shift[3];          /* grid coordinate = voxel index + shift; 0 without bricks */
-  hl_pages *value_pages; /* owned (value_pages.h); null if sampling needs no other values than the voxels */
-  size_t row_bytes, slice_bytes; /* bytes of the voxels from row to row, and from slice to slice */
+  hl_bricks *finite_bricks; /* in the grid's memory; a copy of the field that has the empty value where the
+                             * field has no data; null if the field has data everywhere */
+  double shift[3];          /* grid coordinate = voxel index + shift; shift is 0 if the grid has no field in
+                             * bricks */
+  hl_pages *value_pages;    /* owned (value_pages.h); the values that sampling needs where these are not the
+                             * stored values; else null */
+  size_t row_bytes, slice_bytes; /* bytes of the voxels from each row to the next, and from each slice to the
+                                  * next */
   /* A second copy of u8 voxels, in columns eight voxels wide. Eight rows of a column are 64 consecutive
-   * bytes, so that a window of 8x8 voxels comes from two columns by two loads (of 512 bits), and neighbouring
-   * windows come from the same lines of the cache whichever way the sheets lie. 128 is subtracted from the
-   * values, which are signed numbers here. [column][dimension[2]][dimension[1]][GRID_COLUMN]; null where
-   * nothing reads the columns. */
+   * bytes. So two loads of 512 bits take a window of 8x8 voxels from two columns, and neighbouring windows
+   * lie in the same cache lines for any direction of the sheets. The values are reduced by 128 and stored as
+   * signed numbers. [column][dimension[2]][dimension[1]][GRID_COLUMN]; null where nothing reads the
+   * columns. */
   unsigned char *columns;
   size_t column_slice_bytes, column_bytes; /* bytes from slice to slice, and from column to column */
   hl_storage storage;
@@ -68,9 +72,9 @@ typedef struct grid {
   float empty;                      /* stored units */
   double value_scale, value_offset; /* data value = value_scale * stored + value_offset */
   affine3 index_to_frame, frame_to_index;
-  double box_low[3], box_high[3]; /* index space: the box in which the volume exists */
-  /* The places of the box's faces along each axis, in index space. A face that cuts nothing visible is put
-   * far outside. In a frame, a face beyond which another volume goes on is put far outside, too. */
+  double box_low[3], box_high[3]; /* index space; the volume exists within this box */
+  /* The places of the box's faces along each axis, in index space. A face that cuts nothing visible gets a
+   * place far outside. So does, in a frame, a face beyond which another volume goes on. */
   float face_low[3], face_high[3];
   bool face_shows[3][2]; /* [axis][low, high]: whether something is visible on the face itself */
   int32_t brick_count[3];
@@ -79,35 +83,36 @@ typedef struct grid {
                             * depend */
   unsigned char *relevant; /* [bricks z][y][x]; 1 where the transfer function may show something */
   cell_lookup lookup[LOOKUP_SIZES]; /* look-ups of groups of 2x2x2 cells, and of bricks */
-  /* [bricks z]; for each layer of bricks, the packed bounds of all its groups of 2x2x2 cells (bounds.h). Each
-   * layer is owned, and has the size that packing finds. Stored value = cell_base + cell_step * bound. Null
-   * where 32 bits cannot number the cells */
+  /* [bricks z]; for each layer of bricks, the packed bounds of all groups of 2x2x2 cells in the layer
+   * (bounds.h). Each layer is owned, and has the size that packing finds. Stored value = cell_base +
+   * cell_step * bound. Null where 32 bits cannot number the cells */
   unsigned char **cell_bounds;
   float cell_base, cell_step; /* stored units */
   uint64_t *cell_bits;        /* [bricks z][y][x]; bit x + 4 y + 16 z tells whether the cell (x, y, z) of the
                                * brick may show something; may be null */
-  bool cell_bits_tell;        /* whether enough cells show nothing for the bits to be worth asking */
+  bool cell_bits_tell;        /* whether so many cells show nothing that it pays to read their bits */
   uint32_t *relevant_list;    /* [relevant_count]; relevant bricks with a visible cell, in rising order */
   uint32_t relevant_count;
   int32_t relevant_low[3], relevant_high[3]; /* the least and greatest coordinates of relevant bricks */
   int32_t content_low[3],
       content_high[3]; /* the least and greatest coordinates of relevant bricks and of bricks that only a mask
-                        * hides. A frame's geometry follows from them, so that no mask moves its sheets */
-  bool cut; /* whether relevant bricks reach the box's faces, or there are cuts, so that rays must know where
+                        * hides. The geometry of a frame follows from these coordinates, so that no mask moves
+                        * the frame's sheets */
+  bool cut; /* whether relevant bricks reach the box's faces, or there are cuts: rays must then know where
              * they cross faces */
   const cut_shape *cuts; /* borrowed; [cut_count]; the shapes that are removed from the box */
   size_t cut_count;
   bool cut_casts_shadow; /* whether the matter that cuts remove still casts shadows */
   float *finite_voxels;  /* a copy of the voxels in which the empty value replaces non-finite ones; or, for an
                           * interpolating kernel, the kernel's coefficients (prefilter.h). May be null */
-  uint64_t kept_voxels;  /* number of the relevant bricks' voxels: 64 for each brick, fewer for bricks at
+  uint64_t kept_voxels;  /* number of voxels of the relevant bricks: 64 for each brick, fewer for bricks at
                           * the borders */
 } grid;
 
 /* ---- the functions of this room that are compiled for each instruction set ---- */
 
-/* Finds the elementwise bounds of rows of stored values. rows: row_count pointers to `count` values of one
- * type. */
+/* Finds the least and the greatest value of several rows, element by element. rows: row_count pointers to
+ * `count` stored values of one type. */
 typedef void bound_rows_function(const void *const *rows, int row_count, size_t count, float *least,
                                  float *greatest);
 
@@ -118,13 +123,13 @@ enum { CELL_TAPS = 5 /* voxels along an axis on which two neighbouring cells dep
  * high: count / 2 + 1. smooth: whether the kernel is the B-spline. */
 typedef void bound_along_function(hl_storage storage, const void *row, int32_t count, bool smooth,
                                   float *padded, float *low, float *high);
-/* Finds the bounds of pairs of cells along y or z as bound_along_function does along x: elementwise, from
- * CELL_TAPS rows of bounds. */
+/* Finds the bounds of pairs of cells along y or z, as bound_along_function does along x. It works element by
+ * element on CELL_TAPS rows of bounds. */
 typedef void bound_across_function(const float *const low_rows[CELL_TAPS],
                                    const float *const high_rows[CELL_TAPS], size_t count, bool smooth,
                                    float *low, float *high);
 
-/* The bits of a brick. Bit x + 4 y + 16 z tells whether sign times the field may exceed a threshold (stored
+/* The bits of a brick. Bit x + 4 y + 16 z tells whether the field times `sign` may exceed a threshold (stored
  * units) somewhere in the cell (x, y, z). */
 typedef uint64_t brick_bits_function(const grid *grid, const int32_t brick[3], float sign, float threshold);
 
@@ -133,7 +138,7 @@ typedef struct grid_functions {
   bound_along_function *along;
   bound_across_function *across;
   brick_bits_function *brick_bits;
-  bool reads_columns; /* whether the instruction set's gathering reads the columns of u8 voxels */
+  bool reads_columns; /* whether gathering, in this instruction set, reads the columns of u8 voxels */
 } grid_functions;
 
 /* ---- bricks and voxels ---- */
@@ -180,8 +185,9 @@ static inline const unsigned char *hl_grid_row(const grid *grid, int64_t y, int6
   return (const unsigned char *)grid->voxels + (size_t)z * grid->slice_bytes + (size_t)y * grid->row_bytes;
 }
 
-/* Makes a grid whose voxels are the voxels of one page of another grid, at the same places. Only the page's
- * voxels may be read, and they count only if the page stays (hl_page_stayed()). */
+/* Makes a grid that shows one page of another grid: its voxels are the page's voxels, at the same places.
+ * Only the page's voxels may be read. What was read counts only if the page has stayed in memory
+ * (hl_page_stayed()). */
 static inline void hl_grid_of_page(const grid *grid, const size_t page[3], struct grid *view,
                                    hl_page_reading *reading) {
   const hl_pages *pages = grid->pages;
@@ -196,7 +202,7 @@ static inline void hl_grid_of_page(const grid *grid, const size_t page[3], struc
   view->slice_bytes = pages->slice_bytes;
 }
 
-/* hl_stored_value() for a grid in pages or bricks. */
+/* Does the work of hl_stored_value() for a grid with pages or bricks. */
 float hl_value_outside_memory(const grid *grid, int64_t x, int64_t y, int64_t z);
 
 /* Places the grid in a frame: the volume's index space to frame space. False if the axes are singular. */

@@ -3,7 +3,8 @@
 
 #include <math.h>
 
-/* Cubic B-spline: 2/3 - a^2 + a^3/2 on [0,1]; (2-|d|)^3/6 = (1-a)^3/6 with a = |d|-1 on [1,2]. */
+/* Cubic B-spline, where d is the distance: on [0,1] it is 2/3 - a^2 + a^3/2 with a = |d|; on [1,2] it is
+ * (2-|d|)^3/6 = (1-a)^3/6 with a = |d|-1. */
 static const kernel bspline = {
     .name = "bspline",
     .support = 2,
@@ -13,8 +14,8 @@ static const kernel bspline = {
     .degree = HL_BSPLINE_DEGREE,
 };
 
-/* The interpolating kernel: the cubic B-spline over coefficients for which the sum passes through the voxels'
- * values. */
+/* The interpolating kernel: the cubic B-spline. It is summed over coefficients for which the sum passes
+ * through the voxels' values. */
 static const kernel interpolating = {
     .name = "interpolating",
     .support = 2,
@@ -25,10 +26,10 @@ static const kernel interpolating = {
     .interpolates = true,
 };
 
-/* The Gaussian exp(-2 d^2) cut at 2 and divided by the sum of its four neighbours at the same phase, so that
- * it sums to 1 (derived: the sum of the four depends only on the fractional part of d). The coefficients are
- * a least-squares fit of degree 5, constrained to sum to 1, to be continuous and to end at 0; the error is at
- * most 2.7e-4. */
+/* The Gaussian exp(-2 d^2), cut at 2. It is divided by the sum of its values at the four voxels around a
+ * point, so that these values sum to 1 (derived: the sum of the four depends only on the fractional part of
+ * d). The coefficients are a least-squares fit of degree 5, constrained to sum to 1, to be continuous and to
+ * end at 0; the error is at most 2.7e-4. */
 static const kernel gaussian = {
     .name = "gaussian",
     .support = 2,

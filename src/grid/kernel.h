@@ -1,9 +1,9 @@
 /* grid/kernel.h - reconstruction kernels as data.
  *
- * A kernel is a symmetric one-dimensional function of the distance d in voxels, a polynomial in |d| on [0,1]
- * (inner) and on [1,2] (outer); a voxel's kernel is the product of the function along each of the three axes
- * of index space, so that it has the right shape in the world on anisotropic and oblique grids. Every kernel
- * sums to 1 over the lattice at every phase: a constant volume gives a constant sheet. */
+ * A kernel is a symmetric one-dimensional function of the distance d in voxels. It is a polynomial in |d| on
+ * [0,1] (inner) and another one on [1,2] (outer). A voxel's kernel is the product of this function along the
+ * three axes of index space, so that it has the right shape in the world on anisotropic and oblique grids. At
+ * every point, the kernels of all voxels sum to 1: a constant volume gives a constant sheet. */
 #ifndef HL_GRID_KERNEL_H
 #define HL_GRID_KERNEL_H
 
@@ -11,7 +11,8 @@
 
 #include <halflight/scene.h>
 
-/* HL_BSPLINE_DEGREE is the degree of the cubic B-spline; other kernels may have HL_KERNEL_DEGREE. */
+/* HL_BSPLINE_DEGREE is the degree of the cubic B-spline; other kernels have a degree of at most
+ * HL_KERNEL_DEGREE. */
 enum { HL_KERNEL_DEGREE = 5, HL_BSPLINE_DEGREE = 3 };
 
 typedef struct kernel {
@@ -21,8 +22,8 @@ typedef struct kernel {
   float inner[HL_KERNEL_DEGREE + 1]; /* |d| in [0,1]: coefficients of a^0 .. a^5, a = |d| */
   float outer[HL_KERNEL_DEGREE + 1]; /* |d| in [1,2]: coefficients, a = |d| - 1 */
   int degree;                        /* the highest power with a coefficient other than zero */
-  bool interpolates;                 /* whether the kernel is summed over coefficients (prefilter.h) in place
-                                      * of voxels */
+  bool interpolates;                 /* whether the kernel is summed over coefficients (prefilter.h) and not
+                                      * over the voxels themselves */
 } kernel;
 
 const kernel *hl_kernel_get(hl_kernel which);

@@ -12,8 +12,8 @@ LANES_INLINE lanes kernel_piece(const float *piece, int degree, lanes a) {
   return sum;
 }
 
-/* The cubic B-spline in fewer operations. inner: for distances up to 1. outer: for the distance 2 - rest,
- * with rest up to 1. */
+/* The cubic B-spline in fewer operations. inner: the value at a distance of up to 1. outer: the value at the
+ * distance 2 - rest, with `rest` up to 1. */
 LANES_INLINE lanes bspline_inner(lanes distance) {
   return lanes_fma(distance * distance, lanes_line(distance, 0.5f, -1.0f), lanes_set(2.0f / 3));
 }
@@ -28,8 +28,8 @@ LANES_INLINE lanes kernel_at(const kernel *kernel, int degree, lanes distance) {
   return lanes_keep(a < kernel->support, lanes_select(a < 1.0f, inner, outer));
 }
 
-/* Finds the kernel's weights for the four voxels floor-1 .. floor+2 around a point, where t is the fraction
- * of the point's coordinate. Their sum is 1. */
+/* Finds the kernel's weights for the four voxels floor-1 .. floor+2 around a point, where t is the fractional
+ * part of the point's coordinate. The sum of the weights is 1. */
 LANES_INLINE void tap_weights(const kernel *kernel, int degree, lanes t, lanes weight[4]) {
   lanes s = 1.0f - t;
   int bspline = degree == HL_BSPLINE_DEGREE;
@@ -47,8 +47,8 @@ LANES_INLINE lanes kernel_piece_slope(const float *piece, int degree, lanes a) {
   return sum;
 }
 
-/* Derivatives of the four taps' weights by t. Their sum is 0. The distance to the taps 2 and 3 shrinks as t
- * grows. */
+/* The derivatives of the four taps' weights with respect to t. Their sum is 0. As t grows, the distance to
+ * the taps 2 and 3 shrinks. */
 LANES_INLINE void tap_slopes(const kernel *kernel, int degree, lanes t, lanes slope[4]) {
   lanes s = 1.0f - t;
   int bspline = degree == HL_BSPLINE_DEGREE;

@@ -13,7 +13,7 @@
 
 /* ---- copies of voxels ---- */
 
-/* The source of finite_voxels: the grid's voxels, of the volume's storage. */
+/* The source of finite_voxels: the grid's voxels, in the volume's storage type. */
 typedef struct copy_job {
   const grid *grid;
   hl_storage storage;
@@ -41,7 +41,7 @@ static void replace_slice(void *data, size_t index, int worker) {
   }
 }
 
-/* Sets the voxels and the distances of rows and slices. */
+/* Sets the grid's voxels, and the distances in bytes between rows and between slices. */
 static void set_voxels(grid *grid, const void *voxels, size_t row_bytes, size_t slice_bytes) {
   grid->voxels = voxels;
   grid->row_bytes = row_bytes;
@@ -58,8 +58,8 @@ static void replace_voxels(hl_pool *pool, hl_storage storage, const kernel *kern
   set_voxels(grid, grid->finite_voxels, row_bytes, (size_t)grid->dimension[1] * row_bytes);
 }
 
-/* Rounds the size of slices and columns up to an odd number of cache lines. At powers of two, all would share
- * few of the cache's sets. */
+/* Rounds the size of slices and columns up to an odd number of cache lines. With sizes that are powers of
+ * two, all slices would share few of the cache's sets. */
 static size_t odd_lines(size_t bytes) {
   enum { LINE = 64 };
   return ((bytes + LINE - 1) / LINE | 1) * LINE;
@@ -78,8 +78,8 @@ static void lay_out_columns(grid *grid, const grid_functions *functions, hl_layo
                                  grid->column_bytes);
 }
 
-/* Copies a slice into all columns, with values reduced by 128. The last column is not filled past the row's
- * end, as no sum includes these values. */
+/* Copies a slice into all columns; the values are reduced by 128. Beyond the row's end the last column is not
+ * filled, because no sum includes these values. */
 static void copy_slice(void *data, size_t index, int worker) {
   (void)worker;
   const grid *grid = data;
@@ -101,15 +101,15 @@ static void copy_slice(void *data, size_t index, int worker) {
 
 /* ---- the grid ---- */
 
-/* Whether sampling needs other values than the stored ones: values in place of non-finite ones, or
- * coefficients. */
+/* Whether sampling needs other values than the stored values: because some are not finite, or because the
+ * kernel needs coefficients. */
 static bool needs_other_values(const hl_volume *volume, const kernel *kernel) {
   return volume->bricks == NULL && (volume->nonfinite_count > 0 || kernel->interpolates);
 }
 
 /* The greatest number that a cell can have. In a grid of voxels it is the number of voxels. In a grid of
- * bricks the last cell holds the box's end, or it is the lattice's last cell; the lattice's first cell has
- * the number 0. */
+ * bricks it is the number of the cell that holds the box's end, but at most that of the lattice's last cell;
+ * the lattice's first cell has the number 0. */
 static int32_t greatest_cell(const hl_volume *volume, int axis) {
   if (volume->bricks == NULL) return (int32_t)volume->dimension[axis];
   double end = ceil(volume->bricks->origin[axis] + (double)volume->dimension[axis] - 1.5);
@@ -168,7 +168,7 @@ static hl_status check_bricks(const hl_volume *volume, hl_error *error) {
       volume->dimension[0], volume->dimension[1], volume->dimension[2], bricks, UINT32_MAX);
 }
 
-/* Gives a grid with pages other pages, with the values that sampling needs, if these are not the stored
+/* If sampling needs other values than the stored ones, gives a grid with pages new pages that hold the needed
  * values. */
 static hl_status make_value_pages(hl_pool *pool, const grid_source *source, grid *grid, hl_error *error) {
   const hl_volume *volume = source->volume->volume;

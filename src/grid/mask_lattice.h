@@ -22,14 +22,14 @@ typedef struct mask_lattice {
 /* Sets a lattice up. volume: in frame space. Without a mask the lattice is empty. */
 void hl_mask_lattice_set_up(mask_lattice *lattice, const hl_scene_volume *volume);
 
-/* The points around a position, and the position's place between them. */
+/* The points around a position, and where the position lies between them. */
 typedef struct mask_cell {
   int32_t near[3], far[3]; /* for each axis, the offsets in `factors` of the points before and after the
                             * position */
   float part[3];
 } mask_cell;
 
-/* Finds the cell of a position in frame space. False where the position is outside the lattice. */
+/* Finds the cell that holds a position of frame space. False where the position is outside the lattice. */
 static inline bool hl_mask_cell_at(const mask_lattice *lattice, const float point[3], mask_cell *cell) {
   for (int a = 0; a < 3; a++) {
     const float *row = lattice->to_index[a], last = (float)lattice->last[a];

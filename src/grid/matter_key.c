@@ -7,7 +7,7 @@ static void add_points(hl_key *key, const hl_opacity_point *points, size_t count
     hl_key_add_numbers(key, (double[2]){points[p].value, points[p].opacity}, 2);
 }
 
-/* Adds a function of two numbers, and the volume whose values are the second number. */
+/* Adds a function of two numbers to the key, and the volume whose values are the second number. */
 static void add_plane(hl_key *key, uint64_t mark, const plane_table *table) {
   hl_key_add_whole(key, (int64_t)mark);
   hl_key_add_whole(key, (int64_t)(uintptr_t)table->second_volume);

@@ -1,8 +1,8 @@
 /* grid/plane_table.c - see plane_table.h.
  *
- * A point of the table is the function's mean over the part of the plane that is nearer to it than to other
- * points, as far as the data reach. A box that ends where the data end therefore has its full weight
- * there. */
+ * A point of the table holds the function's mean over a part of the plane: the part that is nearer to this
+ * point than to others, and that lies within the range of the data. So a box of the function that ends at the
+ * end of this range has its full weight there. */
 #include "grid/plane_table.h"
 
 #include <math.h>
@@ -20,8 +20,8 @@ void hl_plane_table_lay_out(const hl_transfer_function *function, plane_table *t
 
 /* ---- the part of the plane that the table covers ---- */
 
-/* The greatest possible length of a gradient: that of a gradient whose component along each axis is the range
- * of values per voxel edge. */
+/* The greatest possible length of a gradient. Such a gradient has, along each axis, a component of the whole
+ * range of values per voxel edge. */
 static double longest_gradient(const hl_scene_volume *volume, double range) {
   mat3 placed = hl_scene_volume_index_to_world(volume).linear;
   double sum = 0;
@@ -32,7 +32,7 @@ static double longest_gradient(const hl_scene_volume *volume, double range) {
   return range * sqrt(sum);
 }
 
-/* The box of values that the data reach on both axes. Second numbers have the function's units. */
+/* The rectangle of the plane that the data's ranges cover. Second numbers are in the function's units. */
 static plane_box reach_of_data(const hl_scene_volume *volume, const hl_scene_volume *second,
                                const plane_values *values) {
   double scale = hl_plane_second_scale(&volume->transfer_function.plane), low = 0,
@@ -53,7 +53,8 @@ typedef struct table_axis {
   double nothing;   /* below this value there is no matter */
 } table_axis;
 
-/* Makes an axis that covers the shapes and two steps more, as far as the data reach. */
+/* Makes an axis that covers the function's shapes and two steps more, but no more than the range of the
+ * data. */
 static table_axis axis_of(const plane_box *bounds, const plane_box *reach, int axis, int count) {
   double low = fmax(bounds->low[axis], reach->low[axis]), high = fmin(bounds->high[axis], reach->high[axis]);
   if (!(high > low))
@@ -62,8 +63,8 @@ static table_axis axis_of(const plane_box *bounds, const plane_box *reach, int a
   return (table_axis){low - 2 * step, step, reach->low[axis], reach->high[axis], -INFINITY};
 }
 
-/* Finds the part of an axis for which point n of the table stands: the values that are nearer to it than to
- * other points, as far as the data reach. */
+/* Finds the part of an axis for which point n of the table stands: the values that are nearer to this point
+ * than to other points, within the range of the data. */
 static void part_of_axis(const table_axis *axis, int n, double *low, double *high) {
   double middle = axis->start + n * axis->step;
   *low = fmin(fmax(middle - axis->step / 2, axis->low), axis->high);
@@ -100,7 +101,8 @@ static void fill_row(const hl_transfer_function *function, const table_axis axes
   }
 }
 
-/* Repeats the last column and row, since look-ups read a point and the next. width: floats of a point. */
+/* Repeats the last column and row, because a look-up reads a point and the next one. width: number of floats
+ * of a point. */
 static void repeat_last(float *table, size_t width) {
   for (int row = 0; row < PLANE_ROWS; row++)
     memcpy(table + width * place_of(row, PLANE_COLUMNS), table + width * place_of(row, PLANE_COLUMNS - 1),
@@ -109,7 +111,7 @@ static void repeat_last(float *table, size_t width) {
          width * PLANE_STRIDE * sizeof *table);
 }
 
-/* Puts the sums of the next row's point beside each point's sums. */
+/* Stores beside each point's sums the sums of the next row's point. */
 static void join_rows(const plane_table *table) {
   for (int row = 0; row <= PLANE_ROWS; row++) {
     int next = row < PLANE_ROWS ? row + 1 : row;
@@ -138,8 +140,8 @@ static void find_greatest(const plane_table *table, int entries, float (*greates
 /* Tables are read up to this many columns beyond a position. */
 enum { BEYOND = 3 };
 
-/* The column before which look-ups do not depend on the second number: there all rows hold the same
- * numbers. */
+/* The first column that differs between rows. In the columns before it all rows hold the same numbers, so
+ * look-ups do not depend on the second number there. */
 static float even_columns(const plane_table *table) {
   int even = PLANE_STRIDE;
   for (int row = 1; row < PLANE_ROWS; row++)
@@ -186,7 +188,7 @@ void hl_plane_table_set_second(plane_table *table, const hl_volume *volume, cons
 
 /* ---- looking up one point ---- */
 
-/* A position in a table: the point before it, and the distance from there. */
+/* A position along an axis of a table: the point before the position, and the distance from this point. */
 typedef struct table_place {
   int at;
   float part;
@@ -199,8 +201,9 @@ static table_place place_between(float x, int count) {
   return (table_place){(int)x, x - (float)(int)x};
 }
 
-/* The mean of a channel of the colour over the table's column that holds a position, interpolated between two
- * rows. In a row, it is the difference of the channel's integrals at the column's two ends. */
+/* A channel of the colour, as a mean over the column of the table that holds a position; it is interpolated
+ * between two rows. In a row, the mean is the difference of the channel's integrals at the column's two
+ * ends. */
 static float color_between(const plane_table *table, table_place column, table_place row, int c) {
   float of_row[2];
   for (int r = 0; r < 2; r++) {

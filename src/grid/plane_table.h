@@ -13,12 +13,13 @@
 enum { PLANE_COLUMNS = 512, PLANE_ROWS = 256, PLANE_STRIDE = PLANE_COLUMNS + 1 };
 
 typedef struct plane_table {
-  /* Both arrays: [PLANE_ROWS + 1][PLANE_STRIDE], with the last row and column repeated; borrowed from the
-   * classifier's block; null if the transfer function has no second number */
-  float (*sums)[4];  /* [0]: extinction per world unit. [1]: its integral over columns, from column 0. [2],
-                      * [3]: the same of the next row, so that one load gets everything around a position */
-  float (*color)[4]; /* integrals over columns, from column 0: [0] to [2] of linear RGB times opacity, [3] of
-                      * opacity */
+  /* Both arrays: [PLANE_ROWS + 1][PLANE_STRIDE]; the last row and the last column are stored twice; borrowed
+   * from the classifier's block; null if the transfer function has no second number */
+  float (*sums)[4];  /* [0]: extinction per world unit. [1]: the integral of extinction over columns, from
+                      * column 0. [2], [3]: these two numbers of the next row, so that one load gets
+                      * everything around a position */
+  float (*color)[4]; /* integrals over columns, from column 0: [0] to [2] integrate linear RGB times opacity,
+                      * [3] opacity alone */
   float column_scale, column_offset; /* column = coordinate in the classifier's tables * scale + offset */
   /* Row = second number * scale + offset. A gradient is in stored units per frame unit, another volume's
    * value in stored units above that volume's empty value. */
@@ -44,8 +45,8 @@ typedef struct plane_values {
 
 /* Fills the tables. volume: the function's volume, in frame space. second: the other volume; null where the
  * second number is the gradient. entries: the number of entries of the classifier's tables, less one.
- * greatest: [entries + 1]; receives, in [0], a bound for each entry: the greatest extinction that values
- * around the entry have with any second number; 0 where nothing shows. */
+ * greatest: [entries + 1]; element [0] of each entry receives a bound: the greatest extinction that values
+ * around the entry have with any second number. The bound is 0 where nothing shows. */
 void hl_plane_table_fill(const hl_scene_volume *volume, const hl_scene_volume *second, const grid *grid,
                          const plane_values *values, int entries, plane_table *table, float (*greatest)[4]);
 
@@ -61,8 +62,8 @@ typedef struct plane_point {
  * second: in the units of row_scale. */
 plane_point hl_plane_table_at(const plane_table *table, float coordinate, float second);
 
-/* The other volume's value at a position in frame space, linear between its voxels, in stored units above its
- * empty value. */
+/* The other volume's value at a position in frame space, linear between the volume's voxels, in stored units
+ * above the volume's empty value. */
 float hl_plane_second_at(const plane_table *table, const float point[3]);
 
 #endif

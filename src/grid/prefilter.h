@@ -1,8 +1,9 @@
 /* grid/prefilter.h - the coefficients of the interpolating kernel.
  *
- * A B-spline over the voxels' values blurs them. Over these coefficients it passes through the values (Unser,
- * Aldroubi and Eden, "B-Spline Signal Processing", 1993). Coefficients overshoot: between voxels the sum may
- * leave the range of the volume's values. Transfer functions then use the nearest value of the range. */
+ * A B-spline over the voxels' values blurs the values. A B-spline over these coefficients passes through the
+ * values (Unser, Aldroubi and Eden, "B-Spline Signal Processing", 1993). Coefficients overshoot: between
+ * voxels the sum may leave the range of the volume's values. Transfer functions then use the nearest value of
+ * the range. */
 #ifndef HL_GRID_PREFILTER_H
 #define HL_GRID_PREFILTER_H
 
@@ -14,12 +15,13 @@
 
 /* The greatest magnitude of a value that sampling uses. Coefficients have up to 27 times the values'
  * magnitude: 3 times for each axis, by the sum of the filter's weights (derived). Values of greater magnitude
- * would make coefficients leave the range of floats; they are replaced by this one, with their sign. */
+ * would make coefficients leave the range of floats; they are replaced by this magnitude with their own
+ * sign. */
 static inline float hl_greatest_value(const kernel *kernel) {
   return kernel->interpolates ? FLT_MAX / 64 : FLT_MAX;
 }
 
-/* The value that sampling uses for a stored one. empty: replaces a value that is not finite. */
+/* The value that sampling uses in place of a stored value. empty: replaces a value that is not finite. */
 static inline float hl_grid_value(float stored, float greatest, float empty) {
   return isfinite(stored) ? fminf(fmaxf(stored, -greatest), greatest) : empty;
 }
@@ -32,11 +34,11 @@ void hl_prefilter(hl_pool *pool, grid *grid);
 /* Filters a slice along x and y, in place. slice: [height][width]. */
 void hl_prefilter_slice(float *slice, size_t width, size_t height);
 
-/* Both functions filter `width` neighbouring lines along an axis of `count` voxels, 2 or more. Call the first
- * function for each voxel of the lines, from the first to the last; then the second one for each voxel but
- * the last, from the last but one to the first. here: [width]; the lines' values at voxel `at`. before,
- * after: [width]; the values at the voxel before or after it, which must have been filtered already. before:
- * null for the first voxel. */
+/* Both functions filter `width` neighbouring lines along an axis of `count` voxels, 2 or more. First call
+ * hl_prefilter_forward() for each voxel of the lines, from the first to the last. Then call
+ * hl_prefilter_back() for each voxel but the last, from the last but one to the first. here: [width]; the
+ * lines' values at voxel `at`. before, after: [width]; the values at the voxel before or after it, which must
+ * have been filtered already. before: null for the first voxel. */
 void hl_prefilter_forward(float *here, const float *before, size_t width, size_t at, size_t count);
 void hl_prefilter_back(float *here, const float *after, size_t width, size_t at, size_t count);
 

@@ -38,7 +38,8 @@ void hl_content_bounds(const grid *grid, double margin, double low[3], double hi
   box_of_bricks(grid, grid->content_low, grid->content_high, margin, low, high);
 }
 
-/* The mark, in `relevant`, of a brick that would be relevant if no mask hid it. */
+/* The value in `relevant` that marks a brick that only a mask hides: without the mask it would be
+ * relevant. */
 enum { HIDDEN = 2 };
 
 typedef struct brick_job {
@@ -56,10 +57,10 @@ static bool overlaps_box(const grid *grid, const int32_t b[3]) {
 }
 
 /* The distance around a brick, in voxels, within which matter depends on the brick's voxels: the kernel's
- * radius and a cell. Where cuts or a mask leave such matter, the brick is needed. */
+ * radius plus one cell. If cuts or a mask leave any matter within this distance, the brick is needed. */
 enum { BESIDE_CUT = 3 };
 
-/* Whether brick b and its surroundings are cut away for the eye and for lights. */
+/* Whether cuts remove brick b and its surroundings, both for the eye and for lights. */
 static bool is_cut_away(const grid *grid, const int32_t b[3]) {
   double low[3], high[3];
   if (grid->cut_count == 0 || grid->cut_casts_shadow) return false;
@@ -108,7 +109,7 @@ static void widen_to_brick(const int32_t b[3], bool first, int32_t low[3], int32
   }
 }
 
-/* Finds the content's bounds. Afterwards hidden bricks count as not relevant. */
+/* Finds the bounds of the content. Afterwards hidden bricks count as not relevant. */
 static void find_content(grid *grid) {
   bool first = true;
   for (size_t at = 0; at < hl_grid_bricks(grid); at++) {
@@ -137,8 +138,8 @@ static bool has_visible_cell(const grid *grid, size_t brick) {
 
 typedef struct cell_job {
   grid *grid;
-  uint16_t least_high[256]; /* for each lower bound, the least upper bound for which some value between the
-                             * two bounds is visible; 256 if there is no such bound */
+  uint16_t least_high[256]; /* for each lower bound, the least upper bound that makes some value between the
+                             * two bounds visible; 256 if there is no such upper bound */
 } cell_job;
 
 static void find_least_high(const classifier *classifier, const grid *grid, uint16_t least_high[256]) {
@@ -152,14 +153,15 @@ static void find_least_high(const classifier *classifier, const grid *grid, uint
   }
 }
 
-/* The bytes of the packed bounds of a row of bricks. */
+/* The number of bytes of the packed bounds of a row of bricks. */
 static size_t packed_row_bytes(const grid *grid, const unsigned char *even) {
   size_t count = (size_t)grid->brick_count[0], alike = 0;
   for (size_t i = 0; i < hl_even_row_bytes(grid); i++) alike += (size_t)__builtin_popcount(even[i]);
   return alike * EVEN_BYTES + (count - alike) * UNEVEN_BYTES;
 }
 
-/* Writes 1 for each of a brick's groups of 2x2x2 cells that shows something. Returns whether any does. */
+/* Writes 1 for each of a brick's groups of 2x2x2 cells that shows something. Returns whether any group
+ * does. */
 static unsigned char mark_cells_of_brick(const cell_job *job, const int32_t brick[3],
                                          const unsigned char *bounds, bool even) {
   const cell_lookup *lookup = &job->grid->lookup[0];
@@ -212,7 +214,7 @@ static void mark_cells(grid *grid, const classifier *classifier, hl_pool *pool) 
 
 /* ---- look-ups of boxes of cells ---- */
 
-/* The bits of `visible` (cell_lookup) for boxes that are three units long along x, y or z. */
+/* In a byte of `visible` (cell_lookup): the bits of the boxes that are three units long along x, y or z. */
 enum { THREE_ALONG_X = 0xaa, THREE_ALONG_Y = 0xcc, THREE_ALONG_Z = 0xf0 };
 
 /* Converts a row's marks (1: the unit is visible) into the bytes of look-ups (grid.h) along x. */
@@ -223,9 +225,9 @@ static void look_up_row(unsigned char *cells, size_t width) {
     cells[x] = (unsigned char)-(cells[x] | cells[width - 1]);
 }
 
-/* Makes the boxes of look-ups two or three units long along y or z, in place, for `width` neighbouring units
- * along x. cells: the first unit's byte. step: distance from a unit to the next along y or z. three: the bits
- * of boxes that are three units long along this axis. */
+/* Combines look-ups, in place, so that their boxes become two or three units long along y or z, for `width`
+ * neighbouring units along x. cells: the first unit's byte. step: distance from a unit to the next along y or
+ * z. three: the bits of boxes that are three units long along this axis. */
 static void join_axis(unsigned char *cells, size_t step, int32_t count, size_t width, unsigned char three) {
   for (int32_t i = 0; i + 2 < count; i++) {
     unsigned char *cell = cells + (size_t)i * step;
@@ -237,7 +239,7 @@ static void join_axis(unsigned char *cells, size_t step, int32_t count, size_t w
   for (size_t x = 0; x < width; x++) cell[x] |= cell[x + step];
 }
 
-/* Makes the look-ups of a slice along x and y. */
+/* Makes the look-ups of a slice: boxes along x and y. */
 static void look_up_slice(void *data, size_t index, int worker) {
   (void)worker;
   const cell_lookup *lookup = data;
@@ -247,7 +249,7 @@ static void look_up_slice(void *data, size_t index, int worker) {
   join_axis(visible, width, lookup->count[1], width, THREE_ALONG_Y);
 }
 
-/* Makes the look-ups of a row along z, in all slices. */
+/* Extends the look-ups of a row along z, in all slices. */
 static void look_up_across(void *data, size_t index, int worker) {
   (void)worker;
   const cell_lookup *lookup = data;
@@ -266,10 +268,11 @@ static void fill_lookups(grid *grid, hl_pool *pool) {
 
 /* ---- a bit for each cell ---- */
 
-/* The greatest number of bytes that cells' bits take; larger volumes have no bits. For them an eighth of a
- * byte per voxel would be much, compared with their other memory. */
+/* The greatest number of bytes that cells' bits may take; larger volumes have no bits. The bits take an
+ * eighth of a byte per voxel, which would be much beside the other memory that a large volume takes. */
 static const uint64_t GREATEST_BYTES = 8 << 20;
-/* Bits are read only if they tell that at least this fraction of the visible bricks' cells shows nothing. */
+/* Bits are read only if they tell that at least this fraction of the cells in visible bricks shows
+ * nothing. */
 static const double LEAST_LEFT_OUT = 1.0 / 8;
 
 void hl_cell_bits_lay_out(grid *grid, hl_layout *layout) {
@@ -282,14 +285,14 @@ typedef struct bits_job {
   grid *grid;
   brick_bits_function *brick_bits;
   float sign, threshold;     /* a value is visible where sign * stored value > threshold */
-  uint64_t bricks, set_bits; /* number of visible bricks, and number of their cells that may show something;
-                              * atomic */
+  uint64_t bricks, set_bits; /* number of visible bricks, and number of those of their cells that may show
+                              * something; atomic */
 } bits_job;
 
-/* Finds the comparison that tells whether a voxel is visible: its value times a sign lies above a threshold.
- * Sums of floats and the rounded weights of u8 voxels may have errors of 6e-6 of the greatest number and of
- * 1e-3 of a table's entry. The threshold is lowered by more than these errors. False if floats are too coarse
- * to tell values apart at the threshold. */
+/* Finds the comparison that tells whether a voxel is visible: whether its value, times a sign, lies above a
+ * threshold. Sums of floats and the rounded weights of u8 voxels may have errors of 6e-6 of the greatest
+ * number and of 1e-3 of a table's entry. The threshold is lowered by more than these errors. False if floats
+ * are too coarse to tell values apart at the threshold. */
 static bool find_threshold(const grid *grid, const classifier *classifier, bits_job *job) {
   double high = (double)grid->cell_base + 255.0 * (double)grid->cell_step;
   double greatest = fmax(fmax(fabs((double)grid->cell_base), fabs(high)), fabs((double)grid->empty));
@@ -299,15 +302,15 @@ static bool find_threshold(const grid *grid, const classifier *classifier, bits_
                  (double)grid->empty;
   job->sign = scale > 0 ? 1 : -1;
   job->threshold = (float)(value * (double)job->sign - 8e-6 * greatest - 2e-3 / fabs(scale));
-  /* a sum of zeros is exactly zero, so a threshold below zero is not needed */
+  /* a sum of zeros is exactly zero, so the threshold need not be below zero */
   float at_zero = -grid->empty * classifier->scale + classifier->offset;
   if (scale > 0 && grid->cell_base >= 0 && at_zero <= classifier->first_visible)
     job->threshold = fmaxf(job->threshold, 0);
   return isfinite(job->threshold);
 }
 
-/* Finds the bits of a brick, which need not be relevant. Bricks that are not relevant need bits, too, because
- * a ray may come from their values on one sheet to a visible value on the next. */
+/* Finds the bits of a brick. A brick that is not relevant needs bits, too, because a ray may come from its
+ * values on one sheet to a visible value on the next. */
 static uint64_t find_bits(const bits_job *job, size_t at, const int32_t brick[3]) {
   const grid *grid = job->grid;
   float bounds[2];
@@ -347,8 +350,8 @@ static void find_cell_bits(grid *grid, const classifier *classifier, brick_bits_
 
 /* ---- all steps together ---- */
 
-/* Finds which faces of the box cut something visible: the faces that the box around all relevant bricks
- * reaches, or from which it is less than a voxel away. */
+/* Finds which faces of the box cut something visible. These are the faces that the box around all relevant
+ * bricks touches or comes closer to than a voxel. */
 static void find_faces(grid *grid, bool any_relevant) {
   grid->cut = any_relevant && grid->cut_count > 0;
   for (int axis = 0; axis < 3; axis++) {
@@ -362,8 +365,8 @@ static void find_faces(grid *grid, bool any_relevant) {
   }
 }
 
-/* Lists the relevant bricks that have a visible cell. For all relevant bricks, finds the least and greatest
- * coordinates, the number of voxels, and the faces of the box that they reach. */
+/* Lists those relevant bricks that have a visible cell. For all relevant bricks together, finds the least and
+ * greatest coordinates, the number of voxels, and the faces of the box that the bricks reach. */
 static void list_relevant(grid *grid) {
   grid->kept_voxels = 0;
   grid->relevant_count = 0;

@@ -1,12 +1,12 @@
-/* grid/relevant.h - which bricks and cells the transfer function shows, found once for each transfer
+/* grid/relevant.h - which bricks and cells the transfer function shows. This is found once for each transfer
  * function.
  *
  * A voxel can be left out only if every point to which it contributes is transparent, whichever other voxels
  * are left out. Kernels are non-negative and sum to 1. So a point's density lies between the least and the
- * greatest of its 64 voxels. Where some of the 64 are left out, the sum lies in this range extended to the
- * empty value. So a brick is relevant if any value between its bounds, extended to the empty value, is
- * visible (derived). The bounds include one more cell on each side, because slabs across the brick's faces
- * read these neighbours. */
+ * greatest of the 64 voxels around the point. Where some of the 64 voxels are left out, the density lies in
+ * this range widened to include the empty value. So a brick is relevant if any value is visible in the range
+ * of its bounds, widened in the same way (derived). The bounds include one more cell on each side, because
+ * slabs across the brick's faces read these neighbours. */
 #ifndef HL_GRID_RELEVANT_H
 #define HL_GRID_RELEVANT_H
 
@@ -27,11 +27,11 @@ bool hl_relevant_bounds(const grid *grid, double margin, double low[3], double h
  * least one. */
 void hl_content_bounds(const grid *grid, double margin, double low[3], double high[3]);
 
-/* A face that cuts nothing off is put this far outside of the grid, in voxels. */
+/* Where faces that cut nothing off are put: this far outside of the grid, in voxels. */
 #define FACE_FAR_OUT 1e9f
 
-/* Moves the faces of a grid that touch the other grid's box far outside, so that they cut nothing off, as
- * matter goes on beyond them. Most often both grids are parts of one volume. */
+/* Opens faces of a grid that touch another grid's box: matter goes on beyond these faces, so they are moved
+ * far outside, where they cut nothing off. Most often both grids are parts of one volume. */
 void hl_open_faces(grid *grid, const struct grid *other);
 
 /* The bits of cells. A pixel samples a sheet at one point. A block of pixels is therefore empty if no pixel's
@@ -43,7 +43,7 @@ enum {
   CELL_BIT_TAPS = HL_BRICK_CELLS + 3 /* voxels along an axis on which a brick's cells depend: 4b-2 .. 4b+4 */
 };
 
-/* Takes the memory of the grid's cell_bits. Takes nothing for large volumes, which have none. */
+/* Takes the memory of the grid's cell_bits. Takes no memory for large volumes, which have no bits. */
 void hl_cell_bits_lay_out(grid *grid, hl_layout *layout);
 
 #endif

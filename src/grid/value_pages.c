@@ -1,8 +1,8 @@
 /* grid/value_pages.c - see value_pages.h.
  *
- * Slices are loaded and filtered along x and y, some slices at a time. Along z the filter runs over all
- * slices forward and then back. Between the two runs the slices lie in a second scratch file, or over ranks
- * in memory. */
+ * Slices are loaded, and filtered along x and y, some slices at a time. Along z the filter runs forward over
+ * all slices, and then back. Between the two runs the slices are kept in a second scratch file; over ranks
+ * they are kept in memory. */
 #define _GNU_SOURCE
 #include "grid/value_pages.h"
 
@@ -22,11 +22,11 @@ typedef struct value_job {
   hl_pool *pool;
   float empty, greatest; /* parameters of hl_grid_value() */
   bool filters;
-  size_t width, height, slice; /* voxels of a row; rows of a slice; voxels of a slice */
+  size_t width, height, slice; /* width: voxels of a row; height: rows of a slice; slice: voxels of a slice */
   size_t first;                /* number of the slice in slices[0] */
   float *slices;               /* [slices loaded at once][slice] */
-  float *beside;               /* [slice]; on the way forward the slice before the loaded ones; on the way
-                                * back the slice after them */
+  float *beside;               /* [slice]; in the forward run, the slice before the loaded slices; in the run
+                                * back, the slice after them */
   bool any_beside;             /* whether `beside` holds a slice */
   unsigned char *rows;         /* [threads][row_bytes] */
   size_t row_bytes;
@@ -85,8 +85,8 @@ static void run_along_z(value_job *job, size_t count, bool forward) {
 
 /* ---- a scratch file ---- */
 
-/* Writes slices to a file after the forward run, or reads them before the run back. at: the offset of the
- * first slice in the file, in bytes. */
+/* Writes slices to a file after the forward run, or reads them before the run back. at: offset of the first
+ * slice in the file, in bytes. */
 static bool move_slices(int file, bool write, float *slices, size_t bytes, uint64_t at) {
   unsigned char *place = (unsigned char *)slices;
   while (bytes > 0) {
@@ -103,8 +103,8 @@ static hl_status fail_cancelled(const value_job *job, hl_error *error) {
              : HL_OK;
 }
 
-/* Loads all slices, `most` at once. Where `file` is below 0, stores them in pages; else filters them forward
- * along z and stores them in the file. */
+/* Loads all slices, at most `most` at a time. Where `file` is below 0, stores the slices in pages; else
+ * filters them forward along z and stores them in the file. */
 static hl_status run_forward(value_job *job, size_t most, int file, hl_pages *pages, hl_error *error) {
   const size_t depth = job->volume->dimension[2];
   hl_status status = HL_OK;
@@ -148,7 +148,7 @@ static hl_volume_description describe(const hl_volume *volume) {
   return grid;
 }
 
-/* The number of slices that are loaded at once: as many as a page takes in one piece, or fewer where these
+/* The number of slices that are loaded at a time: as many as a page takes in one piece, or fewer if these
  * would take more than an eighth of the memory limit. */
 static size_t slices_at_once(const value_job *job) {
   uint64_t limit = job->volume->context->options.memory_limit, bytes = job->slice * sizeof(float);
@@ -173,8 +173,8 @@ static hl_status make_file(value_job *job, hl_pages **made, hl_error *error) {
                          ? hl_pages_create(context, folder, &grid, volume->pages->shift, made, error)
                          : hl_fail_memory(error, most * job->slice * sizeof(float), subject);
   if (status == HL_OK) {
-    hl_glimpse_release((*made)->glimpse); /* this glimpse is not needed: automatic choices are made from the
-                                           * volume's own */
+    hl_glimpse_release((*made)->glimpse); /* these pages need no glimpse: automatic choices are made from the
+                                           * volume's own glimpse */
     (*made)->glimpse = NULL;
   }
   bool along_z = job->filters && volume->dimension[2] > 1;
@@ -187,7 +187,7 @@ static hl_status make_file(value_job *job, hl_pages **made, hl_error *error) {
 
 /* ---- over ranks ---- */
 
-/* Replaces the values of this rank's block, which need not be whole slices. */
+/* Replaces non-finite values in this rank's block, which need not be whole slices. */
 static void replace_own(const value_job *job, const hl_own_voxels *own, hl_own_voxels *made) {
   size_t count = hl_own_voxels_count(own);
   float *values = (float *)(void *)made->slices;
@@ -195,8 +195,9 @@ static void replace_own(const value_job *job, const hl_own_voxels *own, hl_own_v
   for (size_t n = 0; n < count; n++) values[n] = hl_grid_value(values[n], job->greatest, job->empty);
 }
 
-/* Turns this rank's slices into coefficients. Along z the ranks filter one after the other; each sends the
- * slice at its end to the next rank, and on the way back the slice at its begin to the rank before. */
+/* Turns this rank's slices into coefficients. Along z the ranks filter one after the other. In the forward
+ * run each rank sends its last slice to the next rank; in the run back each rank sends its first slice to the
+ * rank before. */
 static void filter_own(value_job *job, hl_ranks *ranks, hl_own_voxels *made) {
   const size_t count = made->box.count[2], bytes = job->slice * sizeof(float);
   job->slices = (float *)(void *)made->slices;

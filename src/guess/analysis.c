@@ -1,9 +1,10 @@
 /* guess/analysis.c - the kind of data in a volume, and the values that divide objects from their background.
  *
  * Nothing here depends on the data's scale and offset. The background is the commonest value on the grid's
- * faces. Objects may begin at the distance from the background that is the threshold of least cross entropy.
- * They surely are beyond the threshold of greatest variance between classes. Smoothness and the shape of the
- * histogram tell simulations, media and scanned objects apart. */
+ * faces. Two thresholds of the distance from the background find the objects. Voxels may belong to objects
+ * beyond the threshold of least cross entropy, and surely do beyond the threshold of greatest variance
+ * between classes. Smoothness and the shape of the histogram distinguish simulations, media and scanned
+ * objects. */
 #include "guess/analysis.h"
 
 #include <math.h>
@@ -38,8 +39,8 @@ typedef struct distances {
   size_t count;
 } distances;
 
-/* The distances of a sample's values from the background, ascending. The distance is measured in one
- * direction: values on the other side of the background get 0. */
+/* Measures the distances of a sample's values from the background, in ascending order. Only one direction
+ * counts: values on the other side of the background get 0. */
 static void measure(const float *values, size_t count, double background, double direction, float *distance) {
   for (size_t n = 0; n < count; n++) {
     size_t from = direction > 0 ? n : count - 1 - n;
@@ -56,10 +57,10 @@ static void shape_of(const distances *d, double low, double high, double counts[
   }
 }
 
-/* True if the histogram falls all the way, as the histogram of a density does. False if it has peaks, as the
- * histogram of materials has; a peak rises by the factor `peak` from the valley before it. Sums of two bins
- * bridge the gaps of quantised data. The last two bins, which may hold saturated values, and bins of very few
- * voxels are ignored. */
+/* True if the histogram falls from `low` to `high`, as for the density of a simulation. False if it has
+ * peaks, as for materials; a peak rises at least by the factor `peak` above the valley before it. Sums of two
+ * bins bridge the gaps of quantised data. The last two bins, which may hold saturated values, and bins of
+ * very few voxels are ignored. */
 static bool falls(const distances *d, double low, double high, double peak) {
   double counts[BINS], least = INFINITY;
   shape_of(d, low, high, counts);
@@ -78,7 +79,7 @@ static double exact_share(const hl_sample *sample, double background) {
   return (double)equal / (double)sample->count;
 }
 
-/* The fraction of distances that are greater than one. */
+/* The fraction of the distances that are greater than `distance`. */
 static double share_beyond(const distances *d, double distance) {
   size_t beyond = 0;
   while (beyond < d->count && (double)d->values[d->count - 1 - beyond] > distance) beyond++;
@@ -104,14 +105,15 @@ static bool has_one_body(const distances *d, double low, double high) {
   return most > 0.4 * sum;
 }
 
-/* A distance that the noise of the grid's border hardly reaches; most of the border is background. */
+/* A distance from the background that the noise at the grid's border hardly reaches. Most of the border must
+ * be background. */
 static double border_noise(const float *border, size_t count) {
   if (count == 0) return 0;
   double middle = hl_quantile(border, count, 0.5), upper = hl_quantile(border, count, 0.75);
   return middle + 6 * (upper - middle); /* 3.5 sigma of one-sided Gaussian noise */
 }
 
-/* Measures the objects between the thresholds faint and solid. */
+/* Finds the threshold dense, and measures the objects beyond the thresholds solid and faint. */
 static void measure_objects(const distances *d, hl_data_analysis *a) {
   a->dense = hl_threshold_otsu(d->values, d->count, a->solid);
   size_t sure = 0, dense = 0;
@@ -127,8 +129,8 @@ static void measure_objects(const distances *d, hl_data_analysis *a) {
   a->depth = (double)beyond;
 }
 
-/* Finds the thresholds and measures of the objects, relative to the sample's range. d: the distances to one
- * side of the background. noise: the border's. */
+/* Finds the thresholds, and measures of the objects, relative to the sample's range. d: the distances to one
+ * side of the background. noise: a distance that the noise at the border hardly reaches. */
 static void find_thresholds(const distances *d, double noise, hl_data_analysis *a) {
   a->top = fmax(hl_quantile(d->values, d->count, 0.9999), 1e-9);
   a->solid = hl_threshold_otsu(d->values, d->count, -1);
@@ -137,7 +139,8 @@ static void find_thresholds(const distances *d, double noise, hl_data_analysis *
   measure_objects(d, a);
 }
 
-/* True if more than three tenths of the border are not background: the grid lies within its matter. */
+/* True if more than three tenths of the grid's border are not background: the matter then goes on beyond the
+ * grid. */
 static bool fills_grid(const hl_sample *sample, double background, double range) {
   size_t near = 0;
   for (size_t n = 0; n < sample->border_count; n++)
@@ -151,10 +154,10 @@ static bool is_floating(const hl_volume *volume) {
 
 /* Where a volume's values lie, relative to the sample's range. */
 typedef struct spread {
-  double low, high;  /* hardly any voxel has a value below `low` or above `high` */
+  double low, high;  /* nearly all voxels have values from `low` to `high` */
   double zero;       /* the data value 0 */
-  bool fills, signs; /* fills: no air is around the matter; signs: values lie clearly on both sides of the
-                      * data value 0 */
+  bool fills, signs; /* fills: there is no air around the matter; signs: there are many values on both sides
+                      * of the data value 0 */
 } spread;
 
 static spread spread_of(const hl_sample *sample, double background) {
@@ -169,7 +172,7 @@ static spread spread_of(const hl_sample *sample, double background) {
 }
 
 /* True if the volume is a flow: its values fill the grid, and they are smooth, or rough with a single peak in
- * their histogram. A scanner's data have noise and several peaks. distance: scratch, [sample->count]. */
+ * their histogram. (Scanned data have noise, too, but several peaks.) distance: scratch, [sample->count]. */
 static bool is_flow(const hl_volume *volume, const hl_sample *sample, const spread *s, double mode,
                     float *distance) {
   if (!s->fills || !is_floating(volume) || !is_continuous(sample)) return false;
@@ -182,9 +185,9 @@ static bool is_flow(const hl_volume *volume, const hl_sample *sample, const spre
   return roughness < NOISY && one_peak && falls(&d, 0.02, fmax(s->high - mode, 0.03), PEAK);
 }
 
-/* True if many of the objects' voxels have the greatest value: they are the inside of a solid shape. In
- * bytes, the summits of a field may be clipped, and in smooth data of more levels nothing else has so many.
- */
+/* True if many of the objects' voxels have the greatest value. They are then the inside of a solid shape.
+ * Fewer of them are enough in smooth data with more levels than bytes have, because in bytes the maxima of a
+ * field may be clipped. */
 static bool is_filled_up(const hl_sample *sample, const distances *d, const hl_data_analysis *a,
                          double roughness) {
   const double least = roughness < SMOOTH && is_continuous(sample) ? 0.1 : 0.3;
@@ -194,9 +197,9 @@ static bool is_filled_up(const hl_sample *sample, const distances *d, const hl_d
   return (double)greatest > least * (double)things;
 }
 
-/* True if the objects are a smooth quantity that falls off. Where the histogram does not tell this, noise
- * decides: with a scanner's noise, bumps of the histogram are materials; without it, they are saddles
- * between the summits of a field. */
+/* True if the objects are a smooth quantity that falls off from its maxima. If the histogram does not tell
+ * this, noise decides: with a scanner's noise, the histogram's bumps are materials; without it, they are
+ * saddles between the maxima of a field. */
 static hl_status falls_off(const hl_volume *volume, const hl_sample *sample, const distances *d,
                            const hl_data_analysis *a, bool *falling, hl_error *error) {
   double noise = 0;
@@ -218,9 +221,9 @@ static hl_data_kind kind_of(const hl_volume *volume, const hl_sample *sample, co
   return fog && (falling || has_one_body(d, a->faint, a->top)) ? HL_DATA_MEDIUM : HL_DATA_SURFACES;
 }
 
-/* True if objects have values on both sides of the background, fewer with rising distance, and these are not
- * a scanner's noise. Values on both sides of the data value 0 are not enough: in such data the commonest
- * value may be a material, while air has low values. */
+/* True if objects have values on both sides of the background (lobes), these values become rarer with the
+ * distance, and they are not a scanner's noise. It is not enough that values lie on both sides of the data
+ * value 0: in such data the commonest value may be a material, and air has low values. */
 static bool has_lobes(const hl_volume *volume, const hl_sample *sample, const spread *s, double background,
                       float *distance) {
   double above = s->high - background, below = background - s->low;
@@ -233,8 +236,8 @@ static bool has_lobes(const hl_volume *volume, const hl_sample *sample, const sp
   return thins && falls(&d, 0.02, above, PEAK) && hl_roughness(volume, sample, background, 0) < NOISY;
 }
 
-/* Chooses the direction of the objects. Where values lie on both sides of the background without being lobes,
- * the background becomes the lowest value. */
+/* Chooses the side of the background on which the objects lie. If many values lie on both sides but they are
+ * no lobes, the lowest value becomes the background. */
 static void choose_side(const spread *s, bool lobes, hl_data_analysis *a) {
   double above = s->high - a->background, below = a->background - s->low;
   a->direction = above >= below ? 1 : -1;
@@ -244,7 +247,7 @@ static void choose_side(const spread *s, bool lobes, hl_data_analysis *a) {
 }
 
 /* Finds the thresholds for objects on both sides of the background. Lobes that fill the grid, as in a
- * turbulent flow, would hide each other; there only the strongest lobes are shown. */
+ * turbulent flow, would hide each other, so only the strongest ones are shown. */
 static hl_status find_two_sided(const hl_sample *sample, distances *d, hl_data_analysis *a, hl_error *error) {
   for (size_t n = 0; n < sample->count; n++)
     d->values[n] = (float)fabs((double)sample->values[n] - a->background);
@@ -275,8 +278,8 @@ static void find_middle(const hl_sample *sample, double mode, hl_data_analysis *
 static hl_status analyse_values(const hl_volume *volume, const hl_sample *sample, float *memory,
                                 hl_data_analysis *a, hl_error *error) {
   distances d = {memory, sample->count};
-  bool bordered = sample->border_count > 0; /* else the border's value is NaN, and the commonest value of
-                                             * all voxels counts instead */
+  bool bordered = sample->border_count > 0; /* without a border its commonest value would be NaN, and that of
+                                             * all voxels is taken */
   a->background = bordered ? hl_mode(sample->border, sample->border_count)
                            : hl_mode(sample->values, sample->count);
   spread s = spread_of(sample, a->background);
@@ -338,7 +341,7 @@ static hl_status analyse(const hl_volume *volume, hl_data_analysis *analysis, hl
     return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while looking at a volume");
   }
   if (sample.count == 0 || sample.values[0] == sample.values[sample.count - 1]) {
-    /* All sampled voxels are equal: the volume is shown as constant. */
+    /* All sampled voxels have the same value, so the volume counts as constant. */
     hl_sample_release(&sample);
     return HL_OK;
   }
@@ -354,8 +357,8 @@ static hl_status analyse(const hl_volume *volume, hl_data_analysis *analysis, hl
   return may_be_labels ? hl_data_find_labels(volume, analysis, error) : status;
 }
 
-/* Keeps a copy of the analysis with the volume. The volume is constant for its readers, but its analysis may
- * be added once. */
+/* Keeps a copy of the analysis with the volume. Although the volume is constant, its analysis may be added
+ * once. */
 hl_status hl_data_keep(const hl_volume *volume, const hl_data_analysis *analysis, hl_error *error) {
   hl_data_analysis *kept = hl_allocate(volume->context, 1, sizeof *kept), *before = NULL;
   if (kept == NULL) return hl_fail_memory(error, sizeof *kept, "the analysis of a volume");
@@ -384,21 +387,21 @@ hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, h
 
 typedef struct tally {
   int64_t value;
-  unsigned int seen, shared; /* number of neighbours of voxels with this value, and number of these
-                              * neighbours that have the value, too */
+  unsigned int seen, shared; /* number of neighbours of voxels with this value, and how many of these
+                              * neighbours have the same value */
 } tally;
 
 enum { TALLIES = 4 * HL_FEW_LABELS, NO_ROOM = -1 };
 
-/* A hash table of the values that were met. Where the place of a hash is taken, the next free place is
- * used. */
+/* A hash table of the values that were met. If a value's place is taken by another value, the next free place
+ * is used. */
 typedef struct value_table {
-  tally tallies[TALLIES]; /* a tally that has seen nothing is a free place */
+  tally tallies[TALLIES]; /* a place is free if `seen` is 0 */
   size_t count;
 } value_table;
 
-/* The place of a value, known or new; NO_ROOM where the table already has as many values as a label map may
- * have. */
+/* The place of a value, which is added if it is new; NO_ROOM if the table already has as many values as a
+ * label map may have. */
 static int place_of(value_table *table, int64_t value) {
   size_t place = (size_t)(((uint64_t)value * 0x9e3779b97f4a7c15u) >> 32) % TALLIES;
   while (table->tallies[place].seen != 0 && table->tallies[place].value != value)
@@ -408,12 +411,13 @@ static int place_of(value_table *table, int64_t value) {
   return (int)place;
 }
 
-/* MOST_REPEATED: the greatest number of repetitions that is looked for. LEAST_REPEATED: a shorter row of
- * voxels is not examined, because it may look repeated by chance, as in a map of a few plates. */
+/* MOST_REPEATED: the greatest number of repetitions that is looked for. LEAST_REPEATED: the least number of
+ * voxels, without repetitions, along an axis that is examined. With fewer voxels, as in a map of a few
+ * plates, repetitions would be found by chance. */
 enum { MOST_REPEATED = 8, LEAST_REPEATED = 8 };
 
 /* Whether each voxel is repeated `count` times along an axis, as in a volume that was enlarged by repeating
- * its voxels. Only voxels at the places of a lattice are looked at. count: a power of two. */
+ * its voxels. Only the voxels at the points of a coarse lattice are examined. count: a power of two. */
 static bool is_repeated(const hl_volume *volume, int axis, size_t count) {
   const size_t *n = volume->dimension, step = hl_lattice_step(n, HL_LATTICE_PLACES);
   if (n[axis] < LEAST_REPEATED * count || n[axis] % count != 0) return false;
@@ -431,9 +435,9 @@ static bool is_repeated(const hl_volume *volume, int axis, size_t count) {
   return true;
 }
 
-/* Counts, for each value, the neighbours of its voxels, and those neighbours that have the value, too. False
- * at a value that is no whole number, and where there are too many values. Where voxels are repeated, the
- * neighbours are those in the volume from which this one was enlarged. */
+/* Counts, for each value, the neighbours of its voxels, and the neighbours that also have this value. False
+ * if a value is no whole number, or if there are too many values. If the volume was enlarged by repeating
+ * voxels, the neighbours are those of the smaller volume. */
 static bool count_neighbours(const hl_volume *volume, value_table *table) {
   const size_t *n = volume->dimension;
   size_t step = hl_lattice_step(n, HL_LATTICE_PLACES), apart[3] = {1, 1, 1};
@@ -464,9 +468,9 @@ static int compare_values(const void *a, const void *b) {
   return x < y ? -1 : x > y;
 }
 
-/* Lists the labels in rising order: all values but the background, or as many as there is room for. The
- * background is 0 if any value is 0 or less. Returns whether there are two or more labels, and most of them
- * lie in blocks. */
+/* Lists the labels in rising order: all values but the background, or as many of them as there is room for.
+ * The background is 0 if any value is 0 or less. Returns whether there are two or more labels, and most of
+ * them lie in blocks. */
 static bool list(const value_table *table, double least, hl_data_analysis *a) {
   size_t found = 0, in_blocks = 0;
   double background = least <= 0 ? 0 : a->background;

@@ -11,7 +11,7 @@
 typedef enum hl_data_kind {
   HL_DATA_SURFACES = 0, /* objects with boundaries: CT, MR, masks */
   HL_DATA_FIELD = 1,    /* a smooth quantity that falls off: densities of simulations */
-  HL_DATA_SIGNED = 2,   /* a quantity with the same values to both sides of a background in the middle: wave
+  HL_DATA_SIGNED = 2,   /* a quantity whose values lie on both sides of a background in the middle: wave
                          * functions */
   HL_DATA_MEDIUM = 3,   /* smoke and clouds */
   HL_DATA_CONSTANT = 4, /* one value everywhere */
@@ -20,7 +20,7 @@ typedef enum hl_data_kind {
   HL_DATA_PARTICLES = 7 /* the logarithm of the density of particles, over decades */
 } hl_data_kind;
 
-#define HL_FEW_LABELS     255 /* most labels of a map that is told by its values alone */
+#define HL_FEW_LABELS     255 /* most labels of a map that is recognised by its values alone */
 #define HL_MOST_MATERIALS 4
 
 /* "Objects" are the voxels that differ from the background. "Distances" are differences of values from the
@@ -56,25 +56,27 @@ typedef struct hl_data_analysis {
   int material_count; /* number of materials of scanned objects; 0: they were not looked for */
 } hl_data_analysis;
 
-/* Looks at the voxels once; the volume keeps the result. Fails for lack of memory, and when cancelled. */
+/* Analyses a volume's voxels. This is done once, and the volume keeps the result. Fails for lack of memory,
+ * and when cancelled. */
 hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, hl_error *error);
 
-/* Gives a volume the findings about another one, which shows the same objects. */
+/* Gives a volume the analysis of another volume, which shows the same objects. */
 hl_status hl_data_keep(const hl_volume *volume, const hl_data_analysis *analysis, hl_error *error);
 
 /* Finds the materials of scanned objects: sets valleys and material_count. */
 void hl_data_find_materials(const hl_volume *volume, hl_data_analysis *analysis);
 
-/* The least distance from the background beyond which the brightest matter of scanned objects is vessels:
- * tubes within other matter. 0: this matter is not vessels. All distances are relative, as the sample's
- * values are. distances: [sample->count]; the distances of the sample, ascending. */
+/* Finds whether the brightest matter of scanned objects is vessels: tubes within other matter. Returns the
+ * distance from the background beyond which matter is vessels; 0: the brightest matter is not vessels. All
+ * distances are relative, as the sample's values are. distances: [sample->count]; the distances of the
+ * sample, ascending. */
 double hl_data_find_vessels(const hl_volume *volume, const hl_sample *sample, const float *distances,
                             const hl_data_analysis *analysis);
 
-/* Moves the thresholds faint and solid of scanned objects down to the rim of the objects' outer matter, if
- * the thresholds cut through that matter. They do so where skin is much darker than the matter that it
- * covers. Returns whether it moved them. All distances are relative. noise: a distance that the noise
- * around the objects hardly reaches. */
+/* Lowers the thresholds faint and solid of scanned objects to the rim of the objects' outer matter, if the
+ * thresholds lie within the values of that matter. This happens if skin is much darker than the matter under
+ * it. Returns whether the thresholds were lowered. All distances are relative. noise: a distance that the
+ * noise around the objects hardly reaches. */
 bool hl_data_find_rim(const hl_volume *volume, const hl_sample *sample, double noise,
                       hl_data_analysis *analysis);
 
@@ -83,12 +85,12 @@ bool hl_data_find_rim(const hl_volume *volume, const hl_sample *sample, double n
 hl_status hl_data_find_boundary(const hl_volume *volume, const hl_sample *sample, hl_data_analysis *analysis,
                                 hl_error *error);
 
-/* The least share of cliffs of objects that were cut out voxel by voxel, as a brain without its skull is.
- * Four such objects have .21 to .96; eleven objects with natural rims have at most .07 (measured). */
+/* The least value of `cliffs` in objects that were cut out voxel by voxel, as a brain without its skull is.
+ * Measured: four such objects have .21 to .96; eleven objects with natural rims have at most .07. */
 #define HL_CUT_OUT 0.15
 
-/* True if the grid cuts objects off, as it cuts a head off at the neck. A brain without its skull lies free
- * in its grid. */
+/* True if the grid cuts objects off, as it cuts a head off at the neck. A brain without its skull is not cut
+ * off. */
 static inline bool hl_data_is_cut_off(const hl_data_analysis *analysis) { return analysis->cut_off >= 0.02; }
 
 /* True if the values can be Hounsfield units: they reach from air to matter denser than water. */
@@ -101,11 +103,12 @@ static inline bool hl_is_hounsfield(const hl_volume *volume) {
 /* Where the volume is a label map, sets the kind to HL_DATA_LABELS and lists labels; otherwise changes
  * nothing. The values of a label map are whole numbers: the background and 2 to HL_FEW_LABELS labels. Most
  * labels lie in blocks, so that a voxel's neighbours mostly have its value. If the file says that its values
- * are labels, then one label is enough, they need not lie in blocks, and there may be more of them than the
- * list has room for. Fails for lack of memory. */
+ * are labels, one label is enough, labels need not lie in blocks, and there may be more labels than the list
+ * has room for. Fails for lack of memory. */
 hl_status hl_data_find_labels(const hl_volume *volume, hl_data_analysis *analysis, hl_error *error);
 
-/* Whether a volume's values are names of regions: its file names segments, or the values look like labels. */
+/* Whether a volume's values are names of regions, because its file names segments or because the values look
+ * like labels. */
 static inline bool hl_data_is_label_map(const hl_volume *volume, const hl_data_analysis *analysis) {
   return volume->segment_count > 0 || analysis->kind == HL_DATA_LABELS;
 }

@@ -9,7 +9,8 @@
 
 #include "guess/analysis.h"
 
-/* The least fraction of voxels that have exactly the background's value. */
+/* The least fraction of voxels with exactly the background's value, in data in which cliffs are looked
+ * for. */
 #define LEAST_ZEROED 0.2
 /* A cliff is a step higher than this part of the way from the background to matter. */
 #define CLIFF 0.5
@@ -18,8 +19,8 @@ typedef struct step_count {
   size_t steps, cliffs;
 } step_count;
 
-/* Counts the steps from the background to a place along an axis, from both sides. A step is a cliff only if
- * the voxel behind it is no background: smoothing would remove matter of one voxel. */
+/* Counts the steps from the background to a place along an axis, from both sides. A step counts as a cliff
+ * only if the next voxel is matter, too, because smoothing would remove matter that is one voxel thick. */
 static void count_steps(const hl_volume *volume, const size_t at[3], int axis, const hl_data_analysis *a,
                         double background, double high, step_count *count) {
   const double here = hl_volume_value_within(volume, at[0], at[1], at[2]);

@@ -9,7 +9,8 @@
 #include "core/memory.h"
 #include "scene/scene.h"
 
-/* MANY_SHEETS: scenes of more sheets may get a warning; a volume of 2048 voxels along each side has fewer. */
+/* MANY_SHEETS: a scene with more sheets than this may get a warning. A single volume of 2048 voxels along
+ * each side has fewer sheets. */
 enum { NAME_BYTES = 256, MANY_SHEETS = 4096 };
 
 /* ---- one scene of several ---- */
@@ -21,7 +22,7 @@ typedef struct joined_volumes {
   size_t count;
 } joined_volumes;
 
-/* Names a volume "head" after the file scans/head.nii.gz. */
+/* Names a volume after its file: "head" for scans/head.nii.gz. */
 static void name_after_file(const hl_scene_volume *volume, size_t index, char name[NAME_BYTES]) {
   const char *file = volume->file != NULL ? volume->file : "", *slash = strrchr(file, '/');
   const char *base = slash != NULL ? slash + 1 : file;
@@ -47,7 +48,7 @@ static void name_volume(joined_volumes *joined, size_t index) {
   joined->volumes[index].name = name;
 }
 
-/* The distance of a scene's sheets in the world. */
+/* The distance between a scene's sheets, in the world. */
 static double sheet_distance(const hl_scene_description *description) {
   return description->render.sheet_spacing * hl_scene_smallest_edge(description);
 }
@@ -59,8 +60,8 @@ static double diagonal_of(const hl_scene_description *description) {
   return vec3_length(vec3_subtract(high, low));
 }
 
-/* Says how many sheets small voxels of one volume lay across a much larger one. A frame's time grows with the
- * number of its sheets. */
+/* Warns if the small voxels of one volume make many sheets in a much larger volume, because a frame's time
+ * grows with the number of its sheets. */
 static void tell_of_sheets(hl_scene *const *scenes, size_t count, const hl_scene_description *joined) {
   const double edge = hl_scene_smallest_edge(joined), sheets = diagonal_of(joined) / sheet_distance(joined);
   double most = 0, greatest = 0;
@@ -166,7 +167,7 @@ typedef struct channel_scenes {
   size_t count;
 } channel_scenes;
 
-/* Writes the volume's options for reading, and its name, into the scene of a channel. */
+/* Writes into the scene of a channel the options by which its volume was read, and the volume's name. */
 static hl_status name_channel(channel_scenes *made, const hl_volume *volume, hl_scene **scene,
                               hl_error *error) {
   char numbered[24];

@@ -1,4 +1,4 @@
-/* guess/cut_face.h - the faces that a volume's cuts and clip box leave, where a ray meets them. */
+/* guess/cut_face.h - where a ray meets the faces that a volume's cuts and clip box leave. */
 #ifndef HL_GUESS_CUT_FACE_H
 #define HL_GUESS_CUT_FACE_H
 
@@ -8,9 +8,8 @@
 #include "scene/geometry/cut.h"
 
 /* Whether a ray crosses a face of a cut or of the clip box between two points of index space. The second
- * point must lie in the part of the volume that the cuts and the box leave. cuts: [volume->cut_count]; the
- * shapes of the volume's cuts. *outward: the face's normal, a gradient in index space that points away from
- * the part that is left. */
+ * point must not be removed by cuts or the box. cuts: [volume->cut_count]; the shapes of the volume's cuts.
+ * *outward: the face's normal: a gradient in index space that points away from the matter that remains. */
 bool hl_cut_face_between(const hl_scene_volume *volume, const cut_shape *cuts, vec3 before, vec3 here,
                          vec3 *outward);
 

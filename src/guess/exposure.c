@@ -1,10 +1,9 @@
 /* guess/exposure.c - estimates the brightness of a picture and the thickness of the surfaces in it by
  * marching a few thousand rays.
  *
- * Steps are as long as the shortest voxel edge. A sample is the B-spline at the nearest voxel's centre, lit
- * as by the renderer (docs/scene.md, "Brightness and colour") except for shadows, for which the caller gives
- * one fraction.
- */
+ * Steps are as long as the shortest voxel edge. A sample is the B-spline at the nearest voxel's centre. It is
+ * lit as by the renderer (docs/scene.md, "Brightness and colour"), but without computing shadows: the caller
+ * gives one fraction for all of them. */
 #include "guess/exposure.h"
 
 #include <stdlib.h>
@@ -19,7 +18,7 @@
 #include "volume/colors.h"
 
 #define TARGET 0.871 /* linear light of 240 of 255, IEC 61966-2-1 */
-/* The part of the pixels that are darker than the pixel which exposure brings to TARGET. */
+/* The exposure brings one pixel to TARGET. This fraction of all pixels are darker than that pixel. */
 #define BRIGHTEST 0.99
 #define OPAQUE    0.98
 #define FAINT     0.02 /* least opacity of a step at which a ray meets a surface */
@@ -35,17 +34,17 @@ typedef struct exposure {
   vec3 right, up, forward; /* the camera's axes; `right` and `up` are as long as half the picture's width and
                             * height at distance 1, `forward` is a unit vector */
   vec3 towards[MOST_LIGHTS]; /* unit vectors to the lights */
-  double left;               /* the fraction of the light of the sky, and of lights with shadows, that
-                              * shadows leave on bright media */
+  double left;               /* the light of the sky, and of lights with shadows, that reaches bright media in
+                              * spite of shadows, as a fraction */
   double step;               /* world units */
   double empty;              /* a value of the invisible surroundings */
   double flat; /* a sample whose gradient is at most this long is no surface; values per world unit */
   double opacity[TABLE], color[TABLE][3]; /* entries over the volume's range */
 } exposure;
 
-/* The uniform cubic B-spline at a voxel's centre: weights 1/6, 2/3, 1/6, and -1/2, 0, 1/2 for its slope
- * (derived: the spline and its derivative at whole numbers). Beyond the grid the outermost voxels are
- * repeated. *gradient: per voxel. NaN where a voxel is not finite. */
+/* The value at a voxel's centre of the uniform cubic B-spline over the voxels. Derived: at whole numbers the
+ * spline's weights are 1/6, 2/3, 1/6, and those of its derivative -1/2, 0, 1/2. Beyond the grid the outermost
+ * voxels are repeated. *gradient: per voxel. NaN where a voxel is not finite. */
 static double smooth_value(const hl_volume *volume, const long at[3], double gradient[3]) {
   static const double weight[3] = {1.0 / 6, 2.0 / 3, 1.0 / 6}, slope[3] = {-0.5, 0, 0.5};
   double value = 0;
@@ -73,10 +72,10 @@ static int entry_of(const exposure *e, double value) {
   return t > 0 ? t < TABLE ? (int)t : TABLE - 1 : 0;
 }
 
-/* The light that a sky in a gradient sends, where nothing hides it, to a surface or to a medium (normal:
- * null). Derived: at the sine s of the elevation the radiance is h + a |s| + b s, with a = (zenith + ground)
- * / 2 - h and b = (zenith - ground) / 2. Its mean is h + a / 2. Weighted by the cosine of a normal with the
- * sine c, s has the mean 2/3 c, and |s| has the mean 1/2 + 5/32 P2(c), to 1 %. */
+/* The light that a gradient sky sends, if nothing hides it, to a surface or to a medium (normal null).
+ * Derived: at the sine s of the elevation the radiance is h + a |s| + b s, with a = (zenith + ground) / 2 - h
+ * and b = (zenith - ground) / 2. Its mean is h + a / 2. Weighted by the cosine of a normal with the sine c, s
+ * has the mean 2/3 c, and |s| has the mean 1/2 + 5/32 P2(c), to 1 %. */
 static void sky_light(const hl_sky *sky, const vec3 *normal, double light[3]) {
   double c = normal != NULL ? vec3_dot(*normal, vec3_normalise(vec3_of(sky->up))) : 0;
   double even = normal != NULL ? 0.5 + 5.0 / 64 * (3 * c * c - 1) : 0.5;
@@ -128,8 +127,8 @@ static void shade(const exposure *e, const double color[3], const sample_light *
   for (int c = 0; c < 3; c++) sent[c] = color[c] * own[c] * matt[c] + gloss;
 }
 
-/* The parameters, from the origin on, at which a ray enters and leaves the volume's box; false if the ray
- * misses the box. */
+/* Finds the distances along a ray, in lengths of `along` and from 0 on, at which the ray enters and leaves
+ * the volume's box; false if it misses the box. */
 static bool cross_grid(const hl_scene_volume *volume, vec3 from, vec3 along, double part[2]) {
   double low[3], high[3];
   const double origin[3] = {from.x, from.y, from.z}, direction[3] = {along.x, along.y, along.z};
@@ -144,9 +143,9 @@ static bool cross_grid(const hl_scene_volume *volume, vec3 from, vec3 along, dou
   return part[1] > part[0] && isfinite(part[1]);
 }
 
-/* The thickness of a surface in steps: the depth at which the optical depth becomes 1, if values go on rising
- * as steeply as at a sample. The depth is measured from the place where matter begins to be visible. It is
- * infinite where matter of any depth stays transparent. steepness: values per step. */
+/* The thickness of a surface in steps: the depth, below the place where matter begins to be visible, at which
+ * the optical depth becomes 1. It is assumed that values go on rising as steeply as at a sample. The
+ * thickness is infinite if matter of any depth stays transparent. steepness: values per step. */
 static double thickness_at(const exposure *e, int entry, double value, double steepness) {
   const hl_volume *volume = e->volume->volume;
   double per_entry = (volume->maximum - volume->minimum) / (TABLE - 1), optical_depth = 0;
@@ -159,14 +158,14 @@ static double thickness_at(const exposure *e, int entry, double value, double st
   return INFINITY;
 }
 
-/* The face of a cut that a ray has come through: its normal in the world, and its place on the ray. */
+/* The last face of a cut that a ray has crossed: the face's normal in the world, and its place on the ray. */
 typedef struct ray_face {
   vec3 normal;
   double at;
 } ray_face;
 
-/* Notes the face of a cut that a ray comes through between two points, if there is one. before, here: points
- * of index space, one step apart; t: the distance of `here` along the ray, in world units. */
+/* If a ray crosses a face of a cut between two points, notes the face. before, here: points of index space,
+ * one step apart; t: the distance of `here` along the ray, in world units. */
 static void pass_face(const exposure *e, ray_face *face, double t, vec3 before, vec3 here) {
   vec3 outward;
   if (!hl_cut_face_between(e->volume, e->cuts, before, here, &outward)) return;
@@ -174,8 +173,8 @@ static void pass_face(const exposure *e, ray_face *face, double t, vec3 before, 
   face->at = t - e->step / 2;
 }
 
-/* The fraction of the light from a direction that reaches a point of the world. The way is sampled in steps
- * of three voxel edges. */
+/* The fraction of light from a direction that reaches a point of the world. The path of the light is sampled
+ * in steps of three voxel edges. */
 static double passing(const exposure *e, vec3 point, vec3 towards) {
   enum { STEPS = 3 };
   const size_t *size = e->volume->volume->dimension;
@@ -192,9 +191,9 @@ static double passing(const exposure *e, vec3 point, vec3 towards) {
   }
 }
 
-/* The fractions of the lights and of the sky that reach a face. Eight directions stand for the sky. Each
- * stands for an equal part of the sky's light on the face: the sin^2 of their angles from the normal is 1/4
- * and 3/4 (derived: the integral of the cosine over a cap of the hemisphere). */
+/* The fractions of the lights and of the sky that reach a face. Eight directions represent the sky, each with
+ * an equal part of the sky's light on the face. So the sin^2 of their angles from the normal is 1/4 and 3/4
+ * (derived: the integral of the cosine over a cap of the hemisphere). */
 static void light_reaching_face(const exposure *e, vec3 point, vec3 normal, sample_light *lit) {
   enum { DIRECTIONS = 8 };
   const hl_scene_description *scene = e->scene;
@@ -212,9 +211,9 @@ static void light_reaching_face(const exposure *e, vec3 point, vec3 normal, samp
   }
 }
 
-/* Gives a sample the light of a face that the ray has come through, if the sample lies within a voxel and a
- * half behind the face. At this depth the renderer's normal is half way between the face's normal and the
- * normal of the data. */
+/* Gives a sample the light of the face that the ray has crossed last, if the sample lies less than a voxel
+ * and a half behind the face. At this depth, the renderer's normal is the mean of the face's normal and the
+ * data's normal. */
 static void light_by_face(const exposure *e, const ray_face *face, double t, vec3 point, vec3 to_eye,
                           sample_light *lit) {
   bool behind = (t - face->at) * vec3_dot(face->normal, to_eye) < 1.5 * e->step;
@@ -225,8 +224,8 @@ static void light_by_face(const exposure *e, const ray_face *face, double t, vec
 }
 
 typedef struct pixel {
-  double brightness; /* brightness of the brightest channel; -1 where the pixel is mostly background */
-  double thickness;  /* thickness of the first surface that the ray meets, in steps; infinite where it meets
+  double brightness; /* the value of the brightest channel; -1 if the pixel is mostly background */
+  double thickness;  /* thickness of the first surface that the ray meets, in steps; infinite if it meets
                       * none */
 } pixel;
 
@@ -241,8 +240,8 @@ static void gather(const double sent[3], double opacity, gathered *all) {
   all->alpha += share;
 }
 
-/* Adds the isosurfaces that a ray crosses between two voxels. before: the value at the first voxel; the
- * second voxel is `at`. */
+/* Adds the isosurfaces that a ray crosses between two voxels. before, value: the values at the first and the
+ * second voxel; at: the second voxel. */
 static void gather_isosurfaces(const exposure *e, double before, double value, const long at[3], vec3 to_eye,
                                gathered *all) {
   const hl_scene_volume *volume = e->volume;

@@ -5,18 +5,19 @@
 #include <halflight/scene.h>
 
 typedef struct hl_exposure {
-  double factor; /* the factor for the strengths of all lights. With it, the brightest hundredth of the
-                  * picture's pixels begins at code 240 of 255 in its brightest channel. It lies between 0.5
-                  * and 2; it is 1 where nothing is seen */
-  /* A surface's thickness, in smallest voxel edges: from where it begins to where it hides matter behind it.
-   * A seventh of the visible surfaces is thinner. Infinite where nothing is hidden. */
+  double factor; /* the factor for the strengths of all lights. With it, a hundredth of the picture's pixels
+                  * have codes of 240 or more, of 255, in their brightest channel. The factor lies between 0.5
+                  * and 2; it is 1 if nothing is seen */
+  /* A surface's thickness, in smallest voxel edges: the depth, from where the surface begins, at which it
+   * hides matter behind it. A seventh of the visible surfaces are thinner than this. Infinite if nothing is
+   * hidden. */
   double thickness;
 } hl_exposure;
 
-/* Estimates how bright a picture of the first volume is. left: the fraction of the light of the sky, and of
- * lights with shadows, that shadows leave on bright media; surfaces get all of the light. empty: the data
- * value of the invisible surroundings; a surface faces the side on which values are closer to `empty`. Fails
- * for lack of memory. */
+/* Estimates how bright a picture of the first volume is. left: the light of the sky, and of lights with
+ * shadows, that reaches bright media in spite of shadows, as a fraction; surfaces get all of the light.
+ * empty: the data value of the invisible surroundings; a surface faces the side on which values are closer to
+ * this value. Fails for lack of memory. */
 hl_status hl_scene_exposure(const hl_scene_description *scene, double empty, double left, hl_exposure *result,
                             hl_error *error);
 

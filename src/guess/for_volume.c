@@ -22,10 +22,10 @@
 #define LIGHT_ELEVATION 45
 #define FILL_AZIMUTH    0 /* fill light from the eye: it suits a key light from any direction */
 #define FILL_ELEVATION  0
-/* The memory, beside the memory of a volume, for which the memory limit must have room so that a sky is
- * chosen. The sky's field and the making of it take less than half of this. */
+/* The memory, beside that of a volume, for which the memory limit must have room so that the scene gets a
+ * sky. The sky's field, and the work of making it, take less than half of this. */
 #define ROOM_FOR_SKY (512u << 20)
-/* Constant light in place of a sky, as a fraction of the sky's strength. */
+/* Constant light that takes the place of a sky, as a fraction of the sky's strength. */
 #define INSTEAD 0.35
 /* Number of sheets across the grid's diagonal. Shaded surfaces need more sheets than media, because one
  * normal lights a whole slab. */
@@ -34,8 +34,8 @@
 /* The greatest sheet spacing, as a fraction of a surface's thickness (hl_exposure). Rings on a surface get
  * stronger with the square of the spacing over the thickness. */
 #define SPACING_PER_THICKNESS 0.28
-/* The same fraction as SPACING_PER_THICKNESS, for small grids. Even with sheets so close, small grids have no
- * more sheets than other grids. */
+/* The greatest sheet spacing in small grids, as a fraction of a surface's thickness. Even so, small grids do
+ * not have more sheets than other grids. */
 #define SMALL_GRIDS_SPACING_PER_THICKNESS 0.1
 /* LEAST_SPACING: the least spacing in all grids. SMALL_GRIDS_SPACING: the least spacing for surfaces in small
  * grids. Both are in smallest voxel edges. */
@@ -73,8 +73,8 @@ static void choose_lights(const hl_look *look, hl_light lights[2], size_t *count
 }
 
 /* True if the memory limit leaves room for a number of bytes beside the voxels and the copy of them that a
- * renderer makes. The memory that is held now does not count, so that all processes that share a volume
- * choose alike. */
+ * renderer makes. Memory that is held at present does not count, so that all processes that share a volume
+ * make the same choice. */
 static bool has_room(const hl_volume *volume, uint64_t bytes) {
   uint64_t limit = volume->context->options.memory_limit, taken = 0;
   if (volume->voxels != NULL)
@@ -106,7 +106,8 @@ void hl_scene_level_sky(hl_scene_description *description) {
   description->sky = plain.sky;
 }
 
-/* The sheet spacing, in smallest voxel edges, that puts about the same number of sheets across any grid. */
+/* The sheet spacing, in smallest voxel edges, with which a grid of any size has about the same number of
+ * sheets. */
 static double even_spacing(const hl_volume *volume, hl_shading shading) {
   double sheets = shading == HL_SHADING_PHONG ? SHEETS_OF_SURFACES : SHEETS_OF_MEDIA;
   double edge = INFINITY, diagonal = 0;
@@ -118,9 +119,10 @@ static double even_spacing(const hl_volume *volume, hl_shading shading) {
   return diagonal / edge / sheets;
 }
 
-/* The sheet spacing, from LEAST_SPACING to 1; where surfaces are thin, from SMALL_GRIDS_SPACING. With sheets
- * a voxel apart, coarse grids would show rings on smooth surfaces, and more sheets cost little there.
- * thickness: the surfaces' thickness, in smallest voxel edges; infinite: there are none. */
+/* The sheet spacing, in smallest voxel edges: from LEAST_SPACING to 1; in small grids with thin surfaces,
+ * from SMALL_GRIDS_SPACING. In coarse grids, sheets a voxel apart would show as rings on smooth surfaces, and
+ * more sheets take little time. thickness: the surfaces' thickness, in smallest voxel edges; infinite: there
+ * are no surfaces. */
 static double choose_spacing(const hl_volume *volume, hl_shading shading, double thickness) {
   double even = even_spacing(volume, shading);
   double spacing = fmin(fmax(even, LEAST_SPACING), fmax(SPACING_PER_THICKNESS * thickness, LEAST_SPACING));
@@ -137,8 +139,8 @@ static hl_status judge_exposure(const hl_look *look, const hl_data_analysis *ana
   return look->left > 0 ? hl_scene_exposure(description, empty, look->left, exposure, error) : HL_OK;
 }
 
-/* Scales all lights by one factor, so that the picture is as bright as it can be without being clipped, and
- * lays sheets closer where surfaces are thin. */
+/* Scales all lights by one factor, so that the picture is as bright as it can be without being clipped. Also
+ * puts sheets closer together if surfaces are thin. */
 static hl_status expose(const hl_look *look, const hl_data_analysis *analysis, hl_light lights[2],
                         hl_scene_description *description, hl_error *error) {
   hl_exposure exposure;
@@ -151,9 +153,9 @@ static hl_status expose(const hl_look *look, const hl_data_analysis *analysis, h
   return status;
 }
 
-/* Gives a volume cuts that remove what holds the object. The search uses the look `base`, which suits the
- * volume, so that cuts are the same with any look. planes: memory of the cuts, which must live as long as
- * the volume's description. */
+/* Gives a volume cuts that remove what holds the object. The search always uses the look `base`, which suits
+ * the volume, so that the cuts are the same whatever look is shown. planes: memory for the cuts; it must last
+ * as long as the volume's description. */
 static hl_status leave_holders_out(hl_context *context, const hl_look *base, const hl_data_analysis *analysis,
                                    hl_cut planes[HL_HOLDER_PLANES], hl_scene_volume *volume,
                                    hl_error *error) {
@@ -169,10 +171,9 @@ static hl_status leave_holders_out(hl_context *context, const hl_look *base, con
   return status;
 }
 
-/* Gives a label map its labels, with the names and colours in its file. A volume whose values cannot be
- * labels after all, or that is larger than memory, gets none; it is drawn by its values, and a log line says
- * so.
- * *labels: owned by the caller; null: none. */
+/* Gives a label map its labels, with the names and colours in its file. A volume whose values turn out not to
+ * be labels, or that is larger than memory, gets no labels. It is drawn by its values, and a log line says
+ * so. *labels: owned by the caller; null: none. */
 static hl_status find_labels(hl_context *context, hl_scene_volume *volume, hl_label **labels,
                              hl_error *error) {
   int is_label_map = 0;
@@ -188,8 +189,8 @@ static hl_status find_labels(hl_context *context, hl_scene_volume *volume, hl_la
   return status;
 }
 
-/* Makes a scene of a volume in one look. style: null: the look that suits the volume. For a label map this
- * look is its labels. */
+/* Makes a scene of a volume in one look. style: the look that was asked for; null: the look that suits the
+ * volume. The look that suits a label map draws its labels. */
 static hl_status make_scene_of(hl_context *context, hl_volume *volume, const char *file, const hl_look *style,
                                hl_scene **scene, hl_error *error) {
   hl_data_analysis analysis;
@@ -237,8 +238,8 @@ static hl_status make_scene_of(hl_context *context, hl_volume *volume, const cha
   return status;
 }
 
-/* Makes the scene of the volume. Where the volume's voxels make stairs or grain, it makes the scene of a
- * smoother volume (smoothing.h), if there is room for a float for each voxel. */
+/* Makes the scene of the volume. If the volume's voxels would show as stairs, terraces or grain, the scene is
+ * made of a smoothed volume (smoothing.h), provided that there is memory for a float for each voxel. */
 static hl_status make_scene(hl_context *context, hl_volume *volume, const char *file, const hl_look *style,
                             hl_scene **scene, hl_error *error) {
   hl_data_analysis analysis;

@@ -4,11 +4,12 @@
 
 #include "scene/scene.h"
 
-/* Places the camera of a scene that gives none: a three-quarter view that frames the volumes. Type and
- * fovy_deg are kept. */
+/* The camera of a scene that gives no camera: a three-quarter view that frames the volumes. Type and fovy_deg
+ * are kept. */
 hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *camera, hl_error *error);
 
-/* The light of a scene that gives none: soft, from the camera's upper left; it goes with the camera. */
+/* The light of a scene that gives no light: a soft light from the camera's upper left, which moves with the
+ * camera. */
 void hl_scene_key_light(hl_light *light);
 
 /* Constant light beside a sky, as a fraction of the sky's strength, so that no hollow is black. */

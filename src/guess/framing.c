@@ -1,8 +1,8 @@
 /* guess/framing.c - places a camera so that everything seen fills the picture and is in its middle.
  *
- * Each side of the picture is a plane through the eye. The reach of the visible voxels' outline towards each
- * side gives the nearest eye that has all of them in the picture. With room for turning, the eye stands
- * farther away and turns about a fixed target. */
+ * Each side of the picture is a plane through the eye. From the reach of the visible voxels' outline towards
+ * each side follows the nearest eye that has all visible voxels in the picture. With room for turning, the
+ * eye stands farther away and turns about a fixed target. */
 #include <string.h>
 
 #include "core/door.h"
@@ -12,23 +12,25 @@
 
 /* The fraction of the picture's half width or height that the visible voxels fill. */
 #define FILLED 0.92 /* seen from one direction */
-/* The least such fraction where the eye stands back to leave room for turning. */
+/* The least value of FILLED to which the eye may move back to make room for turning. */
 #define FILLED_LEAST 0.82
-/* In a turn the outline may reach beyond the picture by this factor, which is less than its invisible rim. */
+/* During a turn the outline may reach beyond the picture by this factor. It is small enough that only the
+ * outline's invisible rim is cut off. */
 #define OVER 1.04
 /* A view replaces an earlier one if it is wider by this factor. */
 #define WIDER 1.04
-/* A turn may move the middle of the visible voxels away from the picture's middle, by at most this fraction
- * of its sides, where this saves room. */
+/* To save room, a turn may be made about a target beside the middle of the visible voxels: at most this
+ * fraction of the picture's sides away from it. */
 #define ASIDE 0.012
 
-/* Matter counts as flat if its height is less than this fraction of its width. It is seen from higher up. */
+/* Matter counts as flat if its height is less than this fraction of its width. Flat matter is seen from
+ * higher up. */
 #define FLAT           0.25
 #define FLAT_ELEVATION 40 /* degrees */
 
 enum { TURNS = 36, HALVINGS = 48, SECTIONS = 12 };
 
-/* A view to frame. tangents: the tangents of half the picture's angles, 0 for parallel projection. */
+/* The framing of a view. tangents: of half the picture's angles; 0 for parallel projection. */
 typedef struct frame_job {
   const hl_outline *outline;
   vec3 right, up, forward;
@@ -55,8 +57,8 @@ static double nearest_eye(const frame_job *job, vec3 along, double tangent) {
 }
 
 /* The eye's coordinate along `along`, at a given depth, that puts the outline in the middle. Derived: both
- * sides are then seen at the same tangent t, and the depth is the depth of the nearest eye for t (see above).
- * The depth grows with t, so t is found by halving. */
+ * sides of the outline are then seen at the same tangent t, and the depth is that of nearest_eye() for t. The
+ * depth grows with t, so t is found by halving. */
 static double middle_from(const frame_job *job, vec3 along, double greatest, double depth) {
   double low = 0, high = greatest;
   for (int n = 0; n < HALVINGS && greatest > 0; n++) {
@@ -67,7 +69,7 @@ static double middle_from(const frame_job *job, vec3 along, double greatest, dou
   return (reach(job, along, high) - reach(job, vec3_scale(along, -1), high)) / 2;
 }
 
-/* The nearest eye, or the least height, with which the outline fills a given fraction of the picture. */
+/* The nearest eye, or the least height, with which the outline fills this fraction of the picture. */
 static frame_place fit(const frame_job *job, double filled) {
   frame_place place = {0};
   if (job->tangent_y > 0) {
@@ -94,8 +96,9 @@ static vec3 point_at(const frame_job *job, const frame_place *place, double dept
 
 /* ---- room for turning ---- */
 
-/* The least distance from the target, or half height, with which nothing leaves the picture. Derived: for a
- * plane at tangent t a point at x and z from the target needs x <= t (distance + z). */
+/* The least distance from the target, or half height, with which everything stays in the picture. Derived:
+ * for a side of the picture with tangent t, a point at x and z from the target needs x <= t (distance +
+ * z). */
 static double needed(const frame_job *job, vec3 target) {
   const vec3 along[4] = {job->right, vec3_scale(job->right, -1), job->up, vec3_scale(job->up, -1)};
   double most = 0;
@@ -112,7 +115,7 @@ static void look(frame_job *job, const hl_view *view) {
   hl_view_axes(view, &job->right, &job->up, &job->forward);
 }
 
-/* The least distance or half height as needed() finds it, for all azimuths of a turn. */
+/* The least distance, or half height, that is enough at all azimuths of a turn (see needed()). */
 static double needed_in_a_turn(const frame_job *job, const hl_view *view, vec3 target) {
   frame_job turned = *job;
   hl_view at = *view;
@@ -132,20 +135,20 @@ static double radius_about(const hl_outline *outline, vec3 target) {
   return greatest;
 }
 
-/* The least distance or half height as needed() finds it, for all directions of view. */
+/* The least distance, or half height, that is enough for all directions of view (see needed()). */
 static double needed_at_all(const frame_job *job, vec3 target) {
   double radius = radius_about(job->outline, target), tangent = fmin(job->tangent_x, job->tangent_y);
   return tangent > 0 ? radius * sqrt(1 + 1 / (tangent * tangent)) /* radius over the sine */
                      : radius / fmin(1, job->aspect);
 }
 
-/* The distance of the eye from a target at a depth; in parallel projection, half the picture's height. */
+/* The distance of the eye from a target at this depth; in parallel projection, half the picture's height. */
 static double room_of(const frame_job *job, const frame_place *place, double depth) {
   return job->tangent_y > 0 ? depth - place->forward : place->half_height;
 }
 
-/* Moves the target along one axis to the place where a turn needs least room. (Golden section: the room is a
- * maximum of linear functions and so convex.) */
+/* Moves the target along one axis to the place where a turn needs the least room. The room that a turn needs
+ * is a maximum of linear functions, and so convex; a golden-section search finds its minimum. */
 static void improve(const frame_job *job, const hl_view *view, vec3 along, double reach_each_way,
                     vec3 *target) {
   const double ratio = (sqrt(5) - 1) / 2;
@@ -160,14 +163,14 @@ static void improve(const frame_job *job, const hl_view *view, vec3 along, doubl
   *target = vec3_add(*target, vec3_scale(along, (low + high) / 2));
 }
 
-/* Moves the eye back to make room for turning. The target is the place where a turn needs least room, at any
- * depth and up to a little beside the middle. few: the job with a thinned outline, which is faster. Returns
- * the target's depth. */
+/* Moves the eye back to make room for turning. The target is moved to the place where a turn needs the least
+ * room: to any depth, but only a little to the side. few: the job with a thinned outline, which is faster.
+ * Returns the target's depth. */
 static double make_room(const frame_job *job, const frame_job *few, const hl_view *view, frame_place *place) {
   const frame_place tight = *place, loose = fit(job, FILLED_LEAST);
   double depth = (reach(job, job->forward, 0) - reach(job, vec3_scale(job->forward, -1), 0)) / 2;
-  /* seen from above or below, the object turns about the line of sight, and the target may lie at any depth:
-   * the turn needs the same room */
+  /* Seen from above or below, the object turns about the line of sight. A turn then needs the same room
+   * whatever the target's depth. */
   bool depth_matters = fabs(vec3_dot(job->forward, vec3_normalise(vec3_of(view->up)))) < 1 - 1e-9;
   /* repeated, because the middle depends slightly on the distance */
   for (int round = 0; round < 3; round++) {
@@ -189,7 +192,7 @@ static double make_room(const frame_job *job, const frame_job *few, const hl_vie
 
 /* ---- cameras ---- */
 
-/* Begins a job of framing. outline: if it is empty (zeros), the outline is found here. */
+/* Begins to frame a view. outline: an empty outline (zeros) is found here. */
 static hl_status begin(const hl_scene_description *description, double zoom, const hl_camera *camera,
                        hl_outline *outline, frame_job *job, hl_error *error) {
   bool perspective = camera->type == HL_CAMERA_PERSPECTIVE, possible = zoom >= 1e-6 && zoom <= 1e6;
@@ -211,8 +214,8 @@ static hl_status begin(const hl_scene_description *description, double zoom, con
   return outline->context != NULL ? HL_OK : hl_outline_find(description, outline, error);
 }
 
-/* The eye's distance from the target. In parallel projection, where the distance does not change the picture,
- * the eye is placed well before the outline. */
+/* The eye's distance from the target. In parallel projection the distance does not change the picture, and
+ * the eye is placed well in front of the outline. */
 static double distance_to(const frame_job *job, const frame_place *place, double depth, double extent,
                           double zoom) {
   double wide = fmax(place->half_height, place->half_height * job->aspect);

@@ -13,9 +13,10 @@
 #include "scene/scene.h"
 
 #define FLOW_DEPTH   2.0  /* optical depth of a flow in which all values are shown */
-#define MEDIUM_DEPTH 10.0 /* optical depth of smoke across its own size */
+#define MEDIUM_DEPTH 10.0 /* optical depth of smoke across the whole object */
 #define SHELL        0.2  /* optical depth of the shell of a field, along a line that crosses the shell */
-#define FINE         96   /* voxel edges across an object; the opacities of solid matter are chosen for it */
+/* voxel edges across an object; the opacities of solid matter are right for this size */
+#define FINE 96
 
 /* The colours of a function at four distances from the background: faint, solid, dense and top. Linear RGB.
  */
@@ -23,8 +24,8 @@ typedef struct palette {
   double rim[3], surface[3], dense[3], top[3];
 } palette;
 
-/* Writes solid matter. In coarse grids the way from the rim of an object to its inside has fewer voxel edges,
- * and each edge absorbs more. */
+/* Writes the function for solid matter. In coarse grids fewer voxel edges lie between the rim of an object
+ * and its inside, so that each edge absorbs more. */
 static void write_solid(hl_function_writer *w, const palette *colors) {
   const hl_data_analysis *a = w->analysis;
   const double ramp = a->solid - a->faint, dense = fmax(a->dense, a->solid + 1e-6 * a->top),
@@ -81,18 +82,18 @@ void hl_write_brain(hl_function_writer *w) {
   write_solid(w, &brain);
 }
 
-/* Adds the opacities of a field on one side of its background (+1: above; -1: below): a clear shell around a
- * core that is opaque, within thin matter. Reflections on the shell tell its shape, and the core is seen
- * through it. */
+/* Adds the opacities of a field on one side of its background (+1: above; -1: below): a clear shell, around
+ * an opaque core, in thin matter. Reflections show the shape of the shell, and the core is seen through
+ * it. */
 static void add_shell_and_core(hl_function_writer *w, int side) {
   const hl_data_analysis *a = w->analysis;
   const double ramp = a->solid - a->faint, top = fmax(a->top, a->solid * 1.001), way = top - a->solid;
   const double shell = a->faint + 0.35 * ramp, core = a->solid + 0.35 * way,
                half = fmin(fmin(0.03 * top, 0.25 * ramp), 0.15 * way);
-  const double thin = 0.3; /* the optical depth, across the object, of the matter beside the shell */
-  /* The greatest opacity of the shell. Derived: where a field falls from its top to nothing within half an
-   * object, the values of the shell, which are 2 half apart, take half / top of the object. The mean of a
-   * tent is half its peak. */
+  const double thin = 0.3; /* the optical depth, across the object, of matter on both sides of the shell */
+  /* The greatest opacity of the shell. Derived: if a field falls from its top to nothing over half of the
+   * object, the values of the shell, which have the width 2 half, take the fraction half / top of the object.
+   * The mean of a tent is half its peak. */
   const double peak = SHELL * 2 * top / half;
   const double rows[][2] = {{a->faint, 0},
                             {shell - half, thin},
@@ -117,8 +118,8 @@ void hl_write_field(hl_function_writer *w) {
 
 /* Writes the function for particles. Their densities extend over many powers of ten, so the values are
  * logarithms. Values below the mean, which fill most of the space, are clear, and the densest matter is
- * nearly opaque. Each row has a fraction of the way from the mean to the densest value, and the optical depth
- * across the object of matter with this value. */
+ * nearly opaque. Each row has a value, as a fraction of the way from the mean to the densest value, and the
+ * optical depth of matter with this value across the object. */
 void hl_write_particles(hl_function_writer *w) {
   static const double rows[][2] = {{0, 0}, {0.3, 0.05}, {0.5, 0.5}, {0.65, 3}, {0.8, 15}, {1, 80}};
   const hl_data_analysis *a = w->analysis;
@@ -129,7 +130,7 @@ void hl_write_particles(hl_function_writer *w) {
 }
 
 /* Adds the opacities on one side of a flow's middle: common values are clear, rare values dense. Each row has
- * a fraction of the way from the middle to the end of the values, and an optical depth. */
+ * a value, as a fraction of the way from the middle to the last value, and an optical depth. */
 static void add_rare(hl_function_writer *w, double reach, int side) {
   static const double rarity[][2] = {{0.4, 0}, {0.6, 0.5}, {0.8, 3}, {1, 20}};
   enum { STEPS = sizeof rarity / sizeof *rarity };
@@ -140,8 +141,8 @@ static void add_rare(hl_function_writer *w, double reach, int side) {
   }
 }
 
-/* Writes the function for a flow: the extreme values on each side; where no value is common, all values
- * alike. */
+/* Writes the function for a flow: the extreme values on each side of the middle are dense. If no value is
+ * common, all values are equally dense. */
 void hl_write_flow(hl_function_writer *w) {
   const hl_data_analysis *a = w->analysis;
   double reach = fmax(a->lower, a->upper), middle = a->middle - a->background;
@@ -168,8 +169,8 @@ static void label_color(size_t label, double linear[3]) {
   }
 }
 
-/* Makes a label opaque only close to its own number: between two regions the kernel makes numbers that belong
- * to neither region. */
+/* Makes a label opaque only close to its own number. Between two regions the kernel interpolates numbers that
+ * belong to neither region, which must stay clear. */
 static void add_label(hl_function_writer *w, double label, double before, double after, double narrowest) {
   static const double part = 0.03; /* fraction of the way to the next number */
   double down = fmin(fmax(part * (label - before), narrowest), 0.45 * (label - before)),
@@ -210,12 +211,12 @@ void hl_write_medium(hl_function_writer *w) {
   hl_add_color(w, 0, white);
 }
 
-/* Writes a field on each side of the background, in blue and in orange. */
+/* Writes the function for a field on both sides of the background: in blue and in orange. */
 void hl_write_signed(hl_function_writer *w) {
   const hl_data_analysis *a = w->analysis;
   static const double cold[3][3] = {{0.10, 0.30, 0.75}, {0.06, 0.18, 0.62}, {0.02, 0.06, 0.35}};
   static const double warm[3][3] = {{0.95, 0.52, 0.20}, {0.85, 0.28, 0.08}, {0.60, 0.08, 0.03}};
-  w->direction = 1; /* one function serves both sides of the background */
+  w->direction = 1; /* the function has points on both sides of the background */
   const double top = fmax(a->top, a->solid * 1.001), at[3] = {a->faint, a->solid, top};
   add_shell_and_core(w, -1);
   add_shell_and_core(w, 1);
@@ -261,8 +262,8 @@ double hl_opacity_for(const hl_data_analysis *analysis, double optical_depth) {
   return 1 - exp(-optical_depth / fmax(analysis->depth, 1));
 }
 
-/* Reverses the order of the points where objects lie below the background. Points are added with rising
- * distance, so their values fall there. */
+/* Reverses the order of the points if objects lie below the background, because points are added with rising
+ * distance, and so with falling value. */
 static void put_in_order(hl_function_writer *w) {
   if (w->direction > 0) return;
   for (size_t a = 0, b = w->opacity_count; a + 1 < b; a++) {

@@ -7,7 +7,7 @@
 
 typedef struct hl_function_writer {
   const hl_data_analysis *analysis;
-  double direction; /* direction of rising distance in data values: +1 or -1 */
+  double direction; /* data values at rising distances from the background rise (+1) or fall (-1) */
   hl_opacity_point opacity[4 * HL_FEW_LABELS];
   hl_color_point color[4 * HL_FEW_LABELS];
   size_t opacity_count, color_count;
@@ -26,12 +26,12 @@ void hl_add_colormap(hl_function_writer *w, const char *name, double from, doubl
 /* The opacity per voxel edge that adds up to an optical depth across the objects. */
 double hl_opacity_for(const hl_data_analysis *analysis, double optical_depth);
 
-/* Makes the function. Its opacities hold per smallest voxel edge of the volume. *function gets memory of its
+/* Makes the function. Its opacities are per smallest voxel edge of the volume. *function gets memory of its
  * own. */
 hl_status hl_finish_function(hl_function_writer *w, hl_context *context, const hl_volume *volume,
                              hl_transfer_function *function, hl_error *error);
 
-/* Each of these writes the function of one look (looks.h). */
+/* Each of these functions writes the transfer function of one look (looks.h). */
 void hl_write_matter(hl_function_writer *w);
 void hl_write_body(hl_function_writer *w);
 void hl_write_brain(hl_function_writer *w);

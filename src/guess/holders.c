@@ -1,7 +1,7 @@
 /* guess/holders.c - finds the holders of a scanned object, as bodies of cells, and planes that cut them off.
  *
- * All lengths are in the world of the volume's file. Of each row of a body's cells only the two ends tell how
- * far the body reaches, because half spaces are convex. */
+ * All lengths are in the world of the volume's file. How far a body reaches follows from the two end cells of
+ * each row of its cells alone, because half spaces are convex. */
 #include "guess/holders.h"
 
 #include <string.h>
@@ -11,34 +11,37 @@
 #include "guess/sample.h"
 #include "guess/seen_cells.h"
 
-#define OBJECT_CELLS 0.8  /* least fraction of all visible cells that must belong to the object */
-#define OBJECT_DEPTH 0.95 /* least fraction of the visible cells' optical depth that must belong to it */
+#define OBJECT_CELLS 0.8 /* least fraction of all visible cells that must belong to the object */
+/* least fraction of the visible cells' optical depth that must belong to the object */
+#define OBJECT_DEPTH 0.95
 /* Least number of cells of a body, as a fraction of the object's cells; smaller bodies are specks. */
-#define LEAST         0.005
-#define LONG          0.5 /* least length of a holder (a table, a head rest), as a fraction of the object's length */
+#define LEAST 0.005
+/* least length of a holder, such as a table, as a fraction of the object's length */
+#define LONG          0.5
 #define THIN          0.25  /* greatest thickness of a holder, as a fraction of its length */
-#define DENSEST       0.9   /* quantile of the object's matter that counts as dense */
-#define DENSE_AT_MOST 0.005 /* greatest fraction of a holder that is as dense as DENSEST */
-#define RIM           1.0   /* cells from the centres of the object's outermost cells to a plane */
-/* The least number of cells from a plane to the centres of a holder's cells, which then lie wholly beyond
- * the plane. */
+#define DENSEST       0.9   /* the quantile of the object's matter from which on matter counts as dense */
+#define DENSE_AT_MOST 0.005 /* greatest fraction of a holder's matter that may be dense */
+/* distance, in cells, from the centres of the object's outermost cells to a plane */
+#define RIM 1.0
+/* The least distance, in cells, from the centres of the object's outermost cells to a cell that a plane cuts
+ * off, so that the cell lies wholly beyond the plane. */
 #define CLEAR 1.5
 
 #define LEFT      0.01 /* fraction of a holder that may remain in the gap beside the object */
-#define RIM_LEVEL 0.3  /* cells are seen as rims from this fraction of the level on */
+#define RIM_LEVEL 0.3  /* cells of rims have at least this fraction of the level's optical depth */
 
 enum { DIRECTIONS = 1000 };
-enum { SAMPLE = 4096 }; /* most cells or voxels of a body that are looked at */
+enum { SAMPLE = 4096 }; /* most cells or voxels of a body that are examined */
 enum { FOR_EACH = 4 };  /* most planes that cut off one holder */
-/* Stands in place of a body's number, for cells of holders and rims. */
+/* Takes the place of a body's number in cells of holders and rims. */
 static const uint32_t BESIDE = UINT32_MAX;
 
-/* The levels by which cells belong to bodies: mean optical depths, as fractions of the greatest cell's. At
- * the first level faint holders are seen. At the second one, foam and clothes no longer join a holder to the
- * object. */
+/* The levels of mean optical depth, as fractions of the greatest cell's depth, beyond which cells belong to
+ * bodies. At the first level even faint holders are seen. At the second level, foam and clothes no longer
+ * join a holder to the object. */
 static const double levels[] = {0.02, 0.1};
 
-/* Cells of a body: the two end cells of each row of its cells, or all cells. */
+/* Cells of a body: either the two end cells of each of its rows of cells, or all of its cells. */
 typedef struct body_cells {
   vec3 *point; /* owned; [count]; centres of cells */
   size_t count;
@@ -144,8 +147,9 @@ static side side_along(const search *s, vec3 direction, double *width) {
   return along;
 }
 
-/* Looks at voxels in the middle of a body's cells. Finds a quantile of their distances from the background
- * or, with a limit, the fraction of them that reaches the limit. Fails for lack of memory. */
+/* Looks at the voxels in the middle of a body's cells. Finds a quantile of their distances from the
+ * background; with a limit, finds the fraction of the voxels whose distance reaches the limit. Fails for lack
+ * of memory. */
 static hl_status look_at_matter(const search *s, uint32_t body, const double *limit, double *found,
                                 hl_error *error) {
   const hl_seen *seen = s->seen;
@@ -211,7 +215,7 @@ static hl_status measure_object(search *s, hl_error *error) {
 
 /* ---- holders ---- */
 
-/* The number of cells that lie beyond a plane, of at most SAMPLE that are looked at. */
+/* The number of cells beyond a plane. At most SAMPLE cells are examined. */
 static size_t count_beyond(const body_cells *cells, const side *plane) {
   size_t count = 0, each = cells->count / SAMPLE + 1;
   for (size_t n = 0; n < cells->count; n += each) count += lies_beyond(cells->point[n], plane);
@@ -227,8 +231,8 @@ static void take_out(body_cells *cells, const side *plane) {
 }
 
 /* Tilts a plane, by smaller and smaller angles, so that it cuts off more of a body. *most: as for
- * best_plane(). The first angle is between neighbouring sides; derived: each of these directions
- * has 4 pi / DIRECTIONS of the sphere. The last angle moves no cell of the grid by more than half a cell. */
+ * best_plane(). The first angle is that between neighbouring sides (derived: each side has 4 pi / DIRECTIONS
+ * of the sphere). The last angle moves no cell of the grid by more than half a cell. */
 static side tilt(const search *s, const body_cells *cells, side plane, size_t *most) {
   const double first = sqrt(4 * HL_PI / DIRECTIONS);
   for (double angle = first; angle * s->grid_length > plane.cell_width / 2; angle /= 2) {
@@ -244,8 +248,8 @@ static side tilt(const search *s, const body_cells *cells, side plane, size_t *m
   return plane;
 }
 
-/* Finds the plane, out of the directions of `sides`, that cuts off most of a body. *most: how many cells the
- * plane cuts off, of the cells that are looked at. */
+/* Finds the plane, among those across the directions of `sides`, that cuts off most of a body. *most: the
+ * number of examined cells that the plane cuts off. */
 static side best_plane(const search *s, const body_cells *cells, size_t *most) {
   side plane = s->sides[0];
   *most = 0;
@@ -256,9 +260,9 @@ static side best_plane(const search *s, const body_cells *cells, size_t *most) {
   return *most > 0 ? tilt(s, cells, plane, most) : plane;
 }
 
-/* Adds planes that cut off a body, until there are `most_planes`. Each new plane cuts off as much as one
- * plane can of the part of the body that is left. *left: the fraction of the body that is left in the end.
- * Fails for lack of memory. */
+/* Adds planes that cut off a body, until there are `most_planes`. Each new plane cuts off as many of the
+ * remaining cells as one plane can. *left: the fraction of the body that remains in the end. Fails for lack
+ * of memory. */
 static hl_status cut_off(search *s, uint32_t body, size_t most_planes, double *left, hl_error *error) {
   body_cells cells;
   hl_status status = find_cells(s, body, &cells, error);
@@ -294,7 +298,7 @@ static hl_status holds_dense_matter(search *s, uint32_t body, bool *dense, hl_er
   return status;
 }
 
-/* Finds whether a body is a holder, which a few planes of its own cut off nearly whole. */
+/* Finds whether a body is a holder: whether a few planes of its own cut off nearly all of it. */
 static hl_status is_holder(search *s, uint32_t body, bool *is_one, hl_error *error) {
   body_cells ends;
   bool dense = false;
@@ -309,7 +313,7 @@ static hl_status is_holder(search *s, uint32_t body, bool *is_one, hl_error *err
   return status;
 }
 
-/* Finds whether a plane would cut a body that is no holder. */
+/* Finds whether one of the planes would cut a body that is no holder. */
 static hl_status is_met(const search *s, uint32_t body, bool *met, hl_error *error) {
   body_cells ends;
   hl_status status = find_ends(s, body, &ends, error);
@@ -329,8 +333,8 @@ static bool is_beside(const search *s, vec3 point) {
   return beside;
 }
 
-/* Takes cells out of the holders and rims (BESIDE) if no plane could cut them off. In each row these cells
- * lie in one stretch, because the cells that lie beyond no side fill a convex shape. */
+/* Removes cells from the holders and rims (BESIDE) if no plane could cut them off. In each row, these cells
+ * are neighbours, because the points that lie beyond no side form a convex shape. */
 static void drop_what_is_within(search *s) {
   const int *n = s->seen->size;
   for (int k = 0; k < n[2]; k++)
@@ -344,8 +348,8 @@ static void drop_what_is_within(search *s) {
     }
 }
 
-/* Cuts off the holders and the faint rims around them, all together. other: [bodies + 1]; bodies that are
- * neither. */
+/* Cuts off the holders, together with the faint rims around them. other: [bodies + 1]; whether a body is
+ * neither a holder nor a speck. */
 static hl_status cut_holders_off(search *s, const unsigned char *other, hl_error *error) {
   const hl_seen *seen = s->seen;
   const size_t cells = (size_t)seen->size[0] * (size_t)seen->size[1] * (size_t)seen->size[2];
@@ -356,7 +360,8 @@ static hl_status cut_holders_off(search *s, const unsigned char *other, hl_error
   return cut_off(s, BESIDE, HL_HOLDER_PLANES, &left, error);
 }
 
-/* Tells holders, and specks, from other bodies. other: [bodies + 1]. *any: there is a holder. */
+/* Finds the holders among the bodies. other: [bodies + 1]; set to whether a body is neither a holder nor a
+ * speck. *any: there is a holder. */
 static hl_status find_holders(search *s, unsigned char *other, bool *any, hl_error *error) {
   const double least = LEAST * s->bodies.places[s->bodies.largest];
   hl_status status = HL_OK;
@@ -371,7 +376,7 @@ static hl_status find_holders(search *s, unsigned char *other, bool *any, hl_err
   return status;
 }
 
-/* Finds the planes at one level; where in doubt, none. */
+/* Finds the planes at one level. In doubt, there are none. */
 static hl_status find_planes(search *s, double level, hl_error *error) {
   bool is_one = false, any = false, doubt = false;
   hl_status status = find_object(s, level, &is_one, error);

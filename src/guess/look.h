@@ -11,10 +11,11 @@ typedef struct hl_look {
   hl_kernel kernel;
   double key, fill, sky; /* intensities of the light with shadows, of the light without shadows, and of the
                           * sky */
-  double left;      /* the fraction of the light of the sky, and of lights with shadows, that shadows leave on
-                     * media, for hl_scene_exposure(); 0: the lights' strengths are not scaled by an exposure */
+  double left;      /* for hl_scene_exposure(): the light of the sky, and of lights with shadows, that reaches
+                     * media in spite of shadows, as a fraction; 0: the lights' strengths are not scaled by an
+                     * exposure */
   bool on_black;    /* a bare volume gets a black background */
-  const char *next; /* the style that is next best for such data */
+  const char *next; /* the name of the style to try next for such data */
 } hl_look;
 
 #endif

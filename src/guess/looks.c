@@ -29,8 +29,8 @@ typedef enum subject {
   PARTICLES
 } subject;
 
-/* Rows: name, writer, shading, kernel; intensities of key, fill and sky; left; on_black; next. Where left
- * is not 0, the exposure scales the intensities afterwards. */
+/* The columns: name, writer, shading, kernel; intensities of key, fill and sky; left; on_black; next. If
+ * `left` is not 0, the exposure scales the intensities afterwards. */
 static const hl_look looks[] = {
     [BODY] = {"scanned body", hl_write_body, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.45, 0.06, 0.62, 0.75,
               false, "translucent"},
@@ -62,8 +62,8 @@ static bool ends_with(const char *text, const char *end) {
 /* True if the file's format (NIfTI) tells the left and right of a patient. */
 static bool is_anatomical(const char *file) { return ends_with(file, ".nii") || ends_with(file, ".nii.gz"); }
 
-/* True if more than two fifths of the voxels denser than air are tissue: -200 to 200 Hounsfield units, which
- * few voxels of metal, stone and wood have. */
+/* True if more than two fifths of the voxels denser than air are tissue: from -200 to 200 Hounsfield units.
+ * Few voxels of metal, stone and wood have these values. */
 static bool is_mostly_tissue(const hl_volume *volume) {
   double width = (volume->maximum - volume->minimum) / HL_HISTOGRAM_BINS, tissue = 0, matter = 0;
   for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++) {
@@ -106,8 +106,8 @@ void hl_look_material(const hl_look *look, hl_scene_volume *volume) {
   volume->material = (hl_material){.ambient = 1, .diffuse = 0.85, .specular = 0.15, .shininess = 24};
 }
 
-/* Keeps the colours of voxels that have their own: white leaves them as they are. The alpha of a voxel is its
- * opacity, unless a style says otherwise. */
+/* Keeps the colours of voxels with colours of their own, which white does not change. A voxel's alpha is its
+ * opacity, unless there is a style. */
 static void keep_colors(hl_function_writer *w, const hl_volume *volume, const hl_look *style) {
   static const double white[3] = {1, 1, 1};
   const double background = w->analysis->background;
@@ -145,8 +145,8 @@ hl_status hl_transfer_function_automatic(hl_context *context, const hl_volume *v
                        error);
 }
 
-/* The look that shows a volume where no look is asked for; label maps have a row of the table for themselves.
- */
+/* Finds the look that shows a volume if no look is asked for. Label maps have a row of their own in the
+ * table. */
 static hl_status find_look(const hl_volume *volume, const char *file, const hl_look **look, hl_error *error) {
   hl_data_analysis analysis;
   hl_status status = hl_data_analyse(volume, &analysis, error);
@@ -228,8 +228,8 @@ static const hounsfield_row soft_tissue[] = {
     {60, 0.07, {0.78, 0.30, 0.24}},  {150, 0.12, {0.82, 0.36, 0.26}},   {250, 0.35, {0.92, 0.76, 0.60}},
     {500, 0.90, {0.97, 0.92, 0.84}}, {2000, 0.97, {1.00, 0.98, 0.95}}};
 
-/* The distance from the background of a value in Hounsfield units. hounsfield: whether the volume has these
- * units. */
+/* The distance of a value in Hounsfield units from the background. hounsfield: whether the volume has these
+ * units; if not, a value's distance is guessed from the thresholds. */
 static double distance_of(const hl_function_writer *w, bool hounsfield, double value) {
   const hl_data_analysis *a = w->analysis;
   if (hounsfield) return value - a->background;
@@ -308,8 +308,8 @@ static void write_electron_density(hl_function_writer *w, const hl_volume *volum
   hl_add_colormap(w, "plasma", 0.6 * a->faint, core, 0.25, 0.95);
 }
 
-/* A value that at most one voxel in a hundred thousand exceeds. So a single bright voxel does not darken all
- * others. */
+/* A value that at most one voxel in a hundred thousand exceeds. It is used in place of the greatest value, so
+ * that a single bright voxel does not darken all others. */
 static double almost_greatest(const hl_volume *volume) {
   uint64_t voxels = 0, above = 0;
   for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++) voxels += volume->histogram[bin];
@@ -321,8 +321,8 @@ static double almost_greatest(const hl_volume *volume) {
 }
 
 /* Writes the greys of a maximum projection: from the background, which is not shown, to almost the greatest
- * value. Where objects lie below the background, or on both sides of it, greys begin at the least value. A
- * window that the file asks for (DICOM) narrows them. */
+ * value. If objects lie below the background, or on both sides of it, the greys begin at the least value. If
+ * the file asks for a window of values (DICOM), the greys have only this range. */
 static void write_maximum(hl_function_writer *w, const hl_volume *volume) {
   const hl_data_analysis *a = w->analysis;
   bool above = a->direction > 0 && a->kind != HL_DATA_SIGNED;

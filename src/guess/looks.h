@@ -1,4 +1,4 @@
-/* guess/looks.h - how each kind of volume is shown by default. */
+/* guess/looks.h - the looks by which volumes of each kind are shown by default. */
 #ifndef HL_GUESS_LOOKS_H
 #define HL_GUESS_LOOKS_H
 
@@ -8,14 +8,14 @@
 /* The look for a volume and its analysis; file: as in hl_scene_volume. */
 const hl_look *hl_look_for(const hl_volume *volume, const char *file, const hl_data_analysis *analysis);
 
-/* True for the scan of a body, with its skull or without. file: as in hl_scene_volume. */
+/* True for the scan of a body, with or without its skull. file: as in hl_scene_volume. */
 bool hl_is_body(const hl_volume *volume, const char *file, const hl_data_analysis *analysis);
 
 /* Gives a bare volume the shading and the material of its look. */
 void hl_look_material(const hl_look *look, hl_scene_volume *volume);
 
-/* Makes the transfer function of a look; *function owns its points. style: a style whose opacities replace
- * the look's (styles.h); null: none. */
+/* Makes the transfer function of a look; *function owns its points. style: the style (styles.h) whose
+ * opacities take the place of the look's; null: none. */
 hl_status hl_look_write(const hl_look *look, const hl_look *style, hl_context *context,
                         const hl_volume *volume, const hl_data_analysis *analysis,
                         hl_transfer_function *function, hl_error *error);

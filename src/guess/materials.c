@@ -3,19 +3,19 @@
 
 #include "guess/analysis.h"
 
-/* A peak counts beside its neighbour where the valley between them is lower than this fraction of the lower
+/* Two neighbouring peaks count as two if the valley between them is lower than this fraction of the lower
  * peak. */
 static const double DEEPEST = 0.35;
-/* The least fraction of the objects' voxels that a peak holds. */
+/* The least fraction of the objects' voxels that a material's peak has. */
 static const double LEAST_SHARE = 0.03;
 
 enum {
   BINS = HL_HISTOGRAM_BINS,
-  REACH = 4 /* REACH: number of bins to each side over which counts are smoothed */
+  REACH = 4 /* REACH: counts are smoothed over so many bins to each side */
 };
 
-/* The counts of the objects' bins, by rising distance, smoothed by a tent so that the gaps of quantised data
- * close. Returns the number of bins. *first: the distance of the first bin. */
+/* Counts the objects' voxels in bins of rising distance. A tent smooths the counts, so that the gaps of
+ * quantised data close. Returns the number of bins. *first: the distance of the first bin. */
 static int object_bins(const hl_volume *volume, const hl_data_analysis *a, double counts[BINS],
                        double *first) {
   double width = (volume->maximum - volume->minimum) / BINS, raw[BINS];
@@ -40,8 +40,7 @@ static int object_bins(const hl_volume *volume, const hl_data_analysis *a, doubl
   return count;
 }
 
-/* Finds the end of the bins that belong to the peak at bin `from`: the valley before the next peak, or the
- * end of all bins. */
+/* Finds where the peak at bin `from` ends: in the valley before the next peak, or after the last bin. */
 static int end_of_peak(const double *counts, int count, int from) {
   double peak = counts[from], valley = counts[from];
   int at_valley = from;
@@ -53,8 +52,8 @@ static int end_of_peak(const double *counts, int count, int from) {
   return count;
 }
 
-/* Finds the first bin after the tail of the background's peak. A peak whose highest bin is the first bin
- * belongs to no material. */
+/* Finds the first bin after the tail of the background's peak. A peak that is highest in the first bin
+ * belongs to the background, and not to a material. */
 static int end_of_tail(const double *counts, int count) {
   int end = end_of_peak(counts, count, 0);
   bool falls = true;
@@ -73,8 +72,7 @@ void hl_data_find_materials(const hl_volume *volume, hl_data_analysis *a) {
     for (int n = from; n < end; n++) pending += counts[n];
     if (end == count || a->material_count == HL_MOST_MATERIALS) break;
     if (pending < LEAST_SHARE * all)
-      continue; /* too few voxels for a material: they are added to the next
-                 * one */
+      continue; /* the peak has too few voxels for a material, and is added to the next one */
     double rest = 0;
     for (int n = end; n < count; n++) rest += counts[n];
     if (rest < LEAST_SHARE * all) break;

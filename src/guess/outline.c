@@ -1,7 +1,7 @@
 /* guess/outline.c - the outermost visible voxels of a scene, and the range of visible values.
  *
- * Only the first and the last visible voxel of a row can be outermost. Of these voxels, only the corners of
- * each slice's convex hull can be outermost. */
+ * Only the first and the last visible voxel of a row can be outermost, and among these only the corners of
+ * each slice's convex hull. */
 #include "guess/outline.h"
 
 #include <string.h>
@@ -98,8 +98,8 @@ static hl_status add_shown(hl_outline *outline, const hl_scene_volume *volume, h
   return status;
 }
 
-/* Adds the visible part of a volume: by its transfer function, and within its isosurface of the least
- * value. */
+/* Adds the visible part of a volume: the matter that its transfer function shows, and the matter within the
+ * isosurface of the least value. */
 static hl_status add_volume(hl_outline *outline, const hl_scene_volume *volume, hl_error *error) {
   hl_status status = add_shown(outline, volume, error);
   double least = INFINITY;
@@ -169,7 +169,7 @@ static void bound_points(const hl_outline *outline, points_box *boxes) {
   }
 }
 
-/* A bound of how far the box's points reach along a unit vector; it includes the rounding. */
+/* A bound of how far the box's points reach along a unit vector. It allows for rounding. */
 static double farthest_of_box(const points_box *box, vec3 along) {
   const double way[3] = {along.x, along.y, along.z};
   double sum = box->radius, size = box->radius;
@@ -180,7 +180,7 @@ static double farthest_of_box(const points_box *box, vec3 along) {
   return sum + 1e-12 * size;
 }
 
-/* The index of the point that reaches farthest along a direction; of several such points, the first. */
+/* The index of the point that reaches farthest along a direction; of equally far points, the first. */
 static size_t farthest(const hl_outline *outline, const points_box *boxes, vec3 along) {
   size_t best = 0;
   double most = -INFINITY;
@@ -212,8 +212,8 @@ hl_status hl_outline_thin(const hl_outline *outline, hl_outline *thinned, hl_err
   return status;
 }
 
-/* AXES: number of the axes and the diagonals between them. The function finds the points of a mesh that lie
- * farthest in both directions along each of them. */
+/* AXES: the number of coordinate axes and diagonals. The struct holds the points of a mesh that lie farthest
+ * along each of them, in both directions. */
 enum { AXES = 13 };
 typedef struct farthest_points {
   vec3 along[AXES], point[2][AXES];
@@ -256,8 +256,9 @@ static void look_at_mesh(farthest_points *far, const hl_scene_mesh *mesh, bool *
   }
 }
 
-/* Adds the farthest of all corners and spheres of a mesh. All are compared, because a floor touches the
- * lowest one, and even a single one can be seen. */
+/* Adds those vertices and spheres of a mesh that lie farthest along axes and diagonals. All vertices are
+ * compared, because a floor must touch the lowest one, and a single vertex that sticks out of the picture
+ * would be seen. */
 static hl_status add_farthest(hl_outline *outline, const hl_scene_mesh *mesh, hl_error *error) {
   size_t vertices = hl_mesh_describe(mesh->mesh)->vertex_count;
   bool *used = hl_allocate_zeroed(outline->context, vertices, sizeof *used);
@@ -272,8 +273,8 @@ static hl_status add_farthest(hl_outline *outline, const hl_scene_mesh *mesh, hl
   return status;
 }
 
-/* Adds the outermost vertices and spheres of a mesh: those that lie farthest in many directions. In a large
- * mesh only some of its vertices are compared. */
+/* Adds the outermost vertices and spheres of a mesh: those that lie farthest in many directions. Of a large
+ * mesh, only some vertices are compared. */
 static hl_status add_mesh(hl_outline *outline, const hl_scene_mesh *mesh, hl_error *error) {
   enum { MOST_CORNERS = 60000 };
   const hl_mesh_description *d = hl_mesh_describe(mesh->mesh);
@@ -330,7 +331,7 @@ double hl_outline_reach(const hl_outline *outline, vec3 along, vec3 forward, dou
  * counts with its opacity times the light that its most transparent neighbour lets through, in and out again.
  */
 
-#define TAIL 0.01 /* fraction of the counts that lies beyond each end of the range */
+#define TAIL 0.01 /* fraction of the counts that is left out at each end of the range */
 
 enum { BINS = 4096 };
 
@@ -341,8 +342,7 @@ static double least_opacity_around(const hl_volume *volume, const hl_transfer_fu
   double least = 1;
   for (int n = 0; n < 6; n++) {
     size_t next[3] = {at[0], at[1], at[2]};
-    /* a negative index wraps round to a large one, and so lies outside the grid like an index beyond its
-     * end */
+    /* an index below 0 wraps round to a large number, which is outside the grid as well */
     next[n / 2] += n % 2 == 0 ? 1 : (size_t)-1;
     least = fmin(least, hl_transfer_function_opacity(
                             function, hl_volume_value_within(volume, next[0], next[1], next[2])));
@@ -391,7 +391,8 @@ hl_status hl_transfer_function_seen_range(const hl_volume *volume, const hl_tran
   double sum = high > low ? count_seen(volume, function, low, high, counts) : 0;
   if (!(sum > 0)) return HL_OK;
   double first = quantile(counts, sum, TAIL, low, high), last = quantile(counts, sum, 1 - TAIL, low, high);
-  /* Where a few outliers have left nearly all bins empty, new bins are laid between the ends found so far. */
+  /* If a few outliers leave nearly all bins empty, values are counted anew in bins between the ends found so
+   * far. */
   if (last - first < 100 * (high - low) / BINS) {
     double bin = (high - low) / BINS, near[BINS] = {0};
     low = fmax(low, first - bin), high = fmin(high, last + bin);

@@ -5,8 +5,8 @@
 #include "core/vector.h"
 #include "scene/scene.h"
 
-/* Balls around the outermost voxels, half a voxel's diagonal in radius. In every direction, also in
- * perspective, the balls reach as far as all visible voxels. */
+/* Balls around the outermost visible voxels. Their radius is half a voxel's diagonal. In every direction,
+ * also in perspective, the balls reach as far as all visible voxels. */
 typedef struct hl_outline {
   hl_context *context;
   vec3 *point;    /* owned; [count]; world */
@@ -14,14 +14,14 @@ typedef struct hl_outline {
   size_t count, capacity;
 } hl_outline;
 
-/* The outline of all visible volumes or, where none of them shows anything, the corners of all volumes'
- * boxes. Fails only for lack of memory; release the outline even then. description: has at least one volume
- * or mesh. */
+/* Finds the outline of all visible volumes and meshes. If nothing is visible, the outline is the corners of
+ * all volumes' boxes. Fails only for lack of memory; release the outline even then. description: has at least
+ * one volume or mesh. */
 hl_status hl_outline_find(const hl_scene_description *description, hl_outline *outline, hl_error *error);
 void hl_outline_release(hl_outline *outline);
 
 /* *Thins an outline: keeps the points that reach farthest in 400 directions. In any other direction the
- * thinned outline reaches less far than the whole one by at most half a per cent of the extent. */
+ * thinned outline may reach less far than the whole one, by at most half a per cent of the extent. */
 hl_status hl_outline_thin(const hl_outline *outline, hl_outline *thinned, hl_error *error);
 
 /* The reach of the outline along a direction: the greatest of p . along - tangent p . forward over all points

@@ -1,6 +1,6 @@
-/* guess/rigs.c - light rigs by name: lights as a photographer would set them up around the object.
+/* guess/rigs.c - light rigs by name: sets of lights, placed around the object as a photographer would do it.
  *
- * In:  a name, and a scene with its light. Out: new lights and a new sky, together about as strong as the
+ * In: a name, and a scene with its light. Out: new lights and a new sky, together about as strong as the
  * scene's light was. */
 #include <math.h>
 #include <string.h>
@@ -41,22 +41,23 @@ const hl_setting_choice hl_light_rig_choices[] = {
     {"studio", STUDIO}, {"raking", RAKING}, {"rim", RIM}, {"overcast", OVERCAST}, {NULL, 0}};
 
 static const rig rigs[RIGS] = {
-    /* a large lamp at the upper left, a weak one from the right, and an edge light from behind */
+    /* a large lamp at the upper left, a weak lamp at the right, and a lamp behind the object that lights its
+     * edges */
     [STUDIO] = {3, {{-42, 38, 24, 0.95, WARM, true},
                    {  55, 5,  0, 0.16, COOL, false},
                    { 150, 45, 8, 0.55, COOL, true}}, 0.75},
-    /* a small lamp that grazes the object from the left: relief, long shadows */
+    /* a small lamp at the left, whose light grazes the object: surface relief shows, and shadows are long */
     [RAKING] = {1, {{-82, 14,  4, 1.70, WARM, true}}, 0.40},
-    /* two lamps behind the object outline it; a weak one shows the front */
+    /* two lamps behind the object light its outline; a weak lamp lights the front */
     [RIM] = {3, {{-112, 30, 8, 1.70, COOL, true},
                    { 118, 18, 8, 1.50, WARM, true},
                    { -25, 35, 24, 0.16, WHITE, true}}, 0.22},
-    /* light from a cloudy sky alone: folds and hollows are darker, nothing casts an edge */
+    /* only light from a cloudy sky: folds and hollows are darker, and no shadow has an edge */
     [OVERCAST] = {1, {{0, 80, 60, 0.30, WHITE, true}}, 2.2}};
 /* clang-format on */
 
-/* The ratio of the sky's strength to the key light's intensity that a rig gives scenes without a sky. Scenes
- * of bare volumes have this ratio, too. */
+/* The sky's strength that a rig gives to scenes without a sky, divided by the key light's intensity. It is
+ * the ratio in scenes of bare volumes. */
 #define SKY_OVER_KEY 0.43
 
 const char *hl_light_rig_name(size_t index) { return index < RIGS ? hl_light_rig_choices[index].name : NULL; }
@@ -67,8 +68,8 @@ static const rig *rig_named(const char *name) {
   return NULL;
 }
 
-/* The intensity of which the rig's lights get shares. It is the intensity of the scene's strongest light; a
- * scene without lights counts as if it had the light that is chosen for such scenes. */
+/* The intensity of which the rig's lights get fractions: that of the scene's strongest light. For a scene
+ * without lights it is that of the light which is chosen for such scenes. */
 static double key_intensity(const hl_scene_description *description) {
   hl_light key;
   double strongest = 0;
@@ -78,9 +79,9 @@ static double key_intensity(const hl_scene_description *description) {
   return strongest > 0 ? strongest : key.intensity;
 }
 
-/* The factor by which all shares are multiplied. A medium receives all lamps alike, whatever their
- * directions. So where no volume is shaded, the factor makes all lamps together at most as strong as the key
- * light. */
+/* The factor by which the fractions of all lamps are multiplied. A medium gets light from all lamps, whatever
+ * their directions. So if no volume has surfaces, the factor limits the sum of all lamps to the strength of
+ * the key light. */
 static double share_factor(const rig *rig, const hl_scene_description *description) {
   double sum = 0;
   bool media = description->volume_count > 0 && description->mesh_count == 0;

@@ -1,20 +1,19 @@
-/* guess/rim.c - whether the surface of scanned objects cuts through their outer matter.
+/* guess/rim.c - whether the thresholds of scanned objects lie within the values of their outer matter.
  *
  * A surface between two materials has about the same area for any value between them. A surface at the value
- * of a material breaks up along the material's noise: its area has a maximum there. So where the area has a
- * maximum between the thresholds faint and solid, it is the value of an outer material, and the rim of the
- * objects lies half way from the background to this value. */
+ * of a material follows the material's noise, so that its area is much larger. So if the area has a maximum
+ * between the thresholds faint and solid, the value of the maximum is that of an outer material. The rim of
+ * the objects then lies half way from the background to this value. */
 #include <math.h>
 
 #include "guess/analysis.h"
 
 enum {
   LEVELS = 64
-}; /* number of values, from the background to the threshold solid, for which areas are
-    * counted */
+}; /* number of levels, between the background and the threshold solid, at which areas are counted */
 
-/* The area at an outer material's value is at least this many times the areas on both sides. A head whose
- * skin is dark has 1.31; the greatest of eight other scans is 1.05 (measured). */
+/* The least ratio of the area at an outer material's value to the areas on both sides of it. Measured: a head
+ * whose skin is dark has 1.31; the greatest ratio of eight other scans is 1.05. */
 #define MAXIMUM 1.2
 
 static double level_of(int level, double solid) { return (level + 0.5) / LEVELS * solid; }
@@ -25,8 +24,8 @@ static int levels_below(double distance, double solid) {
 }
 
 /* Counts, for each level, the pairs of neighbours that have values on both sides of the level: this number
- * stands for the surface's area. For 64 levels it is enough to examine every second place of the sample along
- * each axis. */
+ * stands for the surface's area. Along each axis, every second place of the sample is enough for 64
+ * levels. */
 static void count_areas(const hl_volume *volume, const hl_sample *sample, const hl_data_analysis *a,
                         double areas[LEVELS]) {
   const size_t *n = volume->dimension, step = 2 * sample->step;

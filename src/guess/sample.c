@@ -1,4 +1,4 @@
-/* guess/sample.c - a sorted sample of a volume's voxels, and thresholds and modes found in it. */
+/* guess/sample.c - a sorted sample of a volume's voxels, and the thresholds and modes of the sample. */
 #include "guess/sample.h"
 
 #include <math.h>
@@ -34,7 +34,8 @@ bool hl_sort(hl_context *context, float *values, size_t count) {
   return true;
 }
 
-/* Collects finite voxels with a given step, in the allowed range, starting half a step inside the grid. */
+/* Collects the finite voxels at every `step`-th place of the allowed range. The first place is half a step
+ * inside the grid. */
 static size_t collect(const hl_sample *sample, const hl_volume *volume, const size_t low[3],
                       const size_t high[3], size_t step, float *values) {
   size_t count = 0, start[3];
@@ -171,8 +172,8 @@ double hl_roughness(const hl_volume *volume, const hl_sample *sample, double bac
   return first > 0 ? second / first : 0;
 }
 
-/* The difference of second order along all three axes: the second difference along x, of second differences
- * along y, of second differences along z. NaN where a neighbour is missing. */
+/* The second differences along x of the second differences along y of the second differences along z. NaN if
+ * a neighbour is missing. */
 static double mixed_difference(const hl_volume *volume, size_t i, size_t j, size_t k) {
   static const double weight[3] = {1, -2, 1};
   double sum = 0;
@@ -186,8 +187,8 @@ static double mixed_difference(const hl_volume *volume, size_t i, size_t j, size
 
 hl_status hl_noise(const hl_volume *volume, const hl_sample *sample, double from, double direction,
                    double *noise, hl_error *error) {
-  /* Derived: in white noise of standard deviation 1, the second difference along all three axes has weights
-   * 1, -2, 1 along each of them, and so the standard deviation sqrt((1 + 4 + 1)^3). The median of its
+  /* Derived: the second difference along all three axes has the weights 1, -2, 1 along each axis. In white
+   * noise of standard deviation 1, its standard deviation is therefore sqrt((1 + 4 + 1)^3). The median of its
    * absolute value is 0.6745 times this deviation. */
   static const double scale = 14.6969 * 0.6745, places = 20000;
   const size_t *n = volume->dimension, step = hl_lattice_step(n, places);

@@ -20,33 +20,33 @@ typedef struct hl_sample {
   size_t step; /* number of voxels from one sample to the next along each axis */
 } hl_sample;
 
-/* Fails only for lack of memory. Either array may be empty where voxels are NaN. */
+/* Takes a sample of a volume. Fails only for lack of memory. Either array may be empty if voxels are NaN. */
 hl_status hl_sample_make(const hl_volume *volume, hl_sample *sample, hl_error *error);
 void hl_sample_release(hl_sample *sample);
 
 /* The quantile of an ascending array: `fraction` (0 to 1) of its elements are below it. */
 double hl_quantile(const float *ascending, size_t count, double fraction);
 
-/* The commonest value: found by halving an ascending array again and again, each time to its densest half
- * (half-sample mode; Bickel and Fruehwirth 2006). */
+/* The commonest value of an ascending array. It is found by taking the densest half of the array again and
+ * again (half-sample mode; Bickel and Fruehwirth 2006). */
 double hl_mode(const float *ascending, size_t count);
 
-/* The threshold (of values greater than `above`) with the greatest variance between the two classes that it
- * makes (Otsu 1979). */
+/* The threshold, among values greater than `above`, for which the variance between the two classes on its
+ * sides is greatest (Otsu 1979). */
 double hl_threshold_otsu(const float *ascending, size_t count, double above);
 
-/* The threshold with the least cross entropy between the values and the means of the two classes that it
- * makes (Li and Tam 1998). Values must not be below 0. floor: the least mean that is used, because 0 has no
- * logarithm. */
+/* The threshold for which the cross entropy between the values and the means of the two classes on its sides
+ * is least (Li and Tam 1998). Values must not be below 0. floor: the least mean that is used, because 0 has
+ * no logarithm. */
 double hl_threshold_cross_entropy(const float *ascending, size_t count, double floor);
 
-/* How rough objects are: the sum of |second differences| over the sum of |first differences|, over voxels
- * whose relative value is farther than `distance` from `background`. Smooth simulations have less than about
- * 0.5, turbulence and noise more than about 0.7. */
+/* How rough objects are: the sum of |second differences| divided by the sum of |first differences|, over the
+ * voxels whose relative value differs from `background` by more than `distance`. Smooth simulations have less
+ * than about 0.5, turbulence and noise more than about 0.7. */
 double hl_roughness(const hl_volume *volume, const hl_sample *sample, double background, double distance);
 
 /* The noise of objects, relative to the range: the standard deviation of white noise with the same median
- * difference. The difference is of second order along each of the three axes, and so is 0 for linear and
+ * difference. This difference is of second order along each of the three axes, so that it is 0 for linear and
  * quadratic changes (after Immerkaer 1996). Objects have relative values beyond `from` in the direction (+1:
  * above; -1: below). Fails only for lack of memory. */
 hl_status hl_noise(const hl_volume *volume, const hl_sample *sample, double from, double direction,

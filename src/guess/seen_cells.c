@@ -10,16 +10,18 @@
 #include "guess/sample.h"
 #include "volume/store/pages.h"
 
-#define FAINT  0.02   /* fraction of the greatest opacity below which voxels at the rim do not count */
-#define LOST   0.04   /* least optical depth of a column that counts as seen */
-#define OPAQUE 0.9999 /* limit of opacities, because an opacity of 1 has no finite depth */
-/* The greatest fraction of the seen cells that may be specks; if there are more, they are matter. */
+/* voxels at the rim do not count if their opacity is below this fraction of the greatest opacity */
+#define FAINT  0.02
+#define LOST   0.04   /* least optical depth of a column whose cells count as seen */
+#define OPAQUE 0.9999 /* limit of opacities; it is below 1, because an opacity of 1 has an infinite depth */
+/* The greatest fraction of the seen cells that may be specks. If small bodies have more cells, they are
+ * matter. */
 #define SPECKS_AT_MOST 0.03
 #define FAINT_RATIO    200 /* a body is a speck if another body has this many times its optical depth */
 
 #define TISSUE        (-300) /* a limit in Hounsfield units: tissue is denser, foam and clothes are not */
 #define BODY_AT_LEAST 0.8    /* least fraction of the dense cells that a patient's body has */
-/* A holder has from this fraction of the body's cells to HOLDER_AT_MOST. */
+/* The cells of a holder, as a fraction of the body's cells: from this number to HOLDER_AT_MOST. */
 #define HOLDER_AT_LEAST (1.0 / 500)
 #define HOLDER_AT_MOST  (1.0 / 30)
 
@@ -59,7 +61,7 @@ static hl_status make_table(hl_seen *seen, hl_error *error) {
   }
   for (size_t p = 0; p < seen->bins.function->opacity_count; p++) {
     double bin = (seen->bins.function->opacity[p].value - seen->bins.low) * seen->bins.scale;
-    /* a point on the border between two bins bends the function in both */
+    /* the function bends in both bins beside a point on their border */
     for (int side = -1; side <= 1; side++)
       if (bin + side * 1e-6 >= 0 && bin + side * 1e-6 < BINS) seen->bins.bends[(int)(bin + side * 1e-6)] = 1;
   }
@@ -104,7 +106,7 @@ static void add_row(hl_seen *seen, ptrdiff_t j, ptrdiff_t k) {
   }
 }
 
-/* Along an axis, the number of voxels of a cell that are examined; at least 1. */
+/* The number of voxels of a cell that are examined along an axis; at least 1. */
 static double looked_at(const hl_seen *seen, int axis, int cell) {
   ptrdiff_t step = (ptrdiff_t)seen->step, stride = axis == 0 ? 1 : (ptrdiff_t)seen->stride,
             begin = seen->first[axis];
@@ -115,7 +117,7 @@ static double looked_at(const hl_seen *seen, int axis, int cell) {
   return count > 0 ? (double)count : 1;
 }
 
-/* Forgets the cells that the volume's cuts remove. */
+/* Marks the cells that the volume's cuts remove as not seen. */
 static void forget_cut_cells(hl_seen *seen) {
   const int *n = seen->size;
   const double step = (double)seen->step;
@@ -234,7 +236,7 @@ static hl_status forget_specks(hl_seen *seen, hl_error *error) {
 
 /* ---- what holds a patient ---- */
 
-/* Whether the bodies are one body of a patient, and beside it head rests, straps or a table. */
+/* Whether there is one body of a patient, and all other bodies are head rests, straps or a table. */
 static bool has_holder(const hl_bodies *bodies) {
   double most = bodies->places[bodies->largest], all = 0;
   bool any = false;
@@ -246,8 +248,8 @@ static bool has_holder(const hl_bodies *bodies) {
   return any && most >= BODY_AT_LEAST * all;
 }
 
-/* In CT scans whose transfer function shows tissue, forgets the holders of the patient. Among dense cells
- * alone, air or foam separates a holder from the body. */
+/* In CT scans whose transfer function shows tissue, marks the holders of the patient as not seen. Only dense
+ * cells are used, between which air or foam separates a holder from the body. */
 static hl_status forget_holders(hl_seen *seen, hl_error *error) {
   hl_context *context = seen->volume->context;
   size_t cells = (size_t)seen->size[0] * (size_t)seen->size[1] * (size_t)seen->size[2];
@@ -267,7 +269,7 @@ static hl_status forget_holders(hl_seen *seen, hl_error *error) {
   return status;
 }
 
-/* Marks the cells around a seen cell, which may hold the rim of its matter. */
+/* Marks the cells beside a seen cell, which may contain the rim of its matter. */
 static void mark_neighbours(hl_seen *seen, int i, int j, int k) {
   const int *n = seen->size;
   for (int z = k > 0 ? k - 1 : 0; z <= k + 1 && z < n[2]; z++)
@@ -351,8 +353,8 @@ void hl_seen_release(hl_seen *seen) {
   hl_release(context, seen->cuts);
 }
 
-/* The least depth per length with which a voxel of a cell counts. In a seen cell, half of the cell's mean is
- * enough. */
+/* The least optical depth per length of the voxels that count in a cell. In a seen cell, half of the cell's
+ * mean is enough. */
 static float least_depth(const hl_seen *seen, size_t cell) {
   return seen->kind[cell] == HL_SEEN ? fminf(seen->faint, seen->mean[cell] / 2) : seen->faint;
 }
@@ -364,7 +366,7 @@ typedef struct voxel_row {
   size_t cells;
 } voxel_row;
 
-/* The index of the first voxel in a row that counts, from index `from` on towards `to`; `to + way` if none
+/* The index of the first voxel in a row that counts, searched from index `from` to `to`; `to + way` if none
  * counts. way: 1 or -1. */
 static ptrdiff_t first_that_counts(const hl_seen *seen, const voxel_row *row, ptrdiff_t from, ptrdiff_t to,
                                    int way) {

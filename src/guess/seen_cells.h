@@ -2,9 +2,9 @@
  * cells.
  *
  * A cell counts as seen if its columns along at least two of the grid's axes absorb light. Cells that share
- * faces form bodies. Specks are bodies much smaller than the largest one; they do not count, unless all
- * specks together are much. Holders of a patient in a CT scan do not count, either. So neither faint matter
- * nor single voxels of noise widen the picture. */
+ * faces form bodies. Specks, which are bodies much smaller than the largest one, do not count, unless all
+ * specks together have many cells. Holders of a patient in a CT scan do not count, either. So faint matter
+ * and single voxels of noise do not widen the picture. */
 #ifndef HL_GUESS_SEEN_CELLS_H
 #define HL_GUESS_SEEN_CELLS_H
 
@@ -17,26 +17,26 @@ enum { HL_SEEN_NOTHING = 0, HL_SEEN_BESIDE = 1, HL_SEEN = 2 }; /* BESIDE: the ce
 
 typedef struct hl_seen {
   const hl_volume *volume;
-  cut_shape *cuts; /* owned; [cut_count]; what they remove is not seen */
+  cut_shape *cuts; /* owned; [cut_count]; matter that they remove is not seen */
   size_t cut_count;
   ptrdiff_t first[3], end[3]; /* voxels inside the volume's box */
   size_t step;                /* number of voxels along each edge of a cell */
-  size_t stride;              /* number of rows from one examined row to the next, along y and z */
+  size_t stride;              /* along y and z, every stride-th row is examined */
   int size[3];                /* number of cells */
-  float *depth; /* owned; optical depth per world length: for each stored whole number, or, for floats, for
-                 * the low end of each bin */
+  float *depth; /* owned; optical depth per world length; for whole numbers, one element for each stored
+                 * number; for floats, one for the low end of each bin */
   struct {
-    const hl_transfer_function *function; /* evaluated for the voxel's own value in bins where the function
-                                           * bends; elsewhere it is interpolated */
+    const hl_transfer_function *function; /* in bins in which the function bends, it is evaluated for the
+                                           * voxel's own value; in other bins, `depth` is interpolated */
     double low, scale;                    /* bin = (value - low) * scale */
     unsigned char *bends;                 /* owned; [bins]; whether the function bends in the bin */
   } bins;                                 /* for floats */
   unsigned char *kind;                    /* owned; [size[2]][size[1]][size[0]]; HL_SEEN_... */
   float *mean;                            /* owned; [size[2]][size[1]][size[0]]; mean depth per length of a
                                            * cell's voxels */
-  void *row; /* owned; room for the stored values of a row of voxels; null: the volume is in memory, and needs
-              * none */
-  float faint; /* depth per length from which voxels beside seen cells count */
+  void *row;   /* owned; room for the stored values of a row of voxels; null if the volume is in memory, where
+                * no copy is needed */
+  float faint; /* least depth per length with which voxels beside seen cells count */
 } hl_seen;
 
 /* Finds the cells of a volume. *any: false where nothing of the volume can be seen. Fails only for lack of
@@ -53,7 +53,7 @@ typedef struct hl_bodies {
   uint32_t *body;   /* owned; [size[2]][size[1]][size[0]]; number of the body, from 1 to count; 0: none */
   uint32_t *places; /* owned; [count + 1]; each body's number of places */
   uint32_t count;
-  uint32_t largest; /* the body with the most places, the first one of equals; 0: there is none */
+  uint32_t largest; /* the body with the most places; of equally large bodies, the first; 0: there is none */
 } hl_bodies;
 
 /* Finds the bodies. marked: not 0 where a place belongs to a body. Fails only for lack of memory; release the

@@ -1,5 +1,4 @@
-/* guess/smoothing.c - hl_volume_smooth(), and the choice of bare volumes that are smoothed without being
- * asked for.
+/* guess/smoothing.c - hl_volume_smooth(), and the choice of the bare volumes that are smoothed by default.
  *
  * A brain without its skull was cut out voxel by voxel: around it all voxels have one value, and the first
  * voxel inside is as bright as the matter within. No kernel makes a smooth surface of such a cliff. Where
@@ -13,8 +12,8 @@
 #include "guess/looks.h"
 #include "volume/smooth.h"
 
-/* The standard deviation, in voxels, of the Gaussian that smooths volumes of all three kinds: the least one
- * that leaves no stairs on the gyri of real brains. */
+/* The standard deviation, in voxels, of the Gaussian for all three kinds of volumes that are smoothed. It is
+ * the least one that leaves no stairs on the gyri of real brains. */
 #define SIGMA 0.8
 /* The greatest accepted standard deviation. */
 #define GREATEST_SIGMA 16
@@ -75,8 +74,8 @@ hl_status hl_volume_smooth(hl_volume *volume, double sigma, hl_volume **smoothed
     status = hl_volume_convolve(volume, sigma, smoothed, error);
     if (status != HL_OK) return status;
     (*smoothed)->smoothing = hypot(sigma, volume->smoothing);
-    /* The analysis of the unsmoothed volume is kept: its noise, which smoothing removes, tells scans from
-     * fields. */
+    /* The smoothed volume keeps the analysis of the unsmoothed one, because smoothing removes the noise by
+     * which scans are told from fields. */
     status = hl_data_keep(*smoothed, &analysis, error);
     if (status != HL_OK) {
       hl_volume_release(*smoothed);

@@ -1,5 +1,5 @@
-/* guess/styles.c - see styles.h. Opacities are per smallest voxel edge, at the distances that the analysis
- * tells. */
+/* guess/styles.c - see styles.h. Opacities are per smallest voxel edge. They lie at distances from the
+ * background that the analysis has found. */
 #include "guess/styles.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@ typedef struct opacity_step {
   double distance, opacity;
 } opacity_step;
 
-/* Adds steps; where objects lie on both sides of the background, adds them on both sides. */
+/* Adds the steps; if objects lie on both sides of the background, adds them on each side. */
 static void add_steps(hl_function_writer *w, const opacity_step *steps, int count) {
   w->opacity_count = 0;
   if (w->analysis->kind == HL_DATA_SIGNED) {
@@ -22,8 +22,8 @@ static void add_steps(hl_function_writer *w, const opacity_step *steps, int coun
   for (int n = 0; n < count; n++) hl_add_opacity(w, steps[n].distance, steps[n].opacity);
 }
 
-/* The least distance of inner matter, which is the dense matter of an object. In objects that are dense for
- * the most part, all solid matter counts as inner matter, because little of them is less dense. */
+/* The distance from which on matter is inner matter: the dense matter of an object. In an object that is
+ * dense for the most part, all solid matter is inner matter. */
 static double inner_of(const hl_data_analysis *a) {
   return a->dense_share > 0.5 ? a->solid : fmax(a->dense, 1.001 * a->solid);
 }
@@ -36,7 +36,7 @@ static void write_surface(hl_function_writer *w) {
   add_steps(w, steps, 3);
 }
 
-/* Writes outer matter as a veil and inner matter as opaque. */
+/* Writes thin outer matter around opaque inner matter. */
 static void write_translucent(hl_function_writer *w) {
   const hl_data_analysis *a = w->analysis;
   double inner = inner_of(a), top = fmax(a->top, 1.001 * inner), veil = hl_opacity_for(a, 1.2);
@@ -48,8 +48,8 @@ static void write_translucent(hl_function_writer *w) {
   add_steps(w, steps, 5);
 }
 
-/* Writes absorption that grows with the square of the distance, so that dense matter shows through as in an
- * X-ray picture: white on black. */
+/* Writes absorption that grows with the square of the distance, so that dense matter is seen through thinner
+ * matter, as in an X-ray picture: white on black. */
 static void write_xray(hl_function_writer *w) {
   enum { STEPS = 24 };
   static const double white[3] = {1, 1, 1}, depth = 0.5;
@@ -76,8 +76,9 @@ static void write_smoke(hl_function_writer *w) {
   hl_add_color(w, 0, grey);
 }
 
-/* Writes the brightest matter only, from red to cream, as contrast medium shows vessels. Where vessels were
- * found, their edges begin a little below, because edges are mixed with the matter around them. */
+/* Writes only the brightest matter, in colours from red to cream, as vessels with a contrast medium show it.
+ * If vessels were found, opacity begins a little below their values, because voxels at their edges also
+ * contain the matter around them. */
 static void write_vessels(hl_function_writer *w) {
   static const double wall[3] = {0.42, 0.03, 0.02}, blood[3] = {0.75, 0.10, 0.05},
                       bright[3] = {0.95, 0.75, 0.50};

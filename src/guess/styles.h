@@ -1,4 +1,4 @@
-/* guess/styles.h - looks that are asked for by name, whatever the volume holds. */
+/* guess/styles.h - styles: looks that are asked for by name, whatever the volume holds. */
 #ifndef HL_GUESS_STYLES_H
 #define HL_GUESS_STYLES_H
 
@@ -11,8 +11,8 @@ const hl_look *hl_style_find(const char *name);
 /* The style that has this name in hl_look_name(); null for "auto". Other names are refused. */
 hl_status hl_style_named(const char *name, const hl_look **style, hl_error *error);
 
-/* Writes a style's opacities. The colours come from the look that suits the volume (base), except where the
- * style has its own colours. */
+/* Writes a style's opacities. The colours are those of the look that suits the volume (base), unless the
+ * style has colours of its own. */
 void hl_style_write(const hl_look *style, const hl_look *base, hl_function_writer *w);
 
 #endif

@@ -1,31 +1,32 @@
 /* guess/vessels.c - bright tubes within other matter, as angiography shows vessels.
  *
- * Where the few voxels that are far brighter than all others are tubes, the object around them is not what
- * the scan was made for. In Hounsfield units such voxels are bone. A voxel lies in a tube if straight lines
- * through it stay among bright voxels for long in only one or two directions. In a sheet there are four or
- * more such directions, in a ball and in noise there are none. */
+ * A scan may have a few voxels that are far brighter than all others. If these form tubes, the scan was made
+ * for the tubes, and not for the object around them. In Hounsfield units such voxels are bone, not vessels. A
+ * voxel lies in a tube if straight lines through it stay among bright voxels for long in only one or two
+ * directions. In a sheet there are four or more such directions, in a ball and in noise there are none. */
 #include <math.h>
 
 #include "guess/analysis.h"
 #include "guess/sample.h"
 
-/* Least distance of the brightest matter, as a multiple of the objects' mean distance. */
+/* The least distance from the background of the brightest matter, as a multiple of the objects' mean
+ * distance. */
 #define CONTRAST    3
 #define LEAST_TUBES 0.5  /* least fraction of the bright voxels that lies in tubes */
 #define MOST_BRIGHT 0.06 /* greatest fraction of the object's voxels that is bright */
-#define SPREAD      0.4  /* least fraction of the object over which tubes reach, along two axes */
-/* A line is long if it stays within bright matter this many times as far as the shortest line. */
+#define SPREAD      0.4  /* least part of the object's extent over which tubes reach, along two axes */
+/* A line is long if its run of bright voxels is this many times as long as that of the shortest line. */
 #define ELONGATED 2.5
 
 enum { LONG = 5 /* a long line has at least this many voxels */, REACH = 32, DIRECTIONS = 13, LEVELS = 4 };
 enum { MOST_SEEDS = 4000, LEAST_SEEDS = 60 };
 
-/* The directions to one of each pair of opposite neighbours, among 26 neighbours. */
+/* The directions to the 26 neighbours; of two opposite directions, only one. */
 static const int directions[DIRECTIONS][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1}, {1, 1, 0},  {1, -1, 0},
                                               {1, 0, 1},  {1, 0, -1}, {0, 1, 1}, {0, 1, -1}, {1, 1, 1},
                                               {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
 
-/* The voxels of one kind that were met: their number, and the bounds of their places. */
+/* The voxels of one kind that were met: their number, and the bounds of their coordinates. */
 typedef struct met {
   size_t count, low[3], high[3];
 } met;
@@ -55,7 +56,7 @@ static double distance_at(const vessel_search *s, const ptrdiff_t place[3]) {
   return isfinite(value) ? s->analysis->direction * (relative - s->analysis->background) : -INFINITY;
 }
 
-/* The number of voxels of a line through a bright voxel that are bright without a gap, up to REACH to either
+/* The length of the run of bright voxels on a line through a bright voxel, up to REACH voxels to either
  * side. */
 static int run_through(const vessel_search *s, const size_t seed[3], const int direction[3]) {
   int run = 1;
@@ -80,8 +81,8 @@ static bool is_in_tube(const vessel_search *s, const size_t seed[3]) {
   return along == 1 || along == 2;
 }
 
-/* Counts the object's voxels, bright voxels and voxels in tubes, at the places of the sample's lattice.
- * every: of this number of bright voxels one is examined. */
+/* Counts the object's voxels, the bright voxels and the voxels in tubes, at the places of the sample. every:
+ * one in so many bright voxels is examined. */
 static void look(const vessel_search *s, size_t every, met *things, met *bright, met *tubes) {
   const size_t *n = s->volume->dimension, step = s->sample->step;
   *things = *bright = *tubes = (met){0};
@@ -104,8 +105,8 @@ static bool are_spread(const met *tubes, const met *things) {
   return tubes->count > 0 && axes >= 2;
 }
 
-/* True if the voxels beyond the level are vessels. expected: their number in the sample, approximately.
- * *few: whether these voxels are few enough to be vessels. */
+/* True if the voxels beyond the level are vessels. expected: the approximate number of these voxels in the
+ * sample. *few: whether they are few enough to be vessels. */
 static bool are_vessels(const vessel_search *s, size_t expected, bool *few) {
   met things, bright, tubes;
   size_t every = expected / MOST_SEEDS + 1;
@@ -129,7 +130,7 @@ double hl_data_find_vessels(const hl_volume *volume, const hl_sample *sample, co
     if (beyond < LEAST_SEEDS) return 0;
     bool few = false;
     if (are_vessels(&s, beyond, &few)) return s.level;
-    if (few) return 0; /* higher levels would divide the bright matter itself, by its noise */
+    if (few) return 0; /* levels that are higher still would divide the bright matter itself, by its noise */
     s.level = hl_threshold_otsu(distances, sample->count, s.level);
   }
   return 0;

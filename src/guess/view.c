@@ -15,13 +15,13 @@
 #include "guess/seen_cells.h"
 #include "scene/scene.h"
 
-#define BEND 3 /* relief is measured by second differences over this distance, in places of the lattice */
-/* The largest body decides alone if it has at least this fraction of all solid places. */
+#define BEND 3 /* second differences measure the relief over this distance, in places of the lattice */
+/* Only the largest body counts if it has at least this fraction of all solid places. */
 #define BODY_AT_LEAST 0.4
-/* The side turned to the eye must have this many times the relief of the opposite side. */
+/* The side that is turned to the eye must have so many times the relief of the opposite side. */
 #define CLEARLY 1.1
-/* The elevation, in degrees, from which bodies are seen that the grid cuts off: about the height of their
- * eyes, as in a portrait. From above, the forehead of a head hides its face. */
+/* The elevation, in degrees, of the view of bodies that the grid cuts off: about the height of their eyes, as
+ * in a portrait. From higher up, a head's forehead would hide its face. */
 #define PORTRAIT_ELEVATION 5
 
 /* The objects on a coarse lattice. */
@@ -29,7 +29,7 @@ typedef struct shape {
   int size[3];           /* places of the lattice along each axis */
   unsigned char *solid;  /* owned; [size[2]][size[1]][size[0]]; 1 where an object is */
   double *area[3];       /* owned; [size[a]]; solid places in each slice across axis a */
-  int first[3], last[3]; /* first and last slice that hold the objects, except for 0.2 % of them at either
+  int first[3], last[3]; /* first and last slice of the objects, without 0.2 % of their places at either
                           * end */
 } shape;
 
@@ -58,8 +58,8 @@ static bool allocate(hl_context *context, const hl_volume *volume, size_t step, 
   return s->solid != NULL && s->area[0] != NULL && s->area[1] != NULL && s->area[2] != NULL;
 }
 
-/* The index of the voxel for place n of the lattice along an axis. The lattice reaches both ends of each
- * axis: its last place is the last voxel. */
+/* The index of the voxel at place n of the lattice along an axis. The lattice reaches both ends of each axis:
+ * its last place is at the last voxel. */
 static size_t place_of(const hl_volume *volume, const shape *s, size_t step, int axis, int n) {
   return n + 1 == s->size[axis] ? volume->dimension[axis] - 1 : (size_t)n * step;
 }
@@ -84,8 +84,8 @@ static void fill(const hl_volume *volume, const hl_data_analysis *analysis, size
       }
 }
 
-/* Keeps only the largest connected body, so that a board beside it, for example, does not count. Where
- * there are only many small bodies, all are kept. */
+/* Keeps only the largest connected body, so that a board beside it, for example, does not count. If all
+ * bodies are small, all are kept. */
 static hl_status forget_others(hl_context *context, shape *s, hl_error *error) {
   hl_bodies bodies;
   hl_status status = hl_bodies_find(context, s->solid, s->size, &bodies, error);
@@ -131,14 +131,14 @@ static hl_status make_shape(const hl_volume *volume, const hl_data_analysis *ana
   return status;
 }
 
-/* The fraction of the grid's face at one end of an axis that objects touch. */
+/* The fraction of the grid's face at one end of an axis that objects cover. */
 static double touch(const shape *s, int axis, int end) {
   double face = (double)s->size[(axis + 1) % 3] * s->size[(axis + 2) % 3];
   return s->area[axis][end ? s->size[axis] - 1 : 0] / face;
 }
 
-/* How blunt the objects are at one end: the mean area of the last slices, divided by the area of the
- * greatest slice. */
+/* How blunt the objects are at one end: the mean area of the last slices, divided by the greatest area of a
+ * slice. */
 static double bluntness(const shape *s, int axis, int end) {
   double greatest = 1e-9, sum = 0;
   for (int n = s->first[axis]; n <= s->last[axis]; n++) greatest = fmax(greatest, s->area[axis][n]);
@@ -147,8 +147,8 @@ static double bluntness(const shape *s, int axis, int end) {
   return sum / slices / greatest;
 }
 
-/* How similar the objects are to their mirror image: the number of places in both, divided by the number of
- * places in either. */
+/* How similar the objects are to their mirror image: the number of places that belong to both, divided by the
+ * number of places that belong to at least one. */
 static double symmetry(const shape *s, int axis) {
   double both = 0, either = 0;
   int n[3];
@@ -177,8 +177,8 @@ static int depth_at(const shape *s, int axis, int end, int u, int v) {
   return -1;
 }
 
-/* The relief of the side at one end of an axis: the sum of second differences of the depth. Each is limited
- * to 4, so that cliffs do not outweigh everything else. */
+/* The relief of the side at one end of an axis: the sum of the second differences of its depth. Each
+ * difference is limited to 4, so that cliffs do not outweigh everything else. */
 static double relief(const shape *s, int axis, int end) {
   int u_axis = (axis + 1) % 3, v_axis = (axis + 2) % 3;
   double sum = 0;
@@ -195,7 +195,7 @@ static double relief(const shape *s, int axis, int end) {
 }
 
 /* The axis along which the objects are their own mirror image, as a head is from left to right; -1: there is
- * no such axis, or more than one. */
+ * none, or more than one. */
 static int mirror_axis(const shape *s) {
   for (int a = 0; a < 3; a++) {
     double own = symmetry(s, a), others = fmax(symmetry(s, (a + 1) % 3), symmetry(s, (a + 2) % 3));
@@ -204,9 +204,9 @@ static int mirror_axis(const shape *s) {
   return -1;
 }
 
-/* The way up of objects without a bottom. Rows of pictures run downwards, so -y is up where left and right
- * lie along z; otherwise z is up. A head's vault is smooth, and its jaw is not: where the upper side has
- * clearly more relief than the lower one, objects with a left and a right stand on their heads. */
+/* The way up of objects without a bottom. If left and right lie along z, -y is up, because rows of pictures
+ * run downwards; otherwise z is up. A head's vault is smooth, and its jaw is not. So if objects with a left
+ * and a right have clearly more relief on the upper side than on the lower one, they are upside down. */
 static int up_without_bottom(const shape *s) {
   const int mirror = mirror_axis(s), up = mirror == 2 ? -2 : 3, axis = abs(up) - 1;
   const bool overturned = mirror >= 0 && relief(s, axis, up > 0) > CLEARLY * relief(s, axis, up < 0);
@@ -221,7 +221,7 @@ static int up_of(const shape *s, const hl_volume *volume) {
     extent[a] = (s->last[a] - s->first[a]) * vec3_length(mat3_column(volume->index_to_world.linear, a)) *
                 (double)volume->dimension[a] / s->size[a];
   if (extent[2] > 1.4 * fmax(extent[0], extent[1])) return 3; /* a column stands upright */
-  /* The bottom is where a face of the grid cuts the object off. */
+  /* A face of the grid that cuts the object off is its bottom. */
   for (int a = 0; a < 3; a++)
     for (int end = 0; end < 2; end++)
       if (touch(s, a, end) > fmax(most, fmax(0.05, 4 * touch(s, a, !end)))) {
@@ -285,8 +285,8 @@ hl_status hl_scene_upright(const hl_scene_volume *volume, const hl_data_analysis
 
 static vec3 left_of(hl_space space) { return (vec3){space == HL_SPACE_RAS ? -1 : 1, 0, 0}; }
 
-/* True if the first volume decides which way is up: it is the only volume and not rotated, or all volumes are
- * files without a placement. In other scenes z counts as up. */
+/* True if the first volume decides which way is up: it is the only volume and the scene does not rotate it,
+ * or no volume is made of shapes, rotated or moved by the scene. In other scenes z counts as up. */
 static bool first_decides(const hl_scene_description *description) {
   if (description->volume_count == 1) return description->volumes[0].rotate_angle_deg == 0;
   for (size_t v = 0; v < description->volume_count; v++) {
@@ -306,7 +306,8 @@ hl_status hl_view_automatic(const hl_scene_description *description, hl_outline 
   hl_data_analysis analysis;
   hl_status status = hl_data_analyse(first->volume, &analysis, error);
   if (status != HL_OK) return status;
-  /* Programs write left-posterior-superior for any data, so this says little unless the file is DICOM. */
+  /* Programs write left-posterior-superior for data of any kind, so that this space says little unless the
+   * file is DICOM. */
   const bool decides = !hl_scene_is_anatomical(description) && first_decides(description);
   if (decides) {
     hl_upright upright;

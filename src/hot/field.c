@@ -1,4 +1,4 @@
-/* hot/field.c - the hot functions of fields: how opaque cells are, and the sky over a row of them. */
+/* hot/field.c - the hot functions of fields: the opacity of cells, and the sky's light in a row of cells. */
 #include "hot/tables.h"
 
 #include "field/opacity_lanes.h"

@@ -1,4 +1,4 @@
-/* hot/grid.c - the hot functions of grids: bounds of cells, and what cells show. */
+/* hot/grid.c - the hot functions of grids: bounds of cells, and which cells show something. */
 #include "hot/tables.h"
 
 #include "fill/windows_lanes.h"

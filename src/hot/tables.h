@@ -1,7 +1,7 @@
 /* hot/tables.h - the tables of hot functions, one for each room and instruction set.
  *
- * A unit ROOM.c of this folder is compiled once for each instruction set, whose name HL_HOT_SET is, and
- * defines the table HL_HOT(ROOM). tables.c brings the tables of a set together. */
+ * A file ROOM.c of this folder is compiled once for each instruction set, with the set's name as HL_HOT_SET.
+ * It defines the table HL_HOT(ROOM). tables.c joins the tables of each instruction set. */
 #ifndef HL_HOT_TABLES_H
 #define HL_HOT_TABLES_H
 

@@ -23,8 +23,8 @@
 #include "core/door.h"
 #include "image/format.h"
 
-/* The offset, in codes, of the 8 x 8 ordered (Bayer) dither at a pixel, from -63/128 to 63/128. The bits of
- * x ^ y and of y, interlaced and mirrored, give each number of 0..63 once. */
+/* The offset, in codes, of the 8 x 8 ordered (Bayer) dither at a pixel, from -63/128 to 63/128. The bits of x
+ * ^ y and of y, interleaved and in reversed order, give each number of 0..63 once. */
 static float dither_offset(int x, int y) {
   int order = 0;
   for (int bit = 0; bit < 3; bit++)
@@ -53,15 +53,16 @@ static bool is_empty(const float pixel[4]) {
 
 #define SHOULDER 0.6f /* light up to SHOULDER is left unchanged; the sRGB code of SHOULDER is 203 of 255 */
 
-/* Maps light x from the value s on. Derived: the hyperbola that leaves the line f(x) = x at s with slope 1
- * and comes near 1 for endless light is f(x) = 1 - d^2 / (x - s + d), d = 1 - s: f(s) = s, f'(x) = d^2 / (x -
- * s + d)^2. Twice the light of white, 1, comes to 0.911, four times to 0.958. */
+/* Maps light x from the value s on. Derived: the hyperbola that continues the line f(x) = x at s with slope
+ * 1, and approaches 1 for ever brighter light, is f(x) = 1 - d^2 / (x - s + d), d = 1 - s: f(s) = s, f'(x) =
+ * d^2 / (x - s + d)^2. Light twice as bright as white (1) is mapped to 0.911, and four times as bright to
+ * 0.958. */
 static float shoulder(float x) {
   const float rest = 1 - SHOULDER;
   return x > SHOULDER ? 1 - rest * rest / (x - SHOULDER + rest) : x;
 }
 
-/* The factor on light's red, green and blue. One factor serves all three, so that the hue stays. light:
+/* The factor on a light's red, green and blue. It is the same for all three, so that the hue stays. light:
  * linear, after the exposure. */
 static float tone_factor(hl_tone tone, const float light[3]) {
   if (tone != HL_TONE_FILMIC) return 1;
@@ -72,7 +73,7 @@ static float tone_factor(hl_tone tone, const float light[3]) {
   return shoulder(brightest) / brightest;
 }
 
-/* The factor on a pixel's light: the exposure times the tone factor for light as bright as the pixel's. */
+/* The factor on a pixel's light: the exposure, times the tone factor at the pixel's brightness. */
 static float factor_of(const hl_codes *codes, const float pixel[4]) {
   const float light[3] = {pixel[0] * codes->exposure, pixel[1] * codes->exposure, pixel[2] * codes->exposure};
   return codes->exposure * tone_factor(codes->tone, light);

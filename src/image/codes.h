@@ -11,7 +11,7 @@ typedef struct hl_codes {
   hl_srgb_encoder encoder;
   int depth;           /* bits of a code: 8 or 16 */
   bool transparent;    /* a pixel has four codes, of which the last one is alpha; false: three codes */
-  bool opaque_alpha;   /* a pixel has four codes, and the code of alpha is always that of full opacity */
+  bool opaque_alpha;   /* a pixel has four codes, but alpha is always opaque */
   float background[3]; /* linear */
   float exposure;      /* factor on the picture's light */
   hl_tone tone;        /* after the exposure */

@@ -2,9 +2,8 @@
  *
  * Sources: viridis, inferno, magma and plasma by N. Smith, S. van der Walt and E. Firing (released to the
  * public domain, CC0); cividis by J. Nunez, C. Anderton and R. Renslow (2018); coolwarm by K. Moreland
- * (2009); each given here at 33 equal steps. turbo is A. Mikhailov's polynomial (2019). bone, hot and copper
- * are the classic piecewise linear maps by their corners.
- */
+ * (2009); each is given here at 33 equally spaced entries. turbo is A. Mikhailov's polynomial (2019). bone,
+ * hot and copper are the classic piecewise linear maps, given by their corners. */
 #include "image/colormaps.h"
 
 #include <math.h>
@@ -48,7 +47,7 @@ static const struct {
                   0xe57058, 0xde604d, 0xd55042, 0xcb3e38, 0xc0282f, 0xb40426}},
 };
 
-/* A corner of a piecewise linear map, sRGB. */
+/* A point, in sRGB, between which a piecewise linear map is interpolated. */
 typedef struct corner {
   double at, color[3];
 } corner;

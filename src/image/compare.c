@@ -1,9 +1,9 @@
 /* image/compare.c - the differences of two pictures.
  *
  * In: two pictures of one size. Out: hl_image_difference. The first pass finds the sums and the greatest
- * difference. The second finds the percentile by counting the differences' float bits (which sort like the
- * numbers), first the upper 16, then the lower 16: no buffer of the picture's size is needed, and the cost
- * does not depend on the data. */
+ * difference. Two more passes find the percentile by counting the bits of the differences as floats, which
+ * sort like the numbers: first the upper 16 bits, then the lower 16. So no buffer of the picture's size is
+ * needed, and the time does not depend on the data. */
 #include <math.h>
 #include <string.h>
 
@@ -11,8 +11,8 @@
 #include "core/memory.h"
 #include "image/image.h"
 
-/* Returns b - a. Equal values, also infinite ones, differ by 0. A NaN in either picture counts as an infinite
- * difference, so that no threshold accepts it. */
+/* Returns b - a. Equal values differ by 0, even if they are infinite. A NaN in either picture counts as an
+ * infinite difference, so that no limit accepts it. */
 static double channel_difference(float a, float b) {
   if (a == b) return 0;
   double difference = (double)b - (double)a;
@@ -32,9 +32,9 @@ static uint32_t difference_bits(const float a[4], const float b[4]) {
   return bits;
 }
 
-/* Finds 16 bits of the rank-th smallest difference. If `high` is negative, these are the upper 16 bits among
- * all pixels; else the lower 16 bits among the pixels whose upper 16 bits are `high`. *rank becomes the
- * difference's rank among the pixels that share the found bits. */
+/* Finds 16 bits of the difference number *rank in rising order. If `high` is negative, finds the upper 16
+ * bits among all pixels; otherwise finds the lower 16 bits among the pixels whose upper 16 bits are `high`.
+ * *rank becomes the difference's rank among the pixels that have the found bits. */
 static uint32_t select_half(const hl_image *a, const hl_image *b, int64_t high, uint64_t *rank,
                             uint64_t *counts) {
   size_t pixels = (size_t)a->width * (size_t)a->height;
@@ -49,7 +49,7 @@ static uint32_t select_half(const hl_image *a, const hl_image *b, int64_t high, 
   return half;
 }
 
-/* The nearest-rank percentile: the least difference that at least 99.9 % of the pixels do not exceed. */
+/* The percentile by nearest rank: the least difference that at least 99.9 % of the pixels do not exceed. */
 static double percentile_99_9(const hl_image *a, const hl_image *b, uint64_t *counts) {
   uint64_t pixels = (uint64_t)a->width * (uint64_t)a->height;
   uint64_t rank = (pixels * 999 + 999) / 1000 - 1;
@@ -81,7 +81,7 @@ static void measure(const hl_image *a, const hl_image *b, hl_image_difference *d
     }
   double pixels = (double)a->width * (double)a->height;
   for (int c = 0; c < 4; c++) {
-    /* the sum is NaN if infinities of both signs were added */
+    /* infinite differences of both signs add up to NaN */
     difference->mean_signed[c] = isnan(sum[c]) ? INFINITY : sum[c] / pixels;
     difference->rmse_channel[c] = sqrt(square[c] / pixels);
   }

@@ -1,9 +1,10 @@
 /* image/exr.c - pictures as OpenEXR scanlines, through OpenEXRCore.
  *
  * In: the bytes of a file, which may be anything. Out: a picture of the first part's data window: channels R,
- * G, B (or Y for grey) and A (1 where missing), from half, float or integer samples. Out to a file: named
- * float channels (exr.h), or a picture with its layers; ZIP, 32-bit float, values bit by bit. OpenEXRCore
- * writes through on_write, so that a full disk is noticed here and the file is the caller's temporary one.
+ * G, B (or Y for grey) and A (1 where it is missing), from half, float or integer samples. Out to a file:
+ * named float channels (exr.h), or a picture with its layers; ZIP, 32-bit float; no bit of a value changes.
+ * OpenEXRCore writes through on_write, so that a full disk is noticed here, and so that it writes to the
+ * caller's temporary file.
  *
  * Against hostile files: OpenEXRCore reads through on_read, bounded by the file's bytes; unneeded kinds of
  * file and compression are refused; sizes are limited before allocation and compared with the greatest size
@@ -23,7 +24,7 @@
 
 /* ---- reading ---- */
 
-/* Bytes that one compressed byte can expand to: deflate's 1032 is the greatest factor of the accepted
+/* The greatest factor by which compressed bytes can expand: deflate's 1032 is the greatest of all accepted
  * compressions. */
 enum { EXPANSION_MAX = 1032 };
 static const uint64_t chunk_bytes_max = (uint64_t)1 << 28;
@@ -39,7 +40,7 @@ typedef struct exr_reading {
   uint64_t pixel_bytes;    /* bytes of all channels of one pixel */
   exr_attr_box2i_t window; /* the data window */
   hl_image *image;
-  char message[200]; /* the first message in which OpenEXRCore complains */
+  char message[200]; /* the first message of OpenEXRCore about a fault */
 } exr_reading;
 
 static int64_t on_size(exr_const_context_t file, void *user_data) {
@@ -213,7 +214,7 @@ static exr_result_t start_read(exr_reading *reading) {
   return exr_start_read(&reading->file, reading->name, &options);
 }
 
-/* The width, height and uncompressed bytes of one part; 0 bytes where its header does not state them. */
+/* The width, height and uncompressed bytes of one part; the bytes are 0 if its header does not state them. */
 static hl_image_claim claim_of_part(exr_const_context_t file, int part) {
   const exr_attr_chlist_t *list = NULL;
   exr_attr_box2i_t window;
@@ -273,7 +274,7 @@ typedef struct exr_writing {
   uint64_t at;      /* write position in bytes */
   int system_error; /* errno of the first failed write */
   bool write_failed;
-  char message[200]; /* the first message in which OpenEXRCore complains */
+  char message[200]; /* the first message of OpenEXRCore about a fault */
 } exr_writing;
 
 static int64_t on_write(exr_const_context_t file, void *user_data, const void *bytes, uint64_t length,

@@ -4,8 +4,8 @@
 
 #include "core/file.h"
 
-/* One channel; a pixel's value is values[(y * width + x) * pixel_stride], linear. Layers are named "layer.R"
- * and so on. */
+/* A channel. The value of pixel (x, y), linear, is values[(y * width + x) * pixel_stride]. Channels of layers
+ * are named "layer.R" and so on. */
 typedef struct hl_exr_channel {
   const char *name;
   const float *values; /* borrowed */

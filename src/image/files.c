@@ -20,7 +20,8 @@ static const hl_image_format *const formats[] = {&hl_png_format, &hl_exr_format,
 
 enum { FORMAT_COUNT = sizeof formats / sizeof formats[0] };
 
-/* The first format, from number n on, whose title differs from the title of the format before it. */
+/* The first format, from number n on, whose title differs from that of the format before it. Formats with one
+ * title are one format for the user. */
 static size_t next_title(size_t n) {
   while (n > 0 && n < FORMAT_COUNT && strcmp(formats[n]->title, formats[n - 1]->title) == 0) n++;
   return n;
@@ -45,8 +46,8 @@ hl_status hl_image_get_format(size_t index, hl_file_format *format) {
   return HL_OK;
 }
 
-/* Greatest accepted sizes in bytes: of everything in a file beside its pixels (texts, profiles, thumbnails),
- * and of the file's header. */
+/* The greatest accepted numbers of bytes: of everything in a file beside its pixels (texts, profiles,
+ * thumbnails), and of a file's header. */
 static const size_t extra_bytes_max = (size_t)64 << 20, header_bytes_max = (size_t)16 << 20;
 
 static const hl_image_format *format_by_name(const char *path) {
@@ -94,7 +95,7 @@ static hl_status write_layer_file(const hl_image_format *format, hl_context *con
   return status;
 }
 
-/* Writes each layer as a file of its own, where the format cannot hold layers in the picture's file. */
+/* If the format cannot hold layers in the picture's file, writes each layer as a file of its own. */
 static hl_status write_layers(const hl_image_format *format, hl_context *context, const hl_image *image,
                               const char *path, hl_error *error) {
   if (image->layer_count == 0 || format->holds_layers) return HL_OK;

@@ -12,7 +12,7 @@
 
 /* The size that a picture's file claims in its first bytes. */
 typedef struct hl_image_claim {
-  bool known; /* false: more bytes are needed to find the size */
+  bool known; /* whether the size was found; false: more of the file's bytes are needed */
   uint64_t width, height;
   uint64_t bytes; /* bytes of the pixels, uncompressed */
 } hl_image_claim;

@@ -4,7 +4,8 @@
  * In: bytes. Out: hl_image; linear, alpha 1. Ward, "Real pixels", Graphics Gems II (1991), and Radiance's
  * refman/filefmts.pdf. A header of lines, "#?RADIANCE" first, ends with an empty line; a line with the size
  * follows, "-Y 512 +X 1024" for rows from the top with pixels from the left; then rows of RGBE pixels: three
- * mantissas and an exponent, plain, in runs of whole pixels, or in runs of each of the four.
+ * mantissas and an exponent. Rows are plain, or have runs of whole pixels, or runs of each of these four
+ * numbers separately.
  *
  * The line EXPOSURE is not applied, as in most programs: the picture keeps its stored values. */
 #include <inttypes.h>
@@ -18,7 +19,7 @@
 
 enum { LINE_MAX_BYTES = 2048, RUN_WIDTH_MIN = 8, RUN_WIDTH_MAX = 32767, RUN_MAX = 127, EXPONENTS = 256 };
 
-/* A read position; errors name the byte in the file. */
+/* A position in the file; errors name its byte. */
 typedef struct hdr_cursor {
   const char *name;
   const unsigned char *bytes; /* borrowed; [length] */
@@ -28,8 +29,8 @@ typedef struct hdr_cursor {
 
 typedef struct hdr_header {
   uint64_t width, height;
-  bool from_below, from_right; /* whether the first row is the lowest one, and whether a row's first pixel is
-                                * the rightmost one */
+  bool from_below, from_right; /* whether rows go from the lowest to the highest, and whether a row's pixels
+                                * go from right to left */
 } hdr_header;
 
 static hl_status fail_at(const hdr_cursor *cursor, hl_status status, const char *what) {
@@ -56,7 +57,7 @@ static bool take_line(hdr_cursor *cursor, char line[LINE_MAX_BYTES]) {
   return true;
 }
 
-/* Skips the header's lines up to and including the empty one. */
+/* Skips the header's lines, including the empty line at its end. */
 static hl_status skip_header(hdr_cursor *cursor) {
   char line[LINE_MAX_BYTES];
   for (;;) {
@@ -183,8 +184,8 @@ static void convert_row(const hdr_row *row, const float scale[EXPONENTS], bool f
 
 /* ---- the picture ---- */
 
-/* The fewest bytes that the rows can take in a file with this header. Plain rows and rows in runs of pixels
- * both begin with a pixel. */
+/* The least number of bytes that the rows can take in a file with this header. Both plain rows and rows with
+ * runs of whole pixels have at least one pixel, at their beginning. */
 static uint64_t least_bytes(const hdr_cursor *cursor, const hdr_header *header) {
   uint64_t row = 4;
   if (in_runs(cursor, (size_t)header->width)) row += 8 * ((header->width + RUN_MAX - 1) / RUN_MAX);

@@ -2,11 +2,10 @@
  *
  * In, out: hl_image and bytes. Written: version 1.0, '<f4', height x width x 4; a layer as height x width x
  * channels, or as height x width where it has one channel. Read: versions 1 to 3, '<f4' or '<f8', height x
- * width or height x width x 1, 3 or 4; grey fills R, G and B, a missing alpha is 1. Values are stored bit by
- * bit.
+ * width or height x width x 1, 3 or 4; grey fills R, G and B, and a missing alpha is 1. No bit of a value
+ * changes.
  *
- * The header is a Python literal: {'descr': '<f4', 'fortran_order': False, 'shape': (2, 3, 4), }
- * */
+ * The header is a Python literal: {'descr': '<f4', 'fortran_order': False, 'shape': (2, 3, 4), } */
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>

@@ -9,7 +9,7 @@
  *
  * Against hostile files: sizes are limited before allocation and compared with the greatest size that the
  * file's bytes can inflate to. While the picture is decoded, every chunk but IHDR, PLTE, tRNS, IDAT and IEND
- * is skipped unread; the scene's text is found by another pass over the chunks. */
+ * is skipped without being read. Another pass over the chunks finds the scene's text. */
 #include <errno.h>
 #include <png.h>
 #include <setjmp.h>
@@ -36,7 +36,8 @@ static uint32_t load_32(const unsigned char *bytes) {
 
 /* ---- reading ---- */
 
-/* Greatest number of bytes that one byte of a deflate stream can expand to (258 bytes from 2 bits). */
+/* The greatest number of bytes to which one byte of a deflate stream can expand (2 bits can stand for 258
+ * bytes). */
 enum { INFLATE_RATIO_MAX = 1032 };
 
 typedef struct png_reading {
@@ -85,7 +86,7 @@ static void on_read(png_structp png, png_bytep to, size_t length) {
   reading->at += length;
 }
 
-/* Fails through png_error(), as libpng does itself, so that all failures are handled in one place. */
+/* Fails by png_error(), as libpng itself does, so that all failures are handled in one place. */
 static void stop(png_reading *reading, hl_status status) {
   reading->status = status;
   png_error(reading->png, "stopped");
@@ -108,7 +109,7 @@ static void read_header(png_reading *reading) {
   png_set_add_alpha(reading->png, 0xffff, PNG_FILLER_AFTER);
 }
 
-/* Takes the code of one sample. sample: big-endian, depth bits. */
+/* Reads the code of one sample. from: big-endian, depth bits. Returns the position after the sample. */
 static const unsigned char *take_code(const unsigned char *from, int depth, int *code) {
   *code = depth == 16 ? from[0] << 8 | from[1] : from[0];
   return from + depth / 8;
@@ -144,7 +145,8 @@ static void allocate_pixels(png_reading *reading, int depth, size_t row_bytes, b
   for (size_t i = 0; i < codes; i++) reading->linear[i] = -1;
 }
 
-/* Makes all calls that may longjmp. `reading` outlives the jump, and no local is read after it. */
+/* Makes all calls of libpng that may longjmp. `reading` outlives the jump, and no local variable is used
+ * after the jump. */
 static void read_png(png_reading *reading) {
   if (setjmp(png_jmpbuf(reading->png)) != 0) return;
   png_set_read_fn(reading->png, reading, on_read);
@@ -257,7 +259,8 @@ static void write_texts(png_writing *writing) {
   if (scene != NULL && field_errors != NULL) write_text(writing, field_errors_keyword, field_errors);
 }
 
-/* Makes all calls that may longjmp. `writing` outlives the jump, and no local is read after it. */
+/* Makes all calls of libpng that may longjmp. `writing` outlives the jump, and no local variable is used
+ * after the jump. */
 static void write_png(png_writing *writing) {
   const hl_image *image = writing->image;
   if (setjmp(png_jmpbuf(writing->png)) != 0) return;

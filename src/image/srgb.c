@@ -63,7 +63,7 @@ static float float_from_bits(uint32_t bits) {
 enum {
   KEY_SHIFT = 15,
   KEY_OF_ONE = 127 << 8
-}; /* the key of x is (its float bits >> KEY_SHIFT) - (KEY_OF_ONE - HL_SRGB_KEYS) */
+}; /* the key of x is (the float bits of x >> KEY_SHIFT) - (KEY_OF_ONE - HL_SRGB_KEYS) */
 
 hl_status hl_srgb_encoder_create(hl_context *context, int maximum, hl_srgb_encoder *encoder,
                                  hl_error *error) {
@@ -112,7 +112,7 @@ int hl_srgb_encode(const hl_srgb_encoder *encoder, float linear) {
 int hl_srgb_encode_offset(const hl_srgb_encoder *encoder, float linear, float offset) {
   int code = hl_srgb_encode(encoder, linear);
   if (!(linear > 0) || linear >= 1) return code;
-  /* Between two steps the curve is straight to within a hundredth of a code. */
+  /* Between two steps the curve differs from a straight line by less than a hundredth of a code. */
   float low = encoder->threshold[code], high = encoder->threshold[code + 1];
   float place = (linear - low) / (high - low) + offset;
   if (place < 0) return code > 0 ? code - 1 : 0;

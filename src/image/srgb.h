@@ -23,7 +23,8 @@ typedef struct hl_srgb_encoder {
   uint16_t *first;  /* owned; [HL_SRGB_KEYS + 1]; the code at the lower end of each interval of float bits */
 } hl_srgb_encoder;
 
-/* The number of intervals of float bits: 8 bits of mantissa in each of the 21 octaves below 1. */
+/* The number of intervals of float bits: 256 for each of the 21 octaves below 1, by the upper 8 bits of the
+ * mantissa. */
 enum { HL_SRGB_KEYS = 21 * 256 };
 
 hl_status hl_srgb_encoder_create(hl_context *context, int maximum, hl_srgb_encoder *encoder, hl_error *error);
@@ -32,7 +33,7 @@ void hl_srgb_encoder_destroy(hl_srgb_encoder *encoder);
 /* The nearest code of a linear value. Values below 0 and NaN give 0; values above 1 give maximum. */
 int hl_srgb_encode(const hl_srgb_encoder *encoder, float linear);
 
-/* The nearest code after an offset is added (in codes, -0.5 < offset < 0.5). */
+/* The nearest code after an offset was added to the encoded value (in codes, -0.5 < offset < 0.5). */
 int hl_srgb_encode_offset(const hl_srgb_encoder *encoder, float linear, float offset);
 
 #endif

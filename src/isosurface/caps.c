@@ -1,5 +1,6 @@
-/* isosurface/caps.c - see caps.h. Each face is covered with triangles a voxel wide. The triangles are cut
- * where the field has the surface's value, then by the other faces and by the box. */
+/* isosurface/caps.c - see caps.h. Each face is covered with triangles that are a voxel wide. The triangles
+ * are then cut: first where the field has the surface's value, and afterwards at the other faces and at the
+ * box. */
 #include "isosurface/caps.h"
 
 #include <math.h>
@@ -10,20 +11,20 @@
 #include "isosurface/clip.h"
 
 /* How far caps extend beyond the inside of the surface, in voxels. The surface and the cap are made of
- * different triangles, whose edges lie apart by less than this; so no gap shows between them. */
+ * different triangles. Their edges lie apart by less than this distance, so no gap shows between them. */
 static const double OVERLAP = 0.03;
 
-/* A face, in a space of its own with coordinates q. On the face q[axis] is `height`, and the other two
- * coordinates run from -1 to 1. For a sphere, these points of a cube's face are then scaled to the length
- * 1. */
+/* A face, described in a space of its own with coordinates q. On the face q[axis] is `height`, and the other
+ * two coordinates run from -1 to 1. For a sphere this is a face of a cube, whose points are then scaled to
+ * the length 1. */
 typedef struct cap_face {
   affine3 to_index, from_index;
   int axis;
   double height;
-  double outward; /* 1: the face's normal points to where q[axis] rises, or for a sphere away from its
-                   * centre; -1: the normal points the other way */
+  double outward; /* 1: the face's normal points to greater q[axis], or for a sphere away from its centre; -1:
+                   * the normal points the other way */
   bool sphere;
-  size_t cut; /* index of the grid's cut; cut_count: the face is one of the box */
+  size_t cut; /* index of the grid's cut; cut_count stands for a face of the box */
 } cap_face;
 
 typedef struct capping {
@@ -31,8 +32,8 @@ typedef struct capping {
   const lattice *lattice;
   const cap_face *face;
   iso_triangles patch;
-  double *inside;   /* owned; [vertices]; for each vertex, the field less the surface's value, with the sign
-                     * that makes it positive inside; stored units */
+  double *inside;   /* owned; [vertices]; for each vertex, the difference of the field and the surface's
+                     * value, with the sign that makes it positive inside; stored units */
   size_t across[2]; /* number of cells along the two coordinates */
 } capping;
 
@@ -49,7 +50,8 @@ static vec3 point_on_face(const cap_face *face, double s, double t) {
   return affine3_apply(face->to_index, q);
 }
 
-/* The outward unit normal in index coordinates: the direction of the gradient of q[axis], or of |q|. */
+/* The outward unit normal of a face in index coordinates. It has the direction of the gradient of q[axis], or
+ * for a sphere of |q|. */
 static vec3 normal_of_face(const cap_face *face, vec3 point) {
   const vec3 q = face->sphere ? affine3_apply(face->from_index, point) : unit_of_axis(face->axis, 1);
   return vec3_scale(vec3_normalise(mat3_apply(mat3_transpose(face->from_index.linear), q)), face->outward);
@@ -89,8 +91,8 @@ static void place_row(void *data, size_t row, int worker) {
 
 /* ---- cut by the field ---- */
 
-/* Adds a vertex on the way from a vertex inside to a vertex outside, OVERLAP beyond the place where the field
- * has the surface's value. The place is found by bisection. */
+/* Adds a vertex between a vertex inside and a vertex outside: OVERLAP beyond the place where the field has
+ * the surface's value. This place is found by bisection. */
 static uint32_t cross_field(capping *cap, uint32_t in, uint32_t out) {
   enum { STEPS = 14 };
   const float *a = cap->patch.positions[in], *b = cap->patch.positions[out];
@@ -138,7 +140,7 @@ static void add_inside(capping *cap, const uint32_t corner[3]) {
 }
 
 /* Visits the two triangles of every cell. If `add` is set, adds the parts of triangles that lie inside the
- * surface. Returns the number of triangles that lie partly inside. */
+ * surface. Returns the number of triangles that the surface cuts. */
 static size_t visit_cells(capping *cap, bool add) {
   size_t crossed = 0;
   const size_t row = cap->across[0] + 1;
@@ -189,7 +191,8 @@ static hl_status make_patch(hl_pool *pool, capping *cap, hl_error *error) {
 
 /* ---- joined to the surface ---- */
 
-/* Appends a patch to the surface: its triangles, and the vertices that they use, each once. */
+/* Appends a patch to the surface: its triangles, and the vertices that they use. Each vertex is appended
+ * once. */
 static hl_status append(hl_context *context, const iso_triangles *patch, iso_triangles *made,
                         hl_error *error) {
   if (patch->triangle_count == 0) return HL_OK;
@@ -222,7 +225,7 @@ static hl_status append(hl_context *context, const iso_triangles *patch, iso_tri
   return status;
 }
 
-/* Cuts a patch by the box and by all cuts but its own. */
+/* Cuts a patch at the box and by all cuts, except by the cut to which the patch belongs. */
 static hl_status trim(hl_context *context, const grid *grid, size_t cut, iso_triangles *patch,
                       hl_error *error) {
   hl_status status = HL_OK;
@@ -232,10 +235,10 @@ static hl_status trim(hl_context *context, const grid *grid, size_t cut, iso_tri
   return status;
 }
 
-/* The number of cells along a face; `half` is half of the face's length, in voxels. A cell is at most a voxel
- * wide. On a sphere of radius r, cells of width h have diagonals of length sqrt(2) h, which lie up to h^2 /
- * (4 r) below the sphere (derived, as in refine.c). There cells are so small that this is at most
- * MOST_DEPTH. */
+/* The number of cells along a face. half: half of the face's length, in voxels. A cell is at most a voxel
+ * wide. On a sphere of radius r, cells of width h have diagonals of length sqrt(2) h, whose middles lie up to
+ * h^2 / (4 r) below the sphere (derived, as in refine.c). On spheres, cells are so small that this depth is
+ * at most MOST_DEPTH. */
 static size_t cells_along(const cap_face *face, double half) {
   enum { MOST_CELLS = 8192 };
   static const double MOST_DEPTH = 0.015;
@@ -283,8 +286,8 @@ static hl_status cap_box(hl_pool *pool, const lattice *lattice, iso_triangles *m
   return status;
 }
 
-/* Places the face of a plane. In the plane's own space x runs across the plane; the face covers the box
- * along y and z. */
+/* Places the face of a plane. In the plane's own space, x runs at a right angle to the plane. The face is
+ * large enough along y and z to cover the box. */
 static bool place_plane(const grid *grid, const cut_shape *shape, cap_face *face) {
   const vec3 row = shape->to_shape.linear.row[0];
   const double length = vec3_length(row),
@@ -303,10 +306,8 @@ static bool place_plane(const grid *grid, const cut_shape *shape, cap_face *face
 static hl_status cap_cut(hl_pool *pool, const lattice *lattice, size_t cut, iso_triangles *made,
                          hl_error *error) {
   const cut_shape *shape = &lattice->grid->cuts[cut];
-  const double away =
-      shape->keep_inside
-          ? 1
-          : -1; /* 1: the outward side of the face points away from the shape's middle; -1: towards it */
+  const double away = shape->keep_inside ? 1 : -1; /* 1: the outward side of the face points away from the
+                                                    * middle of the shape; -1: it points towards the middle */
   cap_face face = {.cut = cut, .from_index = shape->to_shape, .sphere = shape->type == HL_CUT_SPHERE};
   hl_status status = HL_OK;
   if (shape->type == HL_CUT_PLANE) {

@@ -5,9 +5,9 @@
 
 #include "core/memory.h"
 
-/* One cut at one face. The side that is kept is the half space normal . p + offset >= 0, or the inside of a
- * sphere, |q|^2 <= 1. Each triangle gets vertices of its own on the edges that are cut, because the mesh is
- * open there anyway. */
+/* The state of one cut at one face. The side that is kept is the half space normal . p + offset >= 0, or the
+ * inside of a sphere, |q|^2 <= 1. Each triangle gets vertices of its own on the edges that are cut, because
+ * the mesh is open there anyway. */
 typedef struct cutting {
   hl_context *context;
   iso_triangles *made;
@@ -39,8 +39,8 @@ static double crossing_of_sphere(const cutting *cut, uint32_t a, uint32_t b) {
   return fmin(fmax(t, 0), 1);
 }
 
-/* Adds the vertex where the edge from a to b crosses the face. Both triangles beside the edge get the same
- * position. */
+/* Adds the vertex where the edge from a to b crosses the face. The two triangles that share the edge add
+ * vertices at the same position. */
 static uint32_t cross_edge(cutting *cut, uint32_t a, uint32_t b) {
   if (a > b) {
     uint32_t kept = a;
@@ -58,7 +58,7 @@ static uint32_t cross_edge(cutting *cut, uint32_t a, uint32_t b) {
   return vertex;
 }
 
-/* Cuts a triangle, and writes its parts on one side at *to. */
+/* Cuts a triangle, and writes those of its parts that lie on one side at *to. */
 static void cut_triangle(cutting *cut, const uint32_t corner[3], bool above, uint32_t (*triangles)[3],
                          size_t *to) {
   uint32_t kept[4];
@@ -87,8 +87,8 @@ static size_t count_cut(const cutting *cut) {
   return count;
 }
 
-/* Makes room for the results of a cut. Each triangle that is cut adds at most one triangle and two
- * vertices, or twice as many where both sides are kept. */
+/* Makes room for the results of a cut. Each triangle that is cut adds at most one triangle and two vertices;
+ * where both sides are kept, it adds at most twice as many. */
 static hl_status make_room(cutting *cut, size_t more, uint32_t (**triangles)[3], hl_error *error) {
   iso_triangles *made = cut->made;
   void *positions = hl_reallocate(cut->context, made->positions, made->vertex_count + 4 * more,
@@ -124,7 +124,7 @@ static hl_status cut_all(cutting *cut, hl_error *error) {
   return HL_OK;
 }
 
-/* Whether some vertex lies on the other side of the face than the side that is kept. */
+/* Whether some vertex lies on the side of the face that is not kept. */
 static bool cuts(const cutting *cut) {
   for (size_t v = 0; v < cut->made->vertex_count; v++)
     if (height(cut, (uint32_t)v) < 0) return true;
@@ -148,7 +148,8 @@ hl_status hl_iso_clip_box(hl_context *context, iso_triangles *triangles, const d
 
 static int faces_of(const cut_shape *shape) { return shape->type == HL_CUT_BOX ? 6 : 1; }
 
-/* A plane's face is where x is 0, a box's where x, y or z are -1 or 1. */
+/* The cut at one face of a shape. The face of a plane is where x is 0; the faces of a box are where x, y or z
+ * is -1 or 1. */
 static cutting face_of(const cut_shape *shape, int face) {
   double sign = face % 2 ? -1 : 1, edge = shape->type == HL_CUT_BOX ? 1 : 0;
   const double *offset = &shape->to_shape.offset.x;

@@ -1,11 +1,11 @@
 /* isosurface/cubes.c - see cubes.h. The patterns are derived.
  *
  * Walk around a face of the cube, counter-clockwise as seen from outside. On the face, the surface runs from
- * the edge where the walk comes inside to the edge where the walk leaves again. If a walk comes inside at an
- * edge on one of the edge's two faces, the walk around the other face leaves there. So these steps link the
- * crossed edges to loops, which are cut into triangles. Both cubes beside a face have the same crossings on
- * it, so that the surface has no holes. Where only two opposite corners of a face are inside, each of them is
- * cut off for itself. */
+ * the edge where the walk enters the inside of the surface to the edge where the walk leaves it again. An
+ * edge belongs to two faces: if the walk around one of them enters the inside at this edge, the walk around
+ * the other one leaves there. So these pairs of edges link the crossed edges to loops, and the loops are cut
+ * into triangles. Both cubes beside a face find the same pairs on it, so that the surface has no holes. Where
+ * just two opposite corners of a face are inside, the surface cuts off each of them separately. */
 #include "isosurface/cubes.h"
 
 int hl_cube_edge_corner(int edge) {
@@ -28,8 +28,8 @@ static void corners_of_face(int face, int corner[4]) {
   for (int i = 0; i < 4; i++) corner[i] = face % 2 ? high[i] | 1 << axis : low[i];
 }
 
-/* Sets next[edge] for each edge at which a walk around the face comes inside: the edge at which the walk
- * leaves again. */
+/* For each edge at which a walk around the face enters the inside, sets next[edge] to the edge at which the
+ * walk leaves the inside again. */
 static void link_face(int pattern, int face, int next[CUBE_EDGES]) {
   int corner[4];
   corners_of_face(face, corner);

@@ -13,15 +13,15 @@ enum { CUBE_EDGES = 12, CUBE_PATTERNS = 256, CUBE_TRIANGLES = 10 };
 /* The corner at which an edge begins. */
 int hl_cube_edge_corner(int edge);
 
-/* The triangles of a pattern of corners. Each triangle is given by the three edges on which its vertices lie,
+/* The triangles for one pattern of corners. A triangle is given by the three edges on which its vertices lie,
  * counter-clockwise as seen from outside. */
 typedef struct cube_triangles {
   uint8_t count;
   uint8_t edge[CUBE_TRIANGLES][3];
 } cube_triangles;
 
-/* Fills the table of patterns, [CUBE_PATTERNS]. Bit i of a pattern's index is set where corner i lies inside.
- */
+/* Fills the table of patterns, [CUBE_PATTERNS]. Bit i of a pattern's index is set where corner i of the cube
+ * lies inside. */
 void hl_cube_patterns(cube_triangles *patterns);
 
 #endif

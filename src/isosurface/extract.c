@@ -1,5 +1,5 @@
-/* isosurface/extract.c - cuts the cells of a lattice into triangles, whose vertices lie where the edges
- * between points cross the surface. */
+/* isosurface/extract.c - cuts the cells of a lattice into triangles. The triangles' vertices lie where edges
+ * between points of the lattice cross the surface. */
 #include "core/memory.h"
 #include "isosurface/cubes.h"
 #include "isosurface/triangles.h"
@@ -24,8 +24,8 @@ void hl_iso_triangles_release(hl_context *context, iso_triangles *triangles) {
 
 enum { EDGE_VOXELS = FIELD_TAPS + 2 };
 
-/* The field along an edge, as numbers on a row of places along the edge, a voxel apart. Each number is the
- * weighted sum of the voxels across the edge at this place. */
+/* The field along an edge, as sums of voxels at places that are a voxel apart along the edge. The sum at a
+ * place is the weighted sum of the voxels across the edge. */
 typedef struct edge_field {
   const kernel *kernel;
   double start;  /* coordinate of the edge's beginning along the edge's axis */
@@ -67,7 +67,7 @@ static double value_on_edge(const edge_field *field, double way) {
 /* The least distance of a vertex from the ends of its edge, in voxels, so that every triangle has an area. */
 static const double LEAST_WAY = 1.0 / 16384;
 
-/* Returns the distance, from the beginning of an edge, of the place where the field has the surface's value.
+/* Returns where on an edge the field has the surface's value, as a distance from the beginning of the edge.
  * It is found by false position (the Illinois method; Dowell and Jarratt 1971). length: the edge's length. */
 static double find_crossing(const lattice *lattice, int axis, const double from[3], double length) {
   enum { MOST_STEPS = 24 };
@@ -115,14 +115,15 @@ static void place_vertices(void *data, size_t index, int worker) {
 
 /* ---- cells ---- */
 
-/* A point of the lattice in one of the eight bricks around a cell. */
+/* A point of the lattice, given by one of the eight bricks around a cell and the point's bit in it. */
 typedef struct near_point {
   const lattice_brick *brick;
   int bit;
 } near_point;
 
-/* Finds a point near a brick. around: the brick and its neighbours, in the order of a cube's corners. p:
- * coordinates within the brick, from 0 to SIDE; SIDE lies in the next brick. */
+/* Finds a point of a brick or of its next neighbours. around: the brick and its neighbours, in the order of a
+ * cube's corners. p: coordinates counted from the brick's first point, from 0 to SIDE; a coordinate of SIDE
+ * lies in the next brick. */
 static near_point find_point(const lattice_brick *const around[8], const int p[3]) {
   int corner = (p[0] == SIDE) + 2 * (p[1] == SIDE) + 4 * (p[2] == SIDE);
   return (near_point){around[corner], p[0] % SIDE + SIDE * (p[1] % SIDE + SIDE * (p[2] % SIDE))};
@@ -142,7 +143,7 @@ static bool is_cell(const lattice *lattice, const lattice_brick *brick, const in
   return true;
 }
 
-/* The pattern of those corners of a cell that lie inside. It is 0 where the lattice has no such cell. */
+/* The pattern of a cell: which of its corners lie inside. It is 0 where the lattice has no such cell. */
 static int pattern_of_cell(const lattice *lattice, const lattice_brick *const around[8], const int cell[3]) {
   int pattern = 0;
   if (!is_cell(lattice, around[0], cell)) return 0;
@@ -196,7 +197,7 @@ static void write_triangles(void *data, size_t index, int worker) {
   (void)cut_cells(job, index, job->made->triangles + job->lattice->bricks[index].triangle);
 }
 
-/* Gives each brick the numbers of its first vertex and of its first triangle. */
+/* Gives each brick the numbers that its first vertex and its first triangle have in the mesh. */
 static hl_status number_parts(extraction *job, hl_error *error) {
   size_t vertices = 0, triangles = 0;
   for (size_t b = 0; b < job->lattice->count; b++) {

@@ -1,6 +1,6 @@
-/* isosurface/isosurface.c - see isosurface.h. The cells of a lattice are cut into triangles. The triangles'
- * edges are halved where the surface bends. Then the triangles are cut at the volume's box and at cuts, and
- * caps are added at the box's and the cuts' faces. At last all triangles are moved to the world. */
+/* isosurface/isosurface.c - see isosurface.h. The steps are: the cells of a lattice are cut into triangles;
+ * edges of triangles are halved where the surface bends; the triangles are cut at the volume's box and at
+ * cuts; caps are added at the faces of the box and of cuts; all triangles are moved to the world. */
 #include "isosurface/isosurface.h"
 
 #include <string.h>
@@ -40,8 +40,8 @@ static void move_vertices(void *data, size_t index, int worker) {
   }
 }
 
-/* Moves the triangles to the world. Where the map mirrors, the triangles' order of corners is turned round.
- */
+/* Moves the triangles to the world. If the map mirrors, it also reverses the order of each triangle's
+ * corners. */
 static hl_status place(hl_pool *pool, const hl_scene_volume *volume, const grid *grid, iso_triangles *made,
                        hl_error *error) {
   move_job job = {.placement = placement_of(volume, grid), .made = made};

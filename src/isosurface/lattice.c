@@ -23,9 +23,9 @@ const lattice_brick *hl_lattice_brick(const lattice *lattice, const int32_t at[3
 
 enum { CROSSED = 1, KEPT = 2 };
 
-/* Whether the surface's value may occur in a brick's cells, which are the cells of the grid's brick at the
+/* Whether the surface's value may occur in a brick's cells. These are the cells of the grid's brick at the
  * same place. With an interpolating kernel the voxels are coefficients. The field is a weighted mean of
- * coefficients, too, so their bounds are its bounds. */
+ * coefficients, so the bounds of the coefficients are bounds of the field. */
 static bool brick_crossed(const lattice *lattice, const int32_t at[3]) {
   const grid *grid = lattice->grid;
   float bounds[2];
@@ -35,7 +35,8 @@ static bool brick_crossed(const lattice *lattice, const int32_t at[3]) {
   return bounds[0] <= lattice->value && bounds[1] >= lattice->value;
 }
 
-/* Marks a crossed brick to be kept, and those bricks beside it that hold points of its cells. */
+/* Marks two kinds of bricks to be kept: a crossed brick, and the bricks beside it that hold points of its
+ * cells. */
 static void keep_around(const lattice *lattice, const int32_t at[3], unsigned char *marks) {
   for (int corner = 0; corner < 8; corner++) {
     const int32_t beside[3] = {at[0] + (corner & 1), at[1] + (corner >> 1 & 1), at[2] + (corner >> 2)};
@@ -76,8 +77,8 @@ static void list_bricks(lattice *lattice, const unsigned char *marks) {
 
 enum { SIDE = HL_BRICK_CELLS, WINDOW = SIDE + 4 };
 
-/* Replaces, along one axis of a window, the voxels' values by weighted sums of them at a brick's points.
- * from: [outer][WINDOW][inner]; to: [outer][SIDE][inner]. */
+/* Weighs the voxels of a window along one axis: replaces them by the weighted sums at a brick's points. from:
+ * [outer][WINDOW][inner]; to: [outer][SIDE][inner]. */
 static void weigh_axis(const double weight[SIDE][WINDOW], const double *from, int outer, int inner,
                        double *to) {
   for (int o = 0; o < outer; o++)
@@ -125,7 +126,7 @@ static void find_inside(void *data, size_t index, int worker) {
 
 /* ---- edges ---- */
 
-/* For each axis, the points of a brick that have the greatest coordinate along it, one bit each. */
+/* For each axis, the points of a brick whose coordinate along the axis is the greatest; one bit each. */
 static const uint64_t last_points[3] = {0x8888888888888888u, 0xf000f000f000f000u, 0xffff000000000000u};
 
 /* The points of a brick at which edges along an axis begin, one bit each. An edge begins at each point of the

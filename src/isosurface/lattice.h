@@ -1,4 +1,5 @@
-/* isosurface/lattice.h - a lattice of points that knows of each point whether it lies inside the surface.
+/* isosurface/lattice.h - a lattice of points; for each point it tells whether the point lies inside the
+ * surface.
  *
  * The points stand at the voxels, and on the faces of the grid: along an axis of n voxels, point 0 lies at
  * -0.5, point i at i - 1, point n + 1 at n - 0.5. A cell lies between 2x2x2 points, and has the number of
@@ -16,7 +17,7 @@ typedef struct lattice_brick {
   uint8_t crossed;   /* the surface may run through its cells */
   uint64_t inside;   /* the points that lie inside */
   uint64_t cross[3]; /* for each axis, the points from which an edge along this axis begins that crosses the
-                      * surface */
+                      * surface; one bit each */
   uint32_t vertex;   /* number of the brick's first vertex; its other vertices follow, sorted by axis and
                       * then by point */
   uint32_t triangle; /* number of its first triangle */
@@ -29,11 +30,11 @@ typedef struct lattice {
   const grid *grid;
   const kernel *kernel;
   double value;      /* the surface's value; stored units */
-  double sign;       /* 1: greater values lie inside; -1: lesser values do */
+  double sign;       /* 1: the side of greater values is the inside; -1: the side of lesser values is */
   double outside[3]; /* the distance of the outermost points from the outermost voxels */
   int32_t points[3]; /* n + 2 */
   int32_t brick_count[3];
-  uint32_t *slot;        /* owned; [bricks z][y][x]; the place of each brick in `bricks`; LATTICE_NONE: the
+  uint32_t *slot;        /* owned; [bricks z][y][x]; the index of each brick in `bricks`; LATTICE_NONE: the
                           * brick is not kept */
   lattice_brick *bricks; /* owned; [count]; in rising order */
   size_t count;
@@ -57,7 +58,7 @@ static inline double hl_lattice_position(const lattice *lattice, int axis, int32
                                           : i - 1.0;
 }
 
-/* The brick at these coordinates; null: it is not kept. */
+/* The brick at some coordinates; null: this brick is not kept. */
 const lattice_brick *hl_lattice_brick(const lattice *lattice, const int32_t at[3]);
 
 #endif

@@ -1,18 +1,18 @@
 /* isosurface/refine.c - halves the edges of triangles where the surface bends away from them.
  *
- * Over an edge e between the unit normals m and n the surface rises by about |e . (n - m)| / 8 (derived: on a
- * circle of radius r the normals' difference along e is |e| / r, and the arc rises by |e|^2 / (8 r) above its
- * chord). An edge is halved in both triangles beside it, so that there are no gaps. Lengths are measured in
- * the world, in units of a voxel's smallest edge. Lengths in index space would be wrong where voxels are
- * long. */
+ * Let e be an edge, and m and n the unit normals at its ends. Above the middle of the edge, the surface rises
+ * by about |e . (n - m)| / 8 (derived: on a circle of radius r the normals' difference along e is |e| / r,
+ * and the arc rises by |e|^2 / (8 r) above its chord). An edge is halved in both triangles beside it, so that
+ * there are no gaps. Lengths are measured in the world, in units of a voxel's smallest edge. Lengths in index
+ * space would be wrong where voxels are long. */
 #include <stdlib.h>
 
 #include "core/memory.h"
 #include "isosurface/triangles.h"
 #include "mesh/mesh.h"
 
-/* The greatest rise of the surface above an edge that is left whole. Above the middle of an equilateral
- * triangle the surface rises 4/3 as far. */
+/* The greatest rise of the surface above an edge that is left whole. The surface rises 4/3 as far above the
+ * middle of an equilateral triangle as above its edges. */
 static const double MOST_RISE = 0.014;
 
 /* An edge of this length or less is left whole however much the surface bends. Otherwise noise, whose
@@ -23,13 +23,13 @@ static const double LEAST_EDGE = 0.75;
 typedef struct halving {
   const lattice *lattice;
   iso_triangles *made;
-  uint64_t *edges; /* owned; [count]; the edges to halve, in rising order; an edge is a number of 64 bits,
-                    * whose upper half is its lesser vertex and whose lower half is the other vertex */
+  uint64_t *edges; /* owned; [count]; the edges to halve, in rising order. An edge is a number of 64 bits: the
+                    * upper half is the lesser of its two vertices, the lower half the greater one */
   size_t count;
   size_t first_vertex; /* number of the first vertex that is an edge's middle */
-  mat3 ways, turns;    /* `ways` maps differences of index coordinates to the world; `turns`, its inverse
-                          transpose, maps normals */
-  float (*normals)[3]; /* owned; [vertices that are no middles of edges]; unit normals in the world */
+  mat3 ways, turns;    /* `ways` maps differences of index coordinates to the world; `turns`, the inverse
+                        * transpose of `ways`, maps normals */
+  float (*normals)[3]; /* owned; unit normals, in the world, of the vertices that are not middles of edges */
 } halving;
 
 static vec3 vertex_of(const float (*of)[3], uint32_t vertex) {
@@ -93,9 +93,10 @@ static int64_t middle_of(const halving *job, uint32_t a, uint32_t b) {
   return found != NULL ? (int64_t)(job->first_vertex + (size_t)(found - job->edges)) : -1;
 }
 
-/* Moves a point of index space onto the surface, along the field's slope in the world (Newton's method). If
- * the surface is farther away than `reach`, the point stays. The reach is a length in the world, because in
- * long voxels the middle of an edge may have to move by several short voxel edges. */
+/* Moves a point of index space onto the surface, in the direction of the field's gradient in the world
+ * (Newton's method). If the surface is farther away than `reach`, the point stays. The reach is a length in
+ * the world, because in long voxels the middle of an edge may have to move by several of the short voxel
+ * edges. */
 static vec3 move_to_surface(const halving *job, vec3 start, double reach) {
   enum { STEPS = 4 };
   const lattice *lattice = job->lattice;
@@ -132,8 +133,8 @@ static void put(uint32_t (*triangles)[3], size_t *count, uint32_t a, uint32_t b,
   triangle[0] = a, triangle[1] = b, triangle[2] = c;
 }
 
-/* Writes the parts of a triangle. Its edge from corner 0 to corner 1 must be halved; its edge from corner 2
- * to corner 0 must be whole, unless all three edges are halved. */
+/* Writes the parts of a triangle whose edges are halved. The edge from corner 0 to corner 1 must be halved.
+ * The edge from corner 2 to corner 0 must be whole, unless all three edges are halved. */
 static void put_parts(uint32_t (*triangles)[3], size_t *count, const uint32_t v[3], const int64_t m[3]) {
   uint32_t m0 = (uint32_t)m[0], m1 = (uint32_t)m[1], m2 = (uint32_t)m[2];
   if (m[1] < 0) {
@@ -171,7 +172,7 @@ static void put_triangle(const halving *job, const uint32_t corner[3], uint32_t 
   put_parts(triangles, count, v, m);
 }
 
-/* Makes room for the middles, and places them. */
+/* Makes room for the vertices in the middles of the edges, and places these vertices. */
 static hl_status add_middles(hl_pool *pool, halving *job, hl_error *error) {
   hl_context *context = job->lattice->context;
   iso_triangles *made = job->made;
@@ -188,7 +189,7 @@ static hl_status add_middles(hl_pool *pool, halving *job, hl_error *error) {
   return hl_lattice_run(pool, job->count, place_middle, job, error);
 }
 
-/* The number of triangles when all listed edges are halved. */
+/* The number of triangles after all listed edges have been halved. */
 static size_t count_parts(const halving *job) {
   size_t count = job->made->triangle_count;
   for (size_t t = 0; t < job->made->triangle_count; t++)
@@ -225,8 +226,8 @@ static hl_status halve(hl_pool *pool, halving *job, size_t listed, hl_error *err
   return status;
 }
 
-/* Halves each edge that lies too far from the surface. *any becomes false where there is no such edge, or no
- * room for more triangles. */
+/* Halves all edges that lie too far from the surface, once. *any becomes false where there is no such edge,
+ * or no room for more triangles. */
 static hl_status halve_edges(hl_pool *pool, const lattice *lattice, iso_triangles *triangles, bool *any,
                              hl_error *error) {
   halving job = {.lattice = lattice, .made = triangles};
@@ -246,7 +247,7 @@ static hl_status halve_edges(hl_pool *pool, const lattice *lattice, iso_triangle
   hl_status status = hl_lattice_run(pool, (vertices + RUN_VERTICES - 1) / RUN_VERTICES, turn_normals, &job,
                                     error);
   const size_t listed = status == HL_OK ? list_edges(&job, NULL)
-                                        : 0; /* an edge between two triangles is listed twice */
+                                        : 0; /* an edge that two triangles share is listed twice */
   *any = listed > 0 && triangles->triangle_count + listed <= HL_LIMIT_TRIANGLES;
   if (*any) status = halve(pool, &job, listed, error);
   hl_release(lattice->context, job.normals);

@@ -7,7 +7,7 @@
 
 typedef struct iso_triangles {
   float (*positions)[3];    /* owned; [vertex_count]; index space */
-  float (*normals)[3];      /* owned; [vertex_count]; unit, by index coordinates */
+  float (*normals)[3];      /* owned; [vertex_count]; unit vectors in index coordinates */
   uint32_t (*triangles)[3]; /* owned; [triangle_count]; counter-clockwise as seen from outside */
   size_t vertex_count, triangle_count;
 } iso_triangles;

@@ -85,8 +85,8 @@ static msh msh_of(const double srgb[3]) {
   return (msh){m, s, s > 0.001 ? atan2(lab[2], lab[1]) : 0};
 }
 
-/* The hue that an unsaturated colour of magnitude m is given, so that colours change evenly towards the
- * saturated colour. */
+/* The hue that an unsaturated colour of magnitude m gets when it is mixed with a saturated one. With this
+ * hue, colours change evenly from one to the other. */
 static double spun_hue(msh saturated, double m) {
   if (saturated.m >= m - 0.1) return saturated.h;
   double spin = saturated.s * sqrt(m * m - saturated.m * saturated.m) / (saturated.m * sin(saturated.s));

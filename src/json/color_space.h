@@ -4,9 +4,9 @@
 
 typedef enum hl_color_space {
   HL_SPACE_RGB = 0,
-  HL_SPACE_HSV = 1,       /* hues are mixed as numbers from red, 0, over green and blue to red, 1 */
+  HL_SPACE_HSV = 1,       /* hues are mixed as numbers from 0 (red) over green and blue to 1 (red again) */
   HL_SPACE_LAB = 2,       /* CIELAB, white point D65 */
-  HL_SPACE_DIVERGING = 3, /* Moreland's Msh, through white between distant hues */
+  HL_SPACE_DIVERGING = 3, /* Moreland's Msh; colours of very different hues are mixed by way of white */
   HL_SPACE_STEP = 4,      /* colours are not mixed: the second colour begins right after the first point,
                            * as in VTK */
   HL_SPACE_HSV_ARC = 5    /* hues are mixed along the shorter arc of the colour circle */

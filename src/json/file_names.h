@@ -1,4 +1,4 @@
-/* json/file_names.h - the name by which a scene's text calls a file that lies beside the text. */
+/* json/file_names.h - names of files in a scene's text, relative to the folder of this text. */
 #ifndef HL_JSON_FILE_NAMES_H
 #define HL_JSON_FILE_NAMES_H
 
@@ -9,8 +9,9 @@
  * such folder. */
 bool hl_json_find_folder(const char *folder, char found[PATH_MAX]);
 
-/* The name of a file relative to a folder from hl_json_find_folder(), written to `name`. The result is `file`
- * itself where the file is neither in the folder nor below. The file may be a link, and need not exist. */
+/* Finds the name of a file relative to a folder, which hl_json_find_folder() gave. The name is written to
+ * `name`. If the file is not in the folder or in one of its subfolders, the result is `file` itself. The file
+ * may be a link, and need not exist. */
 const char *hl_json_name_from(const char *folder, const char *file, char name[PATH_MAX]);
 
 #endif

@@ -7,7 +7,7 @@
 #include "core/memory.h"
 #include "json/parts.h"
 
-/* The image of `like` that was read from this file. pixels is null if there is none. */
+/* An image that the scene `like` has loaded already. pixels is null if `like` does not have the image. */
 typedef struct known_image {
   const float *pixels; /* [height][width][channels] */
   int width, height;
@@ -26,7 +26,8 @@ static known_image find_function_image(const hl_scene_description *like, const c
   return (known_image){NULL, 0, 0};
 }
 
-/* Finds the image of `like` that was read from a file. Only images of transfer functions keep their alpha. */
+/* Finds an image that `like` has loaded from this file. With 4 channels, only images of transfer functions
+ * count, as others have lost alpha. */
 static known_image find_known(const hl_scene_description *like, const char *path, int channels) {
   if (channels == 4) return find_function_image(like, path);
   const hl_sky *sky = &like->sky;
@@ -68,8 +69,8 @@ static hl_status copy_known(hl_json_reader *reader, const char *file, const hl_j
   return HL_OK;
 }
 
-/* Copies an image's colours, without alpha where it is not wanted. Premultiplied colours without alpha are
- * the image over black. */
+/* Copies an image's pixels, with as many channels as `to` has. If alpha is left out, the result is the image
+ * over black, because the colours are premultiplied. */
 static hl_status take_pixels(hl_json_reader *reader, const hl_image *image, const hl_json_image *to) {
   size_t count = (size_t)hl_image_width(image) * (size_t)hl_image_height(image);
   size_t channels = (size_t)to->channels;

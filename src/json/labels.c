@@ -1,9 +1,10 @@
 /* json/labels.c - the labels of a volume that is a label map, from JSON.
  *
- * "labels" is true for all labels that the voxels have, or a list of those that show: each by its number or
- * its name, with a colour, an opacity and a switch of its own. A property that a label lacks comes from the
- * table that "label_table" names, or else from the file. A colour that neither has is chosen to differ from
- * the neighbours' colours. */
+ * "labels" is either true, for all labels that the voxels have, or a list of the labels that are shown. The
+ * list names each label by its number or its name, and may give its colour, its opacity and whether it is
+ * visible. A missing name or colour is taken from the table that "label_table" names, or else from the
+ * volume's file. If neither has a colour, a colour is chosen that differs from the colours of neighbouring
+ * labels. */
 #include <math.h>
 #include <string.h>
 
@@ -16,7 +17,8 @@
 
 static const char *const label_keys[] = {"value", "name", "color", "opacity", "visible", "tint", NULL};
 
-/* The labels of the volume, which are found when they are first needed. */
+/* The labels that the volume's file or the label table describes. They are found when they are first
+ * needed. */
 typedef struct known_labels {
   hl_json_reader *reader;
   const hl_volume *map;
@@ -47,8 +49,8 @@ static const hl_label *known_by_name(const known_labels *known, const char *name
   return NULL;
 }
 
-/* Fills the properties that the object leaves to the file: the label's number by its name, its name and
- * colour. */
+/* Takes missing properties of a label from its description in the file or table. If the object gives only a
+ * name, this also finds the label's number. */
 static hl_status take_known(known_labels *known, const json_t *object, const char *name, hl_label *label) {
   bool by_name = json_object_get(object, "value") == NULL;
   if (!by_name && json_object_get(object, "color") != NULL) return HL_OK;
@@ -63,7 +65,7 @@ static hl_status take_known(known_labels *known, const json_t *object, const cha
   return HL_OK;
 }
 
-/* Reads the number of a label, which no double rounds. */
+/* Reads the number of a label, without rounding an integer to a double. */
 static hl_status read_value(hl_json_reader *reader, const json_t *object, int64_t *number) {
   const json_t *value = json_object_get(object, "value");
   double real = json_is_real(value) ? json_real_value(value) : 0.5;
@@ -87,7 +89,7 @@ static hl_status read_label(known_labels *known, const json_t *object, hl_label 
   if (status == HL_OK) status = take_known(known, object, name, label);
   if (status == HL_OK && name != NULL) label->name = name;
   if (status == HL_OK) status = hl_json_numbers(reader, object, "color", 3, label->color);
-  /* In a mask, only a label with a colour tints. */
+  /* In a mask, a label tints by default if the scene gives it a colour. */
   if (json_object_get(object, "color") != NULL) label->tint = 1;
   if (status == HL_OK) status = hl_json_number(reader, object, "tint", &label->tint);
   if (status == HL_OK) status = hl_json_number(reader, object, "opacity", &label->opacity);

@@ -8,9 +8,9 @@
 const char *const hl_json_mesh_keys[] = {"vertices", "triangles",     "normals", "colors",      "face_colors",
                                          "spheres",  "sphere_colors", "lines",   "line_colors", NULL};
 
-/* The properties of an array of rows of numbers. */
+/* What is allowed in an array of rows of numbers, and how it is completed. */
 typedef struct row_kind {
-  size_t least, most; /* least and greatest number of numbers in a row */
+  size_t least, most; /* a row may have from `least` to `most` numbers */
   double rest;        /* value of numbers that a row lacks */
   const char *wanted; /* for errors: the value that the scene should give instead */
 } row_kind;

@@ -15,8 +15,8 @@ static bool same_text(const char *a, const char *b) {
   return a == NULL || b == NULL ? a == b : strcmp(a, b) == 0;
 }
 
-/* A mesh with this path that is known already: from the scene `like`, or from an earlier place of this
- * scene. Null if there is none. */
+/* Finds a mesh that was already loaded from this path, for this scene or for the scene `like`. Null if there
+ * is none. */
 static hl_mesh *known_mesh(const hl_json_reader *reader, const hl_mesh_shelf *shelf, const char *path) {
   for (size_t m = 0; m < shelf->count; m++)
     if (same_text(shelf->meshes[m].file, path)) return shelf->meshes[m].mesh;
@@ -25,7 +25,8 @@ static hl_mesh *known_mesh(const hl_json_reader *reader, const hl_mesh_shelf *sh
   return NULL;
 }
 
-/* Loads the file, or takes its mesh from the known meshes. *mesh then owns path and mesh. */
+/* Loads a mesh from a file, or takes it from the meshes that were loaded already. *mesh then owns path and
+ * mesh. */
 static hl_status load(hl_json_reader *reader, const hl_mesh_shelf *shelf, char *path, hl_scene_mesh *mesh) {
   hl_mesh *known = known_mesh(reader, shelf, path);
   mesh->file = path;
@@ -94,7 +95,8 @@ static hl_status read_mesh(hl_json_reader *reader, const json_t *value, hl_mesh_
   return status;
 }
 
-/* Reads the look of a floor to `place`, its future place behind the meshes. */
+/* Reads the properties of a floor, which is made later. `place` is its index in the list, after all other
+ * meshes. */
 static hl_status read_floor(hl_json_reader *reader, const json_t *value, hl_mesh_shelf *shelf, size_t place) {
   double *size = &shelf->floor_sizes[shelf->floor_count++];
   *size = json_is_true(json_object_get(value, "floor")) ? HL_FLOOR_SIZE : 0;

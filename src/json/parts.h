@@ -51,8 +51,8 @@ typedef struct hl_volume_shelf {
   hl_loaded_volume *loaded; /* owned; [count]; has room for one more element whenever a volume is read */
   size_t count;
   const json_t *groups; /* the groups of shapes; may be null */
-  json_t *stood_in;     /* owned; volumes whose file was absent, each with the keys of its stand-in; null if
-                         * there are none */
+  json_t *stood_in;     /* owned; the volumes whose file was absent, as copies of their JSON with the keys of
+                         * their stand-ins; null if there are none */
   hl_space space;       /* the scene's space, which is the space of the first volume that states one; later
                          * volumes are turned into it */
   bool projected;       /* whether the picture is a maximum projection */
@@ -83,28 +83,29 @@ char *hl_json_path(const hl_json_reader *reader, const char *file);
 hl_status hl_json_read_transform(hl_json_reader *reader, const json_t *value, hl_setting_kind kind,
                                  void *target);
 
-/* The meshes that are read for one scene; floors come last. Their names are borrowed from the JSON tree. */
+/* The meshes of one scene. Floors are the last ones in the list. The names are borrowed from the JSON
+ * tree. */
 typedef struct hl_mesh_shelf {
   hl_scene_mesh *meshes; /* owned, with their files and triangles; [count + floor_count] */
   double *floor_sizes;   /* owned; [floor_count] */
   size_t count;          /* number of meshes that are made */
-  size_t floor_count;    /* number of floors that are not made yet, as their place depends on the camera; they
-                          * follow the other meshes */
+  size_t floor_count;    /* number of floors that are still to be made, after the camera is known, on which
+                          * their place depends; they follow the other meshes */
 } hl_mesh_shelf;
 
-/* Reads the array "meshes", except its floors; null if absent. The shelf is released by
- * hl_json_release_meshes(), also after a failure. */
+/* Reads the array "meshes"; null if absent. Of floors, only their properties are read. The shelf is released
+ * by hl_json_release_meshes(), also after a failure. */
 hl_status hl_json_read_meshes(hl_json_reader *reader, const json_t *value, hl_mesh_shelf *shelf);
 
-/* Makes the meshes that are floors. They lie below the scene's volumes and below all meshes of the scene that
- * are no floors. shelf: the scene's meshes. */
+/* Makes the floors of a scene. They lie below its volumes and below its other meshes. shelf: the scene's
+ * meshes. */
 hl_status hl_json_add_floors(hl_json_reader *reader, const hl_scene_description *scene, hl_mesh_shelf *shelf);
 
 /* Reads the arrays of a mesh that the scene itself lists: "vertices", "triangles", "spheres", "lines" and
  * their colours. *mesh is owned by the caller. */
 hl_status hl_json_read_mesh_arrays(hl_json_reader *reader, const json_t *value, hl_mesh **mesh);
 
-/* The keys of the arrays of a mesh; null ends the list. */
+/* The keys of a mesh's arrays; null ends the list. */
 extern const char *const hl_json_mesh_keys[];
 void hl_json_release_meshes(hl_context *context, hl_mesh_shelf *shelf);
 
@@ -131,7 +132,7 @@ typedef struct hl_json_range {
 hl_status hl_json_read_range(hl_json_reader *reader, const json_t *value, const hl_volume *volume,
                              hl_json_range *range);
 
-/* The volume that a transfer function is read for. */
+/* What the default of a transfer function depends on: the volume, and how it is shown. */
 typedef struct hl_function_subject {
   const hl_volume *volume; /* null for a file that holds only a function; functions that depend on the voxels
                             * are then refused */
@@ -139,8 +140,8 @@ typedef struct hl_function_subject {
   bool projected;          /* the picture is a maximum projection; the default is a ramp of greys */
 } hl_function_subject;
 
-/* Reads a transfer function. If value is null, the function is the subject's default, which is automatic
- * where the subject is neither solid nor projected. */
+/* Reads a transfer function. If value is null, the result is the subject's default: an opaque solid, a ramp
+ * of greys for a maximum projection, or else the automatic function. */
 hl_status hl_json_read_transfer_function(hl_json_reader *reader, const json_t *value,
                                          hl_function_subject subject, hl_transfer_function *function);
 

@@ -1,7 +1,7 @@
 /* json/scene.c - reads a scene file's top level, and loads the files that it names.
  *
- * The image's size, the volumes and the meshes come before the camera, which by default frames them; floors
- * come after it.
+ * The image's size, the volumes and the meshes are read before the camera, because by default the camera
+ * frames them. Floors are made after the camera is known.
  */
 #include <string.h>
 
@@ -51,7 +51,8 @@ static void release(hl_context *context, gathered *g) {
   hl_release(context, g->lights);
 }
 
-/* Checks the ranges of a table's settings early, where reading the rest of the scene depends on them. */
+/* Checks whether settings are in their ranges. This is done early for settings on which reading the rest of
+ * the scene depends. */
 static hl_status check_settings(hl_json_reader *reader, hl_setting_kind kind, const void *object,
                                 const char *place) {
   hl_status status = hl_settings_check(kind, object, 0, place, reader->error);
@@ -77,7 +78,7 @@ static hl_status refuse_key(hl_json_reader *reader, const json_t *object, const 
   return has(object, key) ? hl_json_fail(reader, HL_ERROR_INPUT, key, "%s", mend) : HL_OK;
 }
 
-/* Frames the volumes with a camera whose type and field of view are set. */
+/* Places a camera so that it frames the volumes. Its type and field of view must be set. */
 static hl_status frame(hl_json_reader *reader, const hl_scene_description *d, hl_camera *camera) {
   hl_status status = camera->type == HL_CAMERA_PERSPECTIVE
                          ? hl_settings_check_key(HL_SETTINGS_CAMERA, "fovy_deg", camera, "/camera",
@@ -181,7 +182,7 @@ static hl_status read_lights(hl_json_reader *reader, const json_t *root, gathere
   return HL_OK;
 }
 
-/* Checks the volumes early, as the camera may have to frame them. */
+/* Checks the volumes before the camera is read, because it may have to frame them. */
 static hl_status check_volumes(hl_json_reader *reader, const hl_scene_description *d) {
   for (size_t v = 0; v < d->volume_count; v++) {
     hl_status status = hl_scene_volume_check(&d->volumes[v], v, reader->error);

@@ -1,7 +1,8 @@
 /* json/settings.c - reading settings from JSON by the rows of their tables.
  *
- * Types and names are checked here, ranges when a scene is created. Settings that are a whole number or a
- * word are the exception: their ranges are checked here, so that no number is taken for a word's value.
+ * Types and names are checked here; ranges are checked later, when a scene is created. Settings that may be a
+ * whole number or a word are an exception. Their words are stored as numbers outside of the range, so that
+ * the range of a number must be checked here.
  */
 #include "json/settings.h"
 

@@ -11,14 +11,14 @@
 hl_status hl_json_settings_object(hl_json_reader *reader, const json_t *value, hl_setting_kind kind, int type,
                                   const char *const *others);
 
-/* Reads the object `value` into the struct `target`. key: the object's name in errors. The object's keys must
- * be the table's. If value is null, nothing is read. */
+/* Reads the object `value` into the struct `target`. key: the object's name in errors. Every key of the
+ * object must stand in the table. If value is null, nothing is read. */
 hl_status hl_json_settings_member(hl_json_reader *reader, const json_t *value, const char *key,
                                   hl_setting_kind kind, void *target);
 
-/* Reads one key into the struct `target`. The key stands in the table of settings of this kind, and may be
- * absent from the object. object: the object in which the key's last name stands; for the key
- * "transform/translate" it is the object "transform". */
+/* Reads one key of the table into the struct `target`. If the object lacks the key, nothing is read. object:
+ * the object that has the last part of the key; for the key "transform/translate" it is the object
+ * "transform". */
 hl_status hl_json_setting(hl_json_reader *reader, const json_t *object, hl_setting_kind kind, const char *key,
                           void *target);
 /* Reads all keys of a table that have no "/" and belong to this type of light or camera. */

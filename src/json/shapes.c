@@ -18,7 +18,7 @@ enum { DEFAULT_SIZE = 128, MOST_OCTAVES = 16, HIGHEST_N = 8 };
 static const char *const type_names[] = {"box",   "sphere", "cylinder", "capsule", "cone",
                                          "torus", "plane",  "orbital",  "group",   NULL};
 static const char *const operation_names[] = {"add", "subtract", "intersect", NULL};
-/* The names of patterns, from HL_PATTERN_NOISE on. */
+/* The names of the patterns, of which the first stands for HL_PATTERN_NOISE. */
 static const char *const pattern_names[] = {"noise", "turbulence", NULL};
 
 #define PLACEMENT_KEYS "type", "name", "position", "rotate", "scale"
@@ -36,7 +36,7 @@ static const char *const keys_of_type[][16] = {
     [HL_SHAPE_GROUP] = {COMMON_KEYS, "shapes"},
 };
 
-/* A list of shapes that is being read, and the groups that contain it, the outermost first. */
+/* The state of reading a list of shapes: the list, and the groups that contain it, the outermost first. */
 typedef struct reading {
   hl_json_reader *reader;
   const json_t *groups;
@@ -380,8 +380,8 @@ hl_status hl_json_check_groups(hl_json_reader *reader, const json_t *groups) {
   return HL_OK;
 }
 
-/* Chooses the edge of voxels. size: number of voxels along the longest side; 0: "voxel_size" is the edge, and
- * without this key the edge follows from DEFAULT_SIZE. */
+/* Chooses the edge of voxels. size: the wanted number of voxels along the longest side. If it is 0, the edge
+ * is the key "voxel_size"; if this key is absent, DEFAULT_SIZE is the wanted number. */
 static hl_status choose_voxel_size(hl_json_reader *reader, const json_t *object, const hl_shape_list *list,
                                    int size, double *voxel_size) {
   double extent = hl_shapes_extent(list), margin = HL_SHAPE_EDGE + 2 * HL_SHAPE_MARGIN;

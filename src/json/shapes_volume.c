@@ -62,7 +62,8 @@ hl_status hl_volume_from_shapes(hl_context *context, const char *text, size_t le
 
 /* ---- expanding groups ---- */
 
-/* Expands a list. left: the number of shapes that the whole list may still have. */
+/* Replaces named groups in a list by their shapes. left: the number of shapes that may still be added to the
+ * whole. */
 static json_t *expand_list(const json_t *shapes, const json_t *groups, int depth, int *left) {
   json_t *expanded = json_array();
   for (size_t n = 0; n < json_array_size(shapes); n++) {
@@ -90,8 +91,8 @@ json_t *hl_json_expand_shapes(const json_t *shapes, const json_t *groups) {
   return expand_list(shapes, groups, 0, &left);
 }
 
-/* Whether the text holds all of the tree. If memory is short, jansson leaves keys out and still reports
- * success. */
+/* Whether a text contains the whole tree. If memory is short, jansson leaves keys out of the text, and still
+ * reports success. */
 static bool says(const char *text, const json_t *root) {
   json_t *again = text != NULL ? hl_plain_json_load_text(text) : NULL;
   bool same = json_equal(root, again);

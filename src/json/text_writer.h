@@ -1,6 +1,7 @@
-/* json/text_writer.h - JSON text as it grows: indented members and elements, each on a line of its own.
+/* json/text_writer.h - writes JSON text piece by piece, indented, with each member and element on a line of
+ * its own.
  *
- * Numbers have the fewest digits that give the same double again; rows of numbers stay on one line. */
+ * Numbers have as few digits as read back as the same double. A row of numbers stays on one line. */
 #ifndef HL_JSON_TEXT_WRITER_H
 #define HL_JSON_TEXT_WRITER_H
 
@@ -8,14 +9,14 @@
 
 #include "core/context.h"
 
-/* A growing text. After a failed allocation nothing more is written, and `failed` tells so. */
+/* A text that is being written. After a failed allocation `failed` is set, and nothing more is written. */
 typedef struct hl_json_writer {
   hl_context *context;
   char *text; /* owned; ends with 0 */
   size_t length, capacity;
   int depth;
-  const char *beside; /* the folder in which file names start (file_names.h); null if names stay as they
-                       * are */
+  const char *beside; /* the folder to which names of files are made relative (file_names.h); null if names
+                       * are not changed */
   bool first;         /* whether there is no member or element yet at this depth */
   bool failed;
 } hl_json_writer;
@@ -30,7 +31,7 @@ void hl_json_begin_item(hl_json_writer *w, const char *key);
 void hl_json_open(hl_json_writer *w, const char *key, const char *bracket);
 void hl_json_close(hl_json_writer *w, const char *bracket);
 
-/* Members of an object, or with a null key elements of a list. */
+/* These functions write members of an object, or elements of a list if key is null. */
 void hl_json_write_number(hl_json_writer *w, const char *key, double number);
 void hl_json_write_whole(hl_json_writer *w, const char *key, int64_t number);
 void hl_json_write_row(hl_json_writer *w, const char *key, const double *numbers, size_t count);

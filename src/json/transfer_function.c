@@ -1,9 +1,9 @@
 /* json/transfer_function.c - a transfer function from JSON: points, a colormap, a preset or another file.
  *
- * The function starts as the named preset or file. Where neither a file nor opacity is given, it starts as
- * the automatic function; for shapes that is an opaque solid. Points, colormap and unit_distance then replace
- * the starting function's own. A function's file may also be a scene, whose first volume's function is taken,
- * or a file of another program. */
+ * The function starts as the named preset or file. If neither is named and no opacity is given, it starts as
+ * the automatic function, or for volumes of shapes as an opaque solid. The points, the colormap and the
+ * unit_distance of the scene then replace those of the starting function. The file of a function may be a
+ * scene, from which the first volume's function is taken, or a file of another program. */
 #include <string.h>
 
 #include "core/door.h"
@@ -57,12 +57,12 @@ static hl_status read_rows(hl_json_reader *reader, const json_t *object, const c
 _Static_assert(sizeof(hl_opacity_point) == 2 * sizeof(double), "opacity points are rows of two numbers");
 _Static_assert(sizeof(hl_color_point) == 4 * sizeof(double), "colour points are rows of four numbers");
 
-/* A solid's density falls from 1 to 0 over HL_SHAPE_EDGE voxels. The default opacity rises over the middle
- * one of these voxels. */
+/* Across a solid's surface, the density falls from 1 to 0 over HL_SHAPE_EDGE voxels. The default opacity
+ * rises from 0 to its full value within one voxel in the middle of this distance. */
 enum { SOLID_POINTS = 2 };
 static const double solid_begins = 0.375, solid_is_full = 0.625, solid_opacity = 0.95;
 
-/* Makes everything outside of a solid clear, and gives the inside this opacity. */
+/* Makes the outside of a solid fully transparent, and gives the inside this opacity. */
 static hl_status set_solid_opacity(hl_json_reader *reader, double opacity, hl_transfer_function *function) {
   hl_opacity_point *points = hl_allocate(reader->context, SOLID_POINTS, sizeof *points);
   if (points == NULL)
@@ -86,7 +86,8 @@ static hl_status read_plain_color(hl_json_reader *reader, const json_t *value,
   return hl_json_numbers(reader, value, "color", 3, point->color);
 }
 
-/* Makes an opaque solid. Opacity is per voxel edge, so that the solid's skin is one voxel thick. */
+/* Makes the transfer function of an opaque solid. Its opacity is reached within one voxel's edge, so that
+ * light enters the solid no deeper than this. */
 static hl_status read_solid(hl_json_reader *reader, const hl_volume *volume, hl_transfer_function *function) {
   function->unit_distance = mat3_shortest_column(volume->index_to_world.linear);
   return set_solid_opacity(reader, solid_opacity, function);
@@ -141,8 +142,8 @@ static hl_status read_points(hl_json_reader *reader, const json_t *value, bool i
   return status;
 }
 
-/* Spreads the starting function over the range that `value` gives, if any. If `value` gives a colormap, the
- * colormap is spread instead. */
+/* Spreads the starting function over the range that `value` gives. Does nothing if `value` gives no range, or
+ * gives a colormap, which is then spread over the range instead. */
 static hl_status spread_start(hl_json_reader *reader, const json_t *value, const hl_volume *volume,
                               const hl_json_range *range, hl_transfer_function *function) {
   double old[2];
@@ -178,7 +179,7 @@ static hl_status read_colormap(hl_json_reader *reader, const json_t *value, cons
   return status;
 }
 
-/* Takes the automatic opacity, for files that have only colours. */
+/* Takes opacity and unit_distance from the automatic function, for files that have only colours. */
 static hl_status take_automatic_opacity(hl_json_reader *reader, const hl_volume *volume,
                                         hl_transfer_function *function) {
   hl_transfer_function automatic;
@@ -233,7 +234,7 @@ static hl_status read_start(hl_json_reader *reader, const json_t *value, hl_func
   return status;
 }
 
-/* Refuses shapes in the plane of two numbers without a second number. */
+/* Refuses boxes, polygons and images of a function that has no second number. */
 static hl_status refuse_shapes(hl_json_reader *reader, const json_t *value) {
   for (const char *const *key = (const char *const[]){"boxes", "polygons", "image", NULL}; *key != NULL;
        key++)
@@ -275,7 +276,7 @@ hl_status hl_json_read_transfer_function(hl_json_reader *reader, const json_t *v
     if (status != HL_OK) hl_json_prefix(reader, reader->place);
     return status;
   }
-  /* A function in a file of its own is the root of the JSON text. */
+  /* In a file of its own, a function is the whole JSON text: errors then name no key around it. */
   size_t mark = subject.volume != NULL ? hl_json_enter(reader, "transfer_function") : 0;
   hl_status status = read_members(reader, value, subject, function);
   if (status == HL_OK) hl_json_leave(reader, mark);
@@ -304,7 +305,8 @@ static hl_status read_any(hl_json_reader *reader, const json_t *root, const hl_v
   return hl_json_read_transfer_function(reader, root, (hl_function_subject){.volume = NULL}, function);
 }
 
-/* Reads a JSON text. *by_voxel: whether its lengths of gradients are per voxel edge. */
+/* Reads a transfer function from a JSON file. *by_voxel: whether the file gives gradients per voxel edge, as
+ * Slicer does. */
 static hl_status load_json(hl_json_reader *reader, const char *path, const hl_volume *volume, bool *by_voxel,
                            hl_transfer_function *function) {
   unsigned char *bytes = NULL;

@@ -63,7 +63,8 @@ static hl_status read_rotate(hl_json_reader *reader, const json_t *value, hl_set
   return status;
 }
 
-/* Reads "scale": one factor, or for a volume also three factors along the axes of its own file. */
+/* Reads "scale". It is one factor; for a volume it may also be three factors, along the axes of the volume's
+ * own file. */
 static hl_status read_scale(hl_json_reader *reader, const json_t *value, hl_setting_kind kind, void *target) {
   const json_t *scale = json_object_get(value, "scale");
   bool three = kind == HL_SETTINGS_VOLUME;
@@ -119,8 +120,8 @@ static bool same_text(const char *a, const char *b) {
   return a == NULL || b == NULL ? a == b : strcmp(a, b) == 0;
 }
 
-/* The volume that was already read from this source; null if there is none. options: the options of reading a
- * file; null if the source is a text of shapes. */
+/* Finds a volume that was already made from this source; null if there is none. options: must be the same for
+ * files, as must the smoothing; null if the source is a text of shapes. */
 static const hl_loaded_volume *find_loaded(const hl_volume_shelf *shelf, const char *source,
                                            const hl_volume_load_options *options, double smooth) {
   for (size_t v = 0; v < shelf->count; v++) {
@@ -137,7 +138,7 @@ static const hl_loaded_volume *find_loaded(const hl_volume_shelf *shelf, const c
   return NULL;
 }
 
-/* Adds a volume to the shelf, which then owns source and volume. */
+/* Adds a volume to the shelf, which then owns `source` and `volume`. */
 static const hl_loaded_volume *put_on_shelf(hl_volume_shelf *shelf, char *source,
                                             const hl_volume_load_options *options, hl_volume *volume) {
   hl_loaded_volume *place = &shelf->loaded[shelf->count++];
@@ -236,13 +237,14 @@ char *hl_json_path(const hl_json_reader *reader, const char *file) {
                       data ? file + strlen(DATA_PREFIX) : file);
 }
 
-/* Whether the scene leaves the volume where its file puts it, so that its anatomical space counts. */
+/* Whether the scene neither rotates nor translates the volume. Only then do the world's axes keep the
+ * anatomical meaning that the file gives them. */
 static bool stays_as_it_is(const hl_scene_volume *volume) {
   return volume->rotate_angle_deg == 0 && volume->translate[0] == 0 && volume->translate[1] == 0 &&
          volume->translate[2] == 0;
 }
 
-/* Replaces a volume by a smoother one; *volume is null after a failure. */
+/* Replaces a volume by its smoothed copy; *volume is null after a failure. */
 static hl_status smooth_loaded(hl_json_reader *reader, double smooth, hl_volume **volume) {
   hl_volume *smoothed = NULL;
   hl_status status = hl_volume_smooth(*volume, smooth, &smoothed, reader->error);
@@ -397,11 +399,12 @@ static hl_status choose_shading(hl_json_reader *reader, const json_t *value, hl_
   return HL_OK;
 }
 
-/* Whether the file exists. Where no file is opened: whether the open scene has a volume with this name. */
+/* Whether a volume's file is available: whether it exists or, for a reader that opens no files, whether the
+ * scene `like` has a volume of this file. */
 static bool is_there(const hl_json_reader *reader, const char *file) {
   if (is_data(file) && reader->context->options.data_folder == NULL) return false;
   char *path = hl_json_path(reader, file);
-  /* Without memory for the path, the file counts as there: loading it then reports the error. */
+  /* Without memory for the path, the result is true: loading the file then reports the error. */
   bool there = path == NULL;
   for (size_t v = 0; !there && reader->like != NULL && v < reader->like->volume_count; v++)
     there = reader->like->volumes[v].file != NULL && strcmp(reader->like->volumes[v].file, path) == 0;
@@ -418,7 +421,7 @@ static hl_status choose_stand_in(hl_json_reader *reader, const json_t **value, h
   const char *file = NULL;
   if (stand_in == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "stand_in");
-  /* A stand-in has no name and no stand-in of its own. */
+  /* A stand-in may have all keys of a volume except its name and a stand-in. */
   hl_status status = hl_json_object(reader, stand_in, volume_keys + 2);
   if (status != HL_OK) return status;
   hl_json_leave(reader, mark);

@@ -47,7 +47,7 @@ static void write_key(hl_json_writer *w, hl_setting_kind kind, const char *key, 
   write_setting(w, hl_setting_find(kind, key), object);
 }
 
-/* Writes a setting, unless objects of this type do not have it, or it is optional and has its default. */
+/* Writes a setting that objects of this type have. An optional setting is left out if it has its default. */
 static void write_if_told(hl_json_writer *w, const hl_setting *setting, int type, const void *object) {
   if (!hl_setting_is_for(setting, type)) return;
   if (!setting->optional || !hl_setting_is_standard(setting, object)) write_setting(w, setting, object);
@@ -249,8 +249,8 @@ static void write_json(hl_json_writer *w, const char *key, const json_t *value) 
   else hl_json_write_flag(w, key, json_is_true(value));
 }
 
-/* Writes shapes with their groups expanded. text: {"shapes": [...], "voxel_size": h, "groups": ...}, checked
- * by is_text_of_shapes(). */
+/* Writes the shapes of a text, with their named groups replaced by shapes. text: {"shapes": [...],
+ * "voxel_size": h, "groups": ...}, checked by is_text_of_shapes(). */
 static void write_shapes(hl_json_writer *w, const char *text) {
   json_t *root = hl_plain_json_load_text(text);
   json_t *shapes = hl_json_expand_shapes(json_object_get(root, "shapes"), json_object_get(root, "groups"));
@@ -262,7 +262,7 @@ static void write_shapes(hl_json_writer *w, const char *text) {
   json_decref(root);
 }
 
-/* Writes the file, and the options of loading that differ from the default. */
+/* Writes the volume's file, and those options of loading that are not the default. */
 static void write_source(hl_json_writer *w, const hl_scene_volume *volume) {
   write_file(w, volume->file);
   if (volume->series != NULL) hl_json_write_name(w, "series", volume->series);
@@ -316,7 +316,7 @@ static void write_scattering(hl_json_writer *w, const hl_scene_volume *volume) {
   hl_json_close(w, "}");
 }
 
-/* Writes labels. masks: whether the labels belong to a mask, and tint. */
+/* Writes the array "labels". masks: whether these are the labels of a mask, which also have a tint. */
 static void write_labels(hl_json_writer *w, const hl_label *labels, size_t count, bool masks) {
   hl_json_open(w, "labels", "[");
   for (size_t n = 0; n < count; n++) {
@@ -407,7 +407,8 @@ static void write_lines(hl_json_writer *w, const hl_mesh_description *d) {
   hl_json_close(w, "]");
 }
 
-/* Writes the arrays of which the mesh was made. Tubes are left out, as they follow from lines. */
+/* Writes the arrays from which the mesh was made. The triangles of tubes are left out, because they follow
+ * from the lines. */
 static void write_arrays(hl_json_writer *w, const hl_mesh *mesh) {
   const hl_mesh_description *d = &mesh->description;
   if (mesh->given_triangles > 0) {

@@ -10,7 +10,7 @@ typedef struct label_enclosed {
   double (*measures)[HL_ENCLOSED_MEASURES]; /* [size z]; working space */
   double wanted;                            /* the volume that the surface must enclose, in voxels */
   float level;                              /* result: the level, near 1/2 */
-  double slope; /* result: the mean length of the gradient at the surface, per voxel */
+  double slope; /* result: the mean length of the gradient at the surface, per voxel edge */
 } label_enclosed;
 
 /* Finds the level and the slope. */

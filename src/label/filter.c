@@ -45,13 +45,14 @@ static void filter_slice(void *data, size_t z, int worker) {
     for (size_t r = 0; r < HL_FILTER_ROWS; r++) rows[r] = kept + (y + r) % HL_FILTER_ROWS * nx;
     add_rows(job, rows, slice + y * nx);
     size_t next = y + REACH + 1;
-    /* rows after y are not filtered yet; beyond the field's last row, copies of that row are used */
+    /* The next row of the field is not filtered yet. Beyond the field's last row, copies of the unfiltered
+     * last row are used. */
     const float *from = next < ny ? slice + next * nx : rows[2 * REACH];
     memmove(kept + y % HL_FILTER_ROWS * nx, from, nx * sizeof *slice);
   }
 }
 
-/* Filters along z: all columns with the coordinate y. */
+/* Filters the columns along z whose second coordinate is y. */
 static void filter_columns(void *data, size_t y, int worker) {
   const filter_job *job = data;
   const label_field *field = job->field;

@@ -13,7 +13,8 @@ typedef struct label_field {
   size_t line_floats;
 } label_field;
 
-/* Half of a symmetric filter. The middle tap comes first; the others follow up to the value `reach` away. */
+/* One half of a symmetric filter: the middle tap first, and then the taps for values at distances from 1 to
+ * `reach`. */
 typedef struct label_filter {
   int reach; /* 2, 4 or HL_FILTER_REACH */
   float taps[HL_FILTER_REACH + 1];

@@ -5,26 +5,26 @@
 
 enum { CELL = 2 }; /* length of a cell's edge in voxels */
 
-/* LEVEL_SUMS: number of planes that are sums over faces. LEVEL_BLENDED: number of planes that are blurred,
- * which are the sums and HL_LEVEL_THIN. */
+/* LEVEL_SUMS: the number of planes with sums over faces. LEVEL_BLENDED: the number of planes that are
+ * blurred: those with sums, and HL_LEVEL_THIN. */
 enum { LEVEL_SUMS = HL_LEVEL_FALL + 1, LEVEL_BLENDED = HL_LEVEL_THIN + 1 };
 
 /* The filter that blurs cells, [1 2 1] / 4, so that there are no steps from cell to cell. */
 static const label_filter BLUR = {2, {0.5f, 0.25f, 0}};
 
-/* Weight of imagined faces that are added at every voxel to the sums over the border's faces. On them the
- * field is 1/2 and falls by HL_LABEL_SLOPE, so that they keep the field unchanged far from any border. */
+/* The weight of imaginary faces that are added, at every voxel, to the sums over the border's faces. On them
+ * the field is 1/2 and falls by HL_LABEL_SLOPE, so that the field stays unchanged far from any border. */
 static const float FAINT = 1e-3f;
 
-/* The least fall across the border's faces; smaller falls count as this one, so that no field is made too
- * steep. */
+/* The least fall across the border's faces. A smaller fall counts as this one, so that the field is not made
+ * too steep. */
 static const float LEAST_FALL = 0.04f;
 
 /* Limits of a field's values, which must fit the bytes that store them (occupancy.c). */
 static const float LEAST = -0.5f, GREATEST = 1.49f;
 
-/* A label is at least three voxels thick where the field's values nearby reach THICK, and thin where they
- * stay below THIN. */
+/* A label is at least three voxels thick if the field's values nearby reach THICK. It is thin if they stay
+ * below THIN. */
 static const float THIN = 0.46f, THICK = 0.5f;
 
 /* The distance by which the border of thin things is moved outwards, in voxels. */
@@ -46,8 +46,8 @@ static float *plane_of(const label_levels *levels, int plane) {
 
 /* ---- the border ---- */
 
-/* A row of voxels and the four rows beside it. At the field's ends the row itself takes the place of a row
- * that is missing. */
+/* A row of voxels, and the four rows beside it. At the field's ends the row itself takes the place of a
+ * missing row. */
 typedef struct border_row {
   size_t at, beside[4]; /* indices of the rows' first voxels */
 } border_row;
@@ -71,7 +71,8 @@ static void mark_border(const level_job *job, const border_row *row, unsigned ch
   for (size_t x = nx - 1; x > 0; x--) marks[x] |= own[x] ^ own[x - 1];
 }
 
-/* Adds the faces between a voxel and its neighbours; each face is added from both of its sides. */
+/* Adds the faces between a voxel and its neighbours to the sums. Each face is added twice, once from each
+ * side. */
 static void add_faces(const level_job *job, const border_row *row, size_t x, float sums[LEVEL_SUMS]) {
   const size_t at = row->at + x, nx = job->field->size[0];
   const size_t beside[6] = {row->beside[0] + x, row->beside[1] + x,  row->beside[2] + x,
@@ -86,7 +87,7 @@ static void add_faces(const level_job *job, const border_row *row, size_t x, flo
   }
 }
 
-/* Raises each cell's greatest value to the greatest of those values of a row that lie in the cell. */
+/* Updates the greatest values of cells by the values of a row. */
 static void raise_most(const float *values, size_t count, float *most) {
   for (size_t x = 0; x < count; x++)
     if (values[x] > most[x / CELL]) most[x / CELL] = values[x];
@@ -148,8 +149,8 @@ static void find_thin(void *data, size_t z, int worker) {
 
 /* ---- the field ---- */
 
-/* The two cells along an axis between whose middles a voxel's middle lies. It lies a quarter of a cell from
- * the middle of the voxel's own cell. */
+/* The two cells along an axis between whose middles the middle of a voxel lies: its own cell, a quarter of a
+ * cell away, and another cell. */
 typedef struct cells_around {
   size_t own, other;
 } cells_around;
@@ -162,8 +163,8 @@ static cells_around around(size_t at, size_t cells) {
   return (cells_around){own, other};
 }
 
-/* Interpolates the sums of cells to a row of voxels along y and z; interpolation along x follows later. rows:
- * [LEVEL_BLENDED][cells]. */
+/* Interpolates the cells' sums to a row of voxels, along y and z only. Interpolation along x comes later.
+ * rows: [LEVEL_BLENDED][cells]. */
 static void blend_rows(const label_levels *levels, size_t y, size_t z, float *rows) {
   const size_t *cells = levels->size;
   const cells_around j = around(y, cells[1]), k = around(z, cells[2]);

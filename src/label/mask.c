@@ -11,17 +11,17 @@
 #include "label/shelf.h"
 #include "volume/colors.h"
 
-/* The labels' common share of the matter rises from 0 to 1 while the sum of their occupancies rises from
- * SHARE_FROM to SHARE_TO. Each label's part of the common share is proportional to the square of its
- * occupancy. Derived: between two labels, whose occupancies a and 1 - a add up to 1, a^2 / (a^2 + (1 - a)^2)
- * runs from 0 to 1 with the slope 2 in the middle, as steeply as the common share; where three labels meet,
- * the parts still add up to 1. */
+/* Matter at a place belongs in part to the labels, and else to the rest. The part of all labels together (the
+ * common share) rises from 0 to 1 while the sum of their occupancies rises from SHARE_FROM to SHARE_TO. It is
+ * divided among the labels in proportion to the squares of their occupancies. Derived: between two labels
+ * with the occupancies a and 1 - a, the first label's part a^2 / (a^2 + (1 - a)^2) rises from 0 to 1 with the
+ * slope 2 in the middle, as the common share does. Where three labels meet, their parts still add up to 1. */
 static const float SHARE_FROM = 0.25f, SHARE_TO = 0.75f;
-/* Weight of the labels' occupancy, which is added to their common share in the mean of colours. So the
- * lattice continues the labels' colours to places where the share is 0. */
+/* In the weights of colours, the labels' occupancy times this factor is added to their common share. So the
+ * labels' colours continue to places where the share is 0. */
 static const float FAINT = 1e-3f;
-/* Occupancies up to this number do not count: they come from the tails of the smoothing and from the rounding
- * to bytes. */
+/* Occupancies up to this number are ignored, because they come from the tails of the smoothing and from
+ * rounding to bytes. */
 static const float LEAST = 1.0f / 16;
 
 typedef struct mask_job {
@@ -35,10 +35,10 @@ typedef struct mask_job {
   size_t slice_floats;
 } mask_job;
 
-/* Sums over the labels at the voxels of a slice, each [j][i]. The sums add up, for each label: the
- * occupancy (SUM_OCCUPANCY), its square (SUM_SQUARES), the square times opacity (SUM_FACTOR), this product
- * times tint (SUM_TINT), and that product times each channel of the colour. Space for a line of occupancy
- * follows. */
+/* Sums over all labels, one for each voxel of a slice, each [j][i]: of the occupancies (SUM_OCCUPANCY); of
+ * their squares (SUM_SQUARES); of the squares times the label's opacity (SUM_FACTOR); of the latter times the
+ * label's tint (SUM_TINT); and of the latter times each channel of the label's colour. Space for a line of
+ * occupancy follows (SUM_LINE). */
 enum { SUM_OCCUPANCY, SUM_SQUARES, SUM_FACTOR, SUM_TINT, SUM_RED, SUM_GREEN, SUM_BLUE, SUM_LINE, SUMS };
 
 static void add_voxel(float *const sums[SUMS], size_t at, const hl_label *label, float occupancy) {
@@ -72,8 +72,8 @@ static unsigned char code_of(float value) {
   return (unsigned char)(value <= 0 ? 0 : value >= 1 ? 255 : value * 255 + 0.5f);
 }
 
-/* Stores the lattice's values at a voxel. The matter there is a mixture of the labels and the rest, each with
- * its factor. Colours are weighted by how much of them is visible. */
+/* Stores the lattice's values at a voxel. The matter there is a mixture of the labels and the rest; each part
+ * has its own factor. A label's colour has the weight of its visible part. */
 static void store_voxel(const mask_job *job, float *const sums[SUMS], size_t at, size_t voxel) {
   const float occupancy = sums[SUM_OCCUPANCY][at], tint = sums[SUM_TINT][at];
   float share = (occupancy - SHARE_FROM) / (SHARE_TO - SHARE_FROM);
@@ -100,8 +100,8 @@ static void fill_slice(void *data, size_t k, int worker) {
   for (size_t at = 0; at < count; at++) store_voxel(job, sums, at, k * count + at);
 }
 
-/* The central difference of the factors at `at` along an axis. Beyond the ends the factors at the border
- * repeat. */
+/* The central difference of the factors along an axis, at the voxel `at`. Beyond the lattice's ends the
+ * factors at the border repeat. */
 static signed char slope_at(const uint16_t *factors, size_t at, size_t place, size_t count, size_t step) {
   int before = factors[place > 0 ? at - step : at], after = factors[place + 1 < count ? at + step : at];
   return (signed char)lround((after - before) * (HL_MASK_SLOPE_STEPS / 2 / HL_MASK_STEPS));
@@ -124,7 +124,7 @@ static void fill_slopes(void *data, size_t k, int worker) {
 
 /* ---- bricks ---- */
 
-/* Points from first to last, both included, along each axis. */
+/* A box of the lattice's points: first to last, both included, along each axis. */
 typedef struct point_box {
   size_t first[3], last[3];
 } point_box;

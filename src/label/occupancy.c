@@ -9,9 +9,9 @@
 #include "label/levels.h"
 
 /* The filter that smooths along an axis. Derived: it is G - sigma^2 / 2 * (second difference of G), where G
- * is a Gaussian of standard deviation sigma = 2 voxels, cut at 6. Its variance is therefore 0: flat and
- * gently curved surfaces stay where they are (to the fourth power of the scale), and the steps of voxels are
- * damped. */
+ * is a Gaussian of standard deviation sigma = 2 voxels, cut at 6. Its variance is therefore 0. So flat and
+ * gently curved surfaces stay in their places, up to terms of the fourth power of the scale, and the steps
+ * between voxels are smoothed away. */
 static const label_filter SMOOTHING = {7,
                                        {0.292382144f, 0.238724523f, 0.123441568f, 0.028311217f, -0.011604395f,
                                         -0.014332039f, -0.006349609f, -0.004382337f}};
@@ -24,14 +24,14 @@ static const label_filter FINISHING = {
  * d/6 + d d/36 - ... */
 static const label_filter TO_COEFFICIENTS = {2, {1.5f, -10.0f / 36, 1.0f / 36}};
 
-/* Smoothing and mending take turns, ROUNDS times each. Mending looks for voxels whose centres are on the
- * wrong side of the surface, and whose value differs from 1/2 by more than TOLERATED. It corrects the value
- * by PUSH times this excess. Thin things therefore stay, while surfaces that smoothing moves by a fraction of
- * a voxel stay smooth. */
+/* Smoothing and mending alternate, ROUNDS times each. Mending corrects voxels whose centres are on the wrong
+ * side of the surface and whose values differ from 1/2 by more than TOLERATED: it changes the value by PUSH
+ * times the excess over TOLERATED. So thin things do not vanish. Surfaces that smoothing has moved by less
+ * than a voxel are not corrected, and stay smooth. */
 enum { ROUNDS = 2 };
 static const float TOLERATED = 0.12f, PUSH = 2.5f;
 
-/* Occupancy from -1/2 to 1.49 as a byte: stored = 64 + 128 * occupancy. */
+/* Occupancies from -1/2 to 1.49 are stored as bytes: stored = 64 + 128 * occupancy. */
 static const float STEPS = 128, ZERO = 64;
 
 typedef struct occupancy_job {
@@ -39,8 +39,8 @@ typedef struct occupancy_job {
   const int64_t *labels; /* [count], rising */
   size_t count;
   hl_label_part part;
-  unsigned char *inside; /* [size z][y][x]; 1 where the voxel has one of the labels, else 0; at the end the
-                          * occupancy as bytes */
+  unsigned char *inside; /* [size z][y][x]; first: 1 if the voxel has one of the labels, else 0; at the end:
+                          * the occupancy as bytes */
   size_t *inside_counts; /* [size z]; the number of voxels that have one of the labels */
   label_field smooth;    /* the smoothed field, of the part's size */
   label_levels levels;
@@ -103,7 +103,7 @@ static void store_slice(void *data, size_t z, int worker) {
   }
 }
 
-/* Reports that the part has taken one more of the HL_LABEL_STEPS steps. */
+/* Reports that the part's voxels have taken one more of the HL_LABEL_STEPS steps. */
 static void step_done(const occupancy_job *job) {
   hl_label_worked(job->work, hl_label_part_voxels(&job->part), 1);
 }
@@ -152,7 +152,7 @@ static hl_status adopt(hl_context *context, const occupancy_job *job, unsigned c
   return status;
 }
 
-/* Allocates the memory of all steps except the result. */
+/* Allocates the memory for all steps; the result is allocated elsewhere. */
 static bool make_room(hl_context *context, int threads, occupancy_job *job) {
   const size_t count = hl_label_part_voxels(&job->part);
   label_field *field = &job->smooth;

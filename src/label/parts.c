@@ -56,7 +56,7 @@ static void bound_slice(void *data, size_t z, int worker) {
   }
 }
 
-/* The part within the given bounds and a margin around them; its size is 0 if there are no voxels. */
+/* The part between the given bounds, with a margin; its size is 0 if the bounds hold no voxels. */
 static hl_label_part part_of(const hl_volume *map, const label_bounds *bounds) {
   hl_label_part part = {{0}, {0}};
   for (int axis = 0; axis < 3 && bounds->high[axis] >= 0; axis++) {

@@ -1,6 +1,6 @@
-/* label/row_functions.h - the functions on rows and voxels of a field that take most of the time of smoothing
- * labels. They are compiled once for each instruction set (row_sets.c), and all versions give the same bytes.
- */
+/* label/row_functions.h - the functions on rows and voxels of a field that take most of the time when labels
+ * are smoothed. They are compiled once for each instruction set (row_sets.c), and give the same bytes with
+ * each. */
 #ifndef HL_LABEL_ROW_FUNCTIONS_H
 #define HL_LABEL_ROW_FUNCTIONS_H
 
@@ -9,18 +9,18 @@
 
 #include <halflight/context.h>
 
-/* HL_FILTER_REACH rows on either side of the middle one enter the longest filter. */
+/* The longest filter reads HL_FILTER_REACH rows on either side of the middle row. */
 enum { HL_FILTER_REACH = 7, HL_FILTER_ROWS = 2 * HL_FILTER_REACH + 1 };
 
-/* Voxels that the surface may cross are measured in HL_VOXEL_PARTS parts along each axis. A part's share of
- * the volume is computed as if the surface were a plane within the part. The parts are small enough for this
- * even where the surface is a ball of three voxels. The parts of a voxel depend on HL_VOXEL_TAPS coefficients
- * along an axis. */
+/* A voxel that the surface may cross is measured in HL_VOXEL_PARTS parts along each axis. The fraction of a
+ * part that is enclosed is computed as if the surface within the part were a plane. The parts are small
+ * enough for this, even if the surface is a ball of three voxels. The parts of a voxel depend on
+ * HL_VOXEL_TAPS coefficients along an axis. */
 enum { HL_VOXEL_PARTS = 4, HL_VOXEL_TAPS = 5 };
 
 /* Sums over voxels. VOLUME: the enclosed volume, in voxels. FALL: the rate at which this volume falls as the
- * level rises. SLOPES: the gradients' lengths at the surface. SURFACE_PARTS: the number of parts of voxels
- * that SLOPES adds up. */
+ * level rises. SLOPES: the lengths of the gradients in the parts of voxels at the surface. SURFACE_PARTS: the
+ * number of these parts. */
 enum {
   HL_ENCLOSED_VOLUME,
   HL_ENCLOSED_FALL,
@@ -29,8 +29,8 @@ enum {
   HL_ENCLOSED_MEASURES
 };
 
-/* A row of a field and its neighbours, [count]. At the field's ends the row itself takes the place of a
- * neighbour that is missing. */
+/* A row of a field and its neighbours, each [count]. At the field's ends the row itself takes the place of a
+ * missing neighbour. */
 typedef struct row_neighbours {
   const float *x[3]; /* the row a voxel earlier, the row itself, and the row a voxel later */
   const float *y[2], *z[2];
@@ -38,8 +38,8 @@ typedef struct row_neighbours {
 
 typedef struct label_row_functions {
   /* Sets out[i] to taps[0] middle[i] + the sum over t from 1 to reach, in this order, of taps[t] (before[i] +
-   * after[i]). middle is rows[HL_FILTER_REACH]; before and after are the rows t before and t after it. reach:
-   * 2, 4 or HL_FILTER_REACH. out, [count], overlaps no row. */
+   * after[i]). Here `middle` is rows[HL_FILTER_REACH], and `before` and `after` are the rows t places before
+   * and after it. reach: 2, 4 or HL_FILTER_REACH. out, [count], overlaps no row. */
   void (*weigh)(const float *taps, int reach, const float *const rows[HL_FILTER_ROWS], size_t count,
                 float *out);
   /* Sets the elements of `crossed` to 1 for voxels that the surface at `level` may cross, and to 0 for the

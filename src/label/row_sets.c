@@ -26,9 +26,9 @@ static void weigh(const float *taps, int reach, const float *const rows[HL_FILTE
 }
 
 /* Finds which voxels of a row the surface may cross. Derived: a voxel's corner lies 0.87 voxels from its
- * middle. Where |over| is more than the length of the gradient g times this distance, the surface does not
- * cross the voxel. Where a field turns round, the gradient in the middle tells little; its length therefore
- * counts as at least a fifth. `squares` are squares of 2 g. */
+ * middle. `over` is the field's value above the level. If |over| is more than the length of the gradient g
+ * times this distance, the surface does not cross the voxel. At an extremum of the field, the gradient in the
+ * voxel's middle says little, and so its length counts as at least a fifth. `square` is the square of 2 g. */
 static int32_t find_crossed(const row_neighbours *rows, size_t count, float level, float *restrict crossed) {
   const float least = 4 * 0.2f * 0.2f, reach = 0.25f;
   int32_t whole = 0;
@@ -66,9 +66,9 @@ static void find_parts(const float weights[PARTS][TAPS], const float window[TAPS
         for (int i = 0; i < PARTS; i++) parts[k][j][i] += weights[k][tap] * planes[tap][j][i];
 }
 
-/* Finds the differences between neighbouring parts along a line of PARTS rows of `width` values. They
- * are central differences, and one-sided ones at the line's ends. Inlined, so that the compiler knows
- * the width. */
+/* Finds the differences between neighbouring parts along a line of PARTS rows of `width` values. They are
+ * central differences, but one-sided differences at the line's ends. Inlined, so that the compiler knows the
+ * width. */
 static inline __attribute__((always_inline)) void find_differences(const float *rows, int width,
                                                                    float *restrict differences) {
   for (int n = 0; n < width; n++) {
@@ -80,12 +80,13 @@ static inline __attribute__((always_inline)) void find_differences(const float *
       differences[at * width + n] = 0.5f * (rows[(at + 1) * width + n] - rows[(at - 1) * width + n]);
 }
 
-/* The least length of a gradient, per part of a voxel; shorter gradients count as this long. */
+/* The least length of a gradient, per part of a voxel. A shorter gradient counts as one of this length. */
 static const float LEAST_GRADIENT = 0.05f / PARTS;
 
-/* The lengths of the gradients at the parts, and the parts' shares above the level. Derived: near a plane
- * with the gradient g, per part, the part's share above the level t is (f - t) / g + 1/2, clamped to [0, 1]
- * where it is summed. */
+/* Finds the lengths of the gradients at the parts, and the fraction of each part above the level. Derived: if
+ * the surface is a plane and the gradient has the length g per part, the fraction above the level t is (f -
+ * t) / g + 1/2, where f is the field in the part's middle. It is clamped to [0, 1] later, when fractions are
+ * summed. */
 static void find_shares(const float *parts, float level, float *restrict gradients, float *restrict shares) {
   float dx[ALL_PARTS], dy[ALL_PARTS], dz[ALL_PARTS];
   for (int row = 0; row < ALL_PARTS; row += PARTS) find_differences(parts + row, 1, dx + row);
@@ -99,7 +100,8 @@ static void find_shares(const float *parts, float level, float *restrict gradien
   }
 }
 
-/* The measures are added part by part, so that sums are the same with all instruction sets. */
+/* The measures of the parts are added one after the other, so that the sums are the same with all instruction
+ * sets. */
 static void measure_voxel(const float weights[PARTS][TAPS], const float window[TAPS][TAPS][TAPS], float level,
                           double *measures) {
   static const double SHARE = 1.0 / ALL_PARTS;

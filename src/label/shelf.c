@@ -15,13 +15,13 @@ typedef struct place {
 typedef struct joint_place {
   hl_label *labels; /* owned; [label_count]; without names */
   size_t label_count;
-  double rest;     /* for a mask: the factor of matter that has none of the labels */
+  double rest;     /* for a mask: the factor of matter outside the labels */
   hl_volume *made; /* null if nothing was made */
 } joint_place;
 
 typedef struct shelf {
   place places[PLACES];
-  int next; /* the place that is filled next; its former content is released */
+  int next; /* the place that is filled next; the volume that it holds is released then */
   joint_place lattice, solids;
 } shelf;
 
@@ -40,7 +40,7 @@ static void release_shelf(hl_context *context, void *kept) {
   hl_release(context, shelf);
 }
 
-/* Looks on the shelf for a volume that was already made of this label, and retains it. */
+/* Looks on the shelf for a volume that was made of this label before, and retains it. */
 static bool find(hl_volume *map, int64_t label, hl_volume **made) {
   bool found = false;
   lock(map);
@@ -79,7 +79,7 @@ static void keep(hl_volume *map, int64_t label, hl_volume *made) {
   hl_volume_release(old);
 }
 
-/* The labels of a list whose occupancies are not on the shelf. */
+/* The labels of a list whose occupancies are not on the shelf yet. */
 typedef struct missing_labels {
   int64_t *labels;      /* owned; [count] */
   size_t *places;       /* owned; the labels' places in the caller's list */

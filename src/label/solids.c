@@ -15,7 +15,7 @@ typedef struct solids_job {
   hl_volume *map;
   const hl_label *labels; /* [count] */
   size_t count;
-  /* [count]; null: no colours are made; an element is null if no voxel has the label */
+  /* [count]; an element is null if no voxel has the label. The array is null if no colours are made */
   hl_volume **occupancies;
   hl_label_part part; /* the common part of all labels */
   hl_srgb_encoder encoder;
@@ -24,8 +24,8 @@ typedef struct solids_job {
   size_t slice_floats;
 } solids_job;
 
-/* Sums over the labels at the voxels of a slice, each [y][x]: the weights, and the weights times each colour.
- * Space for a line of occupancy follows. */
+/* Sums over all labels, one for each voxel of a slice, each [y][x]: the weights, and the weights times each
+ * channel of the colour. Space for a line of occupancy follows. */
 enum { SUM_WEIGHT, SUM_COLOR, SUM_LINE = SUM_COLOR + 3, SUMS };
 
 /* A label's weight in the mean of colours: its occupancy to the fourth power. Derived: two labels that touch

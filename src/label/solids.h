@@ -1,8 +1,8 @@
 /* label/solids.h - labels that are solid together, as one volume.
  *
- * Two labels that touch have a rounded field each, and would leave a groove if they were drawn side by side.
- * Labels that are solid together have one field, so that surface, normals and shadows belong to one body.
- * Colours tell the labels apart. */
+ * If two labels that touch were drawn by their own fields, which are rounded, there would be a groove between
+ * them. Labels that are solid together have one field. So surface, normals and shadows are those of one body,
+ * in which the labels differ by their colours. */
 #ifndef HL_LABEL_SOLIDS_H
 #define HL_LABEL_SOLIDS_H
 
@@ -11,10 +11,9 @@
 #include "core/error.h"
 
 /* Makes the occupancy (occupancy.h) of all labels together, with the labels' colours as the volume's own
- * (volume/colors.h). Where labels meet, their colours run over into each other within about a voxel and a
- * half. Labels of one colour give a volume without colours. labels: [count]; solid ones, rising by value.
- * *made is retained for the caller, and null if no voxel has one of the labels. threads: 0 for one per
- * processor. */
+ * (volume/colors.h). Where labels meet, their colours blend over about a voxel and a half. Labels of one
+ * colour give a volume without colours. labels: [count]; solid ones, rising by value. *made is retained for
+ * the caller, and null if no voxel has one of the labels. threads: 0 for one per processor. */
 hl_status hl_label_solids(hl_context *context, int threads, hl_volume *map, const hl_label *labels,
                           size_t count, hl_volume **made, hl_error *error);
 

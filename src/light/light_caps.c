@@ -3,14 +3,15 @@
 
 #include "light/light_extent.h"
 
-/* Number of points along each side of a part; the part's middle and spread are means over these points. */
+/* Number of points along each side of a part. The part's middle and spread are means over these points. */
 enum { POINTS_OF_PART = 8 };
 
-/* A light stays one part if its apparent size is at most this fraction of its distance, and if it looks about
- * as long as wide. */
+/* A light stays one part if its apparent size is at most this fraction of its distance, and if its apparent
+ * length and width are about equal. */
 static const double NARROW = 0.35;
 
-/* Cuts a rect into parts that look about as long as wide. length: the apparent lengths of its edges. */
+/* Divides a rectangle into parts whose apparent length and width are about equal. length: the apparent
+ * lengths of its edges. */
 static void cut_rect(const double length[2], int parts[2]) {
   int longer = length[1] > length[0], across = 1 - longer;
   double ratio = length[longer] / fmax(length[across], length[longer] / MOST_CAPS);
@@ -31,7 +32,7 @@ static void choose_parts(const light_source *source, int parts[2]) {
   if (kind->parallelogram) cut_rect(length, parts);
 }
 
-/* The offset of point k of a part from the light's centre. */
+/* The offset of point k of a part from the centre of the light. */
 static vec3 point_of_part(const light_source *source, const int parts[2], int part, int k) {
   int i = part % parts[0], j = part / parts[0];
   double a = (i + (k % POINTS_OF_PART + 0.5) / POINTS_OF_PART) / parts[0],

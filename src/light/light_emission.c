@@ -1,5 +1,5 @@
-/* light/light_emission.c - cuts an emission image into cells, and makes the taps of a penumbra of the cells.
- */
+/* light/light_emission.c - divides an emission image into cells, and makes the taps of a penumbra from the
+ * cells. */
 #include "light/light_emission.h"
 
 #include "core/memory.h"
@@ -28,9 +28,9 @@ static void add_color(const light_picture *picture, double s, double t, double s
   }
 }
 
-/* Finds the mean colour of cell (i, j) of side x side cells. For a parallel light, the offset of a point is
- * added to the direction in which light travels. The light is seen in the opposite direction, so the sign of
- * the offset is reversed. */
+/* Finds the mean colour of cell (i, j) of side x side cells. For a parallel light, a point's offset is an
+ * offset of the direction in which light travels. The image shows the opposite direction, the one in which
+ * the light is seen. So the sign of the offset is reversed. */
 static void mean_of_cell(const light_source *source, const emission_plane *plane, int side, int i, int j,
                          double mean[HL_CHANNELS]) {
   const light_picture *picture = &source->emission;
@@ -96,8 +96,8 @@ static vec3 middle_of_cell(const light_source *source, int i) {
                         (i % EMISSION_SIDE + 0.5) / EMISSION_SIDE);
 }
 
-/* The greatest slope of the rays to receivers at which every cell of a tilted light has taps of its own. At
- * greater slopes the outermost cells share taps. */
+/* The greatest slope of the rays to receivers for which the taps of a tilted light reach to all of its cells.
+ * At greater slopes, the outermost cells share taps. */
 static const double GREATEST_SLOPE = 0.5;
 
 /* Leaves dark cells out, and bounds the other cells. */
@@ -124,8 +124,8 @@ static void finish(light_emission *emission) {
   }
 }
 
-/* For parallel light the unit is negative, because light whose direction of travel leans more towards u comes
- * from farther back along u. */
+/* For parallel light the unit is negative: light that travels more towards u comes from a place farther back
+ * along u. */
 void hl_light_emission_see(const light_source *source, const sheet_light *seen, vec3 normal,
                            light_emission *emission) {
   double unit = fmax(seen->width_u, seen->width_v) * (source->parallel ? -1 : 1);
@@ -166,7 +166,7 @@ void hl_light_emission_steps(const light_emission *emission, double width, int s
                            EMISSION_GREATEST_STEP);
 }
 
-/* Distributes each cell to the four taps around it, by its distances from them. */
+/* Distributes the weight of each cell among the four taps around it, by the cell's distances from them. */
 void hl_light_emission_taps(const light_emission *emission, double width, const int step[2],
                             const double slope[2], emission_taps *taps) {
   enum { GRID = EMISSION_SIDE + 3 };

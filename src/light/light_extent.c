@@ -1,4 +1,5 @@
-/* light/light_extent.c - points on a light, and moments of the light as seen from the sheets. */
+/* light/light_extent.c - points on a light, and the light's mean position and variances as seen from the
+ * sheets. */
 #include "light/light_extent.h"
 
 vec3 hl_light_point(const light_source *source, double a, double b) {
@@ -12,7 +13,8 @@ typedef struct covariance {
   double uu, uv, vv;
 } covariance;
 
-/* Turns u and v by the angle at which uv vanishes, tan(2 angle) = 2 uv / (uu - vv) (derived). */
+/* Turns u and v by the angle at which the covariance uv vanishes, tan(2 angle) = 2 uv / (uu - vv)
+ * (derived). */
 static covariance turn_to_axes(covariance c, vec3 *u, vec3 *v) {
   double angle = 0.5 * atan2(2 * c.uv, c.uu - c.vv);
   double cosine = cos(angle), sine = sin(angle);
@@ -27,17 +29,18 @@ static vec3 onto_plane(vec3 x, vec3 normal) {
   return vec3_subtract(x, vec3_scale(normal, vec3_dot(x, normal)));
 }
 
-/* The first choice of the u axis in the sheets, which is turned to the principal axis later: the projection
- * of a parallelogram's edge, or else of the light's direction. */
+/* A first u axis in the sheets: the projection of an edge of a parallelogram, or for other lights of the
+ * light's direction. It is turned to the principal axis later. */
 static vec3 first_axis(const light_source *source, vec3 normal) {
   vec3 along = source->shape.kind->parallelogram ? source->shape.edge1 : source->direction;
   vec3 axis = onto_plane(along, normal);
   return vec3_length(axis) > 1e-3 * vec3_length(along) ? vec3_normalise(axis) : vec3_perpendicular(normal);
 }
 
-/* Projects a point of the light onto the plane, along the ray from the content's middle to the point. A point
- * nearly as low as the content would be moved far away; its distance from the content is multiplied by at
- * most four. A light beside or below the content's middle is projected along the sheets' normal. */
+/* Projects a point of the light onto the plane, along the ray from the content's middle to the point. If the
+ * point is nearly as low as the content, it would be moved far away; so its distance from the content is
+ * multiplied by at most four. If the light lies beside or below the content's middle, the point is projected
+ * along the sheets' normal. */
 static vec3 seen_on_plane(const light_source *source, vec3 normal, vec3 offset) {
   if (source->parallel) {
     vec3 way = vec3_add(source->direction, offset);
@@ -74,8 +77,8 @@ sheet_light hl_light_on_sheets(const light_source *source, vec3 normal) {
   vec3 mean = vec3_scale(sum, 1 / n);
   double u = vec3_dot(mean, seen.u), v = vec3_dot(mean, seen.v);
   c = turn_to_axes((covariance){c.uu / n - u * u, c.uv / n - u * v, c.vv / n - v * v}, &seen.u, &seen.v);
-  /* parallel light: the plane goes through the end of the direction, so that its height is l.h, and widths
-   * are widths at height 1 */
+  /* for parallel light, the plane goes through the end of the direction vector, so that its height is l.h.
+   * The widths are divided by this height, which makes them widths at height 1 */
   double height = source->parallel ? fmax(vec3_dot(source->direction, normal), 0.1) : 1;
   seen.middle = vec3_add(centre, mean);
   seen.width_u = sqrt(12 * fmax(c.uu, 0)) / height;

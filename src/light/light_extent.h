@@ -4,18 +4,20 @@
 
 #include "light/light_source.h"
 
-/* Maps a point of the unit square to a point of the light, equal areas to equal areas. Returns the point's
- * offset from the light's centre or, for parallel light, from the light's direction (directions are points at
- * distance 1). A sphere counts as its disk that faces the content. */
+/* Maps a point of the unit square to a point of the light. Equal areas of the square become equal areas of
+ * the light. Returns the point's offset from the light's centre; for parallel light, the offset from the
+ * light's direction, as directions are points at distance 1. A sphere counts as the disk within it that faces
+ * the content. */
 vec3 hl_light_point(const light_source *source, double a, double b);
 
-/* The point of sub-light (i, j) of side x side in the unit square, for any light (sublight_points.c). The
- * points are a turned grid, with one point in each cell. Projected onto a side of the square, they are side^2
- * even steps. */
+/* The point of the unit square that stands for sub-light (i, j) of side x side sub-lights of any light
+ * (sublight_points.c). The points form a turned grid, with one point in each cell of the square. Their
+ * projections onto a side of the square have equal distances. */
 void hl_sublight_grid_point(int side, int i, int j, double square[2]);
 
-/* Finds the point for one light. Where there are few sub-lights, the points give this light's penumbrae the
- * least error. Cells may hold several of these points or none, so the points do not suit emission images. */
+/* Finds the points of the sub-lights of one light. Where there are few sub-lights, the points are chosen so
+ * that this light's penumbrae have the least error. A cell of the square may then hold several points or
+ * none, so these points do not suit emission images. */
 void hl_sublight_point(const light_source *source, int side, int i, int j, double square[2]);
 
 /* The light as the content's middle sees it, on a plane parallel to the sheets. The plane goes through the
@@ -26,8 +28,8 @@ typedef struct sheet_light {
   vec3 u, v;   /* unit vectors in the sheets: the projection's principal axes, u the longer */
   double width_u, width_v; /* widths, along u and v, of a box that has the same variances as the projection;
                             * frame units, or for parallel light frame units per frame unit of height */
-  mat3 spread; /* mean of the matrix x x' over the light, where x is the offset of a point of the light from
-                * its centre, in components along u, v and the sheets' normal */
+  mat3 spread; /* mean of the matrix x x' over the light. x is the offset of a point of the light from the
+                * light's centre, in components along u, v and the sheets' normal */
   bool parallel;
 } sheet_light;
 
@@ -35,13 +37,13 @@ sheet_light hl_light_on_sheets(const light_source *source, vec3 normal);
 
 /* Finds the position of a point of the light relative to seen->middle, in coordinates along u, v and the
  * sheets' normal. offset: the point's offset from the light's centre (hl_light_point). For parallel light the
- * first two coordinates are the shift along u and v per unit of height, and the third one is 0. For a
- * receiver to which rays come at a slope, the slope times the third coordinate is subtracted from the first
- * two. */
+ * first two coordinates are the shift along u and v per unit of height, and the third coordinate is 0. Where
+ * rays come to a receiver at a slope, the caller must subtract the slope times the third coordinate from the
+ * first two. */
 void hl_sheet_light_position(const sheet_light *seen, const light_source *source, vec3 normal, vec3 offset,
                              double position[3]);
 
-/* The square of width_u (axis 0) or width_v (axis 1), as receivers see it to which rays come at a slope. The
+/* The square of width_u (axis 0) or width_v (axis 1), as seen by receivers to which rays come at a slope. The
  * slope is the distance along the axis over the height below the light. A light that is tilted against the
  * sheets looks wider from one side. */
 double hl_sheet_light_squared_width(const sheet_light *light, int axis, double slope);

@@ -3,9 +3,9 @@
  *
  * All rays must cross the sheets in the same direction and not too flatly. A light within or beside the
  * content sends rays in all directions, so its rays are divided among six sectors, each with a slicing axis
- * of its own: three axes roughly along the eye's direction and three roughly against it. The eye's rays and
- * the light of the axis's sector both cross the axis's sheets well. The sectors' fractions fade into each
- * other and sum to 1, so that no seam shows. */
+ * of its own: three axes roughly along the eye's direction and three roughly against it. The eye's rays, and
+ * the light's rays within a sector, cross the sheets of the sector's axis at steep enough angles. Sectors
+ * overlap; for each ray the fractions of all sectors sum to 1, so that no seam shows. */
 #ifndef HL_LIGHT_LIGHT_SOURCE_H
 #define HL_LIGHT_LIGHT_SOURCE_H
 
@@ -21,15 +21,16 @@ enum { MAXIMUM_SWEEP_LIGHTS = 16 };
 
 typedef struct light_sectors {
   vec3 axis[LIGHT_SECTORS]; /* for each sector, the unit vector along which its light travels; frame space */
-  double least;             /* the cosine of the angle to a sector's axis at which the sector has faded out */
+  double least;             /* the cosine of the angle, from a sector's axis, at which the sector's fraction
+                             * has fallen to 0 */
 } light_sectors;
 
 /* Finds the axes of sectors. eye_direction: unit vector. widest: the angle between the eye's direction and
  * its outermost ray, radians. */
 light_sectors hl_light_sectors(vec3 eye_direction, double widest);
 
-/* The fraction of a ray's light that sector i takes: max(0, cos_i - least)^2 over the sum of this for all
- * sectors, where cos_i is the cosine between the ray and axis i. */
+/* The fraction of a ray's light that belongs to sector i. It is max(0, cos_i - least)^2, divided by the sum
+ * of these numbers over all sectors; cos_i is the cosine of the angle between the ray and axis i. */
 typedef struct sector_fraction {
   int count; /* number of sectors; 0: the light is whole */
   int sector;
@@ -37,7 +38,7 @@ typedef struct sector_fraction {
   float least;
 } sector_fraction;
 
-/* sectors may be null, which means a whole light. */
+/* Makes the fraction of a sector. sectors: null stands for a whole light. */
 sector_fraction hl_sector_fraction(const light_sectors *sectors, int sector);
 
 /* A picture that a light projects or shows. */
@@ -60,16 +61,16 @@ typedef struct light_source {
                    * or the way from the light's centre to the centre of its screen or of the content */
   vec3 position;  /* position of the light's centre, unless parallel; frame space */
   vec3 content;   /* the content's middle; frame space */
-  mat3 spread;    /* mean of the matrix x x' over the light, where x is the offset of a point of the light
-                   * from its centre; for parallel light, of a direction, as a point at distance 1, from the
-                   * mean direction */
+  mat3 spread;    /* mean of the matrix x x' over the light. x is the offset of a point of the light from the
+                   * light's centre; for parallel light, the offset of a direction from the mean direction, as
+                   * directions are points at distance 1 */
   hl_shadows shadows; /* off, hard or soft */
   hl_soft_method soft_method;
   light_shape shape;      /* frame space; vertices of polygons are borrowed until the frame ends */
   light_screen screen;    /* the picture that the light projects */
   light_picture emission; /* the picture on the light's own surface */
   double of_sky;   /* where the light is a sun of the sky, which makes no highlights: the fraction of its
-                    * light that lights media; else 0 */
+                    * light that lights media; for other lights 0 */
   int light_index; /* index in the scene */
   int row;         /* index in the frame's list of lights */
   const light_sectors *sectors; /* where this source is one sector of a light: the frame's sectors; else
@@ -91,17 +92,18 @@ light_source hl_light_in_sector(const light_source *whole, const light_sectors *
 typedef struct light_cone {
   float axis[3]; /* unit vector along which the light travels; frame space */
   float outer;   /* cosine at which light begins */
-  float scale;   /* 1 / (cosine of the angle at which brightness is full - outer); 0: the light has no cone */
+  float scale;   /* 1 / (inner - outer), where `inner` is the cosine of the angle within which brightness is
+                  * full; 0: the light has no cone */
 } light_cone;
 
-/* Makes the cone of a light. content: the middle of the lit content. pixel: edge of a picture's pixel at
- * this middle, frame units. The blurred edge of the cone is at least one pixel wide. */
+/* Makes the cone of a light. content: the middle of the lit content. pixel: edge of a picture's pixel at this
+ * middle, frame units. The soft edge of the cone is at least one such pixel wide. */
 light_cone hl_light_cone(const light_source *source, vec3 content, double pixel);
 
 /* ---- The region of a light's view that its screen, its cone or its sector lights ---- */
 
-/* Cuts bounds, in coordinates of a view from the light, down to the lit region. Bounds that do not overlap
- * the lit region become a point. */
+/* Cuts the bounds of a picture, in coordinates of a view from the light, down to the lit region. Bounds that
+ * do not overlap the lit region become a point. */
 void hl_lit_region(const view *view, const light_source *source, double low[2], double high[2]);
 
 #endif

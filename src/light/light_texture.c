@@ -25,9 +25,9 @@ static view view_of_screen(const light_source *source, int width, int height) {
   return view;
 }
 
-/* The length of a vector in the screen when light projects it to the content's middle, measured at a right
- * angle to the light's ray there. Where the content lies between light and screen, the vector is not
- * magnified. */
+/* The length of a vector of the screen after the light has projected it to the content's middle. The length
+ * is measured at a right angle to the light's ray there. Where the content lies between light and screen, the
+ * vector is not magnified. */
 static double length_at_content(const light_source *source, const view *view, vec3 step, vec3 content) {
   vec3 way = source->direction;
   double magnified = 1;
@@ -41,15 +41,15 @@ static double length_at_content(const light_source *source, const view *view, ve
 
 /* ---- convolution along one axis ---- */
 
-/* The weights of neighbouring pixels for each pixel of a result. */
+/* The weights of neighbouring pixels of an image, for each pixel of a result. */
 typedef struct axis_weights {
   int count, taps;
-  int *first;     /* owned; [count]; for each pixel of the result, the first weighted pixel of the image.
-                   * All weighted pixels lie in the image; outside the image there is no light */
+  int *first;     /* owned; [count]; for each pixel of the result, the first weighted pixel of the image. All
+                   * weighted pixels lie in the image, because outside the image there is no light */
   float *weights; /* owned; [count][taps] */
 } axis_weights;
 
-/* The fraction of a kernel of half width 1 that lies below x. */
+/* The fraction of a kernel that lies below x. The kernel reaches from -1 to 1. */
 typedef double kernel_fraction(double x);
 
 static double box_below(double x) { return fmin(fmax((x + 1) / 2, 0), 1); }
@@ -61,8 +61,8 @@ static double disk_below(double x) {
   return 0.5 + (x * sqrt(1 - x * x) + asin(x)) / HL_PI;
 }
 
-/* A convolution along one axis: pixel i of the result is the image's mean, weighted by a kernel around start
- * + (i + 1/2) step. */
+/* A convolution along one axis. Pixel i of the result is a weighted mean of the image; the middle of its
+ * kernel lies at start + (i + 1/2) step. */
 typedef struct axis_plan {
   int count;                      /* number of result pixels */
   double start, step, half_width; /* in pixels of the image that is convolved */
@@ -155,9 +155,9 @@ static hl_status make_level(hl_context *context, kernel_fraction *below, const t
 
 /* ---- blur by the light's extent ---- */
 
-/* The standard deviations of the blur along u and v, in pixels of the image, at distance 1 behind the screen
- * (for near light at infinite distance). They are the light's spread, projected onto the screen along the ray
- * to the content's middle. */
+/* The standard deviations of the blur along u and v, in pixels of the image: for parallel light at distance 1
+ * behind the screen, for near light at infinite distance. They are the light's spread, projected onto the
+ * screen along the ray to the content's middle. */
 static void spread_on_screen(const light_source *source, const view *view, vec3 content,
                              double deviation[2]) {
   vec3 ray = source->parallel ? source->direction : vec3_normalise(vec3_subtract(content, source->position));
@@ -174,17 +174,18 @@ static void spread_on_screen(const light_source *source, const view *view, vec3 
   }
 }
 
-/* The scale of the blur at a point: its distance from the screen, or |1 - Zs / Z| for a near light. */
+/* The factor by which the blur at a point is scaled: the point's distance from the screen, or |1 - Zs / Z|
+ * for a near light. */
 static double blur_at(const light_source *source, const view *view, vec3 point) {
   if (source->parallel) return fabs(mat3_apply(view->inverse, vec3_subtract(point, view->corner)).x);
   double w = mat3_apply(view->inverse, vec3_subtract(point, view->origin)).x;
   return fabs(1 - 1 / fmax(w, 0.05));
 }
 
-/* FIRST_BLUR: the standard deviation of level 0's blur, in pixels of the picture; each next level blurs by
- * sqrt(2) times as much. The edge of a level's pixel is LEVEL_PIXEL of the level's blur, but at least
- * LEAST_PIXEL of a pixel of the picture. It is larger where a side of the level would exceed
- * GREATEST_LEVEL_SIDE. */
+/* FIRST_BLUR: the standard deviation of level 0's blur, in pixels of the picture. Each level's standard
+ * deviation is sqrt(2) times that of the level before. The edge of a level's pixel is LEVEL_PIXEL times the
+ * level's standard deviation, but at least LEAST_PIXEL times the edge of a picture's pixel. It is larger
+ * where a side of the level would have more than GREATEST_LEVEL_SIDE pixels. */
 static const double FIRST_BLUR = 1.4, LEVEL_PIXEL = 0.5, LEAST_PIXEL = 0.7;
 enum { GREATEST_LEVEL_SIDE = 8192 };
 
@@ -221,8 +222,7 @@ static hl_status make_levels(hl_context *context, const light_source *source, co
     widest = fmax(widest, deviation[axis] * (double)texture->sharpness[axis]);
   for (int i = 0; i < use->point_count; i++) reach = fmax(reach, blur_at(source, view, use->points[i]));
   if (!(widest * reach > 0.25))
-    return HL_OK; /* below a quarter of a pixel of the picture, no blur is
-                   * needed */
+    return HL_OK; /* if the blur is below a quarter of a pixel of the picture, levels are not needed */
   double first = FIRST_BLUR / widest;
   size_t floats = 0;
   while (texture->level_count < TEXTURE_LEVELS) {
@@ -256,8 +256,8 @@ static hl_status make_levels(hl_context *context, const light_source *source, co
 
 /* ---- the screen ---- */
 
-/* The number of pixels along a side of the averaged image: as many as the picture has across the projected
- * image, but at most as many as the image itself has. */
+/* The number of pixels along a side of the averaged image: the length of the projected image's side in pixels
+ * of the picture, but at most the number of pixels that the image itself has. */
 static int resolution(double length, int count, double pixel, float *sharpness) {
   double wanted = ceil(length / pixel);
   int chosen = wanted < 1 ? 1 : wanted < count ? (int)wanted : count;

@@ -1,8 +1,8 @@
 /* light/light_texture.h - the image that a light projects (section 4, fig. 9), ready for look-ups at samples.
  *
- * Every sample is projected onto the screen along its light ray: the pattern is as sharp as the image,
- * whatever the shadow buffer's resolution. An image finer than the picture is averaged down to the picture's
- * pixels once a frame.
+ * Every sample is projected onto the screen along its light ray. So the pattern is as sharp as the image,
+ * whatever the resolution of the shadow buffer. An image that is finer than the picture is averaged once a
+ * frame, to about the size of the picture's pixels.
  *
  * An extended light with soft shadows blurs the image: at the distance t behind the screen it is convolved
  * with the light's shape, scaled by t (parallel light) or by 1 - Zs / Z, where the screen lies at Zs and the
@@ -30,18 +30,19 @@ typedef struct light_texture {
   int width, height;
   float map[3][4];    /* maps frame space to (w, w u, w v), where u and v are pixels from the image's top left
                        * corner. w <= 0: the sample's ray does not pass the screen's plane */
-  float sharpness[2]; /* along u and v: number of the picture's pixels that one pixel of the image covers, at
-                       * least 1 */
+  float sharpness[2]; /* along u and v: the edge of a pixel of the image, in pixels of the picture; at least
+                       * 1 */
   float beyond[4];    /* for parallel light: maps frame space to the distance from the screen along the rays.
-                       * For near light, w of `map` serves instead */
+                       * For near light, the factor w of `map` is used instead */
   int parallel;
-  float first; /* 1 / square of the distance from the screen (near light: of 1 - Zs / Z) for which level 0 is
-                * blurred. Level l is blurred for 2^l times this square, and so by 2^l times the variance */
-  float edge[2];   /* along u and v: width, in pixels of the image, of a box that has the variance of the blur
-                    * at distance 1 */
+  float first; /* 1 / square of the distance from the screen (near light: of 1 - Zs / Z) at which the blur is
+                * that of level 0. At 2^l times this square the blur is that of level l, which has 2^l times
+                * the variance */
+  float edge[2];   /* along u and v: width, in pixels of the image, of a box whose variance is that of the
+                    * blur at distance 1 */
   int level_count; /* number of levels; 0: the light's extent does not matter */
   texture_level level[TEXTURE_LEVELS];
-  float *memory; /* owned; the averaged image and its levels; null where neither is needed */
+  float *memory; /* owned; the averaged image and the blurred levels; null where neither is needed */
 } light_texture;
 
 /* The content that a light texture falls on; frame space. */

@@ -6,8 +6,8 @@
 #include "simd/gathers.h"
 #include "view/rays_lanes.h"
 
-/* The coverage by the screen along one axis. It rises from 0 to 1 across each edge, over a width of 1 /
- * sharpness. */
+/* How much of a position the screen covers along one axis. It rises from 0 to 1 across each edge of the
+ * screen, over a width of 1 / sharpness. */
 LANES_INLINE lanes within_edges(lanes u, float size, lanes sharpness) {
   lanes half = lanes_set(0.5f);
   return lanes_clamp(lanes_fma(u, sharpness, half), 0, 1) *
@@ -44,7 +44,7 @@ LANES_INLINE void read_image(const float *pixels, int width, int height, lanes u
   }
 }
 
-/* Adds the image times a weight. The image itself is not blurred, but a box blurs the edges of the screen. */
+/* Adds the image, without blur, times a weight. The edges of the screen are blurred by a box. */
 LANES_INLINE void sharp_pattern(const light_texture *texture, lanes blur, lanes u, lanes v, lanes weight,
                                 lanes pattern[3]) {
   lanes sharp_u = lanes_set(texture->sharpness[0]), sharp_v = lanes_set(texture->sharpness[1]);

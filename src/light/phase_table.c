@@ -31,9 +31,9 @@ static double s_of(double g, double cosine) {
 
 static double cosine_of(double g, double s) { return fmin(fmax((1 + g * g - s * s) / (2 * g), -1), 1); }
 
-/* The mean of the phase function p over a cap of directions, which are within acos(c) of the cap's middle (c
- * is below 1). T is the angle between the cap's middle and the direction in which light goes straight on, and
- * `towards` is the cosine of T.
+/* The mean of the phase function p over a cap: the directions that are within acos(c) of the cap's middle. c
+ * is below 1. T is the angle between the cap's middle and the direction in which light goes straight on.
+ * towards: the cosine of T.
  *
  * Derived: all directions at one angle t from straight on form a ring, on which p has one value. The cap
  * holds a fraction f(t) of the ring: all, nothing, or acos((c - cos t cos T) / (sin t sin T)) / pi.
@@ -55,12 +55,13 @@ static double mean_over_cap(double g, double c, double towards, const ring_place
   sum *= (high - low) / 2 * HL_PI / RING_COUNT;
   if (turn < half) sum += 1 / (1 - g) - high; /* rings that lie within the cap */
   if (turn + half > HL_PI)
-    sum += low - 1 / (1 + g); /* rings around the opposite direction that lie completely within the cap */
+    sum += low - 1 / (1 + g); /* adds the rings around the opposite direction, which lie completely within the
+                               * cap */
   return (1 - g * g) / (g * (1 - c)) * sum;
 }
 
-/* Fills a row of a table, for the cap within an angle of cosine c. apart: floats from a number of the row to
- * the next. */
+/* Fills a row of a table with the means over the cap whose edge is at an angle of cosine c to its middle.
+ * apart: floats from a number of the row to the next. */
 static void fill_row(double g, double c, const ring_places *rings, float *row, size_t apart) {
   for (int i = 0; i < PHASE_COLUMNS; i++) {
     double s = 1 - g + 2 * g * i / (PHASE_COLUMNS - 1);
@@ -76,7 +77,7 @@ static bool scatters_unevenly(const hl_scene_volume *volume) {
   return volume->anisotropy != 0 && volume->shading != HL_SHADING_FLAT;
 }
 
-/* Whether some light is wide. near: only lights that are not parallel count. */
+/* Whether some light is wide. near: only lights that are not parallel are looked at. */
 static bool has_wide_light(const hl_scene_description *scene, bool near) {
   bool found = false;
   for (size_t i = 0; i < scene->light_count; i++)
@@ -85,7 +86,8 @@ static bool has_wide_light(const hl_scene_description *scene, bool near) {
   return found;
 }
 
-/* Whether caps of any size are needed: for lights that are wide and near, and for the sky. */
+/* Whether the tables need rows for caps of all sizes. They do for lights that are wide and near, and for the
+ * sky. */
 static bool needs_caps(const hl_scene_description *scene) {
   return scene->sky.type != HL_SKY_NONE || has_wide_light(scene, true);
 }
@@ -102,7 +104,8 @@ static size_t wanted_tables(const hl_scene_description *scene) {
   return count;
 }
 
-/* The number of floats of one table, which consists of rows of parallel lights, followed by rows of caps. */
+/* The number of floats of one table. A table consists of rows for parallel lights, followed by rows for
+ * caps. */
 static size_t table_size(const hl_scene_description *scene) {
   return PHASE_COLUMNS * (scene->light_count + (needs_caps(scene) ? 2 * PHASE_CAPS : 0));
 }
@@ -153,8 +156,8 @@ typedef struct phase_job {
   ring_places rings;
 } phase_job;
 
-/* Fills the rows of caps. Each row is stored twice: in its own row of the table, beside the numbers of the
- * next row, and in the row before, beside that row's numbers. */
+/* Fills the rows of caps. Each row is stored in two places: as the numbers [0] of its own row of the table,
+ * and as the numbers [1] of the row before. */
 static void fill_caps(const phase_job *job, const phase_table *table, size_t row) {
   double g = table->g, part = (double)row / (PHASE_CAPS - 1), s = (1 - g) * pow((1 + g) / (1 - g), part);
   float(*to)[2] = table->caps[row];

@@ -25,9 +25,9 @@ enum { PHASE_COLUMNS = 512, PHASE_CAPS = 64 };
 typedef struct phase_table {
   double g;                         /* 0 < g < 1 */
   float rows_per_log2;              /* number of rows of caps for each step of the binary logarithm of s^2 */
-  float (*caps)[PHASE_COLUMNS][2];  /* [PHASE_CAPS]; number [0] belongs to this row, [1] to the next row;
-                                     * set only where there is a sky, or some light is wide and not
-                                     * parallel */
+  float (*caps)[PHASE_COLUMNS][2];  /* [PHASE_CAPS]; the numbers [0] belong to this row, the numbers [1] to
+                                     * the next row; set only where there is a sky, or where some light is
+                                     * wide and not parallel */
   float (*parallel)[PHASE_COLUMNS]; /* [lights]; only rows of wide parallel lights are set */
 } phase_table;
 
@@ -48,7 +48,7 @@ hl_status hl_phase_update(hl_context *context, hl_pool *pool, const hl_scene_des
                           phase_tables *tables, hl_error *error);
 void hl_phase_release(hl_context *context, phase_tables *tables);
 
-/* The table for an anisotropy or for its opposite; null: there is none. */
+/* The table for an anisotropy or for its opposite; null: there is no such table. */
 const phase_table *hl_phase_table(const phase_tables *tables, double anisotropy);
 
 #endif

@@ -3,11 +3,11 @@
 
 #include "scene/light/light_kind.h"
 
-/* Sets of points. They are chosen so that every half-plane contains, as nearly as possible, the same fraction
- * of the points as of the light's area. scripts/light_points finds them, and says how. Points of disks are
- * given in the unit square, before its map to the disk. With sixteen points on a disk, penumbrae of straight
- * edges have a root mean square error of 0.0326 of the light, 0.028 to 0.036 depending on the edge's
- * direction; with the turned grid it is 0.0362. */
+/* Sets of points. They are chosen so that every half-plane contains nearly the same fraction of the points as
+ * of the light's area. scripts/light_points finds the points, and says how. Points of disks are given as
+ * points of the unit square, which hl_light_point() maps to the disk. With sixteen points on a disk,
+ * penumbrae of straight edges have a root mean square error of 0.0326 of the light, 0.028 to 0.036 depending
+ * on the edge's direction; with the turned grid it is 0.0362. */
 enum { SEARCHED_SIDES = 3, MOST_SEARCHED = 16 };
 typedef double square_points[MOST_SEARCHED][2];
 

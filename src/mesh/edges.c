@@ -1,27 +1,28 @@
 /* mesh/edges.c - normals at the creases of meshes that bring no normals.
  *
  * In: a mesh's triangles. Out: a normal for each corner at a crease. A vertex's normal is the mean of its
- * triangles' normals, weighted by area. A triangle whose normal differs much from this mean is at a crease.
- * The normal of a corner there is the mean over fewer triangles: those at the vertex that bend little against
- * the corner's own triangle. Without creases a long box would look rounded, as its short faces count for
- * little in the means. */
+ * triangles' normals, weighted by area. If the normal of one of its triangles differs much from this mean,
+ * the vertex is at a crease. The normal of a corner at a crease is the mean over fewer triangles: those at
+ * the vertex whose normals differ little from that of the corner's own triangle. Without creases a long box
+ * would look rounded, because its short faces contribute little to the means. */
 #include "core/memory.h"
 #include "core/vector.h"
 #include "mesh/mesh.h"
 
-/* The cosine of 60 degrees: two triangles at a crease's vertex share a normal if the angle between them is
- * smaller. */
+/* The cosine of 60 degrees: at a crease, two triangles of a vertex share a normal if the angle between them
+ * is smaller than this. */
 static const double SHARED = 0.5;
 
-/* A vertex with more triangles keeps one normal for all of them. */
+/* A vertex with more triangles than this keeps one normal for all of them. */
 enum { MOST_TRIANGLES = 256 };
 
 typedef struct edge_search {
   const hl_mesh_description *mesh;
-  float (*sums)[3]; /* owned; [vertex_count]; sums of the triangles' cross products */
-  uint16_t *marks;  /* owned; [vertex_count]; first whether the vertex is at a crease, later the number of its
-                     * corners that are listed so far */
-  uint32_t *first;  /* owned; [vertex_count + 1]; index at which the corners of a vertex at a crease begin */
+  float (*sums)[3]; /* owned; [vertex_count]; sums of the cross products of each vertex's triangles */
+  uint16_t *marks;  /* owned; [vertex_count]; at first, whether the vertex is at a crease; later, the number
+                     * of its corners that were listed */
+  uint32_t *first;  /* owned; [vertex_count + 1]; index in `corners` at which the corners of a vertex at a
+                     * crease begin */
   size_t *corners;  /* owned; [first[vertex_count]]; 3 x triangle + corner */
 } edge_search;
 
@@ -48,7 +49,8 @@ static void add_up(edge_search *search) {
   }
 }
 
-/* Marks the vertices at which a triangle bends much against the mean. Returns whether there is one. */
+/* Marks the vertices of a triangle at which its normal differs much from the mean. Returns whether there is
+ * one. */
 static bool mark_edges(edge_search *search) {
   const hl_mesh_description *d = search->mesh;
   bool any = false;
@@ -79,7 +81,7 @@ static void count_corners(edge_search *search) {
   }
 }
 
-/* Lists the corners, and stores in `edges` each corner's place in the list. */
+/* Lists the corners at creases, and stores each corner's place in the list in `edges`. */
 static void list_corners(edge_search *search, uint32_t (*edges)[3]) {
   const hl_mesh_description *d = search->mesh;
   for (size_t t = 0; t < d->triangle_count; t++)
@@ -92,8 +94,8 @@ static void list_corners(edge_search *search, uint32_t (*edges)[3]) {
     }
 }
 
-/* Finds the normals of one vertex's corners. A corner's normal is the mean of the triangles that bend little
- * against the corner's own triangle. */
+/* Finds the normals of one vertex's corners. A corner's normal is the mean over the triangles whose normals
+ * differ little from that of the corner's own triangle. */
 static void find_normals_of(const edge_search *search, size_t vertex, float (*normals)[3]) {
   vec3 cross[MOST_TRIANGLES], unit[MOST_TRIANGLES];
   const size_t *corners = search->corners + search->first[vertex];

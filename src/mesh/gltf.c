@@ -151,8 +151,8 @@ static hl_status add_faces(gltf_reader *reader, const gltf_accessor *indices, si
   return status;
 }
 
-/* Whether a primitive with compressed positions also has them uncompressed in a buffer, as files do for
- * programs that cannot decompress them. */
+/* Whether a primitive with compressed positions also has uncompressed positions in a buffer. Files have these
+ * for programs that cannot decompress. */
 static bool has_plain_positions(const gltf_reader *reader, const json_t *primitive) {
   size_t index;
   return hl_gltf_index(json_object_get(primitive, "attributes"), "POSITION", &index) &&
@@ -230,7 +230,7 @@ static hl_status add_node(gltf_reader *reader, size_t index, affine3 place, int 
   return status;
 }
 
-/* Finds which attributes any primitive has. All vertices then have these attributes. */
+/* Finds the attributes that at least one primitive has. All vertices then get these attributes. */
 static void find_attributes(gltf_reader *reader) {
   const json_t *meshes = json_object_get(reader->file.root, "meshes");
   for (size_t m = 0; m < json_array_size(meshes); m++) {

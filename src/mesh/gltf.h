@@ -9,7 +9,7 @@
 typedef struct gltf_buffer {
   const unsigned char *bytes; /* [length] */
   size_t length;
-  bool owned; /* if false, the bytes belong to the glTF file's own content */
+  bool owned; /* false: the bytes belong to the content of the glTF file */
 } gltf_buffer;
 
 typedef struct gltf_file {
@@ -36,19 +36,20 @@ hl_status hl_gltf_read_beside(const gltf_file *file, const char *name, gltf_buff
 typedef struct gltf_accessor {
   const unsigned char *bytes;
   size_t count, stride; /* number of elements; bytes from one element to the next */
-  int components, type; /* numbers of an element; the glTF type of these numbers */
-  double *numbers;      /* owned by the file; [count][components]; takes the place of `bytes` for a sparse
-                         * accessor, else null */
+  int components, type; /* number of components of an element, and their glTF type */
+  double *numbers;      /* [count][components]; owned by the file; the numbers of a sparse accessor, which
+                         * take the place of `bytes`; null for other accessors */
   bool normalized;      /* whether whole numbers stand for fractions of their type's greatest value */
 } gltf_accessor;
 
 /* Finds an accessor and checks that its buffer holds it. */
 hl_status hl_gltf_find_accessor(gltf_file *file, size_t index, gltf_accessor *accessor, hl_error *error);
 
-/* One number of an accessor. Whole numbers are not divided. */
+/* One number of an accessor. Whole numbers are returned as they are, without division. */
 double hl_gltf_number(const gltf_accessor *accessor, size_t element, int component);
 
-/* The value by which colours of an accessor are divided: the greatest value of its type, or 1 for floats. */
+/* The number by which colours of an accessor must be divided: the greatest value of their type; 1 for
+ * floats. */
 double hl_gltf_whole(const gltf_accessor *accessor);
 
 /* Reads a member that is a whole number of at least 0. False if there is none. */

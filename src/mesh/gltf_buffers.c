@@ -80,8 +80,8 @@ static void decode_uri(const char *uri, char *name) {
   *name = 0;
 }
 
-/* Reads the file that a URI names. If there is no file of the decoded name, the URI's own text is the
- * name. */
+/* Reads the file that a URI names. If there is no file with the decoded name, the URI's text itself is tried
+ * as the name. */
 static hl_status read_uri(const gltf_file *file, const char *uri, gltf_buffer *buffer, hl_error *error) {
   char *name = hl_allocate(file->context, strlen(uri) + 1, 1);
   if (name == NULL) return hl_fail_memory(error, strlen(uri), "a uri");

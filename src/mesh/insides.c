@@ -1,8 +1,8 @@
 /* mesh/insides.c - the parts of a mesh that are closed, and which side of them is the inside.
  *
  * In: a mesh's triangles. Out: for each triangle, the side on which the inside of its part lies. A part is a
- * set of triangles that vertices connect. A mesh may hold a room and the things in it, with the fronts of
- * each facing either way. */
+ * set of triangles that are connected by shared vertices. Parts are examined one by one, because a mesh may
+ * hold a room and the things in it, and the fronts of each may face inwards or outwards. */
 #include "core/memory.h"
 #include "mesh/mesh.h"
 
@@ -11,8 +11,8 @@ typedef struct part_search {
   const hl_mesh_description *mesh;
   uint32_t *parent; /* owned; [vertex_count]; another vertex of the same part; a part's root is its own
                      * parent */
-  uint64_t *ways;   /* owned; [vertex_count]; for roots: the sum of the hashes of the part's edges, 0 where
-                     * the part is closed */
+  uint64_t *ways;   /* owned; [vertex_count]; for roots: the sum of the hashes of the part's edges, which is 0
+                     * if the part is closed */
   double *volume;   /* owned; [vertex_count]; for roots: six times the volume that the part encloses, negative
                      * if its fronts face inwards */
 } part_search;
@@ -37,9 +37,9 @@ static double volume_of(const hl_mesh_description *d, const uint32_t corner[3]) 
 }
 
 /* Finds the parts, and adds up their edges and volumes. Returns whether the whole mesh is closed: each edge
- * runs as often one way as the other, and the triangles enclose a volume above 0. Derived: hashes of edges
- * that run one way are added, hashes of edges that run the other way subtracted. A sum other than 0 means a
- * boundary edge; 0 by chance has the probability 2^-64. */
+ * runs as often one way as the other, and the triangles enclose a volume above 0. Derived: the hashes of an
+ * edge's two directions add up to 0. So the sum over a closed part is 0, and any other sum means that there
+ * is a boundary edge. With a boundary edge, a sum of 0 has the probability 2^-64. */
 static bool find_parts(part_search *search) {
   const hl_mesh_description *d = search->mesh;
   uint64_t sum = 0;

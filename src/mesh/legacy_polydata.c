@@ -8,7 +8,8 @@
 #include "volume/io/numbers.h"
 
 typedef struct legacy_file {
-  hl_legacy_vtk file; /* must come first: callbacks find the other members by the address of this one */
+  hl_legacy_vtk file; /* must be the first member: callbacks get its address, and find the other members by
+                       * it */
   polydata data;
   bool is_polydata;
 } legacy_file;
@@ -36,7 +37,7 @@ static hl_status read_points(legacy_file *reader, const char *arguments, hl_erro
              : status;
 }
 
-/* Reads the next line that has a word: "keyword type". */
+/* Reads the next line that is not empty: "keyword type". */
 static hl_status read_named(hl_legacy_vtk *file, const char *keyword, hl_voxel_type *type, hl_error *error) {
   char line[HL_LINE_BYTES], word[HL_LEGACY_WORD_BYTES], type_name[HL_LEGACY_WORD_BYTES];
   bool ended = false, found = false;
@@ -52,8 +53,8 @@ static hl_status read_named(hl_legacy_vtk *file, const char *keyword, hl_voxel_t
   return hl_legacy_vtk_type(file, type_name, type, error);
 }
 
-/* Reads the cells of a file of version 5.1. OFFSETS has where each cell begins, and where the last one ends,
- * in CONNECTIVITY, which has the cells' points. */
+/* Reads the cells of a file of version 5.1. CONNECTIVITY has the points of all cells; OFFSETS has the index
+ * in CONNECTIVITY at which each cell begins, and the index at which the last cell ends. */
 static hl_status read_offsets(hl_legacy_vtk *file, cells *cells, size_t offsets, size_t points,
                               hl_error *error) {
   hl_voxel_type type;
@@ -70,8 +71,8 @@ static hl_status read_offsets(hl_legacy_vtk *file, cells *cells, size_t offsets,
   return HL_OK;
 }
 
-/* Reads the cells of a file of an older version. Each cell is written as its number of points and then its
- * points; the numbers of points are left out of cells->points. */
+/* Reads the cells of a file of an older version. For each cell the file has its number of points, and then
+ * its points. The numbers of points are left out of cells->points. */
 static hl_status read_lists(hl_legacy_vtk *file, cells *cells, size_t count, size_t numbers,
                             hl_error *error) {
   hl_status status = HL_OK;
@@ -96,7 +97,7 @@ static hl_status read_lists(hl_legacy_vtk *file, cells *cells, size_t count, siz
   return HL_OK;
 }
 
-/* Finds whether cells are written as in version 5.1: the line after the keyword's line then begins with
+/* Finds whether cells are written as in version 5.1: whether the line after the keyword's line begins with
  * OFFSETS. */
 static hl_status is_newer(hl_legacy_vtk *file, bool *newer, hl_error *error) {
   const unsigned char *bytes;
@@ -145,7 +146,8 @@ static hl_status meet_array(hl_legacy_vtk *file, const hl_legacy_array *array, h
   bool active = hl_text_is_one_of(array->kind, "SCALARS|COLOR_SCALARS");
   cell_values *values = hl_polydata_claim(&reader->data, name, &shape,
                                           array->of_points ? AT_POINTS : AT_CELLS, active);
-  /* an array of the whole file (FIELD) may have another number of tuples than there are points or cells */
+  /* An array of the whole file (FIELD) may have a number of tuples that is not the number of points or
+   * cells. */
   if (values == NULL || array->tuples != file->tuples) return hl_legacy_vtk_skip_array(file, array, error);
   shape.values = values->values;
   size_t count = array->tuples * array->components;

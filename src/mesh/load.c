@@ -24,7 +24,7 @@ enum { FORMAT_COUNT = sizeof formats / sizeof *formats };
 hl_status hl_mesh_get_format(size_t index, hl_file_format *format) {
   if (format == NULL || format->struct_size != sizeof *format || index > FORMAT_COUNT)
     return HL_ERROR_ARGUMENT;
-  bool listed = index < FORMAT_COUNT; /* .vtk files are told apart by their content */
+  bool listed = index < FORMAT_COUNT; /* .vtk files may hold meshes or volumes; their content tells which */
   *format = (hl_file_format){
       .struct_size = sizeof *format, .name = listed ? formats[index].name : "VTK .vtk", .reads = 1};
   hl_endings_add(format->read_endings, listed ? formats[index].ending : ".vtk");

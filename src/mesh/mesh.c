@@ -43,7 +43,7 @@ hl_status hl_mesh_get_box(const hl_mesh *mesh, double low[3], double high[3]) {
 
 static bool is_finite(const float v[3]) { return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]); }
 
-/* Whether a triangle has an area: whether the cross product of its edges is not zero. */
+/* Whether a triangle has an area, so that the cross product of its edges is not zero. */
 static bool has_area(const float a[3], const float b[3], const float c[3]) {
   double p[3], q[3];
   for (int i = 0; i < 3; i++) p[i] = (double)b[i] - a[i], q[i] = (double)c[i] - a[i];
@@ -58,7 +58,7 @@ static void grow_bounds(hl_mesh *mesh, const float at[3], double radius) {
   }
 }
 
-/* Keeps the triangles that can be seen. The mesh owns its arrays, so that they may be written here. */
+/* Keeps only the triangles that can be seen. The mesh owns its arrays, so that they may be changed here. */
 static hl_status keep_triangles(hl_mesh *mesh, hl_error *error) {
   hl_mesh_description *d = &mesh->description;
   uint32_t(*triangles)[3] = (uint32_t(*)[3])d->triangles;
@@ -85,7 +85,7 @@ static hl_status keep_triangles(hl_mesh *mesh, hl_error *error) {
   return HL_OK;
 }
 
-/* Keeps the spheres that have a finite place and a radius. */
+/* Keeps only the spheres whose place is finite and whose radius is above 0. */
 static void keep_spheres(hl_mesh *mesh) {
   hl_mesh_description *d = &mesh->description;
   float(*spheres)[4] = (float(*)[4])d->spheres, (*colors)[4] = (float(*)[4])d->sphere_colors;
@@ -100,7 +100,7 @@ static void keep_spheres(hl_mesh *mesh) {
   d->sphere_count = kept;
 }
 
-/* Keeps the visible elements, and finds their bounds. */
+/* Keeps only the elements that can be seen, and finds their bounds. */
 static hl_status keep_visible(hl_mesh *mesh, hl_error *error) {
   for (int axis = 0; axis < 3; axis++) mesh->low[axis] = INFINITY, mesh->high[axis] = -INFINITY;
   hl_status status = keep_triangles(mesh, error);

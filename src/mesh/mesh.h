@@ -12,37 +12,38 @@
 
 enum { HL_LIMIT_TRIANGLES = 1 << 28, HL_LIMIT_SPHERES = 1 << 26, HL_LIMIT_LINE_POINTS = 1 << 23 };
 
-/* The cosine of 40 degrees. The surface counts as rounded at a vertex where no triangle's normal differs from
- * the vertex's normal by more than this angle; elsewhere it has a crease. */
+/* The cosine of 40 degrees. If no triangle's normal differs from a vertex's normal by more than this angle,
+ * the surface counts as rounded at the vertex; otherwise it has a crease there. */
 #define HL_MESH_ROUNDED 0.766
 
-/* Marks a corner that has no normal of its own. */
+/* The index of a corner that has no normal of its own. */
 #define HL_NO_EDGE UINT32_MAX
 
 struct hl_mesh {
   hl_context *context;
   atomic_int references;
   hl_mesh_description description;        /* its arrays are owned */
-  size_t given_vertices, given_triangles; /* numbers of vertices and triangles without those of tubes, which
-                                           * come last */
-  /* owned; [triangle_count]; for each corner the index of its normal in edge_normals, or HL_NO_EDGE for its
-   * vertex's normal; null if all corners have their vertices' normals */
+  size_t given_vertices, given_triangles; /* numbers of the vertices and triangles that are not those of
+                                           * tubes; those of tubes follow them */
+  /* owned; [triangle_count]; for each corner, the index of its normal in edge_normals; HL_NO_EDGE: the corner
+   * has its vertex's normal. Null if all corners have their vertices' normals */
   uint32_t (*edges)[3];
   float (*edge_normals)[3]; /* owned; [edge_normal_count]; unit */
   size_t edge_normal_count;
   double low[3], high[3]; /* bounds of the visible elements; world units */
-  bool closed;     /* whether the mesh has an inside and its fronts face outwards: each edge has a triangle on
-                    * either side, or parts that meet enclose an inside together */
-  int8_t *insides; /* owned; [triangle_count]; the side of a triangle that is inside of the triangle's closed
-                    * part: -1 is its back, 1 its front, 0 means that the part is open */
+  bool closed;            /* whether the mesh encloses an inside and its fronts face outwards: each edge has
+                           * triangles on both sides, or several parts enclose an inside together */
+  int8_t *insides; /* owned; [triangle_count]; the side of a triangle on which the inside of its closed part
+                    * lies: -1 is the triangle's back, 1 its front; 0: the part is open */
   bool opaque;     /* whether no triangle's colour lets light through */
-  bool is_cut;     /* whether a scene's cuts have been applied already, as for an isosurface */
-  uint64_t mark; /* a hash of all that hides light: triangles, spheres and their colours; for the keys of kept
-                  * results */
+  bool is_cut;     /* whether the scene's cuts were applied already when the mesh was made, as for an
+                    * isosurface */
+  uint64_t mark; /* a hash of everything that hides light: triangles, spheres and their colours; for the keys
+                  * of kept results */
 };
 
 /* A hash of an edge in one direction, from one vertex to another. The hashes of an edge's two directions add
- * up to 0. Two other edges have the same hash with a chance of one in 2^64. */
+ * up to 0. Two different edges have the same hash with a probability of one in 2^64. */
 uint64_t hl_hash_of_way(uint32_t from, uint32_t to);
 
 /* A polygon that was added as a fan of triangles; `first` is the first triangle. */
@@ -71,16 +72,16 @@ typedef struct mesh_parts {
   size_t polygon_count, polygon_room;
 } mesh_parts;
 
-/* Makes room for vertices or triangles, `count` of them in all. with_normals, with_colors: whether the
- * vertices have normals and colours. */
+/* Makes room for vertices or triangles. count: their number in all, those that are there already included.
+ * with_normals, with_colors: whether the vertices have normals and colours. */
 hl_status hl_mesh_reserve_vertices(mesh_parts *parts, size_t count, bool with_normals, bool with_colors,
                                    hl_error *error);
 hl_status hl_mesh_reserve_triangles(mesh_parts *parts, size_t count, hl_error *error);
 
-/* Adds a triangle, and makes room for it in `triangles`, but not in face_colors. */
+/* Adds a triangle. Makes room for it in `triangles`, but not in `face_colors`. */
 hl_status hl_mesh_add_triangle(mesh_parts *parts, uint32_t a, uint32_t b, uint32_t c, hl_error *error);
 
-/* Notes that the triangles from `first` up to the last one are a polygon: a fan around its first corner. */
+/* Notes that the triangles from `first` to the last one are a polygon: a fan around its first corner. */
 hl_status hl_mesh_note_polygon(mesh_parts *parts, size_t first, hl_error *error);
 
 /* Replaces the fans of noted polygons that are not convex by triangles that cover exactly the polygon. All
@@ -101,11 +102,12 @@ hl_status hl_mesh_find_edges(hl_mesh *mesh, hl_error *error);
 /* Finds the closed parts of a mesh: sets insides and closed. */
 hl_status hl_mesh_find_insides(hl_mesh *mesh, hl_error *error);
 
-/* Marks a mesh as closed. For those who make a mesh of parts that enclose an inside together, although the
- * parts share no edges where they meet. The fronts must face outwards. */
+/* Marks a mesh as closed, although its parts share no edges where they meet. It is called for meshes of
+ * several parts that enclose an inside together. The fronts must face outwards. */
 void hl_mesh_take_as_closed(hl_mesh *mesh);
 
-/* Describes the mesh that the parts make so far. The description borrows its arrays from the parts. */
+/* Describes the mesh that would be made of the parts now. The description borrows its arrays from the
+ * parts. */
 hl_mesh_description hl_mesh_parts_describe(const mesh_parts *parts);
 
 void hl_mesh_parts_release(mesh_parts *parts);

@@ -20,7 +20,7 @@ typedef struct obj_reader {
   size_t normal_count, normal_room;
   obj_materials materials;
   const obj_material *material; /* the material of the faces that follow; null if there is none */
-  size_t face_color_room;       /* number of triangles that parts->face_colors has memory for */
+  size_t face_color_room;       /* number of triangles for which parts->face_colors has memory */
   hl_error *error;
 } obj_reader;
 
@@ -37,8 +37,8 @@ static size_t line_end(const obj_reader *reader, const char *at) {
   return *at == '\r' && at + 1 < reader->end && at[1] == '\n' ? 2 : 1;
 }
 
-/* The number of bytes of a backslash and a line's end, after which the line continues; 0 if they are not at
- * `at`. */
+/* The number of bytes at `at` of a backslash and a line's end, which mean that the line continues; 0 if they
+ * are not there. */
 static size_t continuation(const obj_reader *reader, const char *at) {
   size_t end = at < reader->end && *at == '\\' ? line_end(reader, at + 1) : 0;
   return end > 0 ? end + 1 : 0;
@@ -158,8 +158,8 @@ static hl_status set_normal(obj_reader *reader, uint32_t vertex, const char *tex
   return HL_OK;
 }
 
-/* Colours the triangles of one face, which begin at `first`, by the face's material. As soon as one face has
- * a colour, all triangles have one: white without a material. */
+/* Gives the triangles of one face, from number `first` on, the colour of the face's material. As soon as one
+ * face has a colour, all triangles have one; without a material it is white. */
 static hl_status color_face(obj_reader *reader, size_t first) {
   mesh_parts *parts = reader->parts;
   if (parts->face_colors == NULL && reader->material == NULL) return HL_OK;

@@ -1,4 +1,4 @@
-/* mesh/parts.c - the arrays of a mesh while it is made: they grow as a file is read. */
+/* mesh/parts.c - the arrays of a mesh while its file is read; they grow as needed. */
 #include "core/memory.h"
 #include "mesh/mesh.h"
 

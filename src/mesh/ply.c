@@ -22,7 +22,7 @@ typedef enum ply_type {
 static const struct {
   const char *names; /* alternative names of the type */
   ply_type type;
-  hl_voxel_type voxel; /* the voxel type that stands for the same type of numbers */
+  hl_voxel_type voxel; /* the voxel type with the same kind of numbers */
   int bytes;
 } types[] = {{"", PLY_NONE, HL_VOXEL_U8, 0},
              {"char|int8", PLY_I8, HL_VOXEL_I8, 1},
@@ -34,7 +34,7 @@ static const struct {
              {"float|float32", PLY_F32, HL_VOXEL_F32, 4},
              {"double|float64", PLY_F64, HL_VOXEL_F64, 8}};
 
-/* What a property of a vertex or a face is in the mesh. */
+/* What a property of a vertex or a face becomes in the mesh. */
 typedef enum ply_role {
   ROLE_NONE = -1,
   ROLE_X,
@@ -58,13 +58,13 @@ static const char *const role_names[ROLES] = {"x",
 enum { MOST_PROPERTIES = 64, MOST_ELEMENTS = 16, WORD_BYTES = 64 };
 
 typedef struct ply_property {
-  ply_type count, type; /* count: the type of the number in front of a list, which tells its length; PLY_NONE
-                         * for a property that is no list */
+  ply_type count, type; /* count: for a list, the type of the number before it, which is its length; PLY_NONE:
+                         * the property is no list */
   int role;
 } ply_property;
 
 typedef struct ply_element {
-  bool vertices, faces, strips; /* what the element's items are; strips: faces whose corners make strips of
+  bool vertices, faces, strips; /* what the element's items are. Strips are faces whose corners make strips of
                                  * triangles, with -1 between strips */
   bool face_colors;             /* whether faces have colours */
   size_t count;
@@ -80,7 +80,7 @@ typedef struct ply_reader {
   char line_end; /* the end of header lines: LF, or CR alone */
   ply_element element[MOST_ELEMENTS];
   int element_count;
-  size_t face_color_room; /* number of triangles that parts->face_colors has memory for */
+  size_t face_color_room; /* number of triangles for which parts->face_colors has memory */
   size_t colored;         /* number of triangles that have colours */
   bool has_vertices;      /* whether the element with the vertices was read */
   hl_error *error;
@@ -240,8 +240,8 @@ static hl_status color_faces(ply_reader *reader, size_t first, const float color
     parts->face_colors = grown;
     reader->face_color_room = room;
   }
-  static const float white[4] = {1, 1, 1, 1}; /* the colour of earlier triangles, whose element has no
-                                               * colours */
+  static const float white[4] = {1, 1, 1, 1}; /* the colour of earlier triangles, which come from an element
+                                               * without colours */
   for (size_t t = reader->colored; t < parts->triangle_count; t++)
     memcpy(parts->face_colors[t], t < first ? white : color, sizeof *parts->face_colors);
   reader->colored = parts->triangle_count;

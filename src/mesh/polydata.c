@@ -1,10 +1,10 @@
 /* mesh/polydata.c - converts VTK's PolyData to the parts of a mesh.
  *
- * Colours are those of points where there are any, else those of cells. Arrays of bytes with three or four
- * components are sRGB, as VTK's mappers take them; other scalars go through the colormap viridis, from
- * their least to their greatest value. Radii of spheres and tubes are the point array "radius", or else a
- * fraction of the size of all points. Where cells have normals, the mesh shall look as flat as its cells:
- * triangles show their own normals. */
+ * Colours are those of points if there are any, else those of cells. Arrays of bytes with three or four
+ * components are taken as sRGB, as VTK's mappers do. Other scalars are coloured by the colormap viridis, from
+ * their least to their greatest value. Radii of spheres and tubes come from the point array "radius", or else
+ * are a fraction of the size of the box around all points. If cells have normals, triangles show their own
+ * normals, so that the mesh looks as flat as its cells. */
 #include "mesh/polydata.h"
 
 #include <math.h>
@@ -15,7 +15,8 @@
 #include "image/srgb.h"
 #include "volume/io/text.h"
 
-/* Radius for files that give none, as a fraction of the diagonal of the box around all points. */
+/* The radius of spheres and tubes in files that give none, as a fraction of the diagonal of the box around
+ * all points. */
 static const double RADIUS_PART = 1.0 / 400;
 
 static bool is_color(const cell_values *shape) {
@@ -139,7 +140,8 @@ typedef struct conversion {
   mesh_parts *parts;
   float (*colors)[4]; /* the colours of the points, or else of the cells; null if there are none */
   bool of_points;
-  size_t first_cell[CELL_KINDS]; /* for each kind, the index of its first cell among the cells of all kinds */
+  size_t first_cell[CELL_KINDS]; /* for each kind of cells, its first cell's index among the cells of all
+                                  * kinds */
   double radius;                 /* the radius where the file gives none */
   hl_error *error;
 } conversion;
@@ -166,7 +168,7 @@ static bool make_round(const conversion *c, size_t count, float (**points)[4], f
   return *points != NULL && (c->colors == NULL || *colors != NULL);
 }
 
-/* Converts the points of all cells of a kind, one cell after the other. */
+/* Converts the points of all cells of a kind to spheres or lines, one cell after the other. */
 static hl_status convert_round(const conversion *c, cell_kind kind, size_t most, float (**points)[4],
                                float (**colors)[4]) {
   const cells *cells = &c->data->cells[kind];
@@ -225,7 +227,7 @@ static hl_status add_cell(const conversion *c, const cells *cells, size_t n, boo
   return status;
 }
 
-/* Colours the triangles that were added since the mesh had `before` triangles. */
+/* Gives a colour to the triangles that were added after the mesh had `before` triangles. */
 static void color_faces(const conversion *c, size_t before, size_t cell) {
   for (size_t t = before; t < c->parts->triangle_count; t++)
     memcpy(c->parts->face_colors[t], c->colors[cell], sizeof *c->parts->face_colors);
@@ -253,7 +255,7 @@ static size_t triangle_count(const cells *cells) {
   return count;
 }
 
-/* Converts the points to the vertices of the triangles. */
+/* Makes the vertices of the triangles from the points. */
 static hl_status convert_points(const conversion *c) {
   const polydata *data = c->data;
   mesh_parts *parts = c->parts;
@@ -266,7 +268,7 @@ static hl_status convert_points(const conversion *c) {
       parts->positions[p][i] = (float)data->points[3 * p + i];
       if (normals) parts->normals[p][i] = (float)data->normals.values[3 * p + i];
     }
-  /* a normal of zero means that the triangle's own normal is used */
+  /* a zero normal means that triangles show their own normals */
   if (flat) memset(parts->normals, 0, data->point_count * sizeof *parts->normals);
   if (colors) memcpy(parts->colors, c->colors, data->point_count * sizeof *parts->colors);
   parts->vertex_count = data->point_count;

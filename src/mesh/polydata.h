@@ -9,7 +9,7 @@
 typedef enum cell_kind { CELLS_VERTICES, CELLS_LINES, CELLS_POLYGONS, CELLS_STRIPS, CELL_KINDS } cell_kind;
 
 typedef struct cells {
-  double *ends;   /* owned; [count], rising; the end of each cell's points in `points` */
+  double *ends;   /* owned; [count], rising; for each cell, the index in `points` one past its last point */
   double *points; /* owned; [point_count]; indices of points */
   size_t count, point_count;
 } cells;
@@ -32,13 +32,13 @@ typedef struct polydata {
   cells cells[CELL_KINDS];
   cell_values colors[VALUE_PLACES]; /* RGB, RGBA, or scalars */
   cell_values normals, radii;       /* at points */
-  bool flat;                        /* whether cells have normals: triangles then show their own normals,
-                                     * unless points have normals */
+  bool flat;                        /* whether cells have normals; if so, and if points have none, triangles
+                                     * show their own normals */
 } polydata;
 
-/* Finds where in the data an array's values belong, which follows from its name and shape. Returns null if
- * the mesh has no use for the array, or has such an array already. active: whether the file calls the array
- * its active scalars; they displace colours that were found before. */
+/* Finds the place in `data` for an array's values, by the array's name and shape. Returns null if the mesh
+ * does not use the array, or has such an array already. active: whether the array is the file's active
+ * scalars, which replace colours that were found before. */
 cell_values *hl_polydata_claim(polydata *data, const char *name, const cell_values *shape, value_place place,
                                bool active);
 

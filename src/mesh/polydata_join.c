@@ -1,8 +1,8 @@
 /* mesh/polydata_join.c - joins the pieces of a file.
  *
  * In: pieces with arrays of their own. Out: one polydata. Its points are the points of the first piece, then
- * those of the second, and so on. Cells are ordered by kind first, and within a kind by piece. Values at
- * cells are therefore joined kind by kind. */
+ * those of the second, and so on. Cells are ordered by kind, and cells of one kind by piece. So values at
+ * cells are joined kind by kind. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -41,8 +41,7 @@ static hl_status join_points(const joining *join) {
   return HL_OK;
 }
 
-/* Joins the cells of a kind. A cell names points of the whole, in which the points of earlier pieces come
- * first. */
+/* Joins the cells of a kind. Their indices of points are raised by the number of points in earlier pieces. */
 static hl_status join_cells(const joining *join, int kind) {
   hl_status status = HL_OK;
   cells *whole = &join->whole->cells[kind];
@@ -66,15 +65,15 @@ static hl_status join_cells(const joining *join, int kind) {
   return HL_OK;
 }
 
-/* Finds where an array of values lies in a polydata. */
+/* Finds an array of values in a polydata. */
 typedef cell_values *find_values(polydata *data);
 static cell_values *point_colors(polydata *data) { return &data->colors[AT_POINTS]; }
 static cell_values *cell_colors(polydata *data) { return &data->colors[AT_CELLS]; }
 static cell_values *normals(polydata *data) { return &data->normals; }
 static cell_values *radii(polydata *data) { return &data->radii; }
 
-/* Finds the shape of an array in all pieces that have points or cells for it. The array must be absent from
- * all of them, or have one shape. */
+/* Finds the shape of an array in the pieces that have points or cells for it. Either none of these pieces has
+ * the array, or it has the same shape in all of them. */
 static hl_status find_shape(const joining *join, find_values *find, value_place place, cell_values *shape) {
   bool first = true, same = true;
   *shape = (cell_values){.type = HL_VOXEL_U8};

@@ -1,9 +1,9 @@
 /* mesh/polygons.c - triangles that cover exactly a polygon of more than three corners.
  *
- * Readers add a polygon as a fan of triangles around its first corner, and note it. Where the polygon is not
- * convex a fan may reach beyond it. Once all vertices are known, such a fan is replaced by the same number of
- * triangles from ear clipping (G. H. Meisters, Polygons Have Ears, American Mathematical Monthly 82,
- * 1975). */
+ * Readers add a polygon as a fan of triangles around its first corner, and note which triangles these are. If
+ * the polygon is not convex, the fan may reach beyond it. Once all vertices are known, such a fan is replaced
+ * by the same number of triangles, which ear clipping makes (G. H. Meisters, Polygons Have Ears, American
+ * Mathematical Monthly 82, 1975). */
 #include <math.h>
 
 #include "core/context.h"
@@ -11,9 +11,8 @@
 #include "core/vector.h"
 #include "mesh/mesh.h"
 
-/* The greatest number of corners of a polygon that is cut into triangles by clipping ears. A polygon with
- * more corners stays a fan of triangles, because the time of clipping grows with the square of this number.
- */
+/* The greatest number of corners of a polygon from which ears are clipped. A polygon with more corners stays
+ * a fan of triangles, because the time for clipping grows with the square of the number of corners. */
 enum { CORNERS_MOST = 1 << 14 };
 
 hl_status hl_mesh_note_polygon(mesh_parts *parts, size_t first, hl_error *error) {
@@ -33,7 +32,8 @@ hl_status hl_mesh_note_polygon(mesh_parts *parts, size_t first, hl_error *error)
 typedef struct outline {
   uint32_t *vertex;        /* owned; [room]; index of the corner's vertex in the mesh */
   double (*at)[2];         /* owned; [room] */
-  uint32_t *next, *before; /* owned; [room]; neighbours among the corners that are left */
+  uint32_t *next, *before; /* owned; [room]; indices of the next and the previous corner among the corners
+                            * that are left */
   size_t count, room;
 } outline;
 
@@ -77,8 +77,8 @@ static vec3 normal_of(const mesh_parts *parts, const outline *o) {
   return sum;
 }
 
-/* Projects the corners to the two axes along which the polygon is widest, counter-clockwise. False if the
- * polygon has no area. */
+/* Projects the corners onto the coordinate plane in which the polygon has the greatest area, so that they run
+ * counter-clockwise. False if the polygon has no area. */
 static bool flatten(const mesh_parts *parts, outline *o) {
   vec3 normal = normal_of(parts, o);
   const double size[3] = {normal.x, normal.y, normal.z};
@@ -115,8 +115,8 @@ static bool is_ear(const outline *o, uint32_t corner) {
   return true;
 }
 
-/* Finds the first ear from a corner on. An outline that crosses itself may have none; the result is then the
- * first corner that is not reflex, or the given corner if all are. */
+/* Finds the first ear from a corner on. An outline that crosses itself may have no ear; then returns the
+ * first corner that is not reflex, or, if all are reflex, the given corner. */
 static uint32_t find_ear(const outline *o, uint32_t from, size_t left) {
   uint32_t corner = from;
   for (size_t n = 0; n < left; n++, corner = o->next[corner])
@@ -143,7 +143,7 @@ static void clip(outline *o, uint32_t (*triangles)[3]) {
   }
 }
 
-/* Takes the corners of a fan. False where a corner names no vertex; the mesh's check reports that. */
+/* Reads the corners of a fan. False if a corner names no vertex, which the mesh's check reports later. */
 static bool take_corners(const mesh_parts *parts, const mesh_polygon *polygon, outline *o) {
   uint32_t(*fan)[3] = parts->triangles + polygon->first;
   o->count = polygon->count + 2;

@@ -33,7 +33,8 @@ static uint32_t hash_of(const float at[3]) {
   return hash * 2246822519u ^ hash >> 13;
 }
 
-/* The vertex at a corner's position, which is added if there is none. The table has room for it. */
+/* The index of the vertex at a corner's position. The vertex is added if there is none. The table must have
+ * room for it. */
 static uint32_t vertex_at(mesh_parts *parts, corner_table *table, const float at[3]) {
   size_t slot = hash_of(at) & (table->size - 1);
   for (; table->slots[slot] != 0; slot = (slot + 1) & (table->size - 1))
@@ -101,7 +102,7 @@ static bool next_word(const char **at, const char *end, const char **word, size_
   return *length > 0;
 }
 
-/* Whether a word is the wanted one, in letters of either case. */
+/* Whether a word is the wanted one; upper and lower case count as the same. */
 static bool is_word(const char *word, size_t length, const char *wanted) {
   if (length != strlen(wanted)) return false;
   for (size_t n = 0; n < length; n++)

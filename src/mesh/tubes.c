@@ -1,7 +1,7 @@
 /* mesh/tubes.c - makes tubes of lines: closed meshes of twelve sides.
  *
- * Two pieces of a tube meet in the plane that halves their angle, where both have the same outline (derived:
- * a mirror image of one piece in this plane is the other), so that bends have no gaps. */
+ * Two pieces of a tube meet in the plane that halves their angle. In this plane both have the same outline,
+ * because one piece is the mirror image of the other. So bends have no gaps. */
 #include <math.h>
 
 #include "core/memory.h"
@@ -10,12 +10,12 @@
 
 enum { SIDES = 12 };
 
-/* The least cosine of half of the angle by which a tube turns at a bend. Pieces that turn by more than 120
- * degrees have a smaller one. Such a bend is cut short, because its outer edge would reach far out. */
+/* The least cosine of half the angle by which a tube turns at a bend. At a bend of more than 120 degrees the
+ * cosine is smaller, and the bend is cut short, because its outer edge would reach far out. */
 static const double SHARP = 0.5;
 
-/* The axes of the piece of a tube from one of its line's points to the next: the direction along the piece,
- * and two directions across it. They are right-handed. */
+/* The axes of a piece of a tube, which goes from one of its line's points to the next: the direction along
+ * the piece, and two directions across it. They are right-handed. */
 typedef struct piece {
   vec3 along, u, v;
 } piece;
@@ -82,8 +82,8 @@ static void add_end(tube *tube, vec3 centre, const piece *piece, double radius, 
 static vec3 point_of(const float point[4]) { return (vec3){point[0], point[1], point[2]}; }
 
 /* Makes the piece of a tube that follows the piece `before` and runs in the direction `along`. before: null
- * for a tube's first piece. middle: the normal of the plane in which the two pieces meet. Derived: a mirror
- * image in this plane turns the directions across the first piece into those across the second. */
+ * for a tube's first piece. middle: the normal of the plane in which the two pieces meet. Derived: mirroring
+ * in this plane turns the directions across the first piece into those across the second piece. */
 static piece follow(const piece *before, vec3 along, vec3 middle) {
   piece made = {.along = along};
   if (before != NULL) made.u = vec3_subtract(before->u, vec3_scale(middle, 2 * vec3_dot(before->u, middle)));
@@ -123,7 +123,7 @@ static void add_tube(tube *tube, size_t first, size_t count) {
   }
 }
 
-/* Whether a point can be drawn. before: the point before it on its line, null if there is none. */
+/* Whether a point can be drawn. before: the previous point of its line; null if there is none. */
 static bool is_drawn(const float point[4], const float *before) {
   for (int c = 0; c < 4; c++)
     if (!isfinite(point[c])) return false;
@@ -151,14 +151,14 @@ static void keep_lines(mesh_parts *parts) {
   parts->line_count = lines;
 }
 
-/* Makes the arrays large enough, and gives colours to all vertices if any line has colours. */
+/* Makes room in the arrays for the tubes. Gives colours to all vertices if any line has colours. */
 static bool make_room(mesh_parts *parts) {
   size_t rings = parts->line_point_count, ends = 2 * parts->line_count;
   size_t vertices = parts->vertex_count + rings * SIDES + ends * (SIDES + 1),
          triangles = parts->triangle_count + (rings + ends / 2) * 2 * SIDES + ends * SIDES;
   hl_error ignored;
   bool colored = parts->colors != NULL || parts->line_colors != NULL, fresh = parts->colors == NULL;
-  if (colored && fresh) parts->vertex_room = 0; /* all arrays then get one and the same room */
+  if (colored && fresh) parts->vertex_room = 0; /* all arrays then have the same capacity */
   if (vertices > UINT32_MAX || triangles > HL_LIMIT_TRIANGLES ||
       hl_mesh_reserve_vertices(parts, vertices, parts->normals != NULL, colored, &ignored) != HL_OK ||
       hl_mesh_reserve_triangles(parts, triangles, &ignored) != HL_OK)

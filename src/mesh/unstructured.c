@@ -13,8 +13,9 @@ enum { FACES_MOST = 6, FACE_CORNERS = 4, TYPES = 43 };
 /* The properties of a type of cell. faces: the faces of a cell with a volume, counter-clockwise as seen from
  * outside; -1 stands for no corner. */
 typedef struct cell_type {
-  signed char kind;    /* a kind of PolyData's cells, VOLUME, or NONE if the type is not shown */
-  signed char corners; /* number of corners; 0 if it differs from cell to cell */
+  signed char kind;    /* a kind of PolyData's cells; VOLUME: the type encloses a volume; NONE: the type is
+                        * not shown */
+  signed char corners; /* number of corners; 0: cells of the type differ in it */
   signed char faces[FACES_MOST][FACE_CORNERS];
 } cell_type;
 
@@ -56,7 +57,7 @@ static const cell_type *type_of(double number) {
       [5] = {CELLS_POLYGONS, 3, FLAT},
       [6] = {CELLS_STRIPS, 0, FLAT},
       [7] = {CELLS_POLYGONS, 0, FLAT},
-      [8] = {CELLS_POLYGONS, 4, FLAT}, /* a pixel; its last two corners must be swapped */
+      [8] = {CELLS_POLYGONS, 4, FLAT}, /* VTK's pixel, a rectangle whose last two corners must be swapped */
       [9] = {CELLS_POLYGONS, 4, FLAT},
       [10] = {VOLUME, 4, TETRAHEDRON},
       [11] = {VOLUME, 8, VOXEL},
@@ -134,7 +135,7 @@ static size_t begin_of(const unstructured_cells *grid, size_t n) {
   return n > 0 ? (size_t)grid->ends[n - 1] : 0;
 }
 
-/* Counts for each face the cells with a volume that have it. */
+/* Counts, for each face of the cells that enclose a volume, the cells that have it. */
 static hl_status count_faces(hl_context *context, const unstructured_cells *grid, face_table *table,
                              hl_error *error) {
   size_t faces = 0;
@@ -158,10 +159,10 @@ static hl_status count_faces(hl_context *context, const unstructured_cells *grid
 
 /* ---- cells of PolyData ---- */
 
-/* The cells of one kind that are being filled. If arrays are null, the cells are only counted. */
+/* The cells of one kind while they are filled. Without arrays (null), cells are only counted. */
 typedef struct cell_writer {
   cells *cells;
-  size_t *sources; /* for each of these cells, the number of the grid's cell from which it comes */
+  size_t *sources; /* for each of these cells, the index of the grid's cell from which it was made */
 } cell_writer;
 
 static void add_point(cell_writer *writer, double point) {
@@ -189,7 +190,7 @@ static void add_cell(const unstructured_cells *grid, size_t n, cell_writer *writ
   end_cell(writer, n);
 }
 
-/* Adds all cells of one kind; outer faces are added to the polygons. */
+/* Adds all cells of one kind; the outer faces of cells with a volume are added to the polygons. */
 static void add_kind(const unstructured_cells *grid, const face_table *table, int kind, cell_writer *writer) {
   writer->cells->count = writer->cells->point_count = 0;
   for (size_t n = 0; n < grid->count; n++)
@@ -202,7 +203,7 @@ static void add_kind(const unstructured_cells *grid, const face_table *table, in
   }
 }
 
-/* Checks that cells end where they can, and that they have the corners that their types need. */
+/* Checks that the ends of cells are possible, and that cells have as many corners as their types need. */
 static hl_status check(const unstructured_cells *grid, const polydata *data, hl_error *error) {
   double before = 0;
   size_t passed = 0;

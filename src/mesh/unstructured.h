@@ -1,7 +1,7 @@
 /* mesh/unstructured.h - converts the visible cells of VTK's unstructured grids to cells of PolyData.
  *
- * Vertices, lines and faces keep their kind. A face of a cell with a volume is kept if no other cell has the
- * same face. Quadratic cells count by their corners alone. */
+ * Vertices, lines and faces keep their kind. Of a cell that encloses a volume, the faces that no other cell
+ * has are kept. Quadratic cells are treated as linear ones: only their corners are used. */
 #ifndef HL_MESH_UNSTRUCTURED_H
 #define HL_MESH_UNSTRUCTURED_H
 
@@ -14,8 +14,9 @@ typedef struct unstructured_cells {
   size_t count, point_count;
 } unstructured_cells;
 
-/* Fills the cells of `data`, which must be empty and whose points must be known. Sets *sources, owned by the
- * caller: for each of the cells, kind after kind, the grid's cell from which it comes. */
+/* Fills the cells of `data`. `data` must have no cells yet, but must have its points. *sources, owned by the
+ * caller: for each cell that was made, kind after kind, the index of the grid's cell from which it was
+ * made. */
 hl_status hl_unstructured_convert(const unstructured_cells *grid, polydata *data, size_t **sources,
                                   hl_error *error);
 

@@ -2,7 +2,7 @@
  * appended arrays, plain or in compressed blocks.
  *
  * A first pass over the tags lists the pieces and their arrays; a second pass reads the needed arrays piece
- * by piece, cells before the arrays whose length follows from them. The pieces are then joined. */
+ * by piece. Cells are read before the arrays whose length depends on them. The pieces are then joined. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -12,8 +12,8 @@
 #include "volume/formats/vtk/vtk_xml.h"
 #include "volume/io/numbers.h"
 
-/* MOST_ARRAYS: the most arrays of a piece; further ones are ignored. MOST_PIECES: the most pieces of a file;
- * a file with more is refused. */
+/* MOST_ARRAYS: the greatest number of arrays of a piece; further arrays are ignored. MOST_PIECES: the
+ * greatest number of pieces; a file with more is refused. */
 enum { MOST_ARRAYS = 256, MOST_PIECES = 4096 };
 
 /* The elements of the file that hold arrays. The four kinds of cells come first. */
@@ -41,7 +41,8 @@ typedef struct vtp_array {
 typedef struct vtp_piece {
   polydata data;
   unstructured_cells grid; /* the cells of a piece of an unstructured grid */
-  size_t *sources;         /* owned; the grid's cell from which each cell comes; null for PolyData */
+  size_t *sources;         /* owned; for each cell, the index of the grid's cell from which it was made; null
+                            * for PolyData */
   size_t first_array, array_count;
 } vtp_piece;
 
@@ -56,10 +57,11 @@ typedef struct vtp_file {
   vtp_array *arrays; /* owned; [array_count]; piece after piece */
   size_t piece_count, piece_room, array_count, array_room;
   bool is_grid;  /* whether the file is an unstructured grid */
-  bool in_piece; /* whether the last piece is open, so that arrays belong to it */
+  bool in_piece; /* whether the tag of a piece is open, so that arrays belong to the last piece */
 } vtp_file;
 
-/* Reads the tag of a piece. Pieces without points are ignored: programs that write in parallel leave them. */
+/* Reads the tag of a piece. Pieces without points are ignored; programs that write in parallel produce such
+ * pieces. */
 static hl_status read_piece_tag(vtp_file *file, const hl_xml_tag *tag, hl_error *error) {
   vtp_piece piece = {.data = {.context = file->context, .path = file->xml.stream->path},
                      .first_array = file->array_count};
@@ -208,7 +210,7 @@ static hl_status read_grid(vtp_file *file, vtp_piece *piece, hl_error *error) {
   return status == HL_OK ? hl_unstructured_convert(grid, &piece->data, &piece->sources, error) : status;
 }
 
-/* Gives each cell the values of the grid's cell from which it comes. */
+/* Gives each cell the values of the grid's cell from which it was made. */
 static hl_status spread_values(const vtp_file *file, const vtp_piece *piece, cell_values *values,
                                hl_error *error) {
   size_t count = hl_polydata_tuples(&piece->data, AT_CELLS), components = values->components;
@@ -223,7 +225,7 @@ static hl_status spread_values(const vtp_file *file, const vtp_piece *piece, cel
   return HL_OK;
 }
 
-/* Reads an array of values at points or cells, if the mesh has a use for it. */
+/* Reads an array of values at points or cells, if the mesh uses it. */
 static hl_status read_values(vtp_file *file, vtp_piece *piece, const vtp_array *array, hl_error *error) {
   value_place place = array->section == SECTION_POINT_DATA ? AT_POINTS : AT_CELLS;
   bool of_grid = piece->sources != NULL && place == AT_CELLS;

@@ -44,7 +44,7 @@ static hl_status make_folder(held_scene *held, hl_error *error) {
   return status;
 }
 
-/* Holds a file that is still to be written in the folder. */
+/* Adds a file that will be written in the folder. The page holds it, too. */
 static hl_status hold_new(held_scene *held, const char *stem, const char *ending, hl_error *error) {
   char name[HELD_NAME_BYTES];
   hl_status status = make_folder(held, error);
@@ -66,8 +66,8 @@ static hl_status hold_as_it_is(held_scene *held, const char *stem, const char **
 
 /* ---- volumes ---- */
 
-/* Writes voxels to a file and reads the file, so that the scene's text describes the volume that the page
- * will have. */
+/* Writes voxels to a file, and reads the file again, so that the scene's text describes the volume as the
+ * page will have it. */
 static hl_status write_voxels(held_scene *held, const char *stem, const hl_volume *voxels,
                               const hl_volume_save_options *options, hl_volume **read, const char **file,
                               hl_error *error) {
@@ -84,8 +84,8 @@ static hl_status write_voxels(held_scene *held, const char *stem, const hl_volum
   return HL_OK;
 }
 
-/* Forgets with which options the volume was read from its old file: the file that was written has one array
- * of one time step. */
+/* Removes from the scene the options by which the volume was read from its old file. The new file has only
+ * one array and one time step. */
 static void forget_reading(hl_scene_volume *volume) {
   hl_scene_volume plain;
   hl_scene_volume_defaults(&plain);

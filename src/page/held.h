@@ -1,4 +1,4 @@
-/* page/held.h - what a page holds of a scene: its text, and the files that the text names. */
+/* page/held.h - the content of a page: the scene's text, and the files that the text names. */
 #ifndef HL_PAGE_HELD_H
 #define HL_PAGE_HELD_H
 
@@ -17,18 +17,19 @@ typedef struct held_file {
 
 typedef struct held_scene {
   hl_context *context;
-  char *folder;     /* owned; the folder of files that are written for the page alone; null: not yet made */
+  char *folder;     /* owned; the folder for files that are written only for the page; null: not made yet */
   held_file *files; /* owned; [count] */
   size_t count, room;
   hl_scene_volume *volumes; /* owned; as the text has them */
   hl_light *lights;         /* owned */
-  hl_volume **made;         /* owned; [made_count]; what was written, read again */
+  hl_volume **made;         /* owned; [made_count]; the volumes that were written, as read again from their
+                             * new files */
   size_t made_count;
   char *text; /* owned; hl_text_release() */
 } held_scene;
 
-/* Writes volumes to a folder of their own, cut to what shows, and makes the text. Call held_scene_end() even
- * after a failure. */
+/* Writes the volumes, cut to their visible part, to a folder of their own, and makes the text. Call
+ * held_scene_end() even after a failure. */
 hl_status held_scene_make(hl_context *context, const hl_scene *scene, held_scene *held, hl_error *error);
 /* Removes the folder. */
 void held_scene_end(held_scene *held);

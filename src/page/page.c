@@ -19,7 +19,7 @@ static const char own_title[] = "<title>Halflight</title>", end_of_head[] = "</h
 
 /* ---- elements ---- */
 
-/* Base64 (RFC 4648); count is a multiple of 3 but for the last bytes. */
+/* Writes bytes as base64 (RFC 4648). Except for the last bytes, count must be a multiple of 3. */
 static void put_base64(FILE *out, const unsigned char *bytes, size_t count) {
   static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   for (size_t n = 0; n < count; n += 3) {
@@ -54,7 +54,7 @@ static hl_status put_packed(hl_context *context, FILE *out, const unsigned char 
   stream.next_in = (unsigned char *)bytes;
   size_t left = count;
   int state;
-  do { /* each piece except the last is full, and therefore a multiple of 3 bytes */
+  do { /* All pieces except the last are full, so that their lengths are multiples of 3. */
     stream.next_out = packed;
     stream.avail_out = PACKED_BYTES;
     do {
@@ -96,7 +96,7 @@ static hl_status put_files(const held_scene *held, FILE *out, hl_error *error) {
 
 /* ---- the page ---- */
 
-/* Finds the places of the title, and of the head's end, in the page without a scene. */
+/* In the page without a scene, finds the place of the title and the end of the head. */
 static hl_status find_places(const char *viewer, const char *text, const char **title, const char **end,
                              hl_error *error) {
   *title = strstr(text, own_title);

@@ -1,10 +1,9 @@
 /* page/seen.c - see seen.h.
  *
- * Along each axis the planes of voxels at both ends are left out, as long as nothing shows there. A plane
- * shows something if any value between the least and the greatest voxel of the plane and its neighbours is
- * visible: the field between voxels has no other values, as all kernels but the interpolating one are means
- * with positive weights. Of labels, which are no such field, a voxel counts as 1 where it shows, else as 0.
- */
+ * Along each axis, planes of voxels in which nothing shows are left out at both ends. A plane shows something
+ * if any value is visible between the least and the greatest voxel of the plane and its neighbours. The field
+ * between voxels has no other values, because all kernels except the interpolating one are means with
+ * positive weights. In a label map, a voxel counts as 1 if its label shows, else as 0. */
 #include "page/seen.h"
 
 #include <math.h>
@@ -14,7 +13,7 @@
 #include "core/memory.h"
 #include "volume/volume.h"
 
-enum { AROUND = 3 }; /* number of voxels around the visible voxels that kernels and normals read */
+enum { AROUND = 3 }; /* number of voxels, on each side of the visible voxels, that kernels and normals read */
 
 /* ---- what a value shows ---- */
 
@@ -61,8 +60,8 @@ static void widen(plane_range *range, double value) {
   range->high = fmax(range->high, value);
 }
 
-/* Finds the ranges of all planes along i, j and k, which lie one after the other. *bytes: whether all values
- * are whole numbers from 0 to 255. */
+/* Finds the ranges of the values in all planes: first the planes along i, then those along j and k. *bytes:
+ * whether all values are whole numbers from 0 to 255. */
 static hl_status find_ranges(hl_context *context, const hl_scene_volume *volume, const size_t n[3],
                              plane_range *ranges, bool *bytes, hl_error *error) {
   plane_range *of_i = ranges, *of_j = of_i + n[0], *of_k = of_j + n[1];
@@ -97,8 +96,8 @@ static bool plane_shows(const hl_scene_volume *volume, const plane_range *planes
   return shows(volume, range.low, range.high);
 }
 
-/* Finds the planes that are kept: from the first to the last plane that shows anything, and AROUND more at
- * either end. Where no plane shows anything, all planes are kept. */
+/* Finds the planes that are kept: from the first to the last plane that shows anything, and AROUND more
+ * planes at either end. If no plane shows anything, all planes are kept. */
 static void find_ends(const hl_scene_volume *volume, const plane_range *planes, size_t count, size_t *begin,
                       size_t *end) {
   size_t first = 0, last = count - 1;
@@ -113,7 +112,7 @@ static void find_ends(const hl_scene_volume *volume, const plane_range *planes, 
 
 static bool stays_whole(const hl_scene_description *d, const hl_scene_volume *volume) {
   if (d->render.kernel == HL_KERNEL_INTERPOLATING) return true;
-  /* Isosurfaces show values beside the labels. */
+  /* A label map with isosurfaces also shows values, which are not tested here. */
   if (volume->label_count > 0 && volume->iso_count > 0) return true;
   for (size_t n = 0; n < d->volume_count; n++) {
     const char *other = d->volumes[n].transfer_function.plane.second == HL_SECOND_VOLUME

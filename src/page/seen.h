@@ -5,8 +5,8 @@
 
 #include <halflight/scene.h>
 
-/* Sets the box, and the type where 8 bits hold all values, of options that are filled with defaults. Volumes
- * that another volume's transfer function depends on stay whole. */
+/* Sets in the options, which are filled with defaults, the box that is written, and the type if 8 bits hold
+ * all values. A volume that another volume's transfer function depends on stays whole. */
 hl_status hl_seen_part(hl_context *context, const hl_scene *scene, size_t number,
                        hl_volume_save_options *options, hl_error *error);
 

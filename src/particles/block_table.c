@@ -1,4 +1,5 @@
-/* particles/block_table.c - see block_table.h. Blocks that do not find their entry free take the next one. */
+/* particles/block_table.c - see block_table.h. The table uses open addressing: a block whose entry is taken
+ * by another block goes to the next free entry. */
 #include "particles/block_table.h"
 
 #include <string.h>
@@ -7,7 +8,8 @@
 
 enum { LEAST_SIZE = 64 };
 
-/* The entry of a block: the one that has it, or the free one that would take it. */
+/* The entry of a block in the table: the entry that holds the block's number, or the free entry where the
+ * number would be put. */
 static size_t entry_of(const hl_block_table *table, const int32_t place[3]) {
   uint64_t hash = (uint32_t)place[0] * 0x9e3779b97f4a7c15u + (uint32_t)place[1] * 0xbf58476d1ce4e5b9u +
                   (uint32_t)place[2] * 0x94d049bb133111ebu;

@@ -1,5 +1,5 @@
-/* particles/field.c - copies boxes of points out of the blocks of a level, adds boxes to the blocks, and
- * makes of a finished field an array of all points, or bricks.
+/* particles/field.c - copies boxes of points out of a level's blocks, and adds boxes to them. Makes an array
+ * of all points, or bricks, from a finished field.
  *
  * In: coefficients of all levels. Out: voxels or hl_bricks. */
 #include "core/memory.h"

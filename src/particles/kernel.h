@@ -6,8 +6,8 @@
 #ifndef HL_PARTICLES_KERNEL_H
 #define HL_PARTICLES_KERNEL_H
 
-/* W(q) without the factor; derived: both pieces are (2 - q)^3 / 4 - (1 - q)^3, where negative bases count as
- * 0. */
+/* W(q) without the factor 1 / (pi h^3). Derived: both pieces are (2 - q)^3 / 4 - (1 - q)^3, if negative bases
+ * are replaced by 0. */
 static inline float hl_sph_kernel(float q) {
   float outer = 2 - q, inner = 1 - q;
   outer = outer > 0 ? outer : 0;

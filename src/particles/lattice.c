@@ -9,12 +9,12 @@
 enum {
   BINS_OF_OCTAVE = 8,
   OCTAVES = 320, /* floats have exponents from -149 to 128 */
-  /* The least number of cells of the coarsest level along the longest axis. The box is at least a quarter as
-   * long along every axis that is not periodic (see PART_OF_EXTENT). So it has at least four cells along
-   * these axes, which kernels need for their margin (levels.h). */
+  /* The least number of cells that the coarsest level has along the longest axis. Along any other axis that
+   * is not periodic, the box then has at least four cells, because it extends beyond the particles at both
+   * ends (see PART_OF_EXTENT). Kernels need these cells for their margin (levels.h). */
   LEAST_CELLS = 16,
-  /* the lattice extends beyond the outermost places by the reach of a kernel of middling size, but by no more
-   * than the longest extent divided by this number */
+  /* The lattice extends beyond the outermost particles by the reach of a kernel of median size, plus the
+   * longest extent divided by this number. The reach of the widest kernel limits this. */
   PART_OF_EXTENT = 8
 };
 
@@ -34,8 +34,8 @@ static void count_lengths(const hl_particle_set *set, lengths *l) {
   }
 }
 
-/* A smoothing length below which about this part of the particles lie: the lower end of the bin where the
- * part is reached. */
+/* A quantile of the smoothing lengths: about the fraction `part` of them is less than the result. It is
+ * accurate to a bin, whose lower end is returned. */
 static double length_below(const lengths *l, size_t count, double part) {
   uint64_t sum = 0;
   int bin = 0;
@@ -65,8 +65,9 @@ static void find_box(const hl_particle_set *set, const lengths *l, double low[3]
     if (!set->periodic[a]) low[a] -= pad, extent[a] += 2 * pad;
 }
 
-/* The number of levels that the widest kernels need. most: the greatest smoothing length. spacing: the length
- * of a cell of level 0. longest: the number of cells of level 0 along the longest axis. */
+/* The number of levels that the widest kernels need. It is limited so that the coarsest level has LEAST_CELLS
+ * cells along the longest axis. most: the greatest smoothing length. spacing: the length of a cell of level
+ * 0. longest: the number of cells of level 0 along the longest axis. */
 static int levels_for(double most, double spacing, double longest) {
   int levels = 1;
   while (levels < HL_PARTICLE_LEVELS && most >= 4 * spacing && longest / 2 >= LEAST_CELLS) {
@@ -76,7 +77,8 @@ static int levels_for(double most, double spacing, double longest) {
   return levels;
 }
 
-/* Lays the lattice of a spacing into the box; returns the number of its points, as a double. */
+/* Lays a lattice of this spacing into the box. Returns the number of its points, as a double; INFINITY if
+ * there are too many. */
 static double lay(const double low[3], const double extent[3], double most, double spacing,
                   hl_particle_lattice *lattice) {
   double longest = fmax(fmax(extent[0], extent[1]), extent[2]) / spacing, points = 1;

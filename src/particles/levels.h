@@ -1,5 +1,5 @@
 /* particles/levels.h - one level of a lattice: where particles stand in it, which points their kernels reach,
- * and the pieces of boxes of points that lie in one block each. For the files of this room. */
+ * and the pieces of boxes of points that lie in one block each. Only the files of particles/ include it. */
 #ifndef HL_PARTICLES_LEVELS_H
 #define HL_PARTICLES_LEVELS_H
 
@@ -9,11 +9,12 @@
 #include "particles/particles.h"
 
 #define HL_PARTICLE_NARROWING 1.11 /* a little less than 10/9: see splat.c */
-/* The least h', in spacings, for kernels that the level does not resolve. With it, some point always lies
- * nearer than 2 h'. */
+/* The least h', in spacings, which kernels get that the level does not resolve. Some point is then always
+ * nearer to the particle than 2 h'. */
 #define HL_PARTICLE_LEAST_LENGTH 0.7
-/* The greatest smoothing length on a level, in units of its least spacing. Wider kernels belong to the next
- * coarser level; on the coarsest level they are narrowed to this length. */
+/* The greatest smoothing length of kernels on a level, in units of the level's least spacing. Wider kernels
+ * belong to the next coarser level. On the coarsest level, where there is none, they are narrowed to this
+ * length. */
 #define HL_PARTICLE_MOST_LENGTH 3.99
 
 enum { HL_PARTICLE_ROW = 16 }; /* the most points that a kernel reaches along an axis */
@@ -21,8 +22,8 @@ enum { HL_PARTICLE_ROW = 16 }; /* the most points that a kernel reaches along an
 typedef struct hl_particle_level {
   size_t points[3];
   bool periodic[3];
-  int margin; /* the least distance, in points, of a kernel's points from a face, along axes that are not
-               * periodic; nearer points would reach beyond the face when they are subdivided to level 0 */
+  int margin; /* along axes that are not periodic: the least distance, in points, of a kernel's points from a
+               * face. Points nearer to the face would reach beyond it when they are subdivided to level 0 */
   double spacing[3];          /* world */
   double scale[3], offset[3]; /* lattice coordinate = scale * place + offset */
   double mean_square;         /* the mean of the squared spacings */
@@ -31,7 +32,8 @@ typedef struct hl_particle_level {
 
 static inline hl_particle_level hl_particle_level_of(const hl_particle_set *set,
                                                      const hl_particle_lattice *lattice, int level) {
-  /* Point j of level l becomes the points from 2^l j - 2 (2^l - 1) on of level 0 (derived). */
+  /* Derived: by subdivision, point j of level l reaches the points of level 0 from 2^l j - 2 (2^l - 1) on.
+   * The margin keeps them within the face. */
   hl_particle_level grid = {.margin = level < 2 ? level : 2};
   for (int a = 0; a < 3; a++) {
     grid.points[a] = hl_particle_points(lattice, level, a);
@@ -63,7 +65,7 @@ static inline double hl_particle_coordinate(const hl_particle_set *set, const hl
   return at < 0 ? 0 : at > last ? last : at;
 }
 
-/* The length h' of a particle's narrowed kernel; world. */
+/* The length h' to which a particle's kernel is narrowed (splat.c); world units. */
 static inline double hl_particle_narrowed(const hl_particle_set *set, const hl_particle_level *grid,
                                           size_t n) {
   double length = fmin((double)set->length[n], HL_PARTICLE_MOST_LENGTH * grid->least_spacing),
@@ -86,7 +88,7 @@ static inline void hl_particle_range(const hl_particle_level *grid, int axis, do
   if (range[1] - range[0] + 1 > HL_PARTICLE_ROW) range[1] = range[0] + HL_PARTICLE_ROW - 1;
 }
 
-/* Points of a box along an axis that lie one after the other in one block. */
+/* A run of neighbouring points along an axis that lie both in a box and in one block. */
 typedef struct hl_particle_run {
   int32_t block;
   size_t within; /* the first point's place in the block */
@@ -95,8 +97,8 @@ typedef struct hl_particle_run {
 } hl_particle_run;
 
 /* Calls `visit` for each piece of a box of points of a level, in a fixed order. A box may reach beyond the
- * level's ends: along periodic axes it goes on at the other end, and along other axes the points at the faces
- * stand for the points beyond them. */
+ * level's ends: along periodic axes it wraps to the other end, and along other axes points beyond a face are
+ * replaced by the point at the face. */
 void hl_particle_visit(const hl_particle_lattice *lattice, int level, const ptrdiff_t first[3],
                        const size_t count[3],
                        void (*visit)(void *data, const int32_t block[3], const hl_particle_run run[3]),
@@ -106,7 +108,8 @@ void hl_particle_visit(const hl_particle_lattice *lattice, int level, const ptrd
 void hl_particle_field_read(const hl_particle_field *field, int level, const ptrdiff_t first[3],
                             const size_t count[3], float *out);
 
-/* Adds a box of points to a level. Points that lie in no block must be 0, and none may lie beyond a face. */
+/* Adds a box of points to a level. Values of the box at points without a block must be 0. The box must not
+ * reach beyond a face of an axis that is not periodic. */
 void hl_particle_field_add(hl_particle_field *field, int level, const ptrdiff_t first[3],
                            const size_t count[3], const float *box);
 

@@ -1,14 +1,14 @@
 /* particles/neighbours.c - smoothing lengths from the distances of neighbours.
  *
- * In: particles in Morton order. Out: the exact distance of each particle's k-th neighbour, halved. Runs of
- * sixteen particles are the leaves of a tree; eight nodes of a layer are a node of the next. A node knows the
- * box around its particles. A search visits near nodes first, and leaves out nodes that are farther than the
- * k-th of the distances found so far.
+ * In: particles in Morton order. Out: half the exact distance from each particle to its k-th neighbour. The
+ * search uses a tree. Runs of sixteen particles are its leaves, and eight nodes of a layer are the children
+ * of a node of the next layer. A node knows the box around its particles. A search visits near nodes first,
+ * and leaves out nodes that are farther away than the k-th nearest particle found so far.
  *
- * Only one particle of each leaf is searched for in this way. Its k-th distance, made a little longer, is a
- * guess for the other particles of the leaf. All particles that are nearer to the leaf's box than the guess
- * are gathered once, and each other particle of the leaf looks at them one by one. A particle that finds
- * fewer than k neighbours within the guess is searched for alone. */
+ * Only for one particle of each leaf, neighbours are searched in this way. The distance to its k-th
+ * neighbour, made a little longer, is a guess for the other particles of the leaf. All particles that are
+ * nearer to the leaf's box than the guess are gathered once, and are then compared with each other particle
+ * of the leaf. A particle that has fewer than k neighbours within the guess gets a search of its own. */
 #include "particles/particles.h"
 
 #include <math.h>
@@ -33,8 +33,8 @@ typedef struct tree {
   box *layer[LAYERS]; /* owned; layer 0 has the leaves */
   size_t count[LAYERS];
   int layers;
-  float unit[3];     /* the unit of places along each axis, divided by the least of the three; so a squared
-                      * distance is 0 or at least 1 */
+  float unit[3];     /* the unit of places along each axis, divided by the least of the three units. With
+                      * these factors, a squared distance is either 0 or at least 1 */
   double least_unit; /* the least unit; world */
   size_t neighbours; /* k */
 } tree;
@@ -43,8 +43,8 @@ typedef struct tree {
 typedef struct search {
   const tree *tree;
   const uint32_t *place;
-  float bound;             /* squared distance; neighbours are nearer than this */
-  float found[FOUND_MOST]; /* squared distances, the particle's own among them */
+  float bound;             /* squared distance; only nearer particles count as neighbours */
+  float found[FOUND_MOST]; /* squared distances found so far, that of the particle itself among them */
   size_t count;
 } search;
 
@@ -87,8 +87,8 @@ static hl_status make_tree(hl_context *context, hl_pool *pool, const char *subje
   return HL_OK;
 }
 
-/* The least squared distance of a place from a box. It is measured across the border of a period where this
- * is shorter. */
+/* The least squared distance between a place and a box. Along periodic axes, the shorter way counts, which
+ * may cross the border of the period. */
 static float box_distance(const tree *t, const uint32_t place[3], const box *b) {
   float sum = 0;
   for (int a = 0; a < 3; a++) {
@@ -102,8 +102,8 @@ static float box_distance(const tree *t, const uint32_t place[3], const box *b) 
   return sum;
 }
 
-/* Moves the k least of the numbers to the front; returns the k-th. k: from 1 to count. Quickselect with the
- * median of three. */
+/* Moves the k least numbers to the front, and returns the greatest of them. k: from 1 to count. The method is
+ * quickselect with the median of three as pivot. */
 static float select_least(float *x, size_t count, size_t k) {
   size_t low = 0, high = count - 1, wanted = k - 1;
   while (low < high) {
@@ -176,11 +176,13 @@ static float distance_between(const tree *t, const uint32_t a[3], const uint32_t
   return sqrtf(sum);
 }
 
-/* The k-th distance at a particle. bound: a number that the k-th distance is known not to exceed. */
+/* Finds the distance from a particle to its k-th neighbour, by a search of the whole tree. bound: an upper
+ * bound of this distance. */
 static float search_one(search *s, size_t n, float bound) {
   s->place = s->tree->set->place[n];
   s->count = 0;
-  s->bound = bound * bound * 1.0001f;   /* 1.0001 makes up for the rounding of distances */
+  s->bound = bound * bound * 1.0001f;   /* the factor keeps a particle exactly at the bound, in spite of
+                                         * rounding */
   if (!(s->bound > 0)) s->bound = 0.5f; /* below the least distance other than 0 */
   look_at(s, s->tree->layers - 1, 0);
   drop_far(s);
@@ -189,15 +191,15 @@ static float search_one(search *s, size_t n, float bound) {
 
 /* ---- all of a leaf ---- */
 
-/* The particles that may be neighbours of the particles of a leaf. */
+/* All particles that may be neighbours of a leaf's particles. */
 typedef struct crowd {
   uint32_t place[3][FOUND_MOST];
-  float distance[FOUND_MOST]; /* squared distances from one particle of the leaf */
+  float distance[FOUND_MOST]; /* squared distances to the particle that is searched for */
   size_t count;
 } crowd;
 
-/* The least squared distance of two boxes. It is measured across the border of a period where this is
- * shorter. */
+/* The least squared distance between two boxes. Along periodic axes, the shorter way counts, which may cross
+ * the border of the period. */
 static float distance_of_boxes(const tree *t, const box *one, const box *other) {
   float sum = 0;
   for (int a = 0; a < 3; a++) {
@@ -211,8 +213,8 @@ static float distance_of_boxes(const tree *t, const box *one, const box *other) 
   return sum;
 }
 
-/* Gathers the particles below a node that are nearer to a leaf's box than the bound (squared). False: there
- * are too many. */
+/* Adds to the crowd all particles below a node whose squared distance to a leaf's box is less than `bound`.
+ * Returns false if there are too many. */
 static bool gather(const tree *t, int layer, size_t node, const box *leaf, float bound, crowd *c) {
   if (layer > 0) {
     size_t first = node * FANOUT, last = first + FANOUT;
@@ -232,8 +234,9 @@ static bool gather(const tree *t, int layer, size_t node, const box *leaf, float
   return true;
 }
 
-/* The k-th distance at a particle, found in the crowd; infinite if it is not below the bound within which the
- * crowd was gathered. bound: the square of that distance. */
+/* Finds the distance from a particle to its k-th neighbour among the crowd. bound: the squared distance
+ * within which the crowd was gathered. If the distance is not less than this bound, the crowd may lack
+ * neighbours, and the result is infinite. */
 static float search_crowd(search *s, crowd *c, size_t n, float bound) {
   const uint32_t *place = s->tree->set->place[n];
   const float *unit = s->tree->unit;
@@ -252,7 +255,7 @@ static float search_crowd(search *s, crowd *c, size_t n, float bound) {
   return s->count < k ? INFINITY : sqrtf(select_least(s->found, s->count, k));
 }
 
-/* The particle of a leaf that is nearest to the middle of its box. */
+/* Finds the particle of a leaf that is nearest to the middle of the leaf's box. */
 static size_t middle_of(const tree *t, size_t leaf, size_t begin, size_t end) {
   const box *b = &t->layer[0][leaf];
   uint32_t middle[3];
@@ -266,11 +269,12 @@ static size_t middle_of(const tree *t, size_t leaf, size_t begin, size_t end) {
   return nearest;
 }
 
-/* Finds the distance of each of a leaf's particles to its k-th neighbour. bound: a number that this distance
- * does not exceed for the particle in the middle of the leaf. Returns this distance for the middle
+/* Finds the distance from each particle of a leaf to its k-th neighbour. middle: the particle in the middle
+ * of the leaf. bound: an upper bound of the distance for this particle. Returns the distance for this
  * particle. */
 static float search_leaf(search *s, crowd *c, size_t leaf, size_t middle, float bound) {
-  const float more = 1.2f; /* in even matter, distances of 48th neighbours differ by only 5 % */
+  const float more = 1.2f; /* ample: where particles are evenly spread, the distance to the 48th neighbour
+                            * varies by only 5 % */
   const tree *t = s->tree;
   size_t begin = leaf * LEAF, end = begin + LEAF < t->set->count ? begin + LEAF : t->set->count;
   float at_middle = search_one(s, middle, bound), guess = more * more * at_middle * at_middle;
@@ -301,8 +305,8 @@ static void find_distances(void *data, size_t index, int worker) {
   }
 }
 
-/* Gives a length to the particles whose neighbours all lie at their own place, and whose length is therefore
- * 0: the least length of all other particles. */
+/* A particle gets the length 0 if its k nearest neighbours all lie at its own place. Such lengths are
+ * replaced by the least length of all other particles. */
 static hl_status mend_lengths(hl_particle_set *set, const char *subject, hl_error *error) {
   float least = INFINITY;
   for (size_t n = 0; n < set->count; n++)

@@ -15,11 +15,11 @@ enum {
   KEY_BITS = 21, /* bits of a key for each axis */
   BUCKET_BITS = 6,
   BUCKETS = 1 << (3 * BUCKET_BITS),
-  FEW = 24 /* up to this number, particles are sorted by insertion */
+  FEW = 24 /* up to this number of particles, insertion sort is used */
 };
 
 typedef struct keyed {
-  uint64_t key;   /* the bits of x, y and z in turns, beginning with the highest bit of each */
+  uint64_t key;   /* Morton code: the bits of x, y and z, interleaved from the highest to the lowest */
   uint32_t index; /* the particle's index in the input */
 } keyed;
 
@@ -46,7 +46,8 @@ static void place_of(const hl_particle_set *set, const double position[3], uint3
   }
 }
 
-/* Puts two zeros between any two neighbours among the lowest 21 bits (the "magic bits" of Morton codes). */
+/* Spreads the lowest 21 bits of a number so that two zeros lie between neighbouring bits (the "magic bits" of
+ * Morton codes). */
 static uint64_t apart(uint64_t x) {
   x = (x | x << 32) & 0x1f00000000ffff;
   x = (x | x << 16) & 0x1f0000ff0000ff;
@@ -64,8 +65,8 @@ static uint64_t key_of(const hl_particle_set *set, const uint32_t place[3]) {
   return key;
 }
 
-/* Counts the particles whose places are finite, and finds the box of the places. The box sets the units of
- * fixed-point coordinates. */
+/* Counts the particles whose places are finite, and finds the box of the places. The units of the fixed-point
+ * coordinates follow from this box. */
 static hl_status find_units(const hl_particle_input *input, const char *subject, hl_particle_set *set,
                             hl_error *error) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, extent = 0;
@@ -95,7 +96,8 @@ static hl_status find_units(const hl_particle_input *input, const char *subject,
   return HL_OK;
 }
 
-/* Counts the particles of each bucket, and puts their keys into the buckets in the order of the input. */
+/* Counts the particles of each bucket. Then puts each particle's key into its bucket, in the order of the
+ * input. */
 static hl_status fill_buckets(hl_context *context, ordering *o, const char *subject, hl_error *error) {
   const int shift = 3 * (KEY_BITS - BUCKET_BITS);
   hl_particle_set *set = o->set;
@@ -127,8 +129,9 @@ static void sort_few(keyed *items, size_t count) {
   }
 }
 
-/* Sorts by the three bits of the key from `shift` on, and then each eighth by the lower bits: American flag
- * sort (P. M. McIlroy, K. Bostic, M. D. McIlroy, Engineering radix sort, 1993). */
+/* Sorts into eight parts by three bits of the key, which begin at the bit `shift`, and then sorts each part
+ * by the lower bits. The method is American flag sort (P. M. McIlroy, K. Bostic, M. D. McIlroy, Engineering
+ * radix sort, 1993). */
 static void sort_items(keyed *items, size_t count, int shift) {
   if (count <= FEW || shift < 0) {
     sort_few(items, shift < 0 ? 0 : count);

@@ -3,16 +3,16 @@
  *
  * A particle is spread by the cubic spline kernel of smoothed particle hydrodynamics (kernel.h), which
  * reaches to twice the particle's smoothing length h. The lattice has levels: level l has the spacing 2^l
- * times the finest one. A particle goes to the coarsest level whose spacing is at most h / 2 (to level 0
- * where none is), so a wide kernel touches no more points than a narrow one. The levels are added up from
- * coarse to fine: c[l] = S c[l + 1] + p[l], where p[l] is the sum of the kernels spread on level l, and S
- * subdivides a spline's coefficients exactly.
+ * times the finest one. A particle goes to the coarsest level whose spacing is at most h / 2 (or to level 0
+ * if there is no such level). Therefore a wide kernel touches no more points than a narrow one. The levels
+ * are added up from coarse to fine: c[l] = S c[l + 1] + p[l], where p[l] is the sum of the kernels spread on
+ * level l, and S subdivides a spline's coefficients exactly.
  *
  * Each level keeps only the blocks of its points where the sum may differ from 0. The sum becomes an array of
- * all points of level 0, or bricks at levels (bricks/bricks.h): there a place has the level of the narrowest
- * kernel that reaches it. Both are the same field, because a brick of a level begins two points before the
- * first kernel of this level: so every coefficient that the bricks' builder subdivides has no kernel of its
- * own.
+ * all points of level 0, or bricks at levels (bricks/bricks.h). In bricks, a place has the level of the
+ * narrowest kernel that reaches it. The array and the bricks give the same field. Derived: a brick of a level
+ * begins two points before the first kernel of this level, so no kernel is spread on those points whose
+ * coefficients the bricks' builder subdivides.
  *
  * In:  places, the quantity that each particle carries, and smoothing lengths or none
  * (volume/formats/particles/particles.c). Out: coefficients on the points of level 0, or bricks. The bytes
@@ -34,12 +34,12 @@ typedef struct hl_particle_input {
   size_t count;
   const void *positions; /* [count][3]; world; doubles or floats */
   bool is_double;
-  const float *lengths;            /* [count]; smoothing lengths, world units; null: they must be found */
-  double period_low[3], period[3]; /* world: along a periodic axis its begin and its length; length 0: the
-                                    * axis is not periodic */
+  const float *lengths;            /* [count]; smoothing lengths, world units; null if they are to be found */
+  double period_low[3], period[3]; /* world: the begin and the length of the period along each axis; a length
+                                    * of 0 means that the axis is not periodic */
 } hl_particle_input;
 
-/* Particles in the order of a Morton curve: neighbours in the array are mostly neighbours in space. */
+/* Particles sorted along a Morton curve, so that neighbours in the arrays are mostly neighbours in space. */
 typedef struct hl_particle_set {
   size_t count;         /* number of particles with a finite place */
   uint32_t (*place)[3]; /* owned; [count]; fixed point: world = low + unit * place. Along a periodic axis 2^32
@@ -63,15 +63,15 @@ typedef struct hl_particle_lattice {
 } hl_particle_lattice;
 
 /* Brings particles into order, and finds smoothing lengths where the input has none. Particles whose place is
- * not finite are left out. Fails where no particle is left, where a length is not a finite number above 0,
- * and where lengths cannot be found because all particles are at one place. subject: starts the error lines.
- * *set must be released also after a failure. */
+ * not finite are left out. Fails if no particle is left, if a given length is not a finite number above 0, or
+ * if lengths cannot be found because all particles are at one place. subject: starts the error lines. *set
+ * must be released also after a failure. */
 hl_status hl_particles_order(hl_context *context, hl_pool *pool, const hl_particle_input *input,
                              const char *subject, hl_particle_set *set, hl_error *error);
 void hl_particles_release(hl_context *context, hl_particle_set *set);
 
-/* Sets the smoothing length of each particle to half of the distance of its HL_PARTICLES_NEIGHBOURS-th
- * neighbour, so that its kernel reaches to this neighbour. Where there are fewer neighbours, the last one
+/* Sets the smoothing length of each particle to half the distance to its HL_PARTICLES_NEIGHBOURS-th
+ * neighbour, so that its kernel reaches to this neighbour. If there are fewer particles, the farthest one
  * counts. */
 enum { HL_PARTICLES_NEIGHBOURS = 48 };
 hl_status hl_particles_find_lengths(hl_context *context, hl_pool *pool, const char *subject,
@@ -79,15 +79,15 @@ hl_status hl_particles_find_lengths(hl_context *context, hl_pool *pool, const ch
 
 /* Limits of a lattice. */
 typedef struct hl_particle_limits {
-  double spacing; /* world units: the wanted spacing of the finest level. 0: half of the smoothing length
-                   * that one particle in fifty stays below */
+  double spacing; /* world units; the wanted spacing of the finest level. 0: half the smoothing length that
+                   * one particle in fifty falls short of */
   size_t points;  /* the most points of level 0 */
   size_t side;    /* the most cells of level 0 along an axis; 0: no limit */
 } hl_particle_limits;
 
-/* Chooses a lattice around the particles and their kernels. A wanted spacing is kept, except that it is
- * rounded to whole cells of a period. Where it needs more points than the limits allow, the function
- * fails. */
+/* Chooses a lattice around the particles and their kernels. A wanted spacing is kept; along a periodic axis
+ * it is changed so that the period has a whole number of cells. If a wanted spacing needs more points than
+ * the limits allow, the function fails. */
 hl_status hl_particles_lattice(const hl_particle_set *set, const hl_particle_limits *limits,
                                const char *subject, hl_particle_lattice *lattice, hl_error *error);
 
@@ -96,8 +96,8 @@ static inline size_t hl_particle_points(const hl_particle_lattice *lattice, int 
   return (lattice->cells[axis] >> level) + (lattice->periodic[axis] ? 0 : 1);
 }
 
-/* Which blocks of which levels are needed. A block has HL_PARTICLE_BLOCK points an axis: block b of a level
- * holds the points b HL_PARTICLE_BLOCK to (b + 1) HL_PARTICLE_BLOCK - 1 of this level. */
+/* The blocks of each level that the field needs. A block has HL_PARTICLE_BLOCK points along each axis. Block
+ * b of a level holds the points b HL_PARTICLE_BLOCK to (b + 1) HL_PARTICLE_BLOCK - 1 of this level. */
 enum { HL_PARTICLE_BLOCK_SHIFT = 4, HL_PARTICLE_BLOCK = 1 << HL_PARTICLE_BLOCK_SHIFT };
 #define HL_PARTICLE_BLOCK_POINTS ((size_t)HL_PARTICLE_BLOCK * HL_PARTICLE_BLOCK * HL_PARTICLE_BLOCK)
 typedef struct hl_particle_plan {
@@ -108,28 +108,28 @@ typedef struct hl_particle_plan {
   size_t leaf_count;
 } hl_particle_plan;
 
-/* Finds the blocks that are needed. in_bricks: whether the field becomes bricks. *plan must be released also
- * after a failure. */
+/* Chooses each particle's level, and finds the blocks that are needed. in_bricks: whether the field is to
+ * become bricks. *plan must be released also after a failure. */
 hl_status hl_particles_plan(hl_context *context, const hl_particle_set *set,
                             const hl_particle_lattice *lattice, bool in_bricks, const char *subject,
                             hl_particle_plan *plan, hl_error *error);
 void hl_particle_plan_release(hl_context *context, hl_particle_plan *plan);
 
-/* The first function gives the bytes of the plan's bricks; the second, the bytes that one field takes while
- * it is spread. */
+/* hl_particle_plan_brick_bytes() gives the number of bytes of the plan's bricks,
+ * hl_particle_plan_field_bytes() that of one field while it is spread. */
 double hl_particle_plan_brick_bytes(const hl_particle_plan *plan);
 double hl_particle_plan_field_bytes(const hl_particle_plan *plan);
 
-/* The coefficients of all levels. At points that lie in no block the coefficient is `outside`. */
+/* The field's coefficients at all levels. Points without a block have the coefficient `outside`. */
 typedef struct hl_particle_field {
   const hl_particle_plan *plan;
   float *points[HL_PARTICLE_LEVELS]; /* owned; [blocks][z][y][x], HL_PARTICLE_BLOCK points an axis */
   float outside;
 } hl_particle_field;
 
-/* Spreads the weights of the particles: the field is weight per volume of the world. weights: [set->count],
- * in the set's order; null: each weight is 1. The coefficients of level 0, each times the volume of a cell,
- * add up to the sum of the weights, to the rounding of floats. The field borrows the plan. *field must be
+/* Makes the field of the particles' weights: weight per volume, in world units. weights: [set->count], in the
+ * set's order; null: each weight is 1. The sum of all coefficients of level 0, times the volume of a cell, is
+ * the sum of the weights, except for the rounding of floats. The field borrows the plan. *field must be
  * released also after a failure. */
 hl_status hl_particles_spread(hl_context *context, hl_pool *pool, const hl_particle_set *set,
                               const float *weights, const hl_particle_plan *plan, const char *subject,

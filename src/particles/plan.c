@@ -3,10 +3,9 @@
  * In: particles and a lattice. Out: an hl_particle_plan.
  *
  * A kernel marks the blocks of cells of its level on which its points have an influence: a coefficient i
- * reaches the cells i - 2 .. i + 1. Bricks are found by a descent from the coarsest blocks: a block in which
- * a finer one is marked is split, and a block that is marked, or that lies in a marked coarser one, is a
- * brick. So a brick of a level lies wherever a kernel of this level reaches, and no kernel reaches out of the
- * bricks of its level and of the finer ones. */
+ * reaches the cells i - 2 .. i + 1. Bricks are found by a descent from the coarsest blocks. A block in which
+ * a finer block is marked is split. Any other block becomes a brick if it is marked, or lies in a marked
+ * coarser block. Therefore each kernel lies completely in bricks of its own level or of finer levels. */
 #include <string.h>
 
 #include "bricks/subdivide.h"
@@ -21,8 +20,9 @@ typedef struct planning {
   hl_error *error;
   hl_status status;
   hl_block_table marked[HL_PARTICLE_LEVELS]; /* blocks of cells that kernels of the level reach */
-  hl_block_table finer[HL_PARTICLE_LEVELS];  /* blocks of cells in which finer blocks are marked */
-  bool all;                                  /* whether all blocks count as reached: nothing is marked */
+  hl_block_table finer[HL_PARTICLE_LEVELS];  /* blocks of cells that contain a marked block of a finer
+                                              * level */
+  bool all;                                  /* whether all blocks are needed; then none is marked */
   int level;                                 /* level of the box of points that is being visited */
 } planning;
 
@@ -38,8 +38,8 @@ static void choose_levels(const hl_particle_set *set, const hl_particle_lattice 
   }
 }
 
-/* The blocks along one axis that a kernel marks. They are up to two ranges, because along a periodic axis a
- * kernel may reach over the end. */
+/* The blocks along one axis that a kernel marks. There may be two ranges, because along a periodic axis a
+ * kernel can wrap around the end of the period. */
 typedef struct marks_of_axis {
   int low[3], high[3]; /* first and last block of each range */
   int count;
@@ -80,8 +80,8 @@ static void mark_blocks(planning *p, int level, const marks_of_axis axis[3]) {
               add_block(p, &p->marked[level], at);
 }
 
-/* Marks the blocks of all particles. Particles that follow each other in the set mostly mark the same blocks;
- * the last marks of each level are kept, so that they are not made again. */
+/* Marks the blocks of all particles. Particles that follow each other in the set mostly mark the same blocks.
+ * The last marks of each level are therefore remembered, and equal ones are not made again. */
 static void mark_particles(planning *p, const hl_particle_set *set) {
   const hl_particle_lattice *lattice = &p->plan->lattice;
   hl_particle_level grid[HL_PARTICLE_LEVELS];
@@ -116,7 +116,7 @@ static void mark_coarser(planning *p) {
     }
 }
 
-/* Whether kernels of this level or of coarser ones reach a block. */
+/* Whether a kernel of this level or of a coarser level reaches a block. */
 static bool is_reached(const planning *p, int level, const int32_t block[3]) {
   if (p->all) return true;
   for (int coarser = level; coarser < p->plan->lattice.levels; coarser++) {
@@ -142,7 +142,8 @@ static void need_points(planning *p, int level, const ptrdiff_t first[3], const 
   hl_particle_visit(&p->plan->lattice, level, first, count, need_piece, p);
 }
 
-/* Adds the blocks of each level from which blocks of the next finer level are subdivided. */
+/* Adds the blocks from which others are subdivided: for each block of a level, those blocks of the next
+ * coarser level on which it depends. */
 static void need_coarser(planning *p) {
   for (int level = 0; level + 1 < p->plan->lattice.levels; level++)
     for (size_t n = 0; n < p->plan->blocks[level].count && p->status == HL_OK; n++) {
@@ -170,7 +171,8 @@ static hl_bricks_choice choose(void *data, int level, const size_t brick[3]) {
   if (!split && !is_reached(p, level, at)) return HL_BRICKS_NOTHING;
   for (int a = 0; a < 3; a++) {
     const hl_particle_lattice *lattice = &p->plan->lattice;
-    /* a brick at an end of a period holds coefficients beyond the directory as its own */
+    /* At an end of a period, a brick's coefficients beyond the directory are not subdivided: their points are
+     * needed, too. */
     bool begins = lattice->periodic[a] && at[a] == 0,
          ends = lattice->periodic[a] && (at[a] + 1) * HL_PARTICLE_BLOCK == directory_cells(lattice, level, a);
     first[a] = (ptrdiff_t)at[a] * HL_PARTICLE_BLOCK - (begins ? 1 : 0);

@@ -1,15 +1,16 @@
 /* particles/splat.c - adds the particles of one level to its field.
  *
  * In: particles, their weights and levels. Out: coefficients, added to the level's blocks. A particle's
- * kernel is narrowed, because the B-spline of a coefficient widens it again. Kernel and spline have the
- * variances 3/10 h^2 and s^2 / 3. So with h'^2 = h^2 - 10/9 s^2 the narrowed kernel and the spline together
- * have the variance of the kernel (derived). The kernel is sampled at the points and divided by the sum of
- * its samples, so the weight is kept whatever the samples are.
+ * kernel is narrowed before it is sampled, because the B-splines of the coefficients widen it again. At the
+ * spacing s, the kernel has the variance 3/10 h^2, and the B-spline s^2 / 3. A kernel of the length h' with
+ * h'^2 = h^2 - 10/9 s^2, convolved with the B-spline, has the variance of the original kernel (derived). The
+ * samples are divided by their sum, so that the particle's weight is kept exactly.
  *
- * A kernel reaches to less than eight points from its particle. Particles are dealt to tiles of at least
- * sixteen points a side. The particles of a tile are summed up in a box of points, which is then added to the
- * blocks. Tiles that are not neighbours touch different points, so the tiles of one colour of a 2x2x2 pattern
- * are filled in parallel: each point gets its sums in one order, and no addition needs a lock. */
+ * A kernel reaches to less than eight points from its particle. Particles are sorted into tiles, whose sides
+ * have at least sixteen points. The particles of a tile are summed up in a box of points, which is then added
+ * to the blocks. Tiles that are not neighbours touch different points. Tiles get eight colours in a 2x2x2
+ * pattern, and tiles of one colour are filled in parallel. No addition needs a lock, and each point's sums
+ * are added in the same order in every run. */
 #include "particles/levels.h"
 
 #include <math.h>
@@ -34,17 +35,18 @@ typedef struct splatting {
   size_t tiles[3];         /* number of tiles along each axis: 1 or an even number */
   hl_block_table occupied; /* tiles that have particles */
   uint32_t *begin;         /* owned; [occupied tiles + 1]; where a tile's particles begin in `listed` */
-  uint32_t *listed;        /* owned; particles by tile, in the set's order */
-  uint32_t *of_color;      /* owned; [occupied tiles]; the tiles of a colour */
+  uint32_t *listed;        /* owned; indices of particles, tile by tile, in the set's order within a tile */
+  uint32_t *of_color;      /* owned; [occupied tiles]; the tiles of the colour that is being filled */
   float *boxes;            /* owned; [threads][BOX^3] */
 } splatting;
 
-/* A particle's samples of its kernel, stored as rows along x. */
+/* The samples of one particle's kernel, as rows along x. */
 typedef struct samples {
   float row[ROW * ROW][ROW];
-  int first[3], count[3]; /* points along each axis; along periodic axes some may lie outside of the field */
-  float squared[3][ROW];  /* along each axis: squared distances from the particle to the points, in units of
-                           * h'; a point is out of reach at 4 or more */
+  int first[3], count[3]; /* the first point and the number of points along each axis; along periodic axes
+                           * some may lie outside of the field */
+  float squared[3][ROW];  /* along each axis: the squared distances from the particle to the points, in units
+                           * of h'^2; points where their sum is 4 or more are out of reach */
   float sums[ROW];        /* sums[n] is the sum of row[..][n] over all rows */
 } samples;
 
@@ -194,7 +196,8 @@ hl_status hl_particles_splat(hl_context *context, hl_pool *pool, const hl_partic
   s.grid = hl_particle_level_of(set, &field->plan->lattice, level);
   for (int a = 0; a < 3; a++) {
     s.tiles[a] = s.grid.points[a] / (2 * LEAST_TILE) *
-                 2; /* an even number, so that the two ends of a period have two colours */
+                 2; /* The number is even, so that two tiles that meet at the border of a period have
+                     * different colours. */
     if (s.tiles[a] == 0) s.tiles[a] = 1;
   }
   s.boxes = hl_allocate(context, floats, sizeof *s.boxes);

@@ -19,7 +19,7 @@ typedef struct subdividing {
   size_t scratch_floats;
 } subdividing;
 
-/* Fills a block with the coarser level's coefficients, subdivided. */
+/* Fills a block by subdividing the coefficients of the next coarser level. */
 static void subdivide_block(void *data, size_t index, int worker) {
   const subdividing *s = data;
   const hl_lattice_box box = hl_particle_block_box(s->field->plan->blocks[s->level].place[index]),

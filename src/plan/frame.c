@@ -1,4 +1,4 @@
-/* plan/frame.c - the eye's view, the lights and the content's bounds. */
+/* plan/frame.c - sets the eye's view, the lights and the bounds of the content in a frame. */
 #include "plan/frame.h"
 
 #include "grid/relevant.h"
@@ -46,7 +46,7 @@ typedef struct half_space {
   double offset;
 } half_space;
 
-/* Cuts a segment; false if nothing is left. */
+/* Cuts a segment to the part within half spaces. Returns false if nothing is left. */
 static bool clip_segment(vec3 *a, vec3 *b, const half_space *planes, int count) {
   for (int i = 0; i < count; i++) {
     double da = vec3_dot(planes[i].normal, *a) + planes[i].offset;
@@ -123,8 +123,8 @@ int hl_frame_visible_points(const frame *frame, vec3 *points) {
 
 /* ---- the eye ---- */
 
-/* The edge of a pixel at the depth where the content is nearest to the eye, but at least a third of the depth
- * of the content's middle: closer voxels are magnified anyway. */
+/* The edge of a pixel at the depth where the content is nearest to the eye, but not nearer than a third of
+ * the depth of the content's middle: closer voxels are larger than pixels anyway. */
 static double pixel_at_content(const frame *frame, double middle_depth) {
   const view *eye = &frame->eye;
   double edge = fmax(vec3_length(eye->du), vec3_length(eye->dv));
@@ -137,7 +137,7 @@ static double pixel_at_content(const frame *frame, double middle_depth) {
   return edge * fmax(nearest, middle_depth / 3);
 }
 
-/* The volume of a box whose corners hl_frame_content() found; above 0 where the box is flat. */
+/* The volume of a box whose corners hl_frame_content() found. It is above 0 even where the box is flat. */
 static double box_volume(const vec3 corners[8]) {
   vec3 x = vec3_subtract(corners[1], corners[0]), y = vec3_subtract(corners[2], corners[0]),
        z = vec3_subtract(corners[4], corners[0]);
@@ -146,8 +146,8 @@ static double box_volume(const vec3 corners[8]) {
 
 /* The mean of the boxes' centres, each weighted by its box's volume V. Derived: where a box is cut into
  * parts, the sum of V c over the parts is V c of the box. So a volume that is cut into parts keeps its
- * middle, as long as the boxes around the parts' relevant bricks together fill the box around the whole
- * volume's. The middle gives near lights their direction, and so the sheets. */
+ * middle, if the boxes around the relevant bricks of the parts fill the box around all relevant bricks. The
+ * directions of near lights, and so the directions of sheets, follow from the middle. */
 static vec3 content_middle(const frame *frame) {
   vec3 sum = {0, 0, 0};
   double volumes = 0;
@@ -160,8 +160,9 @@ static vec3 content_middle(const frame *frame) {
   return frame->content.point_count == 0 ? sum : vec3_scale(sum, 1 / volumes);
 }
 
-/* Sets eye_direction and the sizes of pixels at the content. Where the eye is outside the content, its
- * direction is half way between straight ahead and the content's middle; elsewhere straight ahead. */
+/* Sets eye_direction and the sizes of pixels at the content. Where the eye is outside the content,
+ * eye_direction is half way between the direction straight ahead and the direction to the content's middle;
+ * elsewhere it is straight ahead. */
 static void look(frame *frame) {
   vec3 start, forward;
   hl_view_ray(&frame->eye, frame->eye.width / 2.0, frame->eye.height / 2.0, &start, &forward);
@@ -181,10 +182,10 @@ static void look(frame *frame) {
                              fmax(vec3_length(frame->eye.du), vec3_length(frame->eye.dv)) * middle_depth);
 }
 
-/* Voxels that are smaller than pixels could fall between pixels. A frame of such a volume has smaller
- * pixels, about as large as voxels, and the picture's pixels are means of them. GREATEST_OVERSAMPLING: the
- * frame's pixels along a side of a picture's pixel, at most. GREATEST_OVERSAMPLED_SIDE: the frame's pixels
- * along a side, at most. */
+/* Voxels that are smaller than pixels could fall between pixels. So a frame of such a volume has smaller
+ * pixels than the picture, about as large as voxels. A pixel of the picture is a mean of pixels of the frame.
+ * GREATEST_OVERSAMPLING: the frame's pixels along a side of a picture's pixel, at most.
+ * GREATEST_OVERSAMPLED_SIDE: the frame's pixels along a side, at most. */
 enum { GREATEST_OVERSAMPLING = 8, GREATEST_OVERSAMPLED_SIDE = 4096 };
 
 static int oversampling(const frame *frame, const hl_scene_description *scene) {

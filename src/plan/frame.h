@@ -22,21 +22,21 @@ typedef struct frame_content {
 } frame_content;
 
 typedef struct frame {
-  int width, height; /* pixels: the picture's size times oversampling */
+  int width, height; /* in pixels of the frame: the picture's size times oversampling */
   int oversampling;  /* a pixel of the picture is the mean of oversampling x oversampling pixels of the
                       * frame */
   view eye;
   vec3 eye_direction;  /* e: unit, from the eye towards the content */
-  double pixel;        /* edge of an image pixel where the content is nearest, frame units */
-  double middle_pixel; /* edge of an image pixel at the content's middle, frame units */
+  double pixel;        /* edge of a picture's pixel at the place where the content is nearest, frame units */
+  double middle_pixel; /* edge of a picture's pixel at the content's middle, frame units */
   double spacing;      /* ds: the distance of sheets, frame units */
   frame_content content;
   light_sectors sectors; /* the sectors of lights within the content */
   light_source *lights;  /* [light_count]; owned by the caller; the sectors of one light follow each other */
   int light_count;
   const surfaces *surfaces;    /* surfaces of the scene's meshes; null: none */
-  const surface_tree *contact; /* the tree of the surfaces close behind which shadow buffers leave light that
-                                * does not belong there (render/late/) */
+  const surface_tree *contact; /* the tree of surfaces for which the light close behind them is corrected
+                                * (render/late/) */
 } frame;
 
 /* The eye's view in width x height pixels. */
@@ -45,8 +45,8 @@ hl_status hl_frame_eye(const hl_camera *camera, int width, int height, view *eye
 /* Sets the frame's size, oversampling, eye and middle. The frame's points and voxel must be set. */
 hl_status hl_frame_set_up_eye(frame *frame, const hl_scene_description *scene, hl_error *error);
 
-/* Whether any picture of a volume or a mesh depends on arriving light: flat colours and maximum projections
- * do not. */
+/* Whether the picture of any volume or mesh depends on arriving light. Flat colours and maximum projections
+ * do not depend on it. */
 bool hl_is_lit(const hl_scene_description *scene);
 
 static inline bool hl_is_maximum(const hl_render_settings *settings) {
@@ -56,8 +56,8 @@ static inline bool hl_is_maximum(const hl_render_settings *settings) {
 /* Finds the corners of the box around a grid's relevant bricks. There must be at least one. */
 void hl_frame_content(const grid *grid, vec3 corners[8]);
 
-/* Finds the corners of the part of the content that the eye sees, which a shadow buffer must cover. points:
- * room for CONTENT_POINTS for each grid. Returns their number. */
+/* Finds corners that bound the part of the content that the eye sees; a shadow buffer must cover this part.
+ * points: room for CONTENT_POINTS points for each grid. Returns their number. */
 int hl_frame_visible_points(const frame *frame, vec3 *points);
 
 #endif

@@ -19,7 +19,7 @@
 #include "scatter/scatter.h"
 #include "shadow/shadow_method.h"
 
-/* The picture of the plan, and the part of this picture that is made. */
+/* The picture of the plan, and the part of this picture that this renderer makes. */
 typedef struct plan_picture {
   int width, height;       /* pixels */
   int tiles_x;             /* number of the frame's tiles in a row of tiles */
@@ -39,10 +39,10 @@ typedef struct plan_volumes {
   bool splat; /* densities are splatted; else they are gathered */
 } plan_volumes;
 
-/* Light that is found on grids of its own, not sheet by sheet. */
+/* Light that does not travel from sheet to sheet: it is found on grids of its own. */
 typedef struct plan_fields {
   bool scatters;                  /* media scatter light more than once */
-  const scatter_field *scattered; /* borrowed; the light that they scatter; null: none */
+  const scatter_field *scattered; /* borrowed; the light that media scatter more than once; null: none */
   const sky_light *sky;           /* borrowed; null: none */
   const phase_tables *phases;     /* borrowed */
 } plan_fields;
@@ -50,8 +50,9 @@ typedef struct plan_fields {
 /* A light of a sweep. */
 typedef struct light_plan {
   const light_source *source;
-  light_emission *emission; /* owned; the picture on the light itself; null: none */
-  light_shadow shadow;      /* the shadow as planned; a back end works on a copy (hl_light_shadow_begin) */
+  light_emission *emission; /* owned; the picture on the light's own surface; null: none */
+  light_shadow shadow;      /* the shadow as it was planned; a back end works on a copy of it
+                             * (hl_light_shadow_begin) */
   shadow_layouts memory;    /* memory of the shadow's method */
 } light_plan;
 
@@ -66,7 +67,8 @@ typedef struct sweep_plan {
 typedef struct plan_sweeps {
   sweep_sheets *sheets; /* owned; [count] */
   sweep_plan *list;     /* owned; [count] */
-  light_plan *lights;   /* owned; [light_count]; the lights of all sweeps, one sweep after the other */
+  light_plan *lights;   /* owned; [light_count]; the lights of all sweeps; the lights of one sweep follow
+                         * those of the sweep before */
   int count, light_count;
 } plan_sweeps;
 
@@ -75,7 +77,8 @@ typedef struct frame_plan {
   plan_picture picture;
   double unit;                 /* the length in the world of one unit of frame space */
   double ambient[HL_CHANNELS]; /* light from everywhere, R, G, B */
-  frame frame;                 /* the eye, the lights, the surfaces; its arrays are the plan's own */
+  frame frame;                 /* the eye, the lights and the surfaces; the plan owns the arrays of the
+                                * frame */
   frame_light *lights; /* owned; [light_count]; the `row` of a light_source is an index into this list */
   int light_count;
   frame_mesh *meshes; /* owned; [mesh_count] */
@@ -83,7 +86,7 @@ typedef struct frame_plan {
   plan_volumes volumes;
   plan_fields fields;
   plan_sweeps sweeps;
-  int channels; /* number of channels in which light is attenuated: 1 or 3 */
+  int channels; /* number of channels of light attenuation: 1 or 3 */
   vec3 *seen;   /* owned; [seen_count]; corners of the content that the eye sees */
   int seen_count;
 } frame_plan;
@@ -94,15 +97,15 @@ hl_status hl_frame_plan_create(hl_context *context, const framed_scene *framed, 
                                hl_error *error);
 void hl_frame_plan_release(hl_context *context, frame_plan *plan);
 
-/* Chooses the sweeps, and refuses a frame that no sheets serve. Call it after the frame's eye and lights are
- * set up. */
+/* Chooses the sweeps. Refuses a frame for which no direction of sheets works. Call it after the frame's eye
+ * and lights are set up. */
 hl_status hl_plan_sweeps(hl_context *context, frame_plan *plan, hl_error *error);
 
-/* Whether a frame's layers need measuring: true where depth, normals or objects are wanted: some sweep must
- * then go front to back. */
+/* Whether some wanted layer must be measured: depth, normals or objects. If so, some sweep must go from front
+ * to back. */
 bool hl_layers_measure(const hl_layers *wanted);
 
-/* The last step, after the share: plans the shadows of all lights. */
+/* The last step of planning, after the picture is shared out: plans the shadows of all lights. */
 hl_status hl_plan_lights(hl_context *context, frame_plan *plan, hl_error *error);
 
 /* ---- what light reaches ---- */

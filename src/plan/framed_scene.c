@@ -41,7 +41,8 @@ static void move_light(const hl_frame_space *space, hl_light *light, double (*ve
   if (light->falloff == HL_FALLOFF_INVERSE_SQUARE) light->intensity /= space->unit * space->unit;
 }
 
-/* Leaves the clip box alone: it is in the world of the volume's file, to which the transform is applied. */
+/* Moves a volume to frame space, except for its clip box. The clip box stays in the world of the volume's
+ * file, to which the volume's transform is applied. */
 static void move_volume(const hl_frame_space *space, hl_scene_volume *volume) {
   move_point(space, volume->translate);
   volume->scale /= space->unit;
@@ -51,7 +52,7 @@ static void move_volume(const hl_frame_space *space, hl_scene_volume *volume) {
     function->plane.second_scale = hl_plane_second_scale(&function->plane) / space->unit;
 }
 
-/* Moves the gradient opacity to frame space: gradients are per unit of length. points: room for the new
+/* Converts gradient opacity to frame space: gradients are values per unit of length. points: room for the new
  * points. */
 static void move_gradients(const hl_frame_space *space, hl_transfer_function *function,
                            hl_opacity_point *points) {
@@ -71,7 +72,7 @@ static void move_cut(const hl_frame_space *space, hl_cut *cut) {
   cut->radius /= space->unit;
 }
 
-/* Brings cuts whose lengths are in the world to frame space. cuts: room for the volume's cuts. */
+/* Converts cuts whose lengths are in the world to frame space. cuts: room for the volume's cuts. */
 static void move_cuts(const hl_frame_space *space, hl_scene_volume *volume, hl_cut *cuts) {
   if (volume->cut_count == 0) return;
   memcpy(cuts, volume->cuts, volume->cut_count * sizeof *cuts);
@@ -113,8 +114,8 @@ static hl_status copy_arrays(hl_context *context, const hl_scene_description *sc
   return HL_OK;
 }
 
-/* Copies what the scene knows of its lights and volumes, in the order of frames. In the scene, suns are the
- * last lights. */
+/* Copies what the scene knows of its lights and volumes, in the order that frames use. In the scene, suns are
+ * the last lights. */
 static void copy_findings(const hl_scene *scene, const drawn_scene *drawn, framed_scene *framed) {
   const hl_scene_description *d = &drawn->description;
   const scene_order *order = &drawn->order;

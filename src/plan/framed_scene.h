@@ -15,16 +15,17 @@ typedef struct framed_scene {
   hl_scene_volume *volumes;    /* owned; [volume_count] */
   hl_light *lights;            /* owned; [light_count] */
   hl_scene_mesh *meshes;       /* owned; [mesh_count], with room for the volumes' isosurfaces */
-  int *mesh_objects;           /* owned; [mesh_count], with room for the volumes' isosurfaces; numbers of
-                                * the meshes in the layer of objects */
-  const scene_order *order;    /* borrowed; the place of each thing in the lists of the world's scene */
+  int *mesh_objects;           /* owned; [mesh_count], with room for the volumes' isosurfaces; the number of
+                                * each mesh in the layer of objects */
+  const scene_order *order;    /* borrowed; the place of each light, volume and mesh in the lists of the scene
+                                * in the world */
   double (*vertices)[3];       /* owned; of all polygons */
   hl_opacity_point *gradients; /* owned; the points of gradient opacity, of all volumes */
   hl_cut *cuts;                /* owned; the cuts of the volumes */
-  double *sun_parts;     /* owned; [light_count]; the fraction of a light that a medium takes, where the light
-                          * is a sun of the sky; else 0 */
-  uint64_t *plane_marks; /* owned; [volume_count]; functions of two numbers with different contents have
-                          * different marks */
+  double *sun_parts;     /* owned; [light_count]; where the light is a sun of the sky: the fraction of it that
+                          * a medium takes; for other lights 0 */
+  uint64_t *plane_marks; /* owned; [volume_count]; marks of functions of two numbers: functions with different
+                          * contents have different marks */
   double unit; /* the length in the world of one unit of frame space; the smallest voxel edge is 1 to 2 such
                 * units long */
 } framed_scene;

@@ -1,4 +1,4 @@
-/* plan/plan_text.c - see plan_text.h. All that is told is read from the plan. */
+/* plan/plan_text.c - see plan_text.h. All numbers of the text are read from the plan. */
 #include "plan/plan_text.h"
 
 #include <stdio.h>
@@ -51,7 +51,7 @@ static json_t *mesh_of(const frame_mesh *mesh, const surface_mesh *placed) {
   return made;
 }
 
-/* The buffer of a light's shadows, and the memory that the method takes beside it. */
+/* The JSON of the buffer of a light's shadows, and of the memory that the shadow method takes beside it. */
 static void add_shadow(const light_plan *light, json_t *to) {
   const light_shadow *shadow = &light->shadow;
   if (shadow->method == NULL) return;

@@ -1,4 +1,5 @@
-/* plan/share.c - cuts a picture into bands along the brightest light's lines, or into rows in turn. */
+/* plan/share.c - divides a picture among parts: into bands along the lines of the brightest light, or by
+ * giving rows to the parts in turn. */
 #include "plan/share.h"
 
 #include <stdlib.h>
@@ -8,24 +9,26 @@
 #include "grid/relevant.h"
 #include "shadow/shadow_method.h"
 
-/* A cell of the picture while the cells are put in order. */
+/* A cell of the picture, with the key by which cells are sorted. */
 typedef struct share_cell {
   double key;    /* rises from band to band */
   double weight; /* how much matter lies under it */
   int32_t index;
 } share_cell;
 
-/* MOST_BANDS: number of bands of a part, at most. DEPTHS: number of depths that are told apart. */
+/* MOST_BANDS: the greatest number of bands of a part. DEPTHS: the number of depth intervals into which the
+ * content is divided. */
 enum { MOST_BANDS = 3, DEPTHS = 32 };
 
-/* The arrays that are used while a picture is cut into parts. */
+/* The arrays that are used while a picture is divided into parts. */
 typedef struct share_arrays {
   share_cell *cells;        /* [cells] */
-  double *each;             /* owned; [cells], by the cell's index; the weight of each brick under a cell */
-  int32_t *cut[MOST_BANDS]; /* [cells], by the cell's index; the number of the cell's part, where a part has
-                             * 1, 2, ... bands */
-  double (*depths[MOST_BANDS])[DEPTHS]; /* for parts of 1, 2, ... bands: [parts][DEPTHS]; the weight of each
-                                         * part at each depth */
+  double *each;             /* owned; [cells], by the cell's index; the weight of each single brick under a
+                             * cell */
+  int32_t *cut[MOST_BANDS]; /* [cells], by the cell's index; the part to which the cell belongs. Array b is
+                             * for parts of b + 1 bands */
+  double (*depths[MOST_BANDS])[DEPTHS]; /* array b is for parts of b + 1 bands: [parts][DEPTHS]; the weight of
+                                         * each part at each depth */
 } share_arrays;
 
 static size_t cells_of(const picture_share *share) { return (size_t)share->cells_x * (size_t)share->cells_y; }
@@ -56,14 +59,14 @@ static double brightness(const share_content *content, const light_source *sourc
   return color / fmax(vec3_dot(way, way), 1e-12);
 }
 
-/* Whether each part computes only its own share of a light's shadows. */
+/* Whether each part computes only those of a light's shadows that it needs. */
 static bool is_divided(const picture_share *share, const light_source *source) {
   const shadow_method *method = hl_shadow_method(source);
   if (method == NULL) return false;
   return method->divides || (method->exchanges && share->exchange != NULL);
 }
 
-/* The brightest light whose shadows are divided; null: none is. */
+/* The brightest light whose shadows are divided among the parts; null: no light's shadows are. */
 static const light_source *brightest(const share_content *content, const picture_share *share) {
   const frame *frame = content->frame;
   const light_source *found = NULL;
@@ -75,7 +78,7 @@ static const light_source *brightest(const share_content *content, const picture
   return found;
 }
 
-/* The light's image, homogeneous: (w, w u, w v). */
+/* The image of a light in the picture, in homogeneous coordinates (w, w u, w v). */
 typedef struct light_image {
   double w, u, v;
 } light_image;
@@ -90,7 +93,8 @@ static light_image image_of(const view *eye, const light_source *source) {
   return (light_image){at[0], at[1], at[2]};
 }
 
-/* The direction of the line through the pixel (u, v) and the light's image; it may point to either side. */
+/* The direction of the line through the pixel (u, v) and the light's image. The sign of the direction is
+ * arbitrary. */
 static void line_through(const light_image *image, double u, double v, double way[2]) {
   way[0] = image->w * u - image->u;
   way[1] = image->w * v - image->v;
@@ -99,17 +103,17 @@ static void line_through(const light_image *image, double u, double v, double wa
 static double cross2(const double a[2], const double b[2]) { return a[0] * b[1] - a[1] * b[0]; }
 static double dot2(const double a[2], const double b[2]) { return a[0] * b[0] + a[1] * b[1]; }
 
-/* A number from -1 to 3 that rises with a direction's angle. It needs no trigonometric function, because
- * their last digits differ between machines. */
+/* A number from -1 to 3 that rises with a direction's angle. It is computed without trigonometric functions,
+ * because the last digits of these differ between machines. */
 static double turn_of(const double way[2]) {
   double sum = fabs(way[0]) + fabs(way[1]), part = sum > 0 ? way[1] / sum : 0;
   return way[0] >= 0 ? part : 2 - part;
 }
 
-/* Sets the cells' keys. Derived: the line through p along d meets the line through the picture's middle c
- * across m, at c + t m', where t = cross(p - c, d) / cross(m', d); m is the direction of the line through c,
- * and m' = (-m_y, m_x). Where the light's image lies within the picture or near it, so that not all lines run
- * along m, the key is their angle instead. */
+/* Sets the cells' keys. Let m be the direction of the line through the picture's middle c, and m' = (-m_y,
+ * m_x) the direction across it. Derived: the line through p along d crosses the line through c along m' at c
+ * + t m', where t = cross(p - c, d) / cross(m', d). The key is t. Where the light's image lies in the picture
+ * or near it, the lines do not all run along m; then the key is the angle of the line. */
 static void set_keys(const share_content *content, const picture_share *share, share_cell *cells) {
   const frame *frame = content->frame;
   const light_image image = image_of(&frame->eye, brightest(content, share));
@@ -135,15 +139,15 @@ static void set_keys(const share_content *content, const picture_share *share, s
 
 /* ---- how much lies under a cell ---- */
 
-/* About SHARE_BRICKS bricks of the volume are looked at. A cell weighs as much as the root of the number of
+/* About SHARE_BRICKS bricks of the volumes are sampled. A cell's weight is the square root of the number of
  * its bricks: where there are many bricks, most of them are hidden (measured: docs/laboratory/ranks.md). A
- * cell without bricks weighs LEAST_WEIGHT times the mean. */
+ * cell without bricks has LEAST_WEIGHT times the mean weight. */
 enum { SHARE_BRICKS = 1 << 18 };
 static const double LEAST_WEIGHT = 0.1;
 
 /* A function that is called for each visible brick, with the cell of the picture over which the brick lies.
  * height: the height of the brick's centre along the sheets' normal. bricks: the number of bricks for which
- * this brick counts. */
+ * this sampled brick stands. */
 typedef void brick_action(const share_content *content, const picture_share *share, share_arrays *arrays,
                           size_t cell, double height, double bricks);
 
@@ -157,9 +161,9 @@ static bool cell_of(const frame *frame, const picture_share *share, vec3 point, 
   return true;
 }
 
-/* Calls `act` for the visible bricks of a grid. Of all bricks, one in `step` is looked at, and counts for
- * `step` bricks. The grid's list of bricks does not serve here: where voxels are in pages, the list depends
- * on a process's memory. */
+/* Calls `act` for visible bricks of a grid. Of all bricks one in `step` is sampled, and stands for `step`
+ * bricks. The grid's list of relevant bricks is not used, because for voxels in pages the list depends on the
+ * memory of a process. */
 static void visit_grid(const share_content *content, const picture_share *share, const grid *grid,
                        size_t step, brick_action *act, share_arrays *arrays) {
   size_t bricks = grid->relevant_count > 0 ? hl_grid_bricks(grid) : 0, cell;
@@ -179,7 +183,7 @@ static void visit_bricks(const share_content *content, const picture_share *shar
                          share_arrays *arrays) {
   size_t bricks = 0;
   for (int g = 0; g < content->grid_count; g++) bricks += hl_grid_bricks(&content->grids[g]);
-  /* An odd step visits several columns of bricks. */
+  /* With an odd step, the samples lie in several columns of bricks. */
   for (int g = 0; g < content->grid_count; g++)
     visit_grid(content, share, &content->grids[g], bricks / SHARE_BRICKS | 1, act, arrays);
 }
@@ -190,8 +194,8 @@ static void count_brick(const share_content *content, const picture_share *share
   arrays->cells[cell].weight += bricks;
 }
 
-/* Finds the weights of the cells. Call it while each cell still lies at its index, before the cells are put
- * in order. */
+/* Finds the weights of the cells. Call it before the cells are put in order, while each cell is still stored
+ * at its index. */
 static void weigh_cells(const share_content *content, const picture_share *share, share_arrays *arrays) {
   share_cell *cells = arrays->cells;
   double sum = 0;
@@ -214,9 +218,10 @@ static int compare_cells(const void *a, const void *b) {
   return first->index < second->index ? -1 : 1;
 }
 
-/* Cuts the ordered cells into bands of equal weight: a cell belongs to the band in which the middle of the
- * cell's weight lies. Then gives bands to parts, forwards and backwards by turns. So the last part has two
- * neighbouring bands, and where a part has three bands, the first part has two of them, too. */
+/* Divides the ordered cells into bands of equal weight: a cell belongs to the band in which the middle of the
+ * cell's weight lies. Then gives the bands to the parts, in forward and backward order by turns. So the last
+ * part gets two neighbouring bands. With three bands for each part, the first part gets two neighbouring
+ * bands, too. */
 static void cut_bands(const picture_share *share, const share_cell *cells, int bands, int32_t *part_of) {
   double sum = 0, before = 0;
   const int parts = share->parts;
@@ -230,8 +235,8 @@ static void cut_bands(const picture_share *share, const share_cell *cells, int b
 
 /* ---- how many bands ---- */
 
-/* Adds a brick's weight, at the brick's depth, to the part over which the brick lies, for each number of
- * bands. */
+/* Adds a brick's weight to the part over which the brick lies, at the brick's depth. It does so for each
+ * number of bands. */
 static void place_brick(const share_content *content, const picture_share *share, share_arrays *arrays,
                         size_t cell, double height, double bricks) {
   (void)share;
@@ -251,9 +256,9 @@ static bool is_at_border(const picture_share *share, const int32_t *part_of, int
          (y + 1 < share->cells_y && part_of[index + share->cells_x] != own);
 }
 
-/* The cost of a division into bands, in units of a part's mean. At each depth the slowest part counts,
- * because the others wait for it. Half of the cells at borders count once more, for light that several parts
- * work through (measured: docs/laboratory/ranks.md). */
+/* The cost of a division into bands, in units of the mean cost of a part. At each depth the slowest part
+ * counts, because the others wait for it. Half of the cells at borders between parts are added, for light
+ * that several parts work through (measured: docs/laboratory/ranks.md). */
 static double cost_of(const picture_share *share, const share_arrays *arrays, int bands) {
   const int32_t *part_of = arrays->cut[bands - 1];
   double(*depths)[DEPTHS] = arrays->depths[bands - 1], all = 0, slowest = 0, cells = 0, border = 0;
@@ -272,7 +277,8 @@ static double cost_of(const picture_share *share, const share_arrays *arrays, in
   return (all > 0 ? slowest * share->parts / all : 1) + border / (2 * cells);
 }
 
-/* The least gain, as a fraction, for which more bands are chosen: the estimate of the cost is rough. */
+/* More bands are chosen only for a gain of at least this fraction, because the estimate of the cost is
+ * rough. */
 static const double LEAST_GAIN = 0.1;
 
 static int choose_bands(const share_content *content, const picture_share *share, share_arrays *arrays) {
@@ -297,18 +303,18 @@ static bool lies_over_ranks(const share_content *content) {
   return false;
 }
 
-/* Whether parts wait for each other from depth to depth. Where volumes lie over ranks, parts of one band need
- * the fewest pages. */
+/* Whether parts wait for each other at each depth, and should therefore have several bands. Where volumes lie
+ * over ranks, parts of one band are better, because they need the fewest pages. */
 static bool waits_at_depths(const share_content *content, const picture_share *share) {
   const light_source *light = brightest(content, share);
   const shadow_method *method = light != NULL ? hl_shadow_method(light) : NULL;
   return method != NULL && method->exchanges && share->exchange != NULL && !lies_over_ranks(content);
 }
 
-/* Whether parts are bands. Rows of cells in turn have more equal shares of the work; but bands need less
- * light where shadows are divided, and less of the voxels where no shadows are cast, which counts where
- * these lie over ranks. Whether they lie in a scratch file must not matter: each process decides that for
- * itself. */
+/* Whether parts are bands, and not rows of cells in turn. Rows in turn divide the work more equally. But
+ * where shadows are divided, a band needs less light. And where no shadows are cast, a band needs fewer
+ * voxels, which matters if the voxels lie over ranks. It must not matter whether voxels lie in a scratch
+ * file, because each process decides that for itself. */
 static bool is_cut_in_bands(const share_content *content, const picture_share *share) {
   const frame *frame = content->frame;
   bool soft = false;

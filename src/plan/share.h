@@ -1,12 +1,13 @@
 /* plan/share.h - divides a picture among several renderers: says which pixels each of them makes.
  *
- * Rays of the eye and of a light that meet lie in one plane with the eye and the light. In the picture these
+ * An eye's ray and a light's ray that meet lie in one plane with the eye and the light. In the picture these
  * planes are lines through the light's image, or parallel lines where the image is infinitely far away. So a
  * band of the picture along such lines looks up only a band of the light's shadow buffer, over all sheets.
  * Each part of a picture is such a band, for the brightest light whose method lets parts work through their
- * own light. Bands consist of whole cells, and about as much matter lies under each of them. Where parts wait
- * for each other from depth to depth, a part may have two or three bands, so that shares of the matter are
- * more equal at each depth. Where all parts need all light anyway, parts take rows of cells in turn. */
+ * own light. Bands consist of whole cells, and each band has about the same amount of matter under it. Where
+ * parts wait for each other at each depth, a part may have two or three bands, so that the parts have more
+ * equal amounts of matter at each depth. Where all parts need all light anyway, rows of cells are given to
+ * the parts in turn. */
 #ifndef HL_PLAN_SHARE_H
 #define HL_PLAN_SHARE_H
 
@@ -15,13 +16,14 @@
 #include "plan/frame.h"
 #include "plan/frame_objects.h"
 
-/* A picture's division into parts. A cell has as many pixels of the picture as a tile has of the frame:
- * `oversampling` tiles a side. */
+/* A picture's division into parts. It is made in cells. A cell is `oversampling` tiles of the frame wide and
+ * high, so it has as many pixels of the picture as a tile has of the frame. */
 typedef struct picture_share {
-  int part, parts;                /* the number of this renderer's part, and the number of parts */
-  const light_exchange *exchange; /* borrowed; exchange of light with the other parts; null: there is none */
+  int part, parts;                /* part: number of this renderer's part; parts: number of parts */
+  const light_exchange *exchange; /* borrowed; exchanges light with the other parts; null: light is not
+                                   * exchanged */
   int cells_x, cells_y;           /* number of cells of the whole picture */
-  int oversampling;               /* number of the frame's tiles along a side of a cell */
+  int oversampling;               /* number of the frame's tiles along each side of a cell */
   unsigned char *memory;          /* owned; holds part_of; null: the picture is not shared */
   int32_t *part_of;               /* [cells_y][cells_x] */
 } picture_share;
@@ -29,7 +31,7 @@ typedef struct picture_share {
 /* What the picture shows, as far as its division into parts depends on it. */
 typedef struct share_content {
   const frame *frame;        /* the frame, whose eye and lights must be set up */
-  const frame_light *lights; /* the frame's lights, which its light sources name by row */
+  const frame_light *lights; /* the frame's lights; a light source names its light by `row` */
   const grid *grids;         /* [grid_count]; the frame's */
   int grid_count;
   const sheet_stack *sheets; /* sheets of the frame's first sweep */
@@ -38,8 +40,9 @@ typedef struct share_content {
 /* Counts the memory that hl_share_create() takes for a picture of width x height pixels. */
 void hl_share_count(int width, int height, int parts, hl_layout *layout);
 
-/* Shares a picture out; the result is the same on every machine. share: its members part and parts must be
- * set; with one part nothing is done. It is owned by the caller, who must release it after a failure, too. */
+/* Divides a picture into parts; the result is the same on every machine. share: its members part and parts
+ * must be set. If there is only one part, nothing is done. The caller owns `share`, and must release it after
+ * a failure, too. */
 hl_status hl_share_create(hl_context *context, const share_content *content, picture_share *share,
                           hl_error *error);
 void hl_share_release(hl_context *context, picture_share *share);

@@ -1,4 +1,4 @@
-/* plan/shown_values.c - see shown_values.h: searches the ends of the ranges by bisection. */
+/* plan/shown_values.c - see shown_values.h. The ends of the shown ranges are found by bisection. */
 #include "plan/shown_values.h"
 
 #include <float.h>
@@ -6,20 +6,21 @@
 
 #include "scene/scene.h"
 
-/* Table coordinates of values come from rounded sums of floats. So the ends of the shown ranges are moved
- * by ROUNDINGS roundings of the greatest voxel, and at least by LEAST_END entries. A value at an end is
- * then shown exactly where the transfer function shows it. */
+/* The table coordinate of a value comes from rounded sums of floats. So the ends of the shown ranges are
+ * moved by ROUNDINGS times the rounding error of the greatest voxel, and at least by LEAST_END entries. Then
+ * a value at the end of a range is shown exactly where the transfer function shows it. */
 static const double LEAST_END = 1e-3, ROUNDINGS = 8;
 
 enum { BISECTIONS = 30 };
 
-/* The input of the search: a volume's transfer function, and what brings the coordinates of the classifier's
- * table to data values. */
+/* The input of the search: a volume's transfer function, and the map from coordinates of the classifier's
+ * tables to data values. */
 typedef struct shown_values {
   const hl_transfer_function *function; /* borrowed */
-  double low, step; /* data values: the value of coordinate 0, and the step from one coordinate to the next */
-  double nothing;   /* data value below which there is no matter */
-  double end;       /* distance in entries of the table by which the ends of ranges are moved */
+  double low, step; /* low: the data value of coordinate 0; step: the difference of data values from one
+                     * coordinate to the next */
+  double nothing;   /* the data value below which there is no matter */
+  double end;       /* the distance, in entries of the table, by which the ends of ranges are moved */
 } shown_values;
 
 static bool shows(const shown_values *values, double from, double to) {
@@ -31,7 +32,7 @@ static bool shows(const shown_values *values, double from, double to) {
 /* The greatest, or the least, value that is shown between entry and entry + 1. */
 static double end_of_step(const shown_values *values, int entry, bool greatest) {
   double inside = entry, outside = entry + 1;
-  /* In the search for the greatest value, something is always shown between `inside` and the step's end. */
+  /* When searching for the greatest value: something is shown between `inside` and entry + 1. */
   for (int i = 0; i < BISECTIONS; i++) {
     double middle = (inside + outside) / 2;
     bool some = greatest ? shows(values, middle, entry + 1) : shows(values, entry, middle);
@@ -41,8 +42,8 @@ static double end_of_step(const shown_values *values, int entry, bool greatest) 
   return (inside + outside) / 2;
 }
 
-/* True where opacity rises from 0 without a jump, so that the end itself is not shown. False where opacity
- * jumps. */
+/* Whether opacity rises from 0 without a jump at `from`, so that the value at this end is itself not
+ * shown. */
 static bool rises_from(const shown_values *values, double from) {
   double near = values->low + (from + values->end) * values->step,
          far = values->low + (from + 2 * values->end) * values->step;

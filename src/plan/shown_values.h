@@ -2,8 +2,9 @@
  * projections.
  *
  * In:  a transfer function, and the volume's classifier, whose tables give values their coordinates. Out: for
- * each entry of these tables, which values from there to the next entry have an opacity above 0. A maximum
- * projection looks up in it the greatest value that is shown in a range of values. */
+ * each entry of these tables, the range of the values between this entry and the next one that have an
+ * opacity above 0. In this table a maximum projection looks up the greatest value that is shown in a range of
+ * values. */
 #ifndef HL_PLAN_SHOWN_VALUES_H
 #define HL_PLAN_SHOWN_VALUES_H
 
@@ -11,9 +12,9 @@
 
 enum { SHOWN_ENTRIES = CLASSIFIER_ENTRIES + 2 };
 
-/* The numbers of an entry's row, all coordinates: between the entry and the next one the function shows
- * values above SHOWN_FROM up to SHOWN_TO; SHOWN_BELOW is the greatest value below the entry that it shows, -1
- * if there is none. */
+/* The numbers of an entry's row; all of them are table coordinates. Between the entry and the next one, the
+ * function shows values above SHOWN_FROM and up to SHOWN_TO. SHOWN_BELOW is the greatest shown value below
+ * the entry; -1: there is no such value. */
 enum { SHOWN_FROM, SHOWN_TO, SHOWN_BELOW };
 
 /* Fills the table of a volume. function: the volume's transfer function, in frame space. rows:

@@ -3,17 +3,16 @@
 
 #include "scene/light/light_kind.h"
 
-/* cos 60 degrees: lights share a sweep only if the eye's direction and each light's are within this angle of
- * the slicing axis. */
+/* cos 60 degrees: lights share a sweep only if the eye's direction and the direction of each light are within
+ * this angle of the slicing axis. */
 static const double STEEPEST = 0.5;
 
-/* The least |cos| of the angle between the slicing axis and the picture's outermost rays (87 degrees), and
- * of the angle between the slicing axis and a light's direction (80 degrees). Flatter crossings are
- * refused. */
+/* Limits of the |cos| of angles to the slicing axis, below which a frame is refused. FLATTEST_EYE_RAY: for
+ * the picture's outermost rays (87 degrees). FLATTEST_LIGHT: for a light's direction (80 degrees). */
 static const double FLATTEST_EYE_RAY = 0.05, FLATTEST_LIGHT = 0.17;
 
-/* The least |cos| of the angle between h and the eye's rays through the picture's corners. 0 unless all these
- * rays cross the sheets in the same direction. */
+/* The least |cos| of the angle between h and the eye's rays through the picture's corners. It is 0 unless all
+ * these rays cross the sheets in the same direction. */
 static double flattest_eye_ray(const view *eye, vec3 h) {
   double least = INFINITY, sense = 0;
   for (int corner = 0; corner < 4; corner++) {
@@ -27,9 +26,9 @@ static double flattest_eye_ray(const view *eye, vec3 h) {
   return least;
 }
 
-/* h = normalise(e + l) for e.l >= 0, normalise(l - e) else (fig. 3); for several lights the sum of their
- * directions. A wide picture's corner rays may run along such sheets: then h leans towards the eye until they
- * cross. */
+/* The slicing axis h is normalise(e + l) if e.l >= 0, else normalise(l - e) (fig. 3); for several lights, l
+ * is the sum of their directions. In a wide picture, rays through the corners may run along these sheets.
+ * Then h leans towards the eye until all rays cross the sheets. */
 static vec3 slicing_axis(const frame *frame, const hl_render_settings *settings, vec3 light,
                          bool *back_to_front) {
   *back_to_front = vec3_dot(frame->eye_direction, light) < 0;
@@ -46,13 +45,13 @@ static vec3 slicing_axis(const frame *frame, const hl_render_settings *settings,
   return h;
 }
 
-/* FLATTEST: the least cosine of the angle between the slicing axis and a light's rays to the content (78
- * degrees). FLATTEST_ALONE: the same for a soft parallel light that has a sweep of its own (70 degrees);
- * along flatter rays, floors would shade themselves. */
+/* Limits of the cosine of the angle between the slicing axis and a light's rays to the content. FLATTEST: 78
+ * degrees. FLATTEST_ALONE: 70 degrees, for a soft parallel light that has a sweep of its own; with flatter
+ * rays, floors would shade themselves. */
 static const double FLATTEST = 0.2, FLATTEST_ALONE = 0.35;
 
-/* Whether the angles of all rays of a light with the sheets' normal have this cosine or a greater one. For
- * a near light these are the rays from its centre, for a soft parallel light the rays of its disk. */
+/* Whether, for all rays of a light, the cosine of the angle to the sheets' normal is at least `least`. The
+ * rays are those from the centre of a near light, or those of the whole disk of a soft parallel light. */
 static bool rays_cross(const frame *frame, const light_source *source, vec3 h, double least) {
   if (source->parallel) {
     double off = acos(fmin(fmax(vec3_dot(source->direction, h), -1), 1));
@@ -65,9 +64,9 @@ static bool rays_cross(const frame *frame, const light_source *source, vec3 h, d
   return true;
 }
 
-/* The axis of the narrowest cone around a light's rays to the content's corners, approximately: the axis
- * moves towards the ray farthest from it, by a smaller step each time (Badoiu and Clarkson, "Smaller
- * core-sets for balls", 2003, on directions). */
+/* Finds the axis of about the narrowest cone around a light's rays to the corners of the content. In each
+ * step the axis moves towards the ray that is farthest from it, and each step is smaller than the one before
+ * (Badoiu and Clarkson, "Smaller core-sets for balls", 2003, applied to directions). */
 static vec3 middle_of_rays(const frame *frame, const light_source *source) {
   enum { STEPS = 64 };
   vec3 middle = source->direction;
@@ -96,10 +95,10 @@ static bool eye_crosses(const frame *frame, vec3 h, bool back_to_front) {
   return e > 0 && flattest_eye_ray(&frame->eye, h) >= FLATTEST;
 }
 
-/* The slicing axis of one light. Where some rays of a near light, or of a wide parallel one, do not cross the
- * half-way vector's sheets, the axis leans towards the middle of the light's rays, but no farther than
- * needed. So it moves without a jump as the light moves. For a parallel light it leans no farther than the
- * eye allows. False where no sheets serve both a near light and the eye. */
+/* The slicing axis of one light. Some rays of a near light, or of a wide parallel light, may not cross the
+ * sheets of the half-way vector. Then the axis leans towards the middle of the light's rays, but no farther
+ * than needed. So the axis moves without a jump as the light moves. For a parallel light it leans no farther
+ * than the eye allows. Returns false where no sheets suit both a near light and the eye. */
 static bool axis_of_light(const frame *frame, const hl_render_settings *settings, const light_source *source,
                           vec3 *h, bool *back_to_front) {
   const bool wide = source->parallel;
@@ -123,8 +122,7 @@ static bool axis_of_light(const frame *frame, const hl_render_settings *settings
   return true;
 }
 
-/* Finds whether sheets can serve the light and the eye. False where the light's rays do not cross these
- * sheets; the light must then be cut into sectors. */
+/* Whether the same sheets suit the light and the eye. If not, the light must be divided into sectors. */
 static bool serves(const frame *frame, const hl_render_settings *settings, const light_source *source) {
   bool back_to_front;
   vec3 h;
@@ -183,8 +181,8 @@ static vec3 sum_of_directions(const frame *frame, const sweep_sheets *sweep) {
   return vec3_normalise(sum);
 }
 
-/* Adds a light to a sweep, if one slicing axis serves the sweep's lights and this one. Returns whether it
- * does. */
+/* Adds a light to a sweep if one slicing axis suits both the sweep's lights and this light. Returns whether
+ * the light was added. */
 static bool try_light(const frame *frame, const hl_render_settings *settings, sweep_sheets *sweep,
                       int light) {
   if (sweep->light_count == FRAME_LIGHTS || sweep->of_sectors) return false;
@@ -203,7 +201,8 @@ static bool try_light(const frame *frame, const hl_render_settings *settings, sw
   return false;
 }
 
-/* Floats cannot tell the heights of more sheets apart well; a sweep of more sheets is refused. */
+/* The greatest number of sheets of a sweep; a sweep of more sheets is refused. Floats cannot tell the heights
+ * of more sheets apart well. */
 enum { GREATEST_SHEETS = 1 << 20 };
 
 /* Lays sheets over the whole content, with one more sheet on either side. */
@@ -220,7 +219,8 @@ static void place_sheets(const frame *frame, sheet_stack *sheets) {
   sheets->first = (low + high) / 2 - (sheets->count - 1) * 0.5 * sheets->spacing;
 }
 
-/* Adds a sector of a light to the sweep that has sectors of the same direction, or to a new sweep. */
+/* Adds a sector of a light to the sweep that has sectors of the same direction; if there is none, adds a
+ * sweep. */
 static void add_sector(const frame *frame, int light, sweep_sheets *sweeps, int *count) {
   vec3 axis = frame->lights[light].direction;
   int s = 0;
@@ -253,8 +253,8 @@ void hl_frame_add_eye_sweep(const frame *frame, sweep_sheets *sweeps, int *count
   place_sheets(frame, &added->sheets);
 }
 
-/* Adds a light without shadows to any sweep with room, else to a new sweep whose sheets are parallel to the
- * picture. light -1: a sweep is made ready, and no light is added. */
+/* Adds a light without shadows to any sweep with room. If there is none, adds a sweep whose sheets are
+ * parallel to the picture. light: -1 only makes sure that there is a sweep with room. */
 static void add_plain_light(const frame *frame, int light, sweep_sheets *sweeps, int *count) {
   int s = 0;
   while (s < *count && sweeps[s].light_count == FRAME_LIGHTS) s++;

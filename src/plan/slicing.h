@@ -7,31 +7,32 @@
 #include "plan/framed_scene.h"
 #include "view/occupancy.h"
 
-/* One pass over the sheets, with the lights that one slicing direction serves. */
+/* One pass over the sheets, with the lights for which one slicing direction is used. */
 typedef struct sweep_sheets {
   sheet_stack sheets;
-  bool back_to_front; /* the eye's rays meet the sheets from the last to the first; the lights' rays always
-                       * meet them from the first to the last */
-  bool of_sectors;    /* the sweep's lights are sectors of lights, and the slicing direction is chosen
-                       * for the sectors */
+  bool back_to_front; /* whether the eye's rays meet the sheets from the last to the first. The lights' rays
+                       * always meet them from the first to the last */
+  bool of_sectors;    /* the sweep's lights are sectors of lights; the slicing direction is the one for
+                       * sectors */
   int light[FRAME_LIGHTS]; /* indices into frame lights */
   int light_count;
 } sweep_sheets;
 
-/* Brings the lights to frame space, and cuts lights that no sheets serve into sectors. Call it after the eye
- * is set up. Narrow spot lights and lights with a texture shine in one direction and are never cut. The array
- * of the frame's lights needs room for LIGHT_SECTORS sources for each light. */
+/* Brings the lights to frame space. A light for which no sheets suit the eye and all its rays is divided into
+ * sectors. Call it after the eye is set up. Narrow spot lights and lights with a texture shine in one
+ * direction and are never divided. The array of the frame's lights needs room for LIGHT_SECTORS sources for
+ * each light. */
 void hl_frame_set_up_lights(frame *frame, const framed_scene *framed);
 
-/* Groups lights into sweeps, and slices each sweep (section 3.1 and fig. 3). sweeps: room for light_count +
- * 1. Returns the number of sweeps, which is at least one. */
+/* Groups lights into sweeps, and chooses the sheets of each sweep (section 3.1 and fig. 3). sweeps: room for
+ * light_count + 1. Returns the number of sweeps, which is at least one. */
 int hl_frame_sweeps(const frame *frame, const hl_render_settings *settings, sweep_sheets *sweeps);
 
 /* Adds a sweep without lights, whose sheets are parallel to the picture and go front to back for the eye. */
 void hl_frame_add_eye_sweep(const frame *frame, sweep_sheets *sweeps, int *count);
 
-/* Refuses a sweep of too many sheets, or whose sheets some ray of the eye or a shadowing light does not
- * cross. */
+/* Refuses a sweep that has too many sheets. Also refuses a sweep whose sheets are not crossed by all rays of
+ * the eye and of the lights that cast shadows. */
 hl_status hl_frame_check_sweeps(const frame *frame, const sweep_sheets *sweeps, int count, hl_error *error);
 
 #endif

@@ -9,16 +9,18 @@
 
 typedef struct hl_byte_stream {
   void *data;
-  /* Takes bytes at the stream's place, and moves it. Returns false, with errno set, if it cannot. */
+  /* Reads or writes bytes at the stream's position, and moves the position. Returns false, with errno set, if
+   * it cannot. */
   bool (*write)(void *data, const char *bytes, size_t length);
-  /* Moves the stream's place, as fseek(). Returns the new place; -1 if it would lie before the beginning. */
+  /* Moves the stream's position, as fseek() does. Returns the new position; -1 if it would lie before the
+   * beginning. */
   int64_t (*seek)(void *data, int64_t offset, int whence);
 } hl_byte_stream;
 
 /* Opens a stream. The caller closes it with fclose(); null, with errno set, on failure. */
 FILE *hl_byte_stream_open(hl_byte_stream *stream);
 
-/* Makes sure that all bytes have come to the functions. False if that failed. */
+/* Makes sure that all bytes were given to the functions. False if that failed. */
 bool hl_byte_stream_finish(hl_byte_stream *stream, FILE *file);
 
 #endif

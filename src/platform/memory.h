@@ -1,4 +1,4 @@
-/* platform/memory.h - blocks of memory at round addresses. */
+/* platform/memory.h - blocks of memory at aligned addresses. */
 #ifndef HL_PLATFORM_MEMORY_H
 #define HL_PLATFORM_MEMORY_H
 

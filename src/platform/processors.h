@@ -4,11 +4,11 @@
 
 #include <stdbool.h>
 
-/* The number of processors that this process may use, at least 1: those of its affinity, limited by the quota
- * of its control groups, rounded up. */
+/* The number of processors that this process may use, at least 1: the processors of its affinity mask, but no
+ * more than the quota of its control groups, rounded up. */
 int hl_cpu_count(void);
 
-/* The processor time that the control groups of this process grant, as a number of processors. It is read
+/* The processor time that the control groups of this process allow, as a number of processors. It is read
  * from cpu.max (version 2) or cpu.cfs_quota_us (version 1). Infinite where the groups set no limit. root: a
  * folder put before /proc and /sys; "" except in tests. */
 double hl_cpu_quota(const char *root);

@@ -1,9 +1,9 @@
-/* platform/program.h - what a program does first. */
+/* platform/program.h - what a program does before everything else. */
 #ifndef HL_PLATFORM_PROGRAM_H
 #define HL_PLATFORM_PROGRAM_H
 
-/* Converts the arguments of main() to UTF-8, and lets the standard streams carry plain bytes, on systems
- * where they are not so already. */
+/* Converts the arguments of main() to UTF-8, and makes the standard streams carry plain bytes, on systems
+ * where this is not so already. */
 void hl_program_begin(int *count, char ***arguments);
 
 #endif

@@ -1,4 +1,4 @@
-/* process/messages.c - what a child wrote to standard error. */
+/* process/messages.c - reads what a child process wrote to standard error. */
 #include <string.h>
 
 #include "process.h"

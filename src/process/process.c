@@ -22,7 +22,7 @@ static void redirect(posix_spawn_file_actions_t *actions, const process *p, int 
   posix_spawn_file_actions_adddup2(actions, fileno(p->messages), STDERR_FILENO);
 }
 
-/* Starts the child. SIGPIPE, which this program may ignore, ends the child as usual. */
+/* Starts the child. SIGPIPE, which this program may ignore, ends the child as it does by default. */
 static int spawn(process *p, const char *const *words, const posix_spawn_file_actions_t *actions) {
   posix_spawnattr_t attributes;
   sigset_t usual;

@@ -1,4 +1,5 @@
-/* process/process.h - another program, run as a child: started without a shell, waited for, ended. */
+/* process/process.h - runs another program as a child process: starts it without a shell, waits for it, ends
+ * it. */
 #ifndef HL_PROCESS_PROCESS_H
 #define HL_PROCESS_PROCESS_H
 

@@ -8,14 +8,15 @@
 
 #include "process.h"
 
-/* Handles of a child that is being started: its input, output and messages, which alone it inherits. */
+/* The handles of a child that is being started: its input, its output and its messages. It inherits no other
+ * handles. */
 enum { STREAMS = 3 };
 
 /* ---- the command line ---- */
 
-/* Writes a word into the command line from `at` on, in quotes. The C library of the child splits the line
- * again: there two backslashes before a quote stand for one. Returns the position after the word. text: null
- * if the characters are only to be counted. */
+/* Writes a word into the command line from `at` on, in quotes. When the child's C library splits the line
+ * again, two backslashes before a quote stand for one. Returns the position after the word. text: null: the
+ * characters are only counted. */
 static size_t append_word(wchar_t *text, size_t at, const wchar_t *word) {
   size_t slashes = 0;
 #define PUT(c) (text != NULL ? (void)(text[at] = (c)) : (void)0, at++)
@@ -45,7 +46,7 @@ static wchar_t *wide_of(const char *text) {
   return wide;
 }
 
-/* The words as one text, which the caller frees; null without memory. */
+/* Joins the words to one text, which the caller frees; null without memory. */
 static wchar_t *command_line(const char *const *words) {
   wchar_t *line = NULL;
   size_t length = 0;
@@ -85,7 +86,7 @@ static int error_number(DWORD error) {
   return error == ERROR_ACCESS_DENIED ? EACCES : error == ERROR_NOT_ENOUGH_MEMORY ? ENOMEM : EIO;
 }
 
-/* The child gets the three handles and no others. */
+/* The child inherits the three handles and no others. */
 static int spawn(process *p, wchar_t *line, HANDLE streams[STREAMS]) {
   SIZE_T bytes = 0;
   InitializeProcThreadAttributeList(NULL, 1, 0, &bytes);
@@ -137,7 +138,8 @@ bool process_is_there(const char *name) {
 
 /* ---- a running child ---- */
 
-/* The system limits no file's length. The job ends with the child. */
+/* Limits the memory only, because the system has no limit for a file's length. The job exists as long as the
+ * child. */
 void process_limit(const process *p, uint64_t memory, uint64_t file) {
   (void)file;
   HANDLE job = p->child != 0 ? CreateJobObjectW(NULL, NULL) : NULL;

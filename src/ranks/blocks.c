@@ -9,28 +9,29 @@
 
 #include "core/memory.h"
 
-/* FETCHES: the most threads of a rank that fetch at the same time. REPLIES: the most answers of a rank that
- * may be under way. */
+/* FETCHES: the greatest number of threads of a rank that fetch at the same time. REPLIES: the greatest number
+ * of answers of a rank that may be under way. */
 enum { FETCHES = 8, REPLIES = 8 };
 
 /* A request for a part of another rank's block. */
 typedef struct block_request {
-  uint64_t id, from, tag; /* number of the array of blocks; the rank that asks; the tag of the reply */
-  hl_box box;             /* the wanted part, in indices of the asked rank's block */
+  uint64_t id, from, tag; /* id: number of the array of blocks; from: the rank that asks; tag: the tag of the
+                           * reply */
+  hl_box box;             /* the wanted part, in indices of the block of the rank that is asked */
 } block_request;
 
 /* An answer that is on its way. */
 typedef struct block_reply {
-  unsigned char *bytes; /* a part of the memory that the hl_blocks owns */
+  unsigned char *bytes; /* a part of memory that the hl_blocks owns */
   mpi_handle request;
-  bool sent; /* whether an answer was sent, which may not have arrived yet */
+  bool sent; /* whether an answer was sent with this reply; the answer may not have arrived yet */
 } block_reply;
 
 /* The state of one thread's fetch. */
 typedef struct block_fetch {
-  hl_box *parts;           /* [ranks]; the part that each rank is asked for */
+  hl_box *parts;           /* [ranks]; the part that this fetch asks from each rank */
   mpi_handle *pending;     /* [ranks]; MPI's requests */
-  bool *waited;            /* [ranks]; whether the request in `pending` is not done yet */
+  bool *waited;            /* [ranks]; whether the request in `pending` must still be waited for */
   unsigned char *received; /* [shape.most][element_bytes] */
   int number;
   bool busy; /* read and written with `lock` held */
@@ -47,7 +48,7 @@ struct hl_blocks {
   block_fetch fetch[FETCHES];
   pthread_mutex_t lock;
   pthread_cond_t freed;       /* signalled when a fetch ends */
-  block_reply reply[REPLIES]; /* used one after the other, by the thread that holds ranks->calling */
+  block_reply reply[REPLIES]; /* used in turn, by the thread that holds ranks->calling */
   int turn;
 };
 
@@ -115,7 +116,7 @@ static bool serve(hl_ranks *ranks) {
 
 static void *run_server(void *data) {
   hl_ranks *ranks = data;
-  prctl(PR_SET_TIMERSLACK, 1000UL, 0UL, 0UL, 0UL); /* without it, each pause may last 50 us longer */
+  prctl(PR_SET_TIMERSLACK, 1000UL, 0UL, 0UL, 0UL); /* without this, each pause may last 50 us longer */
   for (int asked = 0; !atomic_load(&ranks->server->stopped);) {
     asked = serve(ranks) ? 0 : asked + (asked < INT32_MAX);
     if (asked > 0) hl_ranks_pause(asked);
@@ -172,8 +173,8 @@ static hl_status fail_box(const hl_blocks *blocks, int rank, const char *what, h
                  (unsigned long long)box->begin[1], (unsigned long long)box->begin[2], what);
 }
 
-/* Checks that the boxes fill the array. Boxes fill it if they lie within it, do not overlap, and have as many
- * elements together as the array. */
+/* Checks that the boxes of all ranks fill the array: they lie within the array, they do not overlap, and
+ * together they have as many elements as the array. */
 static hl_status check_boxes(const hl_blocks *blocks, hl_error *error) {
   const size_t *n = blocks->shape.dimension;
   size_t elements = 0;
@@ -257,7 +258,7 @@ void hl_blocks_release(hl_blocks *blocks, bool together) {
 
 /* ---- fetching ---- */
 
-/* Takes a fetch for the calling thread; waits until one is free. */
+/* Takes one of the fetches for the calling thread; waits until one is free. */
 static block_fetch *begin_fetch(hl_blocks *blocks) {
   block_fetch *fetch = NULL;
   pthread_mutex_lock(&blocks->lock);
@@ -314,8 +315,8 @@ static uint64_t nanoseconds_now(void) {
   return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
 }
 
-/* The place in the caller's array where a part can be received directly. Null if the part's rows and slices
- * are not adjacent there. */
+/* The address in the caller's array at which a part can be received without a copy. Null if the part's rows
+ * and slices are not adjacent in the caller's array. */
 static unsigned char *place_of(const hl_blocks *blocks, const hl_box *box, const hl_box *part,
                                unsigned char *to, const size_t step[2]) {
   bool whole = part->count[0] * blocks->shape.element_bytes == step[0] && part->count[1] * step[0] == step[1];

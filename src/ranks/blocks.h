@@ -1,10 +1,10 @@
 /* ranks/blocks.h - an array of three dimensions shared by all ranks: every rank holds one block, and any rank
  * can fetch any part.
  *
- * A rank that needs a part sends requests to the ranks whose blocks overlap the part. A thread of each asked
- * rank answers with packed copies. Two-sided messages serve blocks of any layout in their owner's memory,
- * with ghosts and strides; one-sided messages would not do, as Open MPI 4.1 serves them over TCP only while
- * the owner calls MPI. */
+ * A rank that needs a part sends requests to the ranks whose blocks overlap the part. In each of these ranks
+ * a thread answers with packed copies. The messages are two-sided, because blocks may have any layout in
+ * their owner's memory, with ghosts and strides. One-sided messages would not work: over TCP, Open MPI 4.1
+ * answers them only while the owner calls MPI. */
 #ifndef HL_RANKS_BLOCKS_H
 #define HL_RANKS_BLOCKS_H
 
@@ -27,10 +27,11 @@ typedef struct hl_block_source {
 
 typedef struct hl_blocks hl_blocks;
 
-/* The properties of an array; all ranks must give the same ones. */
+/* The properties of an array. All ranks must give the same properties. */
 typedef struct hl_blocks_shape {
   size_t dimension[3];
-  size_t element_bytes, most; /* bytes of an element; the most elements that one call fetches */
+  size_t element_bytes, most; /* element_bytes: bytes of an element; most: the greatest number of elements
+                               * that one call fetches */
 } hl_blocks_shape;
 
 /* Makes an array of this rank's block and the other ranks' blocks. Collective: all ranks call it. The boxes
@@ -38,8 +39,8 @@ typedef struct hl_blocks_shape {
 hl_status hl_blocks_share(hl_ranks *ranks, const hl_blocks_shape *shape, const hl_block_source *source,
                           hl_blocks **blocks, hl_error *error);
 
-/* Releases the array. together: the call is collective, and waits until no rank needs this rank's block. Pass
- * false only where this rank has failed. blocks may be null. */
+/* Releases the array. together: the call is collective, and waits until no other rank needs this rank's
+ * block. Pass false only if this rank has failed. blocks may be null. */
 void hl_blocks_release(hl_blocks *blocks, bool together);
 
 /* Fetches the elements of a box into an array with the given distances between rows and between slices.

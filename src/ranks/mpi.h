@@ -2,8 +2,8 @@
  * are asked for.
  *
  * The two libraries differ in their handles and constants. Handles of Open MPI are addresses of objects;
- * handles of MPICH, and of libraries that share its binary interface (Intel MPI, MVAPICH), are numbers. The
- * calls do the same in both libraries, by the MPI standard (3.1). Therefore each library has a table of calls
+ * handles of MPICH, and of libraries that share its binary interface (Intel MPI, MVAPICH), are numbers. By
+ * the MPI standard (3.1), a call does the same in both libraries. Therefore each library has a table of calls
  * of its own (mpi_calls.h). A call returns 0 (MPI_SUCCESS) or the number of an error. */
 #ifndef HL_RANKS_MPI_H
 #define HL_RANKS_MPI_H
@@ -64,7 +64,7 @@ typedef struct mpi_calls {
   int (*gather_all)(const mpi *mpi, const void *from, int bytes, void *to, mpi_handle *request);
   /* Sums in place; all ranks get the sums. */
   int (*sum_counts)(const mpi *mpi, uint64_t *counts, int count, mpi_handle *request);
-  /* Sums in place; only rank 0 gets the sums. first: whether this is rank 0. */
+  /* Sums arrays over all ranks, in place. Only rank 0 gets the sums. first: whether this is rank 0. */
   int (*sum_floats)(const mpi *mpi, float *values, int count, bool first, mpi_handle *request);
 } mpi_calls;
 
@@ -73,15 +73,16 @@ struct mpi {
   const char *name; /* the library's name: "Open MPI" or "MPICH" */
   const mpi_calls *calls;
   void (*function[MPI_FUNCTIONS])(void);
-  mpi_handle world, byte, real, whole, sum; /* MPI_COMM_WORLD, MPI_BYTE, MPI_FLOAT, MPI_UINT64_T, MPI_SUM */
-  mpi_handle communicator;                  /* owned; a duplicate of the parent's; duplicate() makes it, and
-                                             * free() ends it */
+  mpi_handle world, byte, real, whole, sum; /* the handles of MPI_COMM_WORLD, MPI_BYTE, MPI_FLOAT,
+                                             * MPI_UINT64_T and MPI_SUM */
+  mpi_handle communicator;                  /* owned; a duplicate of the parent's communicator; duplicate()
+                                             * makes it, and free() frees it */
 };
 
 /* A library's properties that are known before it is loaded. */
 typedef struct mpi_library {
   const char *name;
-  const char *files[2]; /* file names that the system's loader knows; the second may be null */
+  const char *files[2]; /* file names of the library that the system's loader knows; the second may be null */
   const mpi_calls *calls;
   /* Sets the handles. library: the result of dlopen(). False if the file is no library of this kind. */
   bool (*set_handles)(void *library, mpi *mpi);

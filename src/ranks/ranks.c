@@ -49,8 +49,8 @@ void hl_ranks_gather(hl_ranks *ranks, const void *from, size_t bytes, void *to) 
   hl_ranks_wait(ranks, request);
 }
 
-/* Messages are shorter than 2^31 bytes: callers send some megabytes. Messages between two ranks keep their
- * order, so that one tag serves all. */
+/* Messages must be shorter than 2^31 bytes; callers send only some megabytes. Messages between two ranks keep
+ * their order, so one tag serves all of them. */
 void hl_ranks_send(hl_ranks *ranks, const void *from, size_t bytes, void *to, size_t most,
                    mpi_handle *pending) {
   const mpi_calls *calls = ranks->mpi.calls;
@@ -64,8 +64,7 @@ void hl_ranks_send(hl_ranks *ranks, const void *from, size_t bytes, void *to, si
   pthread_mutex_unlock(&ranks->calling);
 }
 
-/* Whether all requests are done. A request that is done becomes MPI_REQUEST_NULL, which may be tested
- * again. */
+/* Whether all requests are done. A request that is done becomes MPI_REQUEST_NULL, and may be tested again. */
 static bool all_done(hl_ranks *ranks, mpi_handle *pending) {
   bool all = true;
   pthread_mutex_lock(&ranks->calling);
@@ -133,8 +132,8 @@ static hl_status start(hl_ranks *ranks, bool alone, hl_error *error) {
   if (!running && !alone)
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "hl_ranks_join: MPI is not started: call MPI_Init_thread()");
   if (running)
-    needed = MPI_MULTIPLE; /* the caller, who started MPI, may call it at the same time as a thread of this
-                            * library that answers requests */
+    needed = MPI_MULTIPLE; /* the caller has started MPI; it may call MPI while a thread of this library
+                            * answers requests */
   int result = running ? hl_mpi_query_thread(mpi, &given) : hl_mpi_init_thread(mpi, needed, &given);
   if (result != 0) return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s does not start", mpi->name);
   ranks->started = !running;

@@ -1,9 +1,9 @@
 /* ranks/ranks.h - the inside of hl_ranks: MPI's calls, one at a time, and the collective operations.
  *
  * Threads take turns in calling MPI (`calling`), and no call waits within MPI. A rank that waits for other
- * ranks (for the end of a collective, for voxels) tests its requests again and again. Between two tests other
- * threads make calls, so that the rank answers others while it waits, and no two ranks block each other.
- * MPI_THREAD_SERIALIZED suffices if nobody else in the process calls MPI. */
+ * ranks (for the end of a collective operation, or for voxels) tests its requests again and again. Between
+ * two tests, other threads of the rank can call MPI. So the rank answers other ranks while it waits, and no
+ * two ranks block each other. MPI_THREAD_SERIALIZED suffices if nobody else in the process calls MPI. */
 #ifndef HL_RANKS_RANKS_H
 #define HL_RANKS_RANKS_H
 
@@ -19,8 +19,8 @@ struct hl_ranks {
   hl_context *context;
   mpi mpi;
   int rank, size;
-  bool started;                          /* whether hl_ranks_join() started MPI, which must then be ended
-                                          * here, too */
+  bool started;                          /* whether hl_ranks_join() started MPI; if so, this library must end
+                                          * it, too */
   pthread_mutex_t calling;               /* held during each call of MPI */
   struct hl_block_server *server;        /* owned (blocks.h); null if no blocks are shared */
   atomic_uint_least64_t bytes, requests; /* received from other ranks */
@@ -41,7 +41,8 @@ enum { TAG_REQUEST = 1, TAG_POST = 2, TAG_REPLY = 3 };
 
 void hl_ranks_barrier(hl_ranks *ranks);
 
-/* Gathers `bytes` bytes of every rank on all ranks. from: this rank's bytes. to: [size][bytes]. */
+/* Gathers bytes from every rank on all ranks. from: this rank's bytes; each rank sends the same number of
+ * bytes. to: [size][bytes]. */
 void hl_ranks_gather(hl_ranks *ranks, const void *from, size_t bytes, void *to);
 
 /* Begins to send this rank's bytes to all other ranks, and to receive theirs. Ranks may send different
@@ -61,12 +62,12 @@ void hl_ranks_tell(hl_ranks *ranks, void *bytes, size_t count, int root);
 /* Adds up the counts of all ranks; all ranks get the sums. */
 void hl_ranks_sum_counts(hl_ranks *ranks, uint64_t *counts, size_t count);
 
-/* Completes an array of which each rank has computed a part. The parts are those of hl_ranks_part().
- * Afterwards all ranks have all elements. element_bytes: bytes of one element. */
+/* Completes an array of which each rank has computed its part (hl_ranks_part()): afterwards all ranks have
+ * all elements. element_bytes: bytes of one element. */
 void hl_ranks_complete(hl_ranks *ranks, void *elements, size_t count, size_t element_bytes);
 
-/* The index of the first of `count` elements that belongs to a rank; the rank's part ends where the next
- * rank's part begins. `count` for the number after the last rank's. */
+/* The first element of a rank's part, when `count` elements are divided among the ranks. The part ends where
+ * the next rank's part begins. For rank number `size`, the result is `count`. */
 static inline size_t hl_ranks_part(const hl_ranks *ranks, size_t count, int rank) {
   return (size_t)((unsigned __int128)count * (unsigned)rank / (unsigned)ranks->size);
 }

@@ -1,5 +1,5 @@
-/* reference/bricks.c - a field in bricks (bricks/bricks.h) at a point: the sum of the 64 coefficients of the
- * brick's own level around it. */
+/* reference/bricks.c - evaluates a field in bricks (bricks/bricks.h) at a point. The value is a weighted sum
+ * of the 64 coefficients around the point, at the level of the brick that contains the point. */
 #include "bricks/bricks.h"
 
 #include "core/memory.h"
@@ -13,8 +13,8 @@ typedef struct brick_place {
   double weight[3][4], slope[3][4];
 } brick_place;
 
-/* Finds the brick at a point, and the weights there. point: in the index space of the voxels that stand for
- * the field. */
+/* Finds the brick at a point, and the weights of the coefficients there. point: in the index space of the
+ * volume that stands for the field. */
 static void find_place(const reference_volume *volume, vec3 point, brick_place *found) {
   const hl_bricks *bricks = volume->grid->bricks;
   const size_t side = (size_t)1 << bricks->shift;
@@ -36,8 +36,8 @@ static void find_place(const reference_volume *volume, vec3 point, brick_place *
   found->first = bricks->pool + (size_t)found->entry->slot * found->slice * found->row;
   const size_t stride[3] = {1, found->row, found->slice};
   for (int axis = 0; axis < 3; axis++) {
-    /* the brick begins at a multiple of its length; its first coefficient lies one spacing before this
-     * multiple */
+    /* A brick begins at a multiple of its length. Its first coefficient lies one spacing before this
+     * place. */
     double begin = floor((double)block[axis] / spacing) * (double)side;
     double at = x[axis] / spacing - begin, cell = fmin(floor(at), (double)side - 1);
     found->first += (size_t)cell * stride[axis];

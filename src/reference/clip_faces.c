@@ -1,10 +1,10 @@
-/* reference/clip_faces.c - the faces of a volume's box that cut its matter, at the grid's border or at a
- * clip. */
+/* reference/clip_faces.c - the faces of a volume's box that cut matter: at the grid's border, or at the clip
+ * box. */
 #include <math.h>
 
 #include "reference/reference.h"
 
-static const double TOUCHING = 1e-3; /* distance in voxels up to which faces touch */
+static const double TOUCHING = 1e-3; /* greatest distance, in voxels, of two faces that touch */
 
 /* The bounds of another volume's box in the index space of this volume. */
 static void bounds_of(const hl_scene_volume *other, affine3 world_to_index, double low[3], double high[3]) {
@@ -19,8 +19,7 @@ static void bounds_of(const hl_scene_volume *other, affine3 world_to_index, doub
   }
 }
 
-/* Removes those of the volume's faces that touch the other volume's box, because matter goes on beyond them.
- */
+/* Removes the volume's faces that touch the other volume's box, because matter goes on there. */
 static void join(const hl_scene_volume *other, reference_volume *volume) {
   double low[3], high[3];
   bounds_of(other, volume->world_to_index, low, high);

@@ -1,18 +1,18 @@
 /* reference/coefficients.c - the coefficients that the interpolating kernel sums in place of voxels. They
- * come from Unser's two recursive filters along each axis, in double precision. (The sheets solve the same
+ * come from Unser's two recursive filters along each axis, in double precision. (The renderer solves the same
  * equations by elimination.) */
 #include "core/memory.h"
 #include "reference/reference.h"
 
 enum {
-  TERMS = 40 /* number of terms of a sum; each term is 0.268 times the one before, so that the rest is
-              * 1e-22 */
+  TERMS = 40 /* number of terms of a sum. Each term is 0.268 times the one before, so that all terms after
+              * these add up to 1e-22 */
 };
 
 /* Filters a line of voxels. Unser, Aldroubi and Eden 1993: with the pole z = sqrt(3) - 2, the forward filter
- * is p[k] = s[k] + z p[k-1], the backward filter q[k] = z (q[k+1] - p[k]), and the gain is 6. Values are
- * mirrored at the middle between the last voxel and its repetition: p begins with the sum of z^k s over the
- * mirrored line, and q with z / (z - 1) p (derived). */
+ * is p[k] = s[k] + z p[k-1], the backward filter q[k] = z (q[k+1] - p[k]), and the gain is 6. The line is
+ * mirrored half a voxel beyond its last voxel, so that this voxel is repeated. Derived: p begins with the sum
+ * of z^k s over the mirrored line, and q with z / (z - 1) p. */
 static void filter_line(double *line, size_t count, size_t stride) {
   const double z = sqrt(3) - 2;
   if (count < 2) return;

@@ -1,12 +1,14 @@
 /* reference/cuts.c - whether a point of a volume or a mesh remains after the cuts. A cut is given in the
- * world of the volume's file, or in the scene's world. A point is brought to the cut's world for the test.
+ * world of the volume's file, or in the scene's world. For the test, the point is converted to the cut's
+ * world.
  *
- * A point's height over a cut's face, in that world's units, is above 0 outside of the cut's shape. */
+ * A point's height over a cut's face is above 0 outside the cut's shape. It is in units of the cut's
+ * world. */
 #include "reference/reference.h"
 
 typedef struct height {
   double over; /* height over the face */
-  vec3 rise;   /* the height's gradient, a unit vector of the file's world */
+  vec3 rise;   /* the gradient of the height, a unit vector of the cut's world */
 } height;
 
 /* The map from index space to the world in whose coordinates a cut is given. */
@@ -54,7 +56,7 @@ bool hl_reference_mesh_left(const hl_scene_description *scene, const hl_scene_me
   return true;
 }
 
-/* Returns `crossing` where it lies between `after` and `next`, else `next`. */
+/* Returns `crossing` if it lies between `after` and `next`, else `next`. */
 static double sooner(double crossing, double after, double next) {
   return crossing > after && crossing < next ? crossing : next;
 }
@@ -91,8 +93,8 @@ double hl_reference_next_face(const reference_volume *volume, vec3 origin, vec3 
   return next;
 }
 
-/* The normal of a cut's face, in the world. Of all cuts, the one with the nearest face to the point counts.
- * Where M is the volume's placement, a height h rises by |(M^-1)^T grad h| per world unit. */
+/* The normal of a cut's face, in the world. If there are several cuts, it is the cut whose face is nearest to
+ * the point. If M is the volume's placement, a height h rises by |(M^-1)^T grad h| per world unit. */
 vec3 hl_reference_cut_normal(const reference_volume *volume, vec3 point) {
   const hl_scene_volume *described = volume->described;
   vec3 face = {0, 0, 0};
@@ -108,9 +110,9 @@ vec3 hl_reference_cut_normal(const reference_volume *volume, vec3 point) {
   return face;
 }
 
-/* The distance along a ray from a point that cuts leave to the place where the ray meets removed matter.
- * (hl_reference_next_face() treats the faces of a box as endless planes, so the ray may meet some without
- * meeting removed matter.) direction: a unit vector of the world, by index coordinates. */
+/* The distance along a ray, from a point that the cuts leave, to the place where the ray meets removed
+ * matter. hl_reference_next_face() treats the faces of a box as endless planes, and so may find places before
+ * the one where removed matter begins. direction: in index coordinates, but of unit length in the world. */
 static double way_to_removed(const reference_volume *volume, vec3 point, vec3 direction) {
   const double beyond = 1e-4 * volume->smallest_edge;
   double way = 0;
@@ -123,12 +125,12 @@ static double way_to_removed(const reference_volume *volume, vec3 point, vec3 di
 typedef struct left_face {
   vec3 outward;  /* world; a unit vector */
   vec3 crossing; /* index space */
-  double skin;   /* how much a point belongs to the face: 1 up to a voxel behind the face, 0 from two
-                  * voxels behind it on */
+  double skin;   /* how much matter at the point belongs to the face: 1 up to a depth of one voxel, falling to
+                  * 0 at a depth of two */
 } left_face;
 
 static left_face find_left_face(const reference_volume *volume, vec3 point, vec3 direction, bool uncut) {
-  static const double FACE_VOXELS = 2; /* points farther behind a face are lit as usual */
+  static const double FACE_VOXELS = 2; /* points deeper behind a face are lit as without the face */
   const vec3 along = mat3_apply(volume->world_to_index.linear, direction);
   left_face face = {.skin = 0};
   double way = hl_reference_leaves_box(volume, point, along, &face.outward);
@@ -149,8 +151,8 @@ double hl_reference_lit_face(const reference_volume *volume, vec3 point, vec3 to
   return find_left_face(volume, point, to_light, uncut).skin;
 }
 
-/* A point is seen through a face if the ray from it to the eye crosses the face before any other, and matter
- * is visible there. */
+/* A point is seen through the face that the ray from the point to the eye crosses first, if matter is visible
+ * at this face. */
 double hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *normal,
                              double *surface) {
   const hl_scene_volume *described = volume->described;

@@ -1,9 +1,9 @@
 /* reference/field.c - reconstruction of one volume at one point of its index space, and the bricks in which
  * it is transparent.
  *
- * f(p) is the sum over the 4 x 4 x 4 voxels around p of a tensor-product kernel, the voxels at the grid's
- * borders repeated outwards. Used by march.c's walkers at every sample. The three kernels are written out
- * here on purpose: the oracle shares no code with the renderer. */
+ * f(p) is the sum over the 4 x 4 x 4 voxels around p, weighted by a tensor-product kernel. Beyond the grid,
+ * the voxels at its borders are repeated. Every sample of a march (march.c) is such a sum. The three kernels
+ * are written out here on purpose, because the reference shares no code with the renderer. */
 #include <string.h>
 
 #include "bricks/bricks.h"
@@ -15,7 +15,7 @@
 typedef struct taps {
   size_t voxel[3][4];
   double weight[3][4];
-  double slope[3][4]; /* derivatives of the weights by the point's coordinate */
+  double slope[3][4]; /* derivatives of the weights with respect to the point's coordinate */
 } taps;
 
 static inline double stored_at(const reference_volume *volume, hl_storage storage, const void *row,
@@ -36,7 +36,7 @@ double hl_reference_stored_value(const reference_volume *volume, const size_t vo
   return stored_at(volume, volume->grid->storage, row, voxel[0]);
 }
 
-/* The cubic B-spline at distances 1+t, t, 1-t, 2-t, and its derivative by t. */
+/* The cubic B-spline at distances 1+t, t, 1-t, 2-t, and its derivative with respect to t. */
 static void bspline(double t, double weight[4]) {
   double u = 1 - t;
   weight[0] = u * u * u * (1.0 / 6);
@@ -117,8 +117,8 @@ static inline void find_taps(const reference_volume *volume, vec3 point, bool sl
   }
 }
 
-/* The sum over 64 voxels with one weight per tap and axis. storage: each call gives a constant, so that the
- * compiler makes a loop for each storage. */
+/* The weighted sum over 64 voxels; each tap along each axis has one weight. storage: a constant in each call,
+ * so that the compiler makes a loop for each storage. */
 static inline double weigh_stored(const reference_volume *volume, hl_storage storage,
                                   const size_t voxel[3][4], const double *x, const double *y,
                                   const double *z) {
@@ -157,7 +157,7 @@ static double weigh(const reference_volume *volume, const taps *at, const double
   }
 }
 
-/* Limits a value to the volume's range, beyond which the interpolating kernel overshoots. */
+/* Limits a value to the volume's range, because the interpolating kernel overshoots. */
 static double in_range(const reference_volume *volume, double value) {
   return volume->coefficients == NULL ? value : fmin(fmax(value, volume->least), volume->greatest);
 }
@@ -206,22 +206,22 @@ enum { BRICK_CELLS = 4, FARTHEST = 255 };
 
 static size_t least(size_t a, size_t b) { return a < b ? a : b; }
 
-/* Finds the voxels along an axis of n voxels on which samples in a brick (number b) depend: floor(p) goes
- * from 4b-1 to 4b+2, with taps from one voxel before to two after. */
+/* Finds the voxels, along an axis of n voxels, on which the samples in brick number `brick` depend. There,
+ * floor(p) goes from 4 brick - 1 to 4 brick + 2, and taps from one voxel before floor(p) to two after it. */
 static void brick_voxels(size_t brick, size_t n, size_t *first, size_t *last) {
   size_t corner = BRICK_CELLS * brick;
   *first = least(corner < 2 ? 0 : corner - 2, n - 1);
   *last = least(corner + BRICK_CELLS, n - 1);
 }
 
-/* Whether the value of some isosurface lies from low to high. */
+/* Whether the value of any isosurface lies from low to high. */
 static bool holds_iso(const hl_scene_volume *volume, double low, double high) {
   for (size_t i = 0; i < volume->iso_count; i++)
     if (volume->iso[i].value >= low && volume->iso[i].value <= high) return true;
   return false;
 }
 
-/* The range of the stored values on which a brick depends. */
+/* The range of the stored values that samples in a brick depend on. */
 static void range_of_brick(const reference_volume *volume, const size_t brick[3], double range[2]) {
   size_t first[3], last[3], voxel[3];
   if (volume->ranges != NULL) {
@@ -267,9 +267,10 @@ static void mark_visible(void *data, size_t k, int worker) {
     for (size_t i = 0; i < volume->bricks[0]; i++) *out++ = brick_visible(volume, i, j, k) ? 0 : FARTHEST;
 }
 
-/* Lowers brick (i, j, k) to one more than the least of its neighbours on one side: the neighbours that come
- * before it in memory order (side -1) or after it (+1). Two such sweeps, one each way, give the exact
- * chessboard distance (Rosenfeld and Pfaltz, "Distance functions on digital pictures", 1968). */
+/* Lowers the distance of brick (i, j, k) to one more than the least distance of its neighbours on one side:
+ * those that come before it in memory (side -1) or after it (+1). Two sweeps over all bricks, one in each
+ * direction, give the exact chessboard distance (Rosenfeld and Pfaltz, "Distance functions on digital
+ * pictures", 1968). */
 static void relax_brick(const reference_volume *volume, ptrdiff_t i, ptrdiff_t j, ptrdiff_t k, int side) {
   const ptrdiff_t n[3] = {(ptrdiff_t)volume->bricks[0], (ptrdiff_t)volume->bricks[1],
                           (ptrdiff_t)volume->bricks[2]};
@@ -300,7 +301,7 @@ static hl_status create_bricks(hl_context *context, reference_volume *volume, hl
                                hl_error *error) {
   size_t count = 1;
   for (int axis = 0; axis < 3; axis++) {
-    /* bricks hold cells 0 .. n, which stand for floor(p) from -1 to n-1 */
+    /* The cells 0 .. n of the bricks stand for floor(p) from -1 to n - 1. */
     volume->bricks[axis] = volume->grid->dimension[axis] / BRICK_CELLS + 1;
     count *= volume->bricks[axis];
   }
@@ -339,8 +340,8 @@ static double smallest_edge(const hl_scene_volume *volume) {
   return least;
 }
 
-/* The least gradient of a surface: one thousandth of the transfer function's span of values per voxel
- * edge. */
+/* The least gradient of a surface: per voxel edge, a thousandth of the range of values over which the
+ * transfer function changes. */
 static double surface_gradient(const hl_transfer_function *function, double edge) {
   double span = 0;
   if (function->opacity_count > 0)

@@ -1,5 +1,6 @@
-/* reference/isosurfaces.c - where rays meet isosurfaces. A ray meets the surface at roots of the kernel's
- * field along the ray, and at the faces of the volume's box and cuts where they end the surface's inside. */
+/* reference/isosurfaces.c - where rays meet isosurfaces. A ray meets an isosurface where the field along the
+ * ray has the surface's value. It also meets the surface at faces of the volume's box and cuts, where such a
+ * face cuts through the inside of the surface. */
 #include "reference/reference.h"
 
 /* A stretch of a ray at whose ends the field lies on different sides of an isosurface's value. */
@@ -40,7 +41,7 @@ static void find_roots(const crossing *part, double from, double to, double a, d
   }
 }
 
-/* Walks along the ray in steps, and jumps over bricks that cannot hold the values. */
+/* Walks along the ray in steps, and skips bricks that cannot hold the isosurfaces' values. */
 static void meet_volume(const reference *all, const crossing *part, reference_hit *hit) {
   double at = part->enter, before = value_at(part, at);
   while (at < part->leave && at < hit->distance) {
@@ -53,7 +54,7 @@ static void meet_volume(const reference *all, const crossing *part, reference_hi
   }
 }
 
-/* Whether a point of the ray lies in the box, and no cut removes it. */
+/* Whether a point of the ray lies in the box and is not removed by a cut. */
 static bool is_there(const crossing *part, double distance) {
   const vec3 here = vec3_add(part->origin, vec3_scale(part->direction, distance));
   const double at[3] = {here.x, here.y, here.z};
@@ -62,8 +63,8 @@ static bool is_there(const crossing *part, double distance) {
   return hl_reference_left(part->volume, here);
 }
 
-/* The outward normal, in the world, of the box's face nearest to a point of the face; 0 where another volume
- * goes on. */
+/* The outward normal, in the world, of the face of the box that a point lies on; 0 if another volume goes on
+ * there. */
 static vec3 normal_of_box(const reference_volume *volume, vec3 point) {
   const double at[3] = {point.x, point.y, point.z};
   double least = INFINITY;
@@ -80,8 +81,8 @@ static vec3 normal_of_box(const reference_volume *volume, vec3 point) {
   return normal;
 }
 
-/* Notes a hit where a ray crosses a face of the box or of a cut, if the face closes an isosurface: on one
- * side matter within the surface is left, on the other it is removed. */
+/* Notes a hit where a ray crosses a face of the box or of a cut, if the face closes an isosurface: if matter
+ * inside the surface is left on one side of the face and removed on the other. */
 static void meet_face(const reference *all, const crossing *part, double at, vec3 normal,
                       reference_hit *hit) {
   const hl_scene_volume *described = part->volume->described;

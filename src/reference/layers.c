@@ -1,6 +1,7 @@
 /* reference/layers.c - the contributions to samples and rays: the light of each source, depth and normals.
  *
- * The picture is the sum of all contributions. Layers are the contributions, or means weighted by opacity. */
+ * The picture is the sum of all contributions. A layer is one of the contributions, or a mean weighted by
+ * opacity. */
 #include "reference/reference.h"
 
 void hl_reference_parts_clear(reference_parts *parts, size_t light_count) {

@@ -1,9 +1,9 @@
 /* reference/lights.c - points on the lights, and how much of their light reaches a sample.
  *
- * Surfaces are shaded as if all of a light came from its centre. Its extent matters to shadows, to light
- * textures and to media that scatter unevenly: transmittance, texture and phase function are means over a
- * fixed set of points on the light, the same for every sample, so that the picture has no noise. A sphere is
- * the disk of its radius that faces the sample. */
+ * Surfaces are shaded as if all of a light came from its centre. The light's extent matters to shadows, to
+ * light textures and to media that scatter unevenly. For these, transmittance, texture and phase function are
+ * means over a fixed set of points on the light. The set is the same for every sample, so that the picture
+ * has no noise. A sphere counts as the disk of the same radius that faces the sample. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -16,8 +16,8 @@
  * Images are bilinear between the middles of their pixels, and constant from the outermost middles to the
  * borders. */
 
-/* Finds where the ray meets the screen: s along right and t along up, both from -1 to 1 on the screen. False
- * where the ray does not cross the screen's plane. */
+/* Finds where a ray crosses the texture's screen: s along right and t along up, each from -1 to 1 on the
+ * screen. False if the ray does not cross the screen's plane. */
 static bool meet_screen(const hl_light_texture *texture, bool far, vec3 light, vec3 point, double *s,
                         double *t) {
   vec3 right = vec3_of(texture->screen_right), up = vec3_of(texture->screen_up),
@@ -32,8 +32,8 @@ static bool meet_screen(const hl_light_texture *texture, bool far, vec3 light, v
   return fabs(*s) <= 1 && fabs(*t) <= 1;
 }
 
-/* The two pixels around a position along one axis, and the fraction of the way from the first to the
- * second. */
+/* The two pixels nearest to a position along one axis, and the position between them: 0 at the first, 1 at
+ * the second. */
 static double neighbours(double place, int count, size_t pixel[2]) {
   double at = fmin(fmax(place - 0.5, 0), count - 1);
   pixel[0] = (size_t)at;
@@ -72,8 +72,8 @@ static void emission_color(const hl_light_emission *emission, const emission_pla
 
 /* ---- points on the lights ---- */
 
-/* The fractional part of 1/2 + i step. With the golden section as step, the results are spread evenly over 0
- * to 1, however many there are. */
+/* The fractional part of 1/2 + i step. If the step is the golden section, the first n results are spread
+ * evenly over 0 to 1 for any n. */
 static double spread(size_t i, double step) {
   double x = 0.5 + (double)i * step;
   return x - floor(x);
@@ -104,8 +104,8 @@ static void fill_rect(const hl_light *light, vec3 centre, size_t n, vec3 *points
   }
 }
 
-/* Whether a point of the polygon's plane is inside the polygon: a ray from the point along u then crosses an
- * odd number of edges. */
+/* Whether a point in the polygon's plane is inside the polygon: whether the ray from the point along u
+ * crosses an odd number of edges. */
 static bool inside_polygon(const hl_light *light, vec3 point, vec3 u_axis, vec3 v_axis) {
   bool inside = false;
   for (size_t i = 0; i < light->vertex_count; i++) {
@@ -120,8 +120,8 @@ static bool inside_polygon(const hl_light *light, vec3 point, vec3 u_axis, vec3 
 }
 
 /* Fills the points of a polygon. Roberts's sequence (powers of the plastic number) spreads points evenly over
- * a rectangle around the polygon; the points inside the polygon are kept. The rectangle has a side along the
- * polygon's longest edge. */
+ * a rectangle around the polygon, one of whose sides is along the polygon's longest edge. The points inside
+ * the polygon are kept. */
 static void fill_polygon(const hl_light *light, size_t n, vec3 *points) {
   const double plastic = 1.32471795724474602596;
   polygon_shape shape = hl_polygon_shape(light->vertices, light->vertex_count);
@@ -156,7 +156,7 @@ static void fill_points(reference_light *light) {
   size_t n = light->point_count;
   if (n == 1) {
     light->points[0] = light->directional ? light->towards : light->centre;
-    /* The light is a flat disk at unit distance, each of whose points stands for a direction. */
+    /* The directions are those to points of a disk at unit distance. */
   } else if (light->directional) {
     double radius = tan(described->angular_diameter_deg * HL_PI / 360);
     for (size_t i = 0; i < n; i++)
@@ -194,7 +194,7 @@ static vec3 offset_of(const reference_light *light, vec3 light_point) {
 
 enum { MEAN_POINTS = 1 << 14 };
 
-/* Finds the image's mean over the light. A light that counts as a point shines in this colour. */
+/* Finds the mean of the image over the light's points. A light that counts as a point has this colour. */
 static hl_status find_mean(hl_context *context, reference_light *light, hl_error *error) {
   reference_light dense = *light;
   vec3 facing = light->directional ? vec3_scale(light->towards, -1) : (vec3){0, 0, 1};
@@ -217,8 +217,8 @@ static hl_status find_mean(hl_context *context, reference_light *light, hl_error
   return HL_OK;
 }
 
-/* Fills the points over which the phase function is averaged. A sphere's points are computed for every
- * sample. */
+/* Fills the points over which the phase function is averaged. The points of a sphere are computed later, for
+ * every sample. */
 static hl_status fill_extent(hl_context *context, reference_light *light, hl_error *error) {
   if (light->directional || !has_extent(light->described)) return HL_OK;
   reference_light dense = *light;
@@ -260,9 +260,10 @@ hl_status hl_reference_light_create(const reference *all, const hl_light *light,
 /* ---- the phase function ---- */
 
 /* The mean of the phase function p over a cap of directions. c: the cosine of the cap's half angle. cosine:
- * of the angle from the cap's middle to the direction of light that goes straight on. The mean is the sum
- * over n of (2 n + 1) g^n k_n P_n(cosine), where k_n, the mean of P_n over the cap, is (P_(n-1)(c) -
- * P_(n+1)(c)) / ((2 n + 1) (1 - c)) (derived: by the addition theorem only the cap's own harmonics stay). */
+ * the cosine of the angle between the cap's middle and the direction from which light reaches the eye without
+ * being turned. The mean is the sum over n of (2 n + 1) g^n k_n P_n(cosine), where k_n, the mean of P_n over
+ * the cap, is (P_(n-1)(c) - P_(n+1)(c)) / ((2 n + 1) (1 - c)) (derived: by the addition theorem, only the
+ * harmonics that are symmetric about the cap's middle remain). */
 static double phase_of_cap(double g, double c, double cosine) {
   double before = 1, here = cosine, cap_before = 1, cap_here = c, power = 1, sum = 1;
   for (int n = 1; fabs(power) > 1e-9; n++) {
@@ -319,10 +320,10 @@ void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival
   for (int c = 0; c < 3; c++) arrived->incoming[c] = light->color[c] * factor;
 }
 
-/* Finds the colour that a light's images give to the ray from a point of the light to `point`. The images are
- * the texture that the light projects, and the emission image on its surface. Returns false if the colour is
- * black. light_point: of a directional light a direction. plane: the plane of the emission image; null if
- * each point of the light has the image's mean. */
+/* Finds the colour of the ray from a point of the light to `point`, as the light's images give it: the
+ * texture that the light projects, or the emission image on its surface. Returns false if the colour is
+ * black. light_point: for a directional light, a direction. plane: the plane of the emission image; null:
+ * each point of the light has the image's mean colour. */
 static bool find_pattern(const reference_light *light, const emission_plane *plane, vec3 light_point,
                          vec3 point, double pattern[3]) {
   pattern[0] = pattern[1] = pattern[2] = 1;
@@ -332,7 +333,7 @@ static bool find_pattern(const reference_light *light, const emission_plane *pla
   return pattern[0] > 0 || pattern[1] > 0 || pattern[2] > 0;
 }
 
-/* Finds the light that comes from a point of the light to the receiver `at`. */
+/* Finds the fraction of light that passes from a point of the light to the receiver `at`. */
 static void find_passing(const reference *all, const reference_light *light, vec3 light_point,
                          const reference_receiver *at, crossing *scratch, double passing[3]) {
   vec3 offset = vec3_subtract(light_point, at->point);

@@ -1,9 +1,9 @@
 /* reference/march.c - a ray through the boxes of several volumes.
  *
- * The distances at which the ray enters and leaves boxes, and crosses the faces of cuts, cut it into
- * stretches, each of which crosses the same volumes from end to end. A stretch is walked in equal steps, no
- * longer than the requested step, and each step is sampled at its middle. A homogeneous box is therefore
- * integrated exactly, wherever its faces lie. */
+ * The ray is divided into stretches at the distances at which it enters and leaves boxes, and crosses the
+ * faces of cuts. On the whole length of a stretch, the ray is in the same volumes. A stretch is walked in
+ * equal steps, no longer than the requested step, and each step is sampled at its middle. A homogeneous box
+ * is therefore integrated exactly, wherever its faces lie. */
 #include "reference/reference.h"
 
 /* The ray's entry to and exit from the index-space box, by the slab method. */
@@ -50,7 +50,7 @@ static double next_face(const crossing *part, double after) {
   return part->uncut ? INFINITY : hl_reference_next_face(part->volume, part->origin, part->direction, after);
 }
 
-/* Ends the activity of volumes that cuts remove in this stretch. Returns whether any volume stays active. */
+/* Makes the volumes inactive that cuts remove in this stretch. Returns whether any volume stays active. */
 static bool leave_uncut(march *walk) {
   double middle = (walk->start + walk->end) / 2;
   bool inside = false;
@@ -106,8 +106,8 @@ bool hl_reference_march_next(march *walk) {
     double clear = hl_reference_march_place(walk, walk->start + (walk->next + 0.5) * walk->length);
     walk->next++;
     if (clear <= 0) return true;
-    /* jumps over the samples that lie strictly inside the empty stretch; the margin keeps rounding from
-     * jumping over one sample too many */
+    /* Skips the samples that lie strictly inside the empty stretch. The margin prevents rounding from
+     * skipping one sample too many. */
     walk->next += floor(fmax(clear / walk->length - 1e-6, 0));
   }
 }

@@ -1,6 +1,6 @@
-/* reference/mask.c - a volume's mask at a point of the volume's index space: linear between the voxels of its
- * lattice (label/mask.h), which has square roots of colours. Outside the lattice the factor of the rest
- * holds. */
+/* reference/mask.c - a volume's mask at a point of the volume's index space: it is interpolated linearly
+ * between the voxels of its lattice (label/mask.h), which stores square roots of colours. Outside the
+ * lattice, the factor is that of the rest. */
 #include "reference/reference.h"
 
 /* The eight voxels around a point, and their weights. */
@@ -9,8 +9,8 @@ typedef struct mask_voxels {
   double share[8];
 } mask_voxels;
 
-/* Finds the voxels around p, which is in the lattice's index space. False where p lies outside the lattice;
- * the found voxels then lie at the lattice's border. */
+/* Finds the voxels around p, a point of the lattice's index space. False if p lies outside the lattice; the
+ * voxels are then those at the nearest place of its border. */
 static bool find_voxels_at(const hl_volume *mask, const double p[3], mask_voxels *found) {
   bool inside = true;
   for (int corner = 0; corner < 8; corner++) {

@@ -1,8 +1,8 @@
 /* reference/maximum.c - the greatest value along a ray (maximum projection).
  *
- * Each volume's field is sampled at the march's steps and at the faces of its box. Where the transfer
- * function shows the value at only one of two neighbouring samples, the border between shown and hidden is
- * searched for; so is the peak around the greatest sample. */
+ * Each volume's field is sampled at the march's steps and at the faces of its box. If the transfer function
+ * shows the value at only one of two neighbouring samples, the border between shown and hidden values is
+ * searched for. The peak around the greatest sample is searched for, too. */
 #include "reference/reference.h"
 
 enum { HALVINGS = 40 };
@@ -18,8 +18,8 @@ static double value_at(const crossing *part, double at) {
   return hl_reference_value(part->volume, vec3_add(part->origin, vec3_scale(part->direction, at)));
 }
 
-/* The least opacity that counts. Voxels and their weighted sums are rounded, which at the foot of a ramp
- * gives a tiny opacity. */
+/* The least opacity of a value that is shown. At the foot of a ramp, the rounding of voxels and of their
+ * weighted sums can give a tiny opacity. */
 static const double LEAST_OPACITY = 1e-7;
 
 static bool is_shown(const crossing *part, double value) {
@@ -38,8 +38,7 @@ static bool ask(search *found, double at) {
   return true;
 }
 
-/* Searches between a shown and a hidden distance for the last shown distance, as close to the border as
- * doubles can tell apart. */
+/* Searches between a shown and a hidden distance for the last shown distance, to the precision of doubles. */
 static void ask_at_end(search *found, double shown, double other) {
   for (int i = 0; i < HALVINGS; i++) {
     double middle = (shown + other) / 2;

@@ -1,16 +1,17 @@
-/* reference/passing.c - the light that passes volumes and surfaces on a ray: to a point, and to the outside
- * of the surface of a volume that the point lies in.
+/* reference/passing.c - the light that passes volumes and surfaces on a ray: to a point, or to the outside of
+ * the volume's surface in which the point lies.
  *
- * A volume's surface is lit by the light that arrives at its outside: matter that light crosses while it goes
- * deeper into one and the same surface does not shade this surface. A ray is followed from the point to the
- * light. T is the light, and A the light that the surface has taken. A step changes T and A linearly, so that
- * two factors hold the effect of all steps between it and the point. */
+ * A volume's surface is lit by the light that arrives at its outside. So the matter of a surface, which light
+ * crosses on its way deeper into it, does not shade the same surface. A ray is followed from the point to the
+ * light. T is the light that is left on the ray, and A the light that the surface has taken. Each step
+ * changes T and A linearly. So two factors hold the effect of all steps between the current place and the
+ * point. */
 #include <stdlib.h>
 
 #include "core/memory.h"
 #include "reference/reference.h"
 
-/* The optical depth, in every channel, beyond which a light counts as dark: exp(-18) is 2e-8. */
+/* The optical depth from which on a light counts as dark, if all channels have it: exp(-18) is 2e-8. */
 static const double DARK_DEPTH = 18;
 
 void hl_reference_transmittance(const reference *all, const reference_ray *ray, crossing *scratch,
@@ -35,8 +36,8 @@ void hl_reference_transmittance(const reference *all, const reference_ray *ray, 
 
 /* ---- where surfaces begin ---- */
 
-/* The optical depth, in one unit of distance, of matter with this value. For a function of two numbers it is
- * the greatest depth with any second number. */
+/* The optical depth, in one unit of distance, of matter with this value. For a function of two numbers, it is
+ * the greatest optical depth over all second numbers. */
 static double extinction_at(const reference_volume *volume, double value) {
   if (value < volume->transparent_below) return 0;
   double opacity = hl_transfer_function_opacity(&volume->described->transfer_function, value);
@@ -52,7 +53,7 @@ static int index_of_value(const reference_volume *volume, double value) {
   return (int)fmin(fmax(place, 0), HL_REFERENCE_FEET - 1);
 }
 
-/* The value at which the surface begins to which matter with this value belongs. */
+/* Matter with this value belongs to a surface. Returns the value at which this surface begins. */
 static double foot_of(const reference_volume *volume, double value) {
   return volume->feet[index_of_value(volume, value)];
 }
@@ -66,8 +67,9 @@ static double depth_to(const reference_volume *volume, double value) {
 }
 
 /* Finds the values at which surfaces begin, walking from the empty value outwards. A surface begins at the
- * last value without extinction. A second surface begins after extinction did not rise over a twentieth of
- * the values since the first surface's beginning, and then rises by half. */
+ * last value without extinction. A second surface begins where extinction has stopped rising and then rises
+ * by half. Extinction has stopped rising if it did not rise over a twentieth of the range of values since the
+ * surface's beginning. */
 static void find_feet(reference_volume *volume, int first, int step) {
   double foot = volume->empty_value, level = 0;
   int beginning = first, mark = -1;
@@ -113,19 +115,19 @@ hl_status hl_reference_feet_create(hl_context *context, reference_volume *volume
 /* ---- the light at the outside ---- */
 
 /* The fractions that a step keeps: of the light that the surface took before the step, and of the light that
- * it takes in the step. second: light comes from another surface into this one, and a part of the light which
- * that surface took may count as taken by this one. */
+ * it takes in the step. second: in this step, light comes from another surface into this one. A part of the
+ * light that the other surface took may then count as taken by this one. */
 typedef struct kept_light {
   double before, within;
   bool second;
 } kept_light;
 
-/* Raises a kept fraction towards 1 by the skin of a face: kept to the power 1 - skin. Powers are used so that
- * products over steps do not depend on the steps' length. */
+/* Raises a kept fraction towards 1 where matter belongs to the skin of a face: returns kept to the power 1 -
+ * skin. With powers, products over steps do not depend on the steps' length. */
 static double kept_in_skin(double kept, double skin) { return skin > 0 ? pow(kept, 1 - skin) : kept; }
 
-/* The fractions of the taken light that a step keeps. from, to: the values at the step's ends, in the
- * direction of light. skin: how much visible matter there belongs to a face that cuts it, 0 to 1. */
+/* Finds the fractions of the taken light that a step keeps. from, to: the values at the step's ends, in the
+ * direction of light. skin: how much of the visible matter there belongs to a face that cuts it, 0 to 1. */
 static kept_light kept_of_step(const reference_volume *volume, double from, double to, double length,
                                double skin) {
   double foot_from = foot_of(volume, from), foot_to = foot_of(volume, to), deep = to - foot_to,
@@ -141,8 +143,8 @@ static kept_light kept_of_step(const reference_volume *volume, double from, doub
   return (kept_light){0, enters ? 1 : 0, enters && extinction_at(volume, from) > 0};
 }
 
-/* The state after the ray, on its way to the light, has left the point's surface for another surface in front
- * of it. It is not yet known whether that other surface is a layer of its own. */
+/* The state while the ray, on its way to the light, is in another surface, after it has left the point's
+ * surface. It is not known yet whether the other surface is a layer of its own. */
 typedef struct pending_layer {
   bool any;
   /* depth: the other surface's optical depth so far. rise: the values' change per length where the ray left
@@ -151,8 +153,8 @@ typedef struct pending_layer {
 } pending_layer;
 
 /* The factors by which all steps between here and the point multiply the light and the light taken by the
- * surface. `kept` holds the factors for the case that the light taken by the layer before counts as taken by
- * the surface. */
+ * surface. kept_light and kept_taken are these factors for the case that the light taken by the pending layer
+ * counts as taken by the surface. */
 typedef struct light_factors {
   double light[3], kept_light[3], kept_taken;
 } light_factors;
@@ -164,8 +166,8 @@ static double ramp_depth(const reference_volume *volume, double from, double to)
   return sum / steps * fabs(to - from) / volume->described->transfer_function.unit_distance;
 }
 
-/* Decides about a pending layer. A layer up to 1.2 times as thick as a straight ramp of values counts fully
- * as the surface's, and a layer 1.6 times as thick not at all. */
+/* Decides about a pending layer. If it is up to 1.2 times as thick as a straight ramp of values, it counts
+ * fully as part of the surface; if it is 1.6 times as thick or more, it does not count. */
 static void settle(light_factors *all, pending_layer *layer) {
   double ratio = layer->depth * layer->rise / fmax(layer->ramp, 1e-300),
          kept = fmin(fmax((1.6 - ratio) / 0.4, 0), 1);
@@ -174,8 +176,8 @@ static void settle(light_factors *all, pending_layer *layer) {
   layer->any = false;
 }
 
-/* Adds a step to the factors. depth: the depth of all volumes in the step, in each channel. kept: the mean of
- * the fractions that the volumes keep. */
+/* Adds a step to the factors. depth: the optical depth of all volumes in the step, for each channel. kept:
+ * the mean of the fractions that the volumes keep. */
 static void add_step(light_factors *all, pending_layer *layer, const double depth[3], kept_light kept) {
   if (layer->any && kept.before == 0) settle(all, layer);
   for (int c = 0; c < 3; c++) {

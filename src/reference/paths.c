@@ -1,14 +1,14 @@
 /* reference/paths.c - light that media scatter more than once, by following paths from the eye.
  *
  * A path flies until it has passed a random optical depth. There it is turned by the medium's phase function,
- * and flies on. From its second collision on it collects the unscattered light that the lights and the sky
- * send to the collision: an estimate without bias of light that was scattered twice or more often. The first
- * scattering is integrated (shade.c). Meshes and isosurfaces on a path absorb their part of the light and
- * scatter nothing. Random numbers depend on the pixel and the path alone. Paths take the volumes' extinction
- * as grey. */
+ * and flies on. At its second and every later collision it collects the unscattered light that the lights and
+ * the sky send to the collision. This is an unbiased estimate of the light that was scattered at least twice.
+ * Light that was scattered once is integrated in shade.c. Meshes and isosurfaces on a path absorb their part
+ * of the light and scatter none. Random numbers depend on the pixel and the path alone. Paths treat the
+ * volumes' extinction as equal in all channels. */
 #include "reference/reference.h"
 
-/* Paths go on for SURE_TURNS turns before they may end at random. */
+/* A path has at least SURE_TURNS turns; after them it may end at random. */
 enum { SURE_TURNS = 8, MOST_TURNS = 100000 };
 
 /* A random number from 0 to 1. Steele, Lea and Flood, "Fast splittable pseudorandom number generators"
@@ -32,7 +32,8 @@ static double extinction_of(const crossing *part) {
   return hl_reference_extinction(part->volume, hl_reference_value(part->volume, part->here), part->here);
 }
 
-/* Chooses one of the volumes at the march's position, by their extinctions. */
+/* Chooses one of the volumes at the march's position, with probabilities in proportion to their
+ * extinctions. */
 static void choose_volume(const march *walk, double total, uint64_t *random, collision *met) {
   double pick = uniform(random) * total;
   for (size_t v = 0; v < walk->count; v++) {
@@ -68,8 +69,8 @@ static bool fly(const reference *all, reference_role role, const reference_ray *
   return false;
 }
 
-/* Multiplies by the fraction of light that surfaces on the way to a collision let through. Surfaces scatter
- * nothing. */
+/* Multiplies the path's light by the fraction that surfaces on the way to a collision let through. Surfaces
+ * scatter nothing. */
 static void take_surfaces(const reference *all, reference_role role, reference_ray way, double distance,
                           double weight[3]) {
   double passing[3] = {1, 1, 1}, after = way.nearest;
@@ -82,11 +83,12 @@ static void take_surfaces(const reference *all, reference_role role, reference_r
   for (int c = 0; c < 3; c++) weight[c] *= passing[c];
 }
 
-/* A random direction by Henyey and Greenstein's function about the direction before. */
+/* A random direction, distributed by Henyey and Greenstein's function about the previous direction. */
 static vec3 turn(vec3 way, double g, uint64_t *random) {
   double a = uniform(random), angle = 2 * HL_PI * uniform(random), cosine = 2 * a - 1;
   if (fabs(g) > 1e-6) {
-    double part = (1 - g * g) / (1 - g + 2 * g * a); /* derived: the integral of p, solved for the cosine */
+    double part = (1 - g * g) / (1 - g + 2 * g * a); /* derived: the equation of p's integral, solved for the
+                                                      * cosine */
     cosine = (1 + g * g - part * part) / (2 * g);
   }
   double sine = sqrt(fmax(1 - cosine * cosine, 0));
@@ -95,13 +97,13 @@ static vec3 turn(vec3 way, double g, uint64_t *random) {
       vec3_scale(way, cosine), vec3_add(vec3_scale(u, sine * cos(angle)), vec3_scale(v, sine * sin(angle)))));
 }
 
-/* Adds the light that the scene's lights send to a collision, and that is scattered there onto the path. One
- * random point stands for each light. way: the path's direction, away from the eye; a unit vector. */
+/* Adds the light that comes from the scene's lights to a collision and is scattered there onto the path. One
+ * random point represents each light. way: the path's direction, away from the eye; a unit vector. */
 static void add_lights(const reference *all, const collision *met, vec3 way, const double weight[3],
                        reference_worker *worker, uint64_t *random, double sum[3]) {
   for (size_t l = 0; l < all->scene->light_count; l++) {
     reference_light one = all->lights[l];
-    if (one.points == NULL) continue; /* only the first scattering counts lights without shadows */
+    if (one.points == NULL) continue; /* lights without shadows count only for the first scattering */
     vec3 point = one.points[(size_t)(uniform(random) * (double)one.point_count)];
     if (!one.sphere) one.points = &point, one.point_count = 1;
     arrival arrived;
@@ -114,7 +116,7 @@ static void add_lights(const reference *all, const collision *met, vec3 way, con
   }
 }
 
-/* Adds the light that the sky sends to a collision. One random cell stands for the sky. */
+/* Adds the light that the sky sends to a collision. One random cell represents the whole sky. */
 static void add_sky(const reference *all, const collision *met, vec3 way, const double weight[3],
                     reference_worker *worker, uint64_t *random, double sum[3]) {
   if (all->sky.count == 0) return;

@@ -1,4 +1,5 @@
-/* reference/plane.c - a volume's transfer function of two numbers at one point, from its description. */
+/* reference/plane.c - evaluates a volume's transfer function of two numbers at one point, by its
+ * description. */
 #include <string.h>
 
 #include "reference/reference.h"

@@ -1,15 +1,16 @@
 /* reference/rays.c - how many rays a pixel has in a small picture of a large volume.
  *
  * In: the scene and the boxes of its volumes' visible bricks. Out: rays along each side of a pixel. Where
- * voxels are smaller than pixels, a pixel of the sheet renderer is the mean over the pixel's area
- * (docs/decisions.md); one ray through its centre would give another picture. */
+ * voxels are smaller than pixels, the renderer averages over a pixel's area (docs/decisions.md). A reference
+ * with a single ray through the pixel's centre would make another picture. */
 #include "reference/reference.h"
 
-/* SURFACE_RAYS: rays along each side of a pixel where a scene has meshes, for their edges. */
+/* SURFACE_RAYS: the number of rays along each side of a pixel in scenes with meshes, so that their edges are
+ * smooth. */
 enum { BRICK_CELLS = 4, LONGEST_SIDE = 4096, SURFACE_RAYS = 4 };
 
-/* The box around the visible bricks, within the volume's box, in index space. Bricks at the borders reach
- * half a voxel beyond the grid. False if no brick is visible. */
+/* The box, in index space, around the visible bricks, as far as it lies within the volume's box. Bricks at
+ * the borders reach half a voxel beyond the grid. False if no brick is visible. */
 static bool shown_box(const reference_volume *volume, double low[3], double high[3]) {
   const unsigned char *clear = volume->clearance;
   size_t brick[3];
@@ -36,8 +37,8 @@ static bool shown_box(const reference_volume *volume, double low[3], double high
   return any;
 }
 
-/* The corners, in the world, of the boxes around visible bricks: the sum of their positions, the depth of the
- * nearest one, and their number. */
+/* About the corners, in the world, of the boxes around visible bricks: the sum of their positions, the depth
+ * of the nearest corner, and the number of corners. */
 typedef struct content {
   vec3 sum;
   double nearest;
@@ -57,8 +58,8 @@ static void add_volume(const reference_volume *volume, vec3 position, vec3 forwa
   }
 }
 
-/* The edge of a pixel at unit depth, or at any depth in an orthographic picture. Derived: the picture's
- * height divided by its number of pixels, where height = 2 tan(fovy / 2) at unit depth. */
+/* The edge of a pixel in the world at unit depth; in an orthographic picture, at any depth. Derived: the
+ * picture's height divided by its number of rows, where the height is 2 tan(fovy / 2) at unit depth. */
 static double pixel_edge(const hl_scene_description *scene) {
   bool orthographic = scene->camera.type == HL_CAMERA_ORTHOGRAPHIC;
   return (orthographic ? scene->camera.height : 2 * tan(scene->camera.fovy_deg * HL_PI / 360)) /

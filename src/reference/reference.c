@@ -15,20 +15,20 @@
 /* Alpha at which a ray ends. */
 static const double OPAQUE = 1 - 1e-5;
 
-/* Alpha at which a ray gets its first depth (halflight/layers.h). */
+/* The alpha that a ray must reach for its first depth (halflight/layers.h). */
 static const double FIRST_OPACITY = 0.01;
 
-/* The greatest opacity that one sample may add to a pixel: light that grazes a dense volume fades within a
- * small fraction of a step. The error grows linearly with this bound and quadratically with the step. Steps
- * that are coarser than the default therefore allow more opacity, in proportion. */
+/* The greatest opacity that one sample may add to a pixel. It is small, because light that grazes a dense
+ * volume fades within a small fraction of a step. The error grows linearly with this bound, and quadratically
+ * with the step. So steps that are coarser than the default allow more opacity, in proportion. */
 static const double MOST_OPACITY = 0.02, USUAL_STEP = 0.25, COARSEST_OPACITY = 0.1;
 
 enum { RUN_PIXELS = 16 };
 
 typedef struct eye_rays {
   vec3 position, forward;
-  vec3 right, up; /* from the picture's centre to the middle of its right and top edge, on the plane at
-                     unit distance (perspective) or in world units (orthographic) */
+  vec3 right, up; /* from the picture's centre to the middle of its right and top edge: on the plane at unit
+                   * distance (perspective), or in world units (orthographic) */
   bool orthographic;
 } eye_rays;
 
@@ -55,7 +55,7 @@ static eye_rays eye_rays_of(const hl_scene_description *scene) {
   return eye;
 }
 
-/* Finds ray (x, y) of the picture. Rays are numbered across the whole picture; a pixel has rays x rays of
+/* Makes ray (x, y) of the picture. Rays are numbered across the whole picture; each pixel has rays x rays of
  * them. *direction: a unit vector. */
 static void eye_ray(const picture *all, size_t x, size_t y, vec3 *origin, vec3 *direction) {
   const eye_rays *eye = &all->eye;
@@ -77,7 +77,8 @@ static double total_extinction(const march *walk) {
   return total;
 }
 
-/* The light that all volumes send to the eye from one sample, weighted by extinction. */
+/* The light that the current sample of each volume sends to the eye, weighted by extinction and summed over
+ * all volumes. */
 static void sample(const reference *all, const march *walk, vec3 point, vec3 to_eye,
                    reference_worker *worker) {
   reference_parts *made = &worker->sample;
@@ -97,9 +98,9 @@ static void sample(const reference *all, const march *walk, vec3 point, vec3 to_
   made->depth = made->weight * walk->at;
 }
 
-/* Adds the march's current sample, for a step of this length, and returns its extinction. Front to back: C
- * += (1-A) a c, A += (1-A) a, with a = 1 - exp(-sigma dt), the exact integral of a step in which nothing
- * varies. */
+/* Adds the sample at the march's position, for a step of this length, and returns its extinction. Front to
+ * back: C += (1-A) a c, A += (1-A) a, with a = 1 - exp(-sigma dt), which is the exact integral if nothing
+ * varies in the step. */
 static double composite(const reference *all, const march *walk, double length, vec3 origin, vec3 direction,
                         reference_worker *worker) {
   vec3 point = vec3_add(origin, vec3_scale(direction, walk->at));
@@ -117,9 +118,10 @@ static double first_within(double before, double extinction, double start) {
   return start + log((1 - before) / (1 - FIRST_OPACITY)) / extinction;
 }
 
-/* Marches along a part of a camera ray. Every step is cut into pieces, so that no piece adds more opacity
- * than most_opacity; the extinction of the piece before tells how long a piece may be. Adds the contributions
- * of the part's samples to worker->ray. Sets *first to the first depth if it lies in this part. */
+/* Marches along a part of a camera ray. Every step is cut into pieces so short that no piece adds more
+ * opacity than most_opacity. The extinction of the previous piece tells how long a piece may be. Adds the
+ * contributions of the part's samples to worker->ray. Sets *first to the first depth if it lies in this
+ * part. */
 static void trace_part(const reference *all, const reference_ray *way, reference_worker *worker,
                        double *first) {
   march walk;
@@ -200,7 +202,7 @@ static void follow_paths(const picture *all, size_t x, size_t y, reference_worke
   }
 }
 
-/* The least of the numbers that occur most often; 0 if there are no numbers. */
+/* The number that occurs most often; of several such numbers, the least. 0 if there are no numbers. */
 static int most_frequent(const int *numbers, size_t count) {
   size_t most = 0;
   int found = 0;
@@ -214,7 +216,7 @@ static int most_frequent(const int *numbers, size_t count) {
   return found;
 }
 
-/* Averages a pixel's rays, and averages the first depths of the rays that meet something. */
+/* Averages a pixel's rays. The first depth is averaged only over the rays that meet something. */
 static void trace_pixel(const picture *all, size_t x, size_t y, int worker) {
   reference_worker *own = &all->workers[worker];
   size_t lights = all->all->scene->light_count, rays = (size_t)all->all->rays, hits = 0;
@@ -313,7 +315,8 @@ static void release(reference *all) {
   hl_reference_surfaces_release(all);
 }
 
-/* Allocates one block each for the workers, their crossings, their arrivals and their contributions. */
+/* Allocates one block each for all workers, all of their crossings, all of their arrivals and all of their
+ * contributions. */
 static reference_worker *workers_create(const reference *all, size_t threads) {
   size_t volumes = all->scene->volume_count, lights = all->scene->light_count;
   reference_worker *workers = hl_allocate_zeroed(all->context, threads, sizeof *workers);
@@ -421,7 +424,7 @@ hl_status hl_reference_render_layers(hl_context *context, const hl_scene *scene,
   status = hl_scene_draw(scene, &drawn, error);
   if (status == HL_OK) status = hl_pool_create(context, chosen.threads, &pool, error);
   if (status != HL_OK) return status;
-  /* the reference's sky is the image itself, without lights in place of suns */
+  /* in the reference the sky is the whole image; no lights take the place of suns */
   hl_scene_description whole = drawn->description;
   whole.sky = scene->description.sky;
   whole.light_count = scene->description.light_count;

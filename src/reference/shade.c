@@ -5,15 +5,15 @@
  *     medium    C = c (ka Ia + p I)
  *     flat      C = c, for any light
  *
- * p is Henyey and Greenstein's phase function times 4 pi, its mean over the light. Emission adds c ke to a
- * surface and to a medium. A sample of a volume shaded "phong" goes from medium to surface as its gradient
- * grows from nothing. */
+ * p is the mean over the light of Henyey and Greenstein's phase function times 4 pi. Emission adds c ke to a
+ * surface and to a medium. In a volume shaded "phong", a sample without a gradient is a medium; as the
+ * gradient grows, the sample becomes more and more a surface. */
 #include <string.h>
 
 #include "reference/reference.h"
 
-/* The fraction of a light that reaches a sample. It is computed at the first request and kept in
- * worker->arrivals, because it is by far the costliest part of a sample. */
+/* The fraction of a light that reaches a sample. It is by far the costliest part of a sample, so that it is
+ * computed only when it is first needed, and then kept in worker->arrivals. */
 static const double *light_reach(const reference *all, const reference_sample *at, size_t light, bool surface,
                                  reference_worker *worker) {
   arrival *arrived = &worker->arrivals[light];
@@ -32,8 +32,8 @@ static const double *light_reach(const reference *all, const reference_sample *a
   return reach;
 }
 
-/* Finds the outward normal and the fraction of the sample that is surface. Outward means towards the empty
- * value, so that lobes of either sign are lit from outside. */
+/* Finds the outward normal, and the fraction of the sample that is surface. Outward means towards the empty
+ * value, so that lobes with values above and below it are lit from outside. */
 static vec3 find_normal(const reference_volume *volume, vec3 index_point, double value, double *surface) {
   *surface = 0;
   if (volume->described->shading != HL_SHADING_PHONG) return (vec3){0, 0, 0};
@@ -70,7 +70,7 @@ typedef struct surface {
   double own[3]; /* the volume's own colour */
   vec3 normal;   /* unit length, outward; 0 in a medium */
   double amount; /* 0 for a medium, 1 for a surface */
-  vec3 outside;  /* world; for surfaces: the place, along the normal, where the surface's matter begins */
+  vec3 outside;  /* world; for surfaces: the place along the normal at which the surface's matter begins */
 } surface;
 
 /* The phase function p = (1 - g^2) / (1 + g^2 - 2 g cos)^(3/2), cos = -E.L. It is 1 in all directions for g =
@@ -79,8 +79,8 @@ double hl_reference_phase(double g, vec3 to_eye, vec3 towards) {
   return (1 - g * g) / pow(1 + g * g + 2 * g * vec3_dot(to_eye, towards), 1.5);
 }
 
-/* Adds, to a shadow layer, the fraction of a light that reaches a sample. Where the sample is on a surface
- * that faces the light, the fraction at the surface's outside counts. */
+/* Adds the fraction of a light that reaches a sample to a shadow layer. If the sample is on a surface that
+ * faces the light, it is the fraction that reaches the surface's outside. */
 static void add_shadow(const reference *all, const reference_sample *at, const surface *here, size_t light,
                        reference_worker *worker, double shadow[3]) {
   bool faces = vec3_dot(here->normal, worker->arrivals[light].towards) > 0;
@@ -122,9 +122,9 @@ static void shade_light(const reference *all, const reference_sample *at, const 
                        arrived->incoming[c];
 }
 
-/* The place where a surface's matter begins, along the normal from a sample in it. Values fall
- * along it by the gradient's length per unit of length, until they show nothing. The place is at most 8
- * voxels away. Behind the face of a cut, it is the sample's own place. */
+/* The place, along the normal from a sample of a surface, where the surface's matter begins. It is assumed
+ * that values change along the normal by the gradient's length per unit of length, until they show nothing.
+ * The place is at most 8 voxels away. Just behind the face of a cut, it is the sample's own place. */
 static vec3 outside_of_surface(const reference_sample *at, const surface *here, double behind_face) {
   const reference_volume *volume = at->volume;
   double empty = volume->empty_value, outside = empty,
@@ -136,7 +136,8 @@ static vec3 outside_of_surface(const reference_sample *at, const surface *here, 
   return vec3_add(at->point, vec3_scale(here->normal, way * here->amount * (1 - behind_face)));
 }
 
-/* Adds the sky's light that a sample sends to the eye. A surface is lit by the light at its outside. */
+/* Adds the sky's light that a sample sends to the eye. A surface is lit by the light that arrives at its
+ * outside. */
 static void shade_sky(const reference *all, const reference_sample *at, const surface *here,
                       reference_worker *worker, reference_parts *sample) {
   const hl_scene_volume *described = at->volume->described;

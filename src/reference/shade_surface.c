@@ -3,7 +3,8 @@
 #include "mesh/mesh.h"
 #include "reference/reference.h"
 
-/* The normal of a triangle's corner, of any length: the corner's own at a crease, else its vertex's. */
+/* The normal, of any length, of a triangle's corner: the corner's own normal at a crease, else the vertex's
+ * normal. */
 static vec3 corner_normal(const reference *all, const hl_scene_mesh *mesh, size_t triangle, int i) {
   const hl_mesh *of = mesh->mesh;
   const vec3 *normals = all->surfaces.normals + all->surfaces.first_normal[mesh - all->scene->meshes];

@@ -2,13 +2,14 @@
  *
  * The sky's sphere, or its upper hemisphere, is cut into rings about `up` and these into cells of nearly
  * equal sides, all of the same solid angle. A cell has the mean radiance of its directions. Its shadow is
- * cast from its middle; in an image, from the middle of its light. Its cosine is the cosine of the mean of
- * its directions, which is the exact mean wherever no part of the cell is hidden. */
+ * cast from its middle, or for an image from the middle of its light. Its cosine is that of the mean of its
+ * directions; this is the exact mean of the cosine unless a part of the cell is below the surface's
+ * horizon. */
 #include "core/memory.h"
 #include "reference/reference.h"
 
-/* An image is sampled PIXEL_SAMPLES times along each side of its pixels, but at most MOST_SAMPLES times along
- * each side of a cell. */
+/* An image is sampled PIXEL_SAMPLES times along each side of its pixels, but no more than MOST_SAMPLES times
+ * along each side of a cell. */
 enum { PIXEL_SAMPLES = 3, MOST_SAMPLES = 256 };
 
 /* A ring of cells. Heights are cosines of angles to `up`. */
@@ -25,9 +26,9 @@ static vec3 direction_of(const sky_axes *axes, double height, double turn) {
   return vec3_add(level, vec3_scale(axes->up, height));
 }
 
-/* Finds the mean of the radiance over a cell that begins at `turn`, and the mean of the directions. Where the
- * sky is an image, each direction is weighted by its brightness: a sun in the cell shines from its own
- * place. */
+/* Finds the mean of the radiance over a cell that begins at `turn`, and the mean of the cell's directions. If
+ * the sky is an image, each direction is weighted by its brightness, so that a sun in the cell shines from
+ * its own place. */
 static void find_means(const hl_sky *sky, const sky_axes *axes, const sky_ring *ring, double turn,
                        reference_sky_cell *cell) {
   double wide = sky->type == HL_SKY_IMAGE ? ceil(PIXEL_SAMPLES * (double)sky->width / (double)ring->cells)
@@ -52,7 +53,7 @@ static void find_means(const hl_sky *sky, const sky_axes *axes, const sky_ring *
   cell->mean = weighed ? vec3_scale(bright, 1 / brightness) : vec3_scale(sum, 1 / samples);
 }
 
-/* The number of cells in ring i of `rings`, each `angle` high. The cells are about as wide as high. */
+/* The number of cells in ring i. Rings are `angle` high, and cells are about as wide as high. */
 static size_t cells_in_ring(size_t i, double angle) {
   double middle = ((double)i + 0.5) * angle;
   return (size_t)fmax(floor(2 * HL_PI * sin(middle) / angle + 0.5), 3);

@@ -1,5 +1,5 @@
-/* reference/surfaces.c - the meshes of a scene for the oracle: finds where rays meet triangles and spheres,
- * by a tree of boxes. */
+/* reference/surfaces.c - the meshes of a scene, for the reference: finds where rays meet triangles and
+ * spheres, by a tree of boxes. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -26,8 +26,8 @@ static double middle_of(const reference_triangle *triangle, int axis) {
   return sum / 3;
 }
 
-/* Moves the triangles whose middles lie below `at` along an axis to the front of the array. Returns the
- * number of these triangles. */
+/* Moves the triangles whose middles lie below `at` along an axis to the front of the array. Returns their
+ * number. */
 static size_t part_triangles(reference_triangle *triangles, size_t count, int axis, double at) {
   size_t below = 0;
   for (size_t t = 0; t < count; t++) {
@@ -102,8 +102,8 @@ static void add_mesh(reference_surfaces *all, const hl_scene_mesh *mesh) {
   }
 }
 
-/* Adds the normals of a mesh's vertices, in the world: the file's, or the sum of the triangles' cross
- * products. */
+/* Adds the normals of a mesh's vertices, in the world: the mesh's own normals, or the sums of the triangles'
+ * cross products. */
 static void add_normals(const hl_scene_mesh *mesh, vec3 *normals) {
   const hl_mesh_description *d = &mesh->mesh->description;
   affine3 placement = hl_scene_mesh_to_world(mesh);
@@ -171,7 +171,7 @@ static double meet_triangle(const reference_triangle *triangle, const reference_
   return vec3_dot(ac, q) / determinant;
 }
 
-/* The distance of the first point of a sphere beyond a given distance: |origin + s direction - centre| =
+/* The least distance, beyond a given one, at which a ray meets a sphere: |origin + s direction - centre| =
  * r. */
 static double meet_sphere(const reference_triangle *sphere, const reference_ray *ray, double after) {
   vec3 away = vec3_subtract(ray->origin, sphere->corner[2]);
@@ -187,7 +187,7 @@ static vec3 along(const reference_ray *ray, double distance) {
   return vec3_add(ray->origin, vec3_scale(ray->direction, distance));
 }
 
-/* The distance of the first hit beyond a given distance that the scene's cuts leave. */
+/* The distance of the first hit, beyond a given distance, that the scene's cuts do not remove. */
 static double meet(const hl_scene_description *scene, const reference_triangle *triangle,
                    const reference_ray *ray, double after, double weight[3]) {
   if (triangle->radius == 0) {

@@ -1,5 +1,5 @@
 /* reference/tint.c - the colours of a volume's own voxels at a point: the trilinear mean of linear colours
- * times weights, divided by the trilinear mean of the weights. The mask's colours follow. */
+ * times weights, divided by the trilinear mean of the weights. The mask's colour is applied after it. */
 #include "reference/reference.h"
 
 /* The linear value of an sRGB code (IEC 61966-2-1). */

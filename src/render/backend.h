@@ -1,8 +1,8 @@
 /* render/backend.h - a back end makes the picture of a plan: the processors, or a device.
  *
- * A renderer asks its back ends in the order of their list. The first that makes ready for a plan makes the
- * frame, sweep by sweep. Where a back end fails, the next one in the list makes the frame again, from pixels
- * of zeros. */
+ * A renderer asks its back ends in the order of their list. The first back end that can prepare for a plan
+ * makes the frame, sweep by sweep. If it fails, the next back end in the list makes the frame anew, from
+ * pixels of zeros. */
 #ifndef HL_RENDER_BACKEND_H
 #define HL_RENDER_BACKEND_H
 
@@ -11,15 +11,15 @@
 #include "render/target.h"
 
 typedef struct backend {
-  /* Makes ready for the frame of a plan. After a failure another back end makes the frame, and the error says
-   * why this one cannot. */
+  /* Prepares for the frame of a plan. After a failure another back end makes the frame, and the error says
+   * why this back end cannot. */
   hl_status (*prepare)(hl_renderer *renderer, const frame_plan *plan, const frame_target *target,
                        hl_error *error);
   /* Makes one sweep of the plan. It is called once for each sweep, in the order of the sweeps. */
   hl_status (*run)(hl_renderer *renderer, const frame_plan *plan, int sweep, frame_target *target,
                    hl_render_statistics *statistics, hl_error *error);
-  /* Brings all pixels of the picture to the target after the last sweep. Null: the sweeps themselves put the
-   * pixels there. */
+  /* Brings all pixels of the picture to the target after the last sweep. Null: the sweeps themselves bring
+   * them there. */
   hl_status (*read)(hl_renderer *renderer, const frame_plan *plan, frame_target *target,
                     hl_render_statistics *statistics, hl_error *error);
 } backend;

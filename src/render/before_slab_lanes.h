@@ -1,9 +1,10 @@
-/* render/before_slab_lanes.h - near a face of a volume's box: how far light has come within the box before it
- * reaches a slab, at a sample and at the shadow buffer's pixels around the sample.
+/* render/before_slab_lanes.h - near a face of a volume's box: the length of the light's way within the box
+ * before the light reaches a slab. The length is found at a sample and at the shadow buffer's pixels around
+ * the sample.
  *
  * On one side of a face, a shadow buffer's pixel holds light that the box's matter has partly absorbed; on
- * the other side it holds light that has passed beside the box. Interpolating between the two is wrong; the
- * lengths of the ways through the box correct it. */
+ * the other side it holds light that has passed beside the box. Interpolating between the two would be wrong.
+ * The lengths of the ways through the box serve to correct the interpolation. */
 #ifndef HL_RENDER_BEFORE_SLAB_LANES_H
 #define HL_RENDER_BEFORE_SLAB_LANES_H
 
@@ -11,25 +12,27 @@
 #include "render/pack_lanes.h"
 #include "shadow/shadow_lookup_lanes.h"
 
-/* The four pixels of a shadow buffer around a sample, and the steps to them. Sub-lights have many buffers:
- * four pixels stand for all of them. They lie as far from the sample as the buffers' pixels do on average. */
+/* The four pixels of a shadow buffer around a sample, and the steps to them. Sub-lights have many buffers.
+ * For them, four pixels stand for the pixels of all buffers: their distance from the sample is the mean
+ * distance of the buffers' pixels. */
 enum { NEAR_PIXELS = 4 };
 typedef struct near_pixels {
-  /* The distance from the sample to each near pixel along u and along v; in pixels. */
+  /* The distances, along u and along v, from the sample to each near pixel; in pixels. */
   lanes u[NEAR_PIXELS], v[NEAR_PIXELS];
-  lanes3 along_u, along_v; /* the ways on the sheet by which u, or v, grows by one pixel; frame space */
+  lanes3 along_u, along_v; /* along_u: the step on the sheet by which u grows by one pixel and v stays;
+                            * along_v: likewise for v; frame space */
 } near_pixels;
 
 /* A light as a slab's samples see it. */
 typedef struct seen_light {
   lanes3 towards;          /* unit direction to the light */
   lanes path;              /* length of the light's way through the slab */
-  const near_pixels *near; /* pixels of the light's buffer around the sample; null: no face of a box is
-                            * near, or only the nearest pixel is read */
+  const near_pixels *near; /* the pixels of the light's buffer around the sample; null: no face of a box is
+                            * near, or look-ups read only the nearest pixel */
 } seen_light;
 
-/* The root of 1/6. Bilinear look-ups, averaged over all positions between pixels, weigh by a tent of variance
- * 1/6 (derived). */
+/* The root of 1/6. The weights of bilinear look-ups, averaged over all positions between pixels, form a tent
+ * function of variance 1/6 (derived). */
 static const float SUBLIGHT_SPREAD = 0.408248f;
 
 LANES_INLINE lanes3 cross3(lanes3 a, lanes3 b) {
@@ -38,7 +41,8 @@ LANES_INLINE lanes3 cross3(lanes3 a, lanes3 b) {
 
 /* Finds the steps of one pixel along u and v on a sheet. Derived: u = (row 1 . x) / (row 0 . x) has the
  * gradient (row 1 - u row 0) / (row 0 . x), and v likewise. The step on the sheet that raises u by one and
- * leaves v is (grad v x h) / (grad u . (grad v x h)). The other step is the same with u and v exchanged. */
+ * does not change v is (grad v x h) / (grad u . (grad v x h)). For the step that raises v, exchange u and
+ * v. */
 LANES_INLINE void find_steps(const shadow_map *map, int parallel, lanes3 normal, lanes3 position,
                              near_pixels *near) {
   lanes3 gradient_u = set3(map->rows[1]), gradient_v = set3(map->rows[2]);
@@ -75,8 +79,8 @@ LANES_INLINE near_pixels pixels_of_sublights(void) {
   return near;
 }
 
-/* Shortens a way from a point towards the light: keeps the part that begins next to the point and that no cut
- * removes. enter, leave: distances from the point to the ends of the way. */
+/* Shortens a way from a point towards the light: keeps the part that begins closest to the point and that no
+ * cut removes. enter, leave: distances from the point to the two ends of the way. */
 LANES_INLINE void shorten_way(const shade_volume *volume, lanes3 from, lanes3 towards, lanes *enter,
                               lanes *leave) {
   for (int i = 0; i < volume->light_cut_count; i++) {
@@ -110,30 +114,29 @@ LANES_INLINE lanes way_left(const shade_volume *volume, lanes3 from, lanes3 towa
   return lanes_max(leave - enter - removed, lanes_set(0));
 }
 
-/* Lengths of the ways that light goes within a volume's box before it reaches the slab's first sheet: on
- * its way to the points where the eye's ray enters and leaves the slab's part in the box, and on its way to
- * the near pixels. */
+/* The lengths of the light's ways within a volume's box before the slab's first sheet. These are the ways to
+ * the points where the eye's ray enters and leaves the slab's part in the box, and the ways to the near
+ * pixels. */
 typedef struct ways_before {
   lanes first, last, near[NEAR_PIXELS];
 } ways_before;
 
-/* The two faces of a box across one axis. ahead, behind: the distances from the lit position, towards the
- * light, to the face ahead and to the face behind. u, v: by how much both distances shrink with a step of one
- * pixel along u or v. along: by how much both distances shrink when the lit position moves through the whole
- * slab along the eye's ray.
- */
+/* The two faces of a box across one axis. ahead, behind: the distances, towards the light, from the lit
+ * position to the face on the light's side and to the opposite face. u, v: by how much both distances shrink
+ * with a step of one pixel along u or v. along: by how much both distances shrink when the lit position moves
+ * through the whole slab along the eye's ray. */
 typedef struct faces_of_axis {
   lanes ahead, behind, u, v, along;
 } faces_of_axis;
 
-/* A face that is nearly parallel to the light lies much nearer or farther along the light's way after a
- * step to a near pixel. The face counts fully while this change is below this fraction of the light's way
- * through the box, and not at all from twice the fraction on: light on both sides of such a face enters the
- * box by another face, far away. */
+/* A limit for faces that are nearly parallel to the light. With a step to a near pixel, the distance to such
+ * a face changes much. The face counts fully while this change is below ALONG_FACE times the length of the
+ * light's way through the box, and not at all from twice this value on: light on both sides of the face
+ * enters the box through another face, far away. */
 static const float ALONG_FACE = 0.5f;
 
-/* Finds for a cut the number that find_faces() returns for a box. The face ahead counts as the plane that
- * touches the cut's shape where the light's ray meets it. */
+/* Does for a cut what find_faces() does for a box, and returns the same kind of number. The face ahead counts
+ * as flat: as the plane that touches the cut's shape where the light's ray meets it. */
 LANES_INLINE lanes face_of_cut(const shade_cut *cut, lanes3 position, lanes3 towards, const near_pixels *near,
                                lanes through) {
   ray_section way = cross_cut(cut, position, towards);
@@ -150,10 +153,11 @@ LANES_INLINE lanes face_of_cut(const shade_cut *cut, lanes3 position, lanes3 tow
   return lanes_keep(met, close * lanes_clamp(2.0f - reach / through, 0, 1));
 }
 
-/* Finds the distances of a box's faces from the lit position. Derived (slab method): where a point moves
- * sideways by s, the face moves along the light's way by -row.s / row.l, where l is the light's direction.
- * Returns 1 where light to some near pixel may pass beside a face through which the light to this position
- * comes, falling to 0 where the face is twice as far away as the pixels reach. */
+/* Finds the distances of a box's faces from the lit position. Derived (slab method): if a point moves
+ * sideways by s, its distance to the face along the light's way changes by -row.s / row.l, where l is the
+ * light's direction. Returns how likely light to some near pixel passes beside a face through which the light
+ * to this position comes. The number is 1 near such a face, and falls to 0 where the face is twice as far
+ * away as the near pixels. */
 LANES_INLINE lanes find_faces(const shade_volume *volume, const block_geometry *g, lanes3 towards,
                               const near_pixels *near, faces_of_axis faces[3]) {
   lanes close[3], reach[3], longest = lanes_set(1e30f), likely = lanes_set(0);
@@ -186,14 +190,14 @@ LANES_INLINE lanes find_faces(const shade_volume *volume, const block_geometry *
   return likely;
 }
 
-/* A point near a sample. u, v: the steps of a pixel along u and v from the sample to the point. along: the
- * fraction of the slab through which the eye's ray goes from the sample to the point. within: the length of
- * the light's way from the slab's first sheet to the point. */
+/* A point near a sample. u, v: the steps along u and v, in pixels, from the sample to the point. along: the
+ * way from the sample to the point along the eye's ray, as a fraction of the slab. within: the length of the
+ * light's way from the slab's first sheet to the point. */
 typedef struct point_beside {
   lanes u, v, along, within;
 } point_beside;
 
-/* The length of the light's way to a point within the volume's box before the slab. */
+/* The length of the light's way to a point, within the volume's box, before the slab. */
 LANES_INLINE lanes way_before(const shade_volume *volume, const faces_of_axis faces[3],
                               const block_geometry *g, const seen_light *light, point_beside point) {
   lanes leave = lanes_set(1e30f), enter = point.within;

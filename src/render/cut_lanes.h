@@ -12,8 +12,8 @@ LANES_INLINE lanes3 point_in_cut(const shade_cut *cut, lanes3 p) {
                   row_of_point(cut->rows[2], p)};
 }
 
-/* A ray's speed across a face, or a tiny number in place of 0. So a ray that runs along a face meets it far
- * away, on the right side. */
+/* The speed at which a ray moves across a face, with a tiny number in place of 0. So a ray that is parallel
+ * to a face meets it far away, on the right side. */
 LANES_INLINE lanes some_speed(lanes speed) {
   return lanes_select(lanes_abs(speed) < 1e-12f, lanes_set(1e-12f), speed);
 }
@@ -42,8 +42,8 @@ LANES_INLINE ray_section cross_cut(const shade_cut *cut, lanes3 from, lanes3 alo
   return way;
 }
 
-/* A point's height over a shape, in the shape's own units, above 0 outside; and the gradient of the height
- * per frame unit. */
+/* The height of a point over a shape, above 0 outside the shape, in units of the shape's own space; and the
+ * gradient of the height per frame unit. */
 typedef struct cut_height {
   lanes height;
   lanes3 gradient;

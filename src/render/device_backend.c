@@ -1,5 +1,5 @@
-/* render/device_backend.c - a GPU as a back end: the choice of the device, its trial, and the sweeps of
- * plans. */
+/* render/device_backend.c - a GPU as a back end: chooses the device, tests it, and makes the sweeps of plans
+ * with it. */
 #include "render/device_backend.h"
 
 #include <stdio.h>
@@ -26,7 +26,7 @@ static void give_up(hl_renderer *renderer, const char *reason) {
   snprintf(renderer->device.problem, sizeof renderer->device.problem, "%.390s", reason);
 }
 
-/* The name of the device that shall make the renderer's frames. Null: the processors make them. */
+/* The name of the device that is to make the renderer's frames. Null: the processors make them. */
 static const char *wanted_device(const hl_renderer *renderer) {
   return renderer->device.wanted[0] != '\0' ? renderer->device.wanted : renderer->context->options.device;
 }
@@ -41,7 +41,7 @@ bool hl_device_choose(hl_renderer *renderer, const char *device) {
   return true;
 }
 
-/* Opens the device that the renderer wants, and tries it. This happens once. */
+/* Opens the device that the renderer wants, and tests it. This is done once. */
 static void open_device(hl_renderer *renderer) {
   const char *wanted = wanted_device(renderer);
   char problem[GPU_PROBLEM_BYTES] = "";
@@ -98,7 +98,8 @@ static hl_status run(hl_renderer *renderer, const frame_plan *plan, int index, f
                              hl_hot_functions(context->options.instruction_set)};
   const sweep_plan *of = &plan->sweeps.list[index];
   float *pixels = hl_frame_target_pixels(target, plan, index);
-  /* The processors search for hidden matter; their samples are not counted as the device's. */
+  /* The processors search for hidden matter. The samples of this search are not counted as samples of the
+   * device. */
   const uint64_t samples = statistics->samples_shaded;
   planned_sweep planned = {0};
   int32_t *shown_from = NULL;

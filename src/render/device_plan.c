@@ -1,7 +1,7 @@
 /* render/device_plan.c - see device_plan.h.
  *
- * The numbers in the structs of the processors' sweep (render/slab.h, shadow/attenuate.h) are copied one by
- * one. So a device computes with the same floats. */
+ * The numbers are copied one by one from the structs of the processors' sweep (render/slab.h,
+ * shadow/attenuate.h). So a device computes with the same floats as the processors. */
 #include "render/device_plan.h"
 
 #include <string.h>
@@ -58,9 +58,10 @@ static bool is_soft(const frame_plan *plan) {
   return false;
 }
 
-/* Whether cut surfaces with gradient opacity cast shadows. A device cannot make these as the processors do.
- * Matter that gradient opacity hides ends surfaces for all pixels of a block (shadow/attenuate_lanes.h).
- * Behind a cut, the processors leave out whole blocks, of which a pixel of a device knows nothing. */
+/* Whether the frame has cut surfaces with gradient opacity that cast shadows. A device cannot make these
+ * shadows as the processors do: matter that gradient opacity hides ends surfaces for all pixels of a block
+ * (shadow/attenuate_lanes.h). Behind a cut the processors skip whole blocks, and a pixel of a device does not
+ * know which blocks are skipped. */
 static bool hides_cut_surfaces(const frame_plan *plan) {
   bool shadows = false;
   for (int i = 0; i < plan->frame.light_count; i++)
@@ -78,8 +79,8 @@ static bool has_phase_tables(const frame_plan *plan) {
   return hl_phase_table(plan->fields.phases, volume_of(plan)->look.anisotropy) != NULL;
 }
 
-/* Reasons why a device cannot make a frame, with the function that tests each. The user is told the first
- * that applies. */
+/* The reasons why a device cannot make a frame, each with a function that tells whether it applies. The user
+ * gets the first reason that applies. */
 static const struct {
   bool (*applies)(const frame_plan *plan);
   const char *reason;
@@ -117,8 +118,8 @@ static int storage_of(const grid *grid) {
   return grid->storage == HL_STORAGE_U8 ? 0 : grid->storage == HL_STORAGE_U16 ? 1 : 2;
 }
 
-/* The grid's bits that say which cells are visible. Null where all cells are visible; the processors do not
- * read the bits then, either. */
+/* The grid's bits that tell which cells are visible. Null where all cells are visible; then the processors do
+ * not read the bits, either. */
 static const uint64_t *bits_of_cells(const grid *grid) {
   return grid->cell_bits_tell ? grid->cell_bits : NULL;
 }
@@ -252,7 +253,7 @@ static void plan_brightness(const shade_light *shade, plan_light *light) {
   light->sector_least = shade->sector.least;
 }
 
-/* The state while a sweep is described for a device. */
+/* The data from which a sweep is described for a device. */
 typedef struct sweep_task {
   const frame_plan *frame_plan;
   const sweep_plan *plan;
@@ -275,7 +276,7 @@ static void plan_box_rays(const view *view, const sweep_task *task, plan_box *bo
   memcpy(box, &rays, sizeof *box);
 }
 
-/* Finds the box around everything visible, one voxel larger on each side because of rounding. */
+/* Finds the box around everything visible. It is one voxel larger on each side, because of rounding. */
 static void plan_content(const view *view, const sweep_task *task, plan_box *box) {
   const sheet_stack *sheets = &task->plan->geometry->sheets;
   const grid *grid = &task->frame_plan->volumes.grids[0];
@@ -290,13 +291,13 @@ static void plan_content(const view *view, const sweep_task *task, plan_box *box
   memcpy(box, &rays, sizeof *box);
 }
 
-/* Finds the margin beside faces within which samples count as near a face. row: the gradient of the number
- * whose margin is found, in frame space. Derived: on the sheet, one pixel of a parallel light's buffer along
- * u is (grad v x h) / (grad u . (grad v x h)), where h is the sheets' normal; the step along v has the same
- * form. The pixels around a sample are at most one such step away. A face counts where it is up to twice as
- * far away. The light's way through the slab is as long as its path. The margin is a little larger because of
- * rounding. The pixels of a near light grow with distance; for such a light all samples count as near a face.
- */
+/* Finds a margin: samples that are closer than this to a face count as near the face. The margin is measured
+ * along an axis of the box or of a cut's shape. row: the gradient of the coordinate along this axis, in frame
+ * space. Derived: on the sheet, one pixel of a parallel light's buffer along u is (grad v x h) / (grad u .
+ * (grad v x h)), where h is the sheets' normal; the step along v has the same form. The pixels around a
+ * sample are at most one such step away. A face counts where it is up to twice as far away. The light's way
+ * through the slab is as long as its path. The margin is a little larger because of rounding. The pixels of a
+ * near light grow with distance; for such a light all samples count as near a face. */
 static float margin_along(const sweep_task *task, int index, double way, vec3 row) {
   const sheet_stack *sheets = &task->plan->geometry->sheets;
   const light_source *source = task->plan->lights[index].source;
@@ -365,13 +366,14 @@ static hl_status plan_cuts(hl_context *context, const sweep_task *task, planned_
   return HL_OK;
 }
 
-/* The number of planes of one sheet: one per channel for the transmittance, and as many for the light at the
- * outside of surfaces, where it is kept. */
+/* The number of planes of one sheet. There is one plane per channel for the transmittance. Where the light at
+ * the outside of surfaces is kept, there is another plane per channel. */
 static size_t planes_of_sheet(const sweep_task *task, const light_shadow *shadow) {
   return (size_t)task->frame_plan->channels * (shadow->plan.outside ? 2 : 1);
 }
 
-/* Sets a light's buffer. Its planes begin at `*floats`, and their number of floats is added there. */
+/* Sets a light's buffer. *floats: where the buffer's planes begin; raised by the number of floats of these
+ * planes. */
 static void plan_buffer(const sweep_task *task, int index, int ring, size_t *floats, int *tiles,
                         plan_light *light) {
   const light_shadow *shadow = &task->plan->lights[index].shadow;
@@ -399,8 +401,8 @@ static void plan_buffer(const sweep_task *task, int index, int ring, size_t *flo
   *floats += ((size_t)ring * planes_of_sheet(task, shadow) * buffer.plane + 15) / 16 * 16;
 }
 
-/* PLANES_BYTES: the most bytes that the planes of all lights take together. SLOTS_BYTES: the most bytes that
- * the picture's slots of a run of slabs take. */
+/* PLANES_BYTES: the greatest number of bytes that the planes of all lights take together. SLOTS_BYTES: the
+ * greatest number of bytes that the picture's slots of a run of slabs take. */
 static const size_t PLANES_BYTES = (size_t)1 << 30, SLOTS_BYTES = (size_t)1 << 30;
 enum { SLABS_OF_RUN = 32 /* one bit for each slab */, SLOT_BYTES = 40 };
 
@@ -435,8 +437,8 @@ static void plan_rays_of(const view *view, const sheet_stack *sheets, double hei
   rays->height = (float)(sheet * sheets->spacing);
 }
 
-/* Describes a view's rays for the device. middle: rays end in the middle of the slab before each sheet,
- * else on the sheet. */
+/* Describes a view's rays for the device. middle: if set, the rays' points lie in the middle of the slab
+ * before each sheet, else on the sheet. */
 static void plan_view(const view *view, const sheet_stack *sheets, affine3 from_frame, bool middle,
                       plan_rays *rays) {
   for (int sheet = 0; sheet < sheets->count; sheet++)
@@ -466,7 +468,8 @@ static hl_status plan_all_rays(hl_context *context, const sweep_task *task, plan
 
 /* ---- the sweep ---- */
 
-/* Whether the lights keep the light at the outside of surfaces. Either all lights do or none does. */
+/* Whether the lights' buffers keep the light at the outside of surfaces. Either all of them do, or none
+ * does. */
 static bool keeps_outside(const sweep_task *task) {
   for (int i = 0; i < task->plan->geometry->light_count; i++)
     if (task->plan->lights[i].shadow.method != NULL && task->plan->lights[i].shadow.plan.outside) return true;

@@ -1,5 +1,5 @@
-/* render/device_plan.h - a sweep of a plan as numbers of 32 bits for a device (gpu/device_sweep.h), and which
- * frames a device can make. */
+/* render/device_plan.h - describes a sweep of a plan for a device by numbers of 32 bits (gpu/device_sweep.h),
+ * and says which frames a device can make. */
 #ifndef HL_RENDER_DEVICE_PLAN_H
 #define HL_RENDER_DEVICE_PLAN_H
 
@@ -7,8 +7,8 @@
 #include "plan/frame_plan.h"
 #include "render/sweep_constants.h"
 
-/* Why a device does not make a frame: a part of a sentence, "its meshes are not there yet". Null: a device
- * makes the frame. */
+/* The reason why a device does not make a frame, as a part of a sentence: "its meshes are not there yet".
+ * Null: a device can make the frame. */
 const char *hl_reason_for_processors(const frame_plan *plan);
 
 /* The volume that the frame shows. */
@@ -24,8 +24,8 @@ typedef struct planned_sweep {
   plan_cut *cuts;  /* owned; null where the volume has no cuts */
 } planned_sweep;
 
-/* Brings a sweep of a plan to the numbers that a device reads. shown_from: the first visible slabs, as in a
- * sweep's target; borrowed. planned: release it after a failure, too; its address must not change, because
+/* Describes a sweep of a plan by the numbers that a device reads. shown_from: the first visible slabs, as in
+ * a sweep's target; borrowed. planned: release it after a failure, too. Its address must not change, because
  * its members point to each other. */
 hl_status hl_plan_sweep(hl_context *context, const frame_plan *frame_plan, const sweep_plan *plan,
                         const int32_t *shown_from, planned_sweep *planned, hl_error *error);

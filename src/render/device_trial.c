@@ -1,8 +1,8 @@
 /* render/device_trial.c - see device_trial.h.
  *
- * A driver may compile wrongly, flush small numbers to zero or round products where nobody asked for it. So a
- * device is first given numbers, whose results must be those of this machine's processor to the last bit, and
- * then a small picture: a ball in a volume, lit as a medium with hard shadows, and as a surface. */
+ * A driver may compile wrongly, flush small numbers to zero, or round products where it should not. So a
+ * device first computes with given numbers, and its results must equal the processor's to the last bit. Then
+ * it renders a small picture: a ball in a volume, lit as a medium with hard shadows, and as a surface. */
 #include "render/device_trial.h"
 
 #include <stdio.h>
@@ -23,7 +23,7 @@ static uint32_t next_bits(uint64_t *state) {
   return (uint32_t)(*state >> 32);
 }
 
-/* Finite floats of all magnitudes, subnormal ones included; every fourth near 1. */
+/* A finite float. The numbers have all magnitudes, subnormal ones included; every fourth number is near 1. */
 static float next_number(uint64_t *state, int index) {
   uint32_t bits = next_bits(state);
   if (index % 4 == 0) bits = (bits & 0x807fffffu) | (120 + (bits >> 23 & 15)) << 23;
@@ -111,7 +111,7 @@ static hl_status make_scene(hl_context *context, hl_volume *volume, bool surface
   return hl_scene_create(context, &description, scene, error);
 }
 
-/* Renders a picture of the trial on the owner's device (on_device) or on the processors. */
+/* Renders a picture of the trial, on the owner's device (on_device) or else on the processors. */
 static hl_status render(hl_renderer *owner, bool on_device, const hl_scene *scene, int frames, float *pixels,
                         hl_render_statistics *statistics, hl_error *error) {
   hl_renderer *renderer = NULL;
@@ -131,8 +131,8 @@ static hl_status render(hl_renderer *owner, bool on_device, const hl_scene *scen
   return status;
 }
 
-/* Renders the trial's picture on the device and on the processors, and compares the bytes. faster: the
- * trial asks, too, whether the device's second frame takes less time. */
+/* Renders the trial's picture on the device and on the processors, and compares the bytes. faster: the device
+ * must also take less time than the processors for its second frame. */
 static bool try_picture(hl_renderer *renderer, hl_volume *volume, bool surface, bool faster, float *pixels,
                         char *problem) {
   enum { FLOATS = PICTURE * PICTURE * 4 };

@@ -8,7 +8,7 @@
 #include "render/prepare.h"
 #include "render/sweep.h"
 
-/* Counts the bytes that the volumes take which are not prepared yet. Call hl_prepared_release_stale()
+/* Counts the bytes that those volumes take that are not prepared yet. Call hl_prepared_release_stale()
  * before. */
 void hl_prepare_count(const hl_scene_description *scene, const prepared_volume *prepared,
                       const grid_functions *functions, int threads, hl_layout *layout);
@@ -17,11 +17,11 @@ void hl_prepare_count(const hl_scene_description *scene, const prepared_volume *
 size_t hl_sweeps_bytes(const sweeps_memory *sweeps);
 
 /* Whether `bytes` more bytes fit below the context's limit. *estimate is raised to the number of bytes that
- * the context would then hold. */
+ * the context would hold then. */
 hl_status hl_check_room(const hl_context *context, uint64_t bytes, uint64_t *estimate, hl_error *error);
 
-/* The most bytes that the last frame was expected to hold through the context. The bytes held before the
- * frame are included. */
+/* The greatest number of bytes that the context was expected to hold during the last frame. It includes the
+ * bytes held before the frame. */
 uint64_t hl_renderer_estimate(const hl_renderer *renderer);
 
 #endif

@@ -1,13 +1,13 @@
-/* render/hidden.c - finds what opaque matter hides from the eye, before a sweep that goes from back to front:
- * that sweep would light hidden matter first, only to cover it later.
+/* render/hidden.c - finds what opaque matter hides from the eye, before a sweep that goes from back to front.
+ * Without this, the sweep would first light hidden matter and later cover it.
  *
  * A preparatory sweep passes over the same sheets from front to back and composites opacity alone, until
- * blocks are opaque. The slabs behind these blocks are then left out. A few tiles are tried first: where
- * little is hidden, everything is lit. */
+ * blocks are opaque. The slabs behind these blocks are then left out. A few tiles are searched first. If
+ * little is hidden in them, the search ends, and everything is lit. */
 #include "core/memory.h"
 #include "render/sweep.h"
 
-/* The same sheets in reverse order, for a sweep that goes from front to back. */
+/* The sheets in reverse order, for a sweep that goes from front to back. */
 static sweep_sheets turned_round(const sheet_stack *sheets) {
   sweep_sheets turned = {.sheets = *sheets};
   turned.sheets.normal = vec3_scale(sheets->normal, -1);
@@ -15,16 +15,17 @@ static sweep_sheets turned_round(const sheet_stack *sheets) {
   return turned;
 }
 
-/* A block has become opaque in the preparatory sweep, after slab k as counted from the eye. Returns the
- * number, counted from the light, of the first slab of the block that is visible. Derived: between n sheets
- * there are n - 1 slabs; the k slabs nearest to the eye are the last k, from slab n - k on. */
+/* The first visible slab of a block that has become opaque in the preparatory sweep. The result is counted
+ * from the light. slab: the slab after which the block was opaque, counted from the eye. Derived: between n
+ * sheets there are n - 1 slabs; the k slabs nearest to the eye are the last k, from slab n - k on. */
 static int32_t first_shown(const sweep *sweep, int slab) { return sweep->geometry->sheets.count - slab; }
 
 /* The data of the tile action. */
 typedef struct hidden_search {
   int32_t *shown_from; /* [tiles][16]; the number of the first visible slab of each block; 0: no opaque matter
-                        * covers the block so far */
-  bool trying; /* blocks stay open after they are opaque, so that the pixels which they cover are counted */
+                        * covers the block yet */
+  bool trying; /* whether blocks stay open after they are opaque, so that the pixels that opaque matter covers
+                * are counted */
 } hidden_search;
 
 static uint32_t uncovered_blocks(const int32_t shown_from[TILE_BLOCKS]) {
@@ -50,14 +51,14 @@ static uint32_t cover_tile(const sweep *sweep, const tile_slab *slab) {
   return search->trying ? slab->blocks : open;
 }
 
-/* Whether a tile is tried first: one tile in 32, none beside another. */
+/* Whether a tile is searched first. These are one tile in 32, and no two of them are neighbours. */
 static bool is_tried(const sweep *sweep, size_t tile) {
   return (hl_tile_x(sweep, tile) + hl_tile_y(sweep, tile) * 11) % 32 == 0;
 }
 
-/* The search goes on beyond the tried tiles if it finds more covered pixels for each seen pixel than this
- * number. To search a seen pixel takes about half as long as to light a covered pixel (measured), so 0.5
- * would pay; the number is higher because a few tried tiles are no sure sign. */
+/* The search goes on to all tiles if the first tiles have more covered pixels for each seen pixel than this
+ * number. Searching a seen pixel takes about half as long as lighting a covered pixel (measured), so from 0.5
+ * on the search would pay. The number is higher because a few tiles are no sure sign. */
 static const double COVERED_PER_SEEN = 0.75;
 
 static hl_status is_worth_while(const sweep *front, bool *worth, hl_error *error) {
@@ -74,7 +75,7 @@ static hl_status is_worth_while(const sweep *front, bool *worth, hl_error *error
     if (all == NULL) return hl_fail_memory(error, parts * sizeof own, "what is hidden");
     with->gather(with->data, own, sizeof own, all);
   }
-  double seen = 0, covered = 0; /* whole numbers, whose sums are the same in any order */
+  double seen = 0, covered = 0; /* the counts are whole numbers, whose sums are the same in any order */
   for (size_t part = 0; part < parts; part++) {
     seen += (double)all[part * COUNTS + SEEN];
     covered += (double)all[part * COUNTS + COVERED];
@@ -84,8 +85,9 @@ static hl_status is_worth_while(const sweep *front, bool *worth, hl_error *error
   return HL_OK;
 }
 
-/* Runs the search for hidden slabs. trying: it searches the tried tiles alone and keeps opaque blocks open,
- * so that the pixels they cover are counted. Otherwise it searches all other tiles. */
+/* Runs the search for hidden slabs. trying: the search visits only the tiles that are tried first, and keeps
+ * opaque blocks open, so that the pixels which opaque matter covers are counted. Otherwise the search visits
+ * all other tiles. */
 static hl_status go_through(sweep *front, hidden_search *search, bool trying, hl_error *error) {
   search->trying = trying;
   for (size_t tile = 0; tile < front->frame_plan->picture.tiles; tile++)
@@ -93,10 +95,11 @@ static hl_status go_through(sweep *front, hidden_search *search, bool trying, hl
   return hl_sweep_run(front, error);
 }
 
-/* Searches some tiles, and the others where the result promises a gain. front: a sweep that has begun. */
+/* Searches the tiles that are tried first, and the other tiles if the result promises a gain. front: a sweep
+ * that has begun. */
 static hl_status search_tiles(sweep *front, hidden_search *search, hl_error *error) {
-  /* The tried tiles must not depend on the part, or bytes would change. So parts that exchange nothing all
-   * try tiles of the whole picture. */
+  /* If the tried tiles depended on the part, bytes would change. So parts that exchange nothing all try tiles
+   * of the whole picture. */
   const picture_share *own = front->share, whole = {.parts = 1};
   bool worth = false;
   if (own->exchange == NULL) front->share = &whole;
@@ -129,7 +132,7 @@ hl_status hl_find_hidden(const sweep_means *means, const frame_plan *frame_plan,
   if (status == HL_OK) status = search_tiles(&front, &search, error);
   if (status == HL_OK) hl_sweep_count(&front, statistics);
   hl_sweep_end(&front);
-  /* sets the opacities to zero that the search left in the pixels */
+  /* the search has left opacities in the pixels; this sets them to zero again */
   hl_pool_clear(means->pool, pixels, tiles * TILE_PIXELS * 4 * sizeof *pixels);
   return status;
 }

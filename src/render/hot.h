@@ -1,7 +1,7 @@
 /* render/hot.h - one table of all rooms' hot functions for each instruction set.
  *
  * Each function is written once, in a *_lanes.h of its room, and compiled for every instruction set by
- * src/hot; all give the same bytes. A room receives the table of its own functions alone. */
+ * src/hot; all give the same bytes. A room gets only the table of its own functions. */
 #ifndef HL_RENDER_HOT_H
 #define HL_RENDER_HOT_H
 

@@ -51,7 +51,7 @@ void hl_layer_pixels_count(const hl_layers *wanted, const frame *frame, size_t t
   lay_out(frame, tiles, &pixels, layout);
 }
 
-/* Sets the first depth of all pixels to infinity: no ray has met anything yet. */
+/* Sets the first depth of all pixels to infinity, because no ray has met anything yet. */
 static void clear_first_depth(float *measures, size_t tiles) {
   for (size_t block = 0; block < tiles * TILE_BLOCKS; block++)
     for (int lane = 0; lane < BLOCK_PIXELS; lane++)
@@ -81,7 +81,7 @@ void hl_layer_pixels_release(hl_context *context, layer_pixels *pixels) {
 
 /* ---- the caller's buffers ---- */
 
-/* The address of one value of a pixel of the frame. */
+/* The address of one value of one of the frame's pixels. */
 static const float *value_at(const layer_grid *grid, const float *pixels, int floats, int column, int row,
                              int value) {
   return pixels + hl_place_in_tiles(grid->tiles_x, floats, column, row) + (size_t)value * BLOCK_PIXELS;
@@ -103,8 +103,8 @@ static float sum_of(const layer_grid *grid, const float *pixels, int floats, int
   return sum;
 }
 
-/* Writes three channels of a row. divide: the colours are divided by alpha (0 where alpha is 0); otherwise
- * they stay premultiplied. add: the colours are added to the numbers in `to`. */
+/* Writes three channels of a row. divide: whether the colours are divided by alpha (0 where alpha is 0);
+ * otherwise they stay premultiplied. add: whether the colours are added to the numbers in `to`. */
 static void write_colors(const layer_grid *grid, int row, const float *pixels, bool divide, bool add,
                          float *to) {
   float area = (float)(grid->oversampling * grid->oversampling);
@@ -113,14 +113,16 @@ static void write_colors(const layer_grid *grid, int row, const float *pixels, b
     float alpha = divide ? sum_of(grid, pixels, COLORS, column, row, 3, NULL) : area;
     for (int c = 0; c < 3; c++, to++) {
       *to = (add ? *to : 0) + (alpha > 0 ? sum_of(grid, pixels, COLORS, column, row, c, NULL) / alpha : 0);
-      /* The sectors of a light are divided each by the alpha of its own sweep, so their sum may exceed 1. */
+      /* Each sector of a light is divided by the alpha of its own sweep. So the sum over sectors may exceed
+       * 1. */
       if (divide && *to > 1) *to = 1;
     }
   }
 }
 
-/* Writes three channels of a row: the sky's light that arrives, divided by all of it. The field has few
- * directions: the light that arrives may exceed the light of an open sky by rounding. */
+/* Writes three channels of a row: the sky's light that arrives, divided by the light of an unhidden sky. The
+ * field has few directions, so that the light that arrives may exceed the light of an unhidden sky by
+ * rounding. */
 static void write_sky_shadow(const layer_grid *grid, int row, const layer_pixels *pixels, float *to) {
   to += 3 * (size_t)row * (size_t)grid->width;
   for (int column = 0; column < grid->width; column++)
@@ -136,8 +138,8 @@ static void write_sky_shadow(const layer_grid *grid, int row, const layer_pixels
     }
 }
 
-/* The object that most pixels of the frame show, among the pixels that make up one pixel of the picture and
- * show any object. Where several objects tie, the one with the least number counts. */
+/* The object that most of the frame's pixels within one pixel of the picture show. Pixels that show no object
+ * do not count. If several objects tie, the one with the least number is chosen. */
 static float object_of(const layer_grid *grid, const float *pixels, int column, int row) {
   int side = grid->oversampling, most = 0;
   float object = 0;

@@ -1,11 +1,11 @@
-/* render/layers.h - layers: the sweep shades each tile once more for each layer.
+/* render/layers.h - layers of a picture. For each layer, a sweep shades each tile once more.
  *
- * A light's picture is shaded with this light alone, without ambient light and emission. Its shadow is the
- * picture of white matter that sends light on from any angle, lit by this light in white. The sky's shadow
- * is the quotient of two pictures of white matter: lit by the sky, and by a sky that nothing hides. All are
- * made by the same function from the same densities, tile by tile after the picture's own. Depth, objects and
- * normals are measured in a sweep that goes front to back for the eye. Without layers nothing of this runs.
- */
+ * A light's picture is shaded with this light alone, without ambient light and emission. A light's shadow is
+ * the picture of white matter that sends on light from any angle, lit by this light in white. The sky's
+ * shadow is the quotient of two pictures of white matter: one is lit by the sky, the other by a sky that
+ * nothing hides. The function that shades the picture makes all of these from the same densities, for each
+ * tile after the picture's own tile. Depth, objects and normals are measured in a sweep that goes from front
+ * to back for the eye. Without layers, none of this is done. */
 #ifndef HL_RENDER_LAYERS_H
 #define HL_RENDER_LAYERS_H
 
@@ -20,11 +20,13 @@
  * layer is not wanted. */
 typedef struct light_pixels {
   float *picture, *shadow; /* R G B A */
-  size_t light_index;      /* the light's index in the scene; a light in sectors has several entries */
-  bool of_sky; /* the light is a sun of the sky: its picture is a part of the sky's picture. A sun has no
-                * shadow layer; it has the next two arrays instead */
-  float *reaching, *open; /* R G B A; the sun's share of two pictures of white matter: `reaching` by the light
-                           * that arrives, `open` by the light that would arrive if nothing were in the way */
+  size_t light_index;      /* the light's index in the scene; a light in sectors has an entry for each
+                            * sector */
+  bool of_sky; /* whether the light is a sun of the sky. Its picture is then a part of the sky's picture. A
+                * sun has no shadow layer; it has the next two arrays instead */
+  float *reaching, *open; /* R G B A; the sun's share of two pictures of white matter. `reaching` is lit by
+                           * the light that arrives, `open` by the light that would arrive if nothing were in
+                           * the way */
 } light_pixels;
 
 enum { COLORS = 4 }; /* R G B A */
@@ -32,12 +34,12 @@ enum { COLORS = 4 }; /* R G B A */
 typedef struct layer_pixels {
   const hl_layers *wanted;         /* the caller's; null: none */
   float *ambient, *emission, *sky; /* R G B A */
-  float *sky_reaching,
-      *sky_open;        /* R G B A of white volumes: lit by the sky, and by a sky that nothing hides */
-  float *measures;      /* [MEASURES] floats per pixel */
-  light_pixels *lights; /* owned; [light_count] */
-  size_t light_count;   /* number of lights of the frame */
-  void *memory;         /* owned; holds all pixels */
+  float *sky_reaching, *sky_open;  /* R G B A; two pictures of white volumes: lit by the sky, and lit by a sky
+                                    * that  nothing hides */
+  float *measures;                 /* [MEASURES] floats per pixel */
+  light_pixels *lights;            /* owned; [light_count] */
+  size_t light_count;              /* number of lights of the frame */
+  void *memory;                    /* owned; holds all pixels */
 } layer_pixels;
 
 /* Allocates the wanted layers of a frame. tiles: the number of the frame's tiles. */
@@ -47,10 +49,11 @@ hl_status hl_layer_pixels_create(hl_context *context, hl_pool *pool, const hl_la
 void hl_layer_pixels_count(const hl_layers *wanted, const frame *frame, size_t tiles, hl_layout *layout);
 void hl_layer_pixels_release(hl_context *context, layer_pixels *pixels);
 
-/* Which of the wanted layers a light of the frame adds to. */
+/* Those of the wanted layers to which a light of the frame adds. */
 hl_light_layers hl_layers_of_light(const hl_layers *wanted, const light_source *light);
 
-/* How pixels of the frame become pixels of the picture: oversampling x oversampling are averaged. */
+/* The map from the frame's pixels to the picture's pixels: the mean of oversampling x oversampling of the
+ * frame's pixels is a pixel of the picture. */
 typedef struct layer_grid {
   int width, height; /* size of the picture */
   int oversampling;

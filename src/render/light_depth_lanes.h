@@ -1,8 +1,8 @@
-/* render/light_depth_lanes.h - the light that a slab's own matter absorbs before it reaches a medium at the
- * lit position (step 15, derived).
+/* render/light_depth_lanes.h - how much of the light a slab's own matter absorbs before the light reaches a
+ * medium at the lit position (step 15, derived).
  *
  * The shadow buffer holds the light that reaches the slab's first sheet. From there on, the sample's own
- * densities and gradient tell how much is absorbed. */
+ * densities and gradient tell how much light is absorbed. */
 #ifndef HL_RENDER_LIGHT_DEPTH_LANES_H
 #define HL_RENDER_LIGHT_DEPTH_LANES_H
 
@@ -12,11 +12,11 @@ typedef struct color_lanes {
   lanes c[3];
 } color_lanes;
 
-/* exp(-x); x may be negative, and below -40 it counts as -40. */
+/* exp(-x). x may be negative; below -40 it counts as -40. */
 LANES_INLINE lanes exp_of_depth(lanes x) { return lanes_exp_negative(lanes_max(x, lanes_set(-40.0f))); }
 
-/* phi(x) = (1 - exp(-x)) / x, the mean of exp(-x s) over s in [0,1], as numerator (over) and denominator
- * (under). left: exp(-x). */
+/* phi(x) = (1 - exp(-x)) / x: the mean of exp(-x s) over s in [0,1]. It is given as numerator (over) and
+ * denominator (under). left: exp(-x). */
 typedef struct mean_transmittance {
   lanes over, under;
 } mean_transmittance;
@@ -27,11 +27,11 @@ LANES_INLINE mean_transmittance transmittance_within(lanes x, lanes left) {
   return (mean_transmittance){lanes_select(thin, near, 1.0f - left), lanes_select(thin, lanes_set(1.0f), x)};
 }
 
-/* The light's transmittance within the slab, averaged over the slab's matter with the weights with which
- * the eye sees it. e: the slab's optical depth for the eye; left: exp(-e). enter: the light's optical depth
- * where the eye's ray enters the matter; more: what the depth gains until the ray leaves. Derived; exact
- * for extinction that varies along one direction only: int e exp(-e s) exp(-enter - more s) ds / (1 -
- * exp(-e)) = exp(-enter) phi(e + more) / phi(e), with phi(-x) = exp(x) phi(x). */
+/* The light's transmittance within the slab, averaged over the slab's matter with the weights with which the
+ * eye sees it. e: the slab's optical depth for the eye; left: exp(-e). enter: the light's optical depth where
+ * the eye's ray enters the matter; more: how much this depth grows until the eye's ray leaves the matter.
+ * Derived; exact for extinction that varies along one direction only: int e exp(-e s) exp(-enter - more s) ds
+ * / (1 - exp(-e)) = exp(-enter) phi(e + more) / phi(e), with phi(-x) = exp(x) phi(x). */
 LANES_INLINE lanes own_transmittance(lanes e, lanes left, lanes enter, lanes more) {
   lanes sum = e + more, both = lanes_abs(sum);
   mean_transmittance of_both = transmittance_within(both, lanes_exp_negative(both)),
@@ -40,9 +40,9 @@ LANES_INLINE lanes own_transmittance(lanes e, lanes left, lanes enter, lanes mor
   return seen * exp_of_depth(enter + lanes_min(sum, lanes_set(0)));
 }
 
-/* Lengths of the light's way within a volume's box, to the two points where a section of the eye's ray begins
- * and ends. path, in ways_of_light(): the lengths of the ways to these points from the slab's first sheet,
- * whether in the box or not. */
+/* Lengths of the light's ways, within a volume's box, to the two points where a section of the eye's ray
+ * begins and ends. path, in ways_of_light(): the lengths of the complete ways to these points from the slab's
+ * first sheet, in the box and outside of it. */
 typedef struct ways_in_box {
   lanes first, last;
 } ways_in_box;
@@ -71,18 +71,18 @@ LANES_INLINE ways_in_box ways_of_light(const shade_volume *volume, lanes3 start,
                        lanes_max(leave.last - enter.last, lanes_set(0))};
 }
 
-/* The coordinate, in the classifier's tables, of a volume's density where its matter is seen. */
+/* The coordinate, in the classifier's tables, of the density at the place where a volume's matter is seen. */
 LANES_INLINE lanes coordinate_seen(const block_density *d) {
   return lanes_fma(d->after - d->before, d->seen, d->before);
 }
 
-/* Finds an even extinction for the light's way through the slab, down to the point where a volume's matter is
- * seen. With it, this way has the right optical depth (derived). The extinction along the eye's ray would be
- * wrong: the eye's ray may run along a surface that the light's ray crosses. Let f be the density at the
- * point, g the gradient, and l the direction to the light. At the distance s towards the light, the density
- * is then f - s g.l to first order. The mean extinction of these densities is the result but for a factor.
- * Even extinction would let the eye see the slab at another position (`evenly`); the factor makes the optical
- * depths of both positions equal. */
+/* Finds an even extinction for the light's way through the slab, as far as the point where a volume's matter
+ * is seen: the extinction that gives this way the right optical depth (derived). The extinction along the
+ * eye's ray would be wrong: the eye's ray may run along a surface that the light's ray crosses. Let f be the
+ * density at the point, g the gradient, and l the direction to the light. At the distance s towards the
+ * light, the density is then f - s g.l to first order. The mean extinction of these densities is the result
+ * but for a factor. Even extinction would let the eye see the slab at another position (`evenly`); the factor
+ * makes the optical depths of both positions equal. */
 LANES_INLINE lanes extinction_towards(const block_density *d, lanes3 towards, lanes way) {
   const classifier *classifier = d->patch->volume->classifier;
   if (lanes_bits(d->sloped) == 0) return d->sums.extinction;
@@ -95,9 +95,9 @@ LANES_INLINE lanes extinction_towards(const block_density *d, lanes3 towards, la
   return lanes_select(d->sloped, late * sums.extinction, d->sums.extinction);
 }
 
-/* The light's ways through all volumes to where the slab's covered part starts and ends. Where several
- * volumes share a slab, each absorbs light on the part of its way that lies in the slab and in the volume's
- * own box, wherever the eye's ray passes. */
+/* The lengths of the light's ways through all volumes, to where the slab's covered part begins and ends.
+ * Where several volumes share a slab, each volume absorbs light on the part of the way that lies in the slab
+ * and in the volume's box, wherever the eye's ray passes. */
 LANES_INLINE ways_in_box find_ways(const block_slab *slab, block_density *densities, int count,
                                    lanes3 towards, lanes path) {
   const block_geometry *g = &slab->geometry;
@@ -118,28 +118,31 @@ LANES_INLINE ways_in_box find_ways(const block_slab *slab, block_density *densit
   return (ways_in_box){lanes_min(sum.first, all.first), lanes_min(sum.last, all.last)};
 }
 
-/* Optical depths of the slab for one light, from its first sheet on. */
+/* Optical depths for one light within a slab, counted from the slab's first sheet. */
 typedef struct light_depths {
-  /* enter: the optical depth to the point where the eye's ray enters the matter. more: what the depth gains
-   * until the eye's ray leaves the matter. */
+  /* enter: the optical depth to the point where the eye's ray enters the matter. more: how much the depth
+   * grows until the eye's ray leaves the matter. */
   lanes enter[HL_CHANNELS], more[HL_CHANNELS];
-  /* Near a face: optical depths from the face to the near pixels on the first sheet. */
+  /* Near a face: the optical depths from the face to each near pixel on the first sheet. */
   lanes near[HL_CHANNELS][NEAR_PIXELS];
   lanes_int face; /* lanes near a face of a box */
-  lanes beside;   /* near a face: how much the face counts, 0 to 1 */
-  /* Near a face: optical depths like `enter` and `more`, but of the light's way before the slab. */
+  lanes beside;   /* near a face: how much the correction for the face counts, 0 to 1 */
+  /* Near a face: `enter` and `more` for the light's way before the slab, in place of its way within the
+   * slab. */
   lanes before_enter[HL_CHANNELS], before_more[HL_CHANNELS];
 } light_depths;
 
-/* The greatest optical depth that is used: it leaves hardly any light, and exp(-depth) is still a float. */
+/* The greatest optical depth that is used. It leaves hardly any light, but exp(-depth) is still above 0 as a
+ * float. */
 static const float DEEPEST = 80;
 
-/* Where the optical depths of the near pixels, from the faces to the slab, differ by less than this, the
- * buffer is read as if there were no face; where they differ by twice as much, the face counts fully. */
+/* Differences of the optical depths, from the faces to the slab, between the near pixels. Where the depths
+ * differ by less than EVEN_LIGHT, the buffer is read as if there were no face. Where they differ by twice
+ * EVEN_LIGHT, the face counts fully. */
 static const float EVEN_LIGHT = 0.1f;
 
 /* Near a face of a volume's box: adds the optical depth of the volume's matter between the face and the slab.
- * The depths at the near pixels are added to `before`. */
+ * before: raised by these depths at the near pixels. */
 LANES_INLINE void add_face(const shade_job *job, const block_slab *slab, const block_density *d,
                            const seen_light *light, lanes before[HL_CHANNELS][NEAR_PIXELS],
                            light_depths *depths) {
@@ -167,8 +170,9 @@ LANES_INLINE void add_face(const shade_job *job, const block_slab *slab, const b
   }
 }
 
-/* Adds to depths->near the optical depths between the faces and the slab. They are weakened where they hardly
- * differ from pixel to pixel. before: these depths at the near pixels, all volumes together. */
+/* Adds to depths->near the optical depths between the faces and the slab. Where these depths hardly differ
+ * from pixel to pixel, only a part of them is added. before: these depths at the near pixels, all volumes
+ * together. */
 LANES_INLINE void add_before(int channels, lanes before[HL_CHANNELS][NEAR_PIXELS], light_depths *depths) {
   lanes spread = lanes_set(0);
   for (int c = 0; c < channels; c++) {

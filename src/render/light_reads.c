@@ -1,10 +1,10 @@
 /* render/light_reads.c - see light_reads.h.
  *
  * The samples of a picture's tile in a run of slabs lie between rays through the tile's corners and between
- * two sheets. So they lie in the convex hull of eight points. Where all points lie ahead of the light, the
- * light sees the samples in the convex hull of the points' images (derived: a projection takes lines to
- * lines). The tiles of the buffer around the images are needed until the run's last slab. Where a light is
- * many sub-lights, the picture reads their buffers, and each has tiles of its own. */
+ * two sheets. So the samples lie in the convex hull of eight points. Where all points lie ahead of the light,
+ * the light sees the samples in the convex hull of the points' images (derived: a projection takes lines to
+ * lines). The tiles of the buffer around the images are needed until the run's last slab. For a light of many
+ * sub-lights, the picture reads the sub-lights' buffers, each of which has its own tiles. */
 #include "render/light_reads.h"
 
 #include <string.h>
@@ -13,8 +13,8 @@
 #include "render/surface_point.h"
 #include "surface/late/lateness.h"
 
-/* The number of sheets by which a sample may lie outside of its slab by rounding, and the number of pixels by
- * which it may lie outside of its tile. */
+/* Allowances for rounding: SHEET_SPARE is the number of sheets by which a sample may lie outside of its slab,
+ * PIXEL_SPARE the number of pixels by which it may lie outside of its tile. */
 static const double SHEET_SPARE = 0.5, PIXEL_SPARE = 1;
 
 /* Slabs of a run. */
@@ -24,19 +24,19 @@ enum { READ_RUN = 8 };
  * side, and one more is for rounding. */
 enum { READ_TAPS = 3 };
 
-/* The cosine by which a sector's edge is moved outwards, for rounding. */
+/* The difference of cosines by which a sector's edge is moved outwards, to allow for rounding. */
 static const double SECTOR_SPARE = 1e-3;
 
 /* A buffer that the picture reads: a light's, or a sub-light's. */
 typedef struct read_buffer {
   const light_source *source;
   double rows[3][4]; /* frame space -> (w, w u, w v) of the buffer */
-  double length[3];  /* the length of each row without its last number */
+  double length[3];  /* the length of each row of the map as a vector, without its constant */
   int32_t *until;    /* [tiles_y][tiles_x] */
   int tiles_x, tiles_y;
-  const struct read_buffer *moves; /* the buffer whose pixels measure how far look-ups at surfaces move
-                                    * away from the surfaces: the light's first one. Null: there are no
-                                    * surfaces. */
+  const struct read_buffer *moves; /* the buffer whose pixels are the unit in which look-ups at surfaces are
+                                    * moved away from the surfaces: the light's first buffer. Null: there are
+                                    * no surfaces. */
 } read_buffer;
 
 /* The position of a point in a buffer, as homogeneous coordinates (w, w u, w v). */
@@ -71,10 +71,11 @@ static bool bound_points(const read_buffer *buffer, const vec3 *points, int coun
   return count > 0;
 }
 
-/* Widens the bounds by the pixels that are read beside a sample. False where samples may move to places that
- * do not lie ahead of the light. Derived: look-ups at surfaces move by at most d = 1.25 w' / |r1'|, where w'
- * and r1' belong to the buffer whose pixels measure the move. The column u = (r1.p) / w moves by (r1.d - u
- * r0.d) / (w + r0.d), which is at most d (|r1| + |u| |r0|) / (w - d |r0|). The row v moves likewise. */
+/* Widens the bounds by the pixels that look-ups read beside a sample. Returns false where samples may be
+ * moved to places that do not lie ahead of the light. Derived: look-ups at surfaces are moved by at most d =
+ * 1.25 w' / |r1'|, where w' and r1' belong to the buffer `moves`. The column u = (r1.p) / w moves by (r1.d -
+ * u r0.d) / (w + r0.d), which is at most d (|r1| + |u| |r0|) / (w - d |r0|). For the row v, take r2 in place
+ * of r1. */
 static bool widen(const read_buffer *buffer, const vec3 *points, int count, read_bounds *bounds) {
   double farthest = 0, way = 0;
   for (int i = 0; i < count && buffer->moves != NULL; i++)
@@ -96,8 +97,8 @@ static int tile_at(double pixel, int tiles) {
   return pixel >= (double)tiles * TILE ? tiles - 1 : (int)(pixel / TILE);
 }
 
-/* Raises `until` in the tiles of the buffer that the hull of some points may read. Where a point does not lie
- * ahead of the light, or where there are no points, these are all tiles. */
+/* Raises `until` in those tiles of the buffer that samples in the convex hull of some points may read. These
+ * are all tiles if a point does not lie ahead of the light, or if there are no points. */
 static void read_hull(const read_buffer *buffer, const vec3 *points, int count, int32_t slab) {
   const int tiles[2] = {buffer->tiles_x, buffer->tiles_y};
   int first[2] = {0, 0}, last[2] = {tiles[0] - 1, tiles[1] - 1};
@@ -114,10 +115,10 @@ static void read_hull(const read_buffer *buffer, const vec3 *points, int count, 
     }
 }
 
-/* Finds points whose convex hull holds the samples of a tile between two heights. There are eight points;
- * where the eye lies between the heights or beyond them, there are fewer points, and the eye. There are no
- * points where a ray beside the picture does not cross the sheets in the direction of the rays within the
- * picture. */
+/* Finds points whose convex hull holds the samples of a tile between two heights. Usually there are eight
+ * points. If the eye lies between the heights or beyond them, there are fewer points, and the eye is one of
+ * them. There are no points if a ray at the tile's corners, which may lie beside the picture, crosses the
+ * sheets in another direction than the picture's rays. */
 static int hull_of(const sweep *sweep, size_t tile, double low, double high, vec3 points[9]) {
   const view *eye = &sweep->frame->eye;
   vec3 normal = sweep->geometry->sheets.normal;
@@ -149,7 +150,7 @@ typedef struct reads_task {
   int buffer_count;
 } reads_task;
 
-/* Marks the tiles that the slabs from first to last, both included, read in a tile of the picture. */
+/* Marks the tiles that a tile of the picture reads in the slabs from first to last, both included. */
 static void read_slabs(const reads_task *task, size_t tile, int first, int last) {
   const sheet_stack *sheets = &task->sweep->geometry->sheets;
   vec3 points[9];
@@ -174,8 +175,8 @@ static void read_tile(const reads_task *task, size_t tile) {
   if (first > 0) read_slabs(task, tile, first, last);
 }
 
-/* Marks the tiles of light buffers that are read by the surfaces which the eye sees in a tile, for the
- * sectors that light these surfaces. */
+/* For those lights that are sectors: marks the tiles of the lights' buffers that are read at surfaces which
+ * the eye sees in a tile of the picture. */
 static void read_surfaces(const reads_task *task, size_t tile) {
   const sweep *sweep = task->sweep;
   const fragments *all = &sweep->surfaces.image;
@@ -225,8 +226,8 @@ static size_t tiles_of(const light_shadow *shadow) {
   return shadow->sublight_count > 0 ? sublight_tiles(shadow) : hl_view_tiles(&shadow->plan.view);
 }
 
-/* Lays out the arrays of a light whose reads are limited. needed_until or sublights_until begins the
- * block. */
+/* Lays out the arrays of a light whose reads are limited. needed_until, or for sub-lights sublights_until, is
+ * the first array in the block. */
 static void lay_out_light(const sweep *sweep, sweep_light *light, hl_layout *layout) {
   const size_t tiles = tiles_of(&light->shadow);
   int32_t *until = hl_layout_take(layout, tiles, sizeof *until);
@@ -244,7 +245,7 @@ static read_buffer *lay_out_buffers(const sweep *sweep, hl_layout *layout) {
   return hl_layout_take(layout, count, sizeof(read_buffer));
 }
 
-/* Lays out the array that says for each part until which slab it needs each tile of a light's buffer. */
+/* Lays out an array [parts][tiles]: until which slab each part needs each tile of a light's buffer. */
 static int32_t *lay_out_needs(const light_shadow *shadow, hl_layout *layout) {
   return hl_layout_take(layout, (size_t)shadow->setup.exchange->parts * tiles_of(shadow), sizeof(int32_t));
 }
@@ -263,16 +264,15 @@ void hl_light_reads_count(sweep *sweep, hl_layout *layout) {
 
 /* ---- owners ---- */
 
-/* The last slab in which bricks or surfaces touch a tile; 0 where none does. */
+/* The last slab in which bricks or surfaces touch a tile; 0: nothing touches the tile. */
 static int32_t last_touched(const occupancy *occupancy, size_t tile) {
   for (int slab = occupancy->sheets - 1; slab > 0; slab--)
     if (hl_occupancy_touches(occupancy, tile, slab)) return slab;
   return 0;
 }
 
-/* The part that owns a tile of a light's buffer: among the parts that need the tile up to the latest slab,
- * the part with the least number. A tile that no part needs gets an owner by its place. all: [parts][tiles]
- */
+/* The part that owns a tile of a light's buffer. It is the part that needs the tile longest; if several do,
+ * the one with the least number. A tile that no part needs gets an owner by its place. all: [parts][tiles] */
 static int owner_of(const int32_t *all, size_t tile, size_t tiles, int parts) {
   int owner = 0;
   for (int part = 1; part < parts; part++)
@@ -293,10 +293,10 @@ static bool is_owned_around(const sweep_light *light, int tile, int around) {
   return false;
 }
 
-/* Finds the tiles that this part owns. The part needs an owned tile as long as anything touches it, even
- * where the picture no longer needs it, so that the parts together know all light. Where there are surfaces,
- * the part needs the tiles beside an owned tile, too: the light that surfaces hide in a tile depends on
- * pixels up to a tile beside it (shadow_cascade/cascade_field.h). */
+/* Finds the tiles that this part owns. The part needs an owned tile as long as anything touches the tile,
+ * even if the part's picture no longer needs it. So the parts together know all light. Where there are
+ * surfaces, the part needs the tiles beside an owned tile, too: the light that surfaces hide in a tile
+ * depends on pixels up to a tile beside it (shadow_cascade/cascade_field.h). */
 static hl_status find_owned(sweep *sweep, sweep_light *light, hl_error *error) {
   hl_context *context = sweep->content.context;
   const light_exchange *with = light->shadow.setup.exchange;

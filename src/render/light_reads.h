@@ -6,16 +6,16 @@
 #include "render/sweep.h"
 
 /* Finds needed_until of each light whose method allows it, where the picture is shared or the light is a
- * sector. Call it after the sweep's views, its lights and the picture's surfaces have begun. Tiles that are
- * left out are never read, so pixels do not change. */
+ * sector. Call it after the sweep's views, its lights and the picture's surfaces have begun. Tiles that no
+ * part needs are never read, so leaving them out changes no pixel. */
 hl_status hl_light_reads_find(sweep *sweep, hl_error *error);
 
-/* Adds to the needed tiles those that this part of a shared picture owns, because other parts may need
- * their light. Call it after the lights' surfaces have begun. */
+/* Adds the tiles that this part of a shared picture owns to the tiles that it needs, because other parts may
+ * need the light of owned tiles. Call it after the lights' surfaces have begun. */
 hl_status hl_light_reads_find_owned(sweep *sweep, hl_error *error);
 
-/* Counts the memory that both functions above take, for lights whose shadows are planned. Sets no
- * pointers. */
+/* Counts the memory that hl_light_reads_find() and hl_light_reads_find_owned() take, for lights whose shadows
+ * are planned. Sets no pointers. */
 void hl_light_reads_count(sweep *sweep, hl_layout *layout);
 
 #endif

@@ -1,8 +1,9 @@
 /* render/maximum.h - maximum projection: a picture of the greatest value along each ray, in place of lit
  * matter.
  *
- * One sweep without lights, sheets parallel to the picture, keeps for each pixel and visible volume the
- * greatest value that the volume's transfer function shows; colours are looked up after the sweep. */
+ * There is one sweep, without lights and with sheets parallel to the picture. For each pixel and visible
+ * volume it keeps the greatest value that the volume's transfer function shows. Colours are looked up after
+ * the sweep. */
 #ifndef HL_RENDER_MAXIMUM_H
 #define HL_RENDER_MAXIMUM_H
 
@@ -13,8 +14,8 @@
  * B-spline: tests/analytic/sheets_maximum.c). */
 #define MAXIMUM_SPACING 0.5
 
-/* Makes the projection's pixels and tables for the frame of a plan. values stays null where the scene
- * composites otherwise. Release the result in any case. */
+/* Makes the projection's pixels and tables for the frame of a plan. If the scene uses another kind of
+ * compositing, `values` stays null. Release the result in any case. */
 hl_status hl_maximum_create(hl_context *context, hl_pool *pool, const frame_plan *plan,
                             maximum_values *maximum, hl_error *error);
 void hl_maximum_release(hl_context *context, maximum_values *maximum);
@@ -22,11 +23,11 @@ void hl_maximum_release(hl_context *context, maximum_values *maximum);
 /* Counts the memory that hl_maximum_create() takes. */
 void hl_maximum_count(const frame_plan *plan, hl_layout *layout);
 
-/* A sweep's action, in place of steps 12 to 16. */
+/* A sweep's tile action for a maximum projection, which replaces steps 12 to 16. */
 uint32_t hl_maximum_tile(const sweep *sweep, const tile_slab *slab);
 
-/* The picture's pixels, [tiles][16][R G B A][16]: each channel is the greatest among the volumes' colours.
- * Alpha is 1 where any volume shows something. */
+/* Makes the picture's pixels, [tiles][16][R G B A][16]. Each channel is the greatest among the colours of the
+ * volumes. Alpha is 1 where any volume shows something. */
 void hl_maximum_color(const maximum_values *maximum, const frame_plan *plan, hl_pool *pool, float *pixels);
 
 #endif

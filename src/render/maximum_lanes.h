@@ -7,8 +7,8 @@
 #include "render/slab_lanes.h"
 #include "simd/gathers.h"
 
-/* The greatest of the values from low to high that the transfer function shows. All values are coordinates in
- * the volume's table; below 0: no value is shown. */
+/* The greatest value between low and high that the transfer function shows. All values are coordinates in the
+ * volume's table. A result below 0: no value is shown. */
 LANES_INLINE lanes greatest_shown(const float (*shown)[4], lanes low, lanes high) {
   lanes of_entry[3], of_next[3];
   lanes_gather_row_pairs(&shown[0][0], split_coordinate(high).entry, of_entry, of_next);
@@ -17,9 +17,9 @@ LANES_INLINE lanes greatest_shown(const float (*shown)[4], lanes low, lanes high
   return lanes_select(value >= low, value, lanes_set(-1.0f));
 }
 
-/* The peak of the parabola through the values p, a, b on three sheets, where a is the greatest; else a.
- * Derived: the parabola is a + (b - p) / 2 t + (p + b - 2 a) / 2 t^2, t in sheets; its peak is a + (b - p)^2
- * / (8 (2 a - p - b)). */
+/* The peak of the parabola through the values p, a, b on three sheets if a is the greatest of them; else the
+ * result is a. Derived: with t in sheets, the parabola is a + (b - p) / 2 t + (p + b - 2 a) / 2 t^2; its peak
+ * is a + (b - p)^2 / (8 (2 a - p - b)). */
 LANES_INLINE lanes peak_of_three(lanes p, lanes a, lanes b) {
   lanes bend = lanes_fma(a, lanes_set(2.0f), -(p + b)), slope = b - p;
   lanes rise = slope * slope / lanes_max(bend * 8.0f, lanes_set(1e-20f));
@@ -47,7 +47,7 @@ LANES_INLINE uint32_t maximum_block(const shade_job *job, const shade_patch *pat
   return lanes_bits(value >= 0.0f);
 }
 
-/* Nothing is hidden in a maximum projection: all blocks stay open. */
+/* In a maximum projection nothing hides anything, so all blocks stay open. */
 static uint32_t maximum_tile(const shade_job *job, const tile_slab *tile, float *values, uint64_t *samples) {
   for (uint32_t left = tile->blocks; left != 0; left &= left - 1) {
     int block = __builtin_ctz(left);

@@ -1,4 +1,4 @@
-/* render/measure_lanes.h - the layers depth, normal and object, a 4x4 block at a time. */
+/* render/measure_lanes.h - measures depth, normal and object for the layers, a 4x4 block at a time. */
 #ifndef HL_RENDER_MEASURE_LANES_H
 #define HL_RENDER_MEASURE_LANES_H
 
@@ -24,7 +24,7 @@ LANES_INLINE lanes depth_of(const shade_job *job, const block_slab *slab, lanes3
   return -dot3(way, slab->geometry.towards_eye);
 }
 
-/* The number of the object that takes most of the slab's light. */
+/* The number of the object that absorbs most of the slab's light. */
 LANES_INLINE lanes object_of_block(const block_density *densities, int count) {
   lanes most = lanes_set(0), object = lanes_set(0);
   for (int i = 0; i < count; i++) {
@@ -84,8 +84,7 @@ static uint32_t measure_tile(const shade_job *job, const tile_slab *tile, float 
 
 /* ---- the opacity that the eye sees, without light, to find what is hidden ---- */
 
-/* Returns true while some pixel of the block is not opaque. bits: the pixels in which something may be
- * seen. */
+/* Returns whether some pixel of the block is not opaque. bits: the pixels in which something may be seen. */
 LANES_INLINE int cover_block(const shade_job *job, const tile_slab *tile, int block, uint32_t bits,
                              float *alpha) {
   block_density *densities = tile->scratch;

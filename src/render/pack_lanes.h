@@ -1,5 +1,5 @@
-/* render/pack_lanes.h - packs a tile's samples before they are lit: where only some of a block's pixels may
- * show something, the pixels of several blocks share sixteen lanes. */
+/* render/pack_lanes.h - packs a tile's samples before they are lit. Where only some of a block's pixels may
+ * show something, the pixels of several blocks are put into sixteen lanes. */
 #ifndef HL_RENDER_PACK_LANES_H
 #define HL_RENDER_PACK_LANES_H
 
@@ -20,8 +20,8 @@ typedef struct packed_tile {
   packed_block blocks[TILE_BLOCKS];
 } packed_tile;
 
-/* A patch's scratch holds the volume of a block before the block is packed, followed by the volume of each
- * packed slab: [1 + TILE_BLOCKS][patches] for all patches. */
+/* A patch's scratch holds a block_density for a block before it is packed, followed by one for each packed
+ * slab. For all patches together these are [1 + TILE_BLOCKS][patches]. */
 _Static_assert((1 + TILE_BLOCKS) * sizeof(block_density) <= SHADE_SCRATCH_BYTES,
                "a volume's scratch holds its slabs");
 
@@ -35,7 +35,7 @@ LANES_INLINE int add_slab(packed_tile *tile, int patch_count, block_density *den
   return s;
 }
 
-/* Finds the first packed slab with at least lanes_wanted free lanes; where there is none, adds a slab. */
+/* Finds the first packed slab that has at least lanes_wanted free lanes. If there is none, adds a slab. */
 LANES_INLINE int slab_with_room(packed_tile *tile, int lanes_wanted, int patch_count,
                                 block_density *densities) {
   for (int s = 0; s < tile->slab_count; s++)
@@ -43,7 +43,7 @@ LANES_INLINE int slab_with_room(packed_tile *tile, int lanes_wanted, int patch_c
   return add_slab(tile, patch_count, densities);
 }
 
-/* A block_way is copied lane by lane: it consists of lanes only. */
+/* A block_way consists of lanes only, so it is copied lane by lane. */
 enum { WAY_LANES = sizeof(block_way) / sizeof(lanes) };
 
 LANES_INLINE void pack_way(const lanes_packing *packing, const block_density *from, block_density *into) {
@@ -55,7 +55,7 @@ LANES_INLINE void pack_way(const lanes_packing *packing, const block_density *fr
   into->there = 1;
 }
 
-/* Packs a block of which all pixels may show something: it takes a packed slab for itself. */
+/* Packs a block all of whose pixels may show something: it gets a packed slab of its own. */
 LANES_INLINE void keep_block(packed_tile *tile, const block_slab *block, const block_density *ways,
                              int patch_count, block_density *densities, packed_block *packed) {
   int s = add_slab(tile, patch_count, densities);
@@ -75,7 +75,7 @@ LANES_INLINE void keep_block(packed_tile *tile, const block_slab *block, const b
   packed->whole = 1;
 }
 
-/* Packs the pixels of a block whose bit is set into a slab. densities: the volumes of all slabs. */
+/* Packs those pixels of a block whose bits are set into a slab. densities: the block_density of all slabs. */
 LANES_INLINE void pack_block(packed_tile *tile, const block_slab *block, const block_density *ways,
                              int patch_count, uint32_t bits, block_density *densities, packed_block *packed) {
   int count = __builtin_popcount(bits), s = slab_with_room(tile, count, patch_count, densities),

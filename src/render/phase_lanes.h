@@ -7,15 +7,16 @@
 
 static const float LEAST_LIGHT_DISTANCE = (float)HL_LEAST_LIGHT_DISTANCE;
 
-/* Henyey and Greenstein's phase function, "Diffuse radiation in the galaxy" (1941), times 4 pi: 1 stands for
- * scattering alike in all directions. (1 - g^2) / (1 + g^2 - 2 g cos)^(3/2), where cos is the cosine of the
- * angle between the light's direction before and after. turn: -cos. */
+/* Henyey and Greenstein's phase function, "Diffuse radiation in the galaxy" (1941), times 4 pi, so that even
+ * scattering has the value 1. The value is (1 - g^2) / (1 + g^2 - 2 g cos)^(3/2), where cos is the cosine of
+ * the angle between the light's directions before and after scattering. turn: -cos. */
 LANES_INLINE lanes phase(float g, lanes turn) {
   lanes squared = lanes_line(turn, 2 * g, 1 + g * g);
   return lanes_set(1 - g * g) / (squared * lanes_sqrt(squared));
 }
 
-/* The position of an angle in the columns of a phase table, and the phase function p at the angle. */
+/* The position of an angle among the columns of a phase table, and the value of the phase function p at this
+ * angle. */
 typedef struct phase_angle {
   lanes_int column;
   lanes fraction; /* from the column to the next one */
@@ -40,8 +41,8 @@ LANES_INLINE lanes row_of_ratio(const phase_table *table, lanes ratio) {
   return lanes_clamp(row, 0, PHASE_CAPS - 1 - 1e-3f);
 }
 
-/* The mean of the phase function over a cap. row: the row for the cap's size. The angle is measured to the
- * cap's middle. */
+/* The mean of the phase function over a cap. row: the row for the cap's size. angle: the angle to the middle
+ * of the cap. */
 LANES_INLINE lanes mean_in_table(const phase_table *table, lanes row, const phase_angle *angle) {
   lanes square[4];
   lanes_int first = lanes_truncate(row);
@@ -52,8 +53,8 @@ LANES_INLINE lanes mean_in_table(const phase_table *table, lanes row, const phas
   return lanes_fma(far - near, angle->fraction, near) * angle->phase;
 }
 
-/* The row of a phase table for a light's cap as seen along `way`, which need not have unit length. inverse: 1
- * / |way|^2. */
+/* The row of a phase table for one cap of a light, seen along `way`, which need not have unit length.
+ * inverse: 1 / |way|^2. */
 LANES_INLINE lanes row_of_cap(const phase_table *table, float size, const light_cap *cap, lanes3 way,
                               lanes inverse) {
   const float *spread = cap->spread;
@@ -67,7 +68,7 @@ LANES_INLINE lanes row_of_cap(const phase_table *table, float size, const light_
   return row_of_ratio(table, ratio);
 }
 
-/* The mean of the phase function over one cap. */
+/* The mean of the phase function over one cap of a light. */
 LANES_INLINE lanes phase_of_cap(const phase_table *table, float g, const light_cap *cap,
                                 const block_geometry *geometry) {
   const float least = LEAST_LIGHT_DISTANCE * LEAST_LIGHT_DISTANCE;

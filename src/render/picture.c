@@ -5,7 +5,7 @@
 
 enum { COLORS = 4 }; /* R G B A */
 
-/* Adds one pixel of the frame, from all sweeps. */
+/* Adds the values that one of the frame's pixels has in all sweeps. */
 static void add_pixel(const picture *picture, int column, int row, float sum[COLORS]) {
   const float *from = picture->tiles + hl_place_in_tiles(picture->tiles_x, COLORS, column, row);
   for (int c = 0; c < COLORS; c++) sum[c] += from[c * BLOCK_PIXELS];

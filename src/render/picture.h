@@ -1,4 +1,4 @@
-/* render/picture.h - the caller's picture, out of the tiles of a frame's sweeps.
+/* render/picture.h - makes the caller's picture from the tiles of a frame's sweeps.
  *
  * The lights' contributions from all sweeps are added up; opacity is the same in every sweep. Pixels are
  * averaged where the frame is oversampled. */
@@ -12,8 +12,9 @@ typedef struct picture {
   const float *tiles; /* [sweeps][tiles_of_sweep][16][4][16]; R G B A, premultiplied, linear */
   int sweeps;
   size_t tiles_x, tiles_of_sweep;
-  int oversampling;  /* a pixel of the picture is the mean of this number of frame pixels, squared */
-  float *pixels;     /* the caller's; [height][row_stride]; R G B A */
+  int oversampling;  /* a pixel of the picture is the mean of oversampling x oversampling of the frame's
+                      * pixels */
+  float *pixels;     /* the caller's pixels; [height][row_stride]; R G B A */
   size_t row_stride; /* counted in floats */
   int width, height; /* size of the picture */
 } picture;
@@ -21,8 +22,9 @@ typedef struct picture {
 /* Writes the caller's pixels. */
 void hl_picture_write(const picture *picture, hl_pool *pool);
 
-/* Writes the caller's pixels where they already hold the tiles of the only sweep: without oversampling, in
- * whole tiles and without gaps between rows. rows: [threads][tiles_x][16][4][16], memory for this call. */
+/* Reorders the caller's pixels where they hold the tiles of the only sweep. This is possible without
+ * oversampling, if the picture consists of whole tiles and has no gaps between rows. rows:
+ * [threads][tiles_x][16][4][16], memory for this call. */
 void hl_picture_reorder(const picture *picture, float *rows, hl_pool *pool);
 
 #endif

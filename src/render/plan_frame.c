@@ -12,8 +12,8 @@
 
 /* ---- volumes and surfaces ---- */
 
-/* Whether a position lies in a volume's box, so that rays of an eye or a light at this position begin
- * within the box. */
+/* Whether a position lies in a volume's box. The rays of an eye or a light at such a position begin within
+ * the box. */
 static bool inside_box(const grid *grid, vec3 origin) {
   vec3 p = affine3_apply(grid->frame_to_index, origin);
   const double at[3] = {p.x, p.y, p.z};
@@ -32,7 +32,7 @@ static bool rays_start_inside(const frame *frame, const grid *grid) {
   return inside;
 }
 
-/* Opens faces where volumes touch, in the frame's copies of the grids only (hl_open_faces). */
+/* Opens faces where volumes touch (hl_open_faces). It changes only the frame's copies of the grids. */
 static void open_faces(const hl_scene_description *scene, grid *grids) {
   for (size_t i = 0; i < scene->volume_count; i++)
     for (size_t k = 0; k < scene->volume_count; k++)
@@ -62,17 +62,17 @@ static hl_status add_surfaces(hl_renderer *renderer, const framed_scene *framed,
   return HL_OK;
 }
 
-/* The grid of a volume as the frame uses it. A volume that is neither visible nor casts a shadow may still
- * give the second number of another volume's function. The grid of such a volume has no relevant bricks, so
- * that the frame does not fill its samples. */
+/* The grid of a volume as the frame uses it. A volume that is neither visible nor casts shadows may still
+ * give the second number of another volume's transfer function. The grid of such a volume gets no relevant
+ * bricks, so that no densities are found for it. */
 static grid grid_of_frame(const hl_scene_volume *volume, const prepared_volume *prepared) {
   grid grid = prepared->grid;
   if (!volume->visible && !volume->casts_shadow) grid.relevant_count = 0;
   return grid;
 }
 
-/* Brings up to date the tree of surfaces behind which shadow buffers leave light. Call it after the frame's
- * lights are placed. */
+/* Brings up to date the tree of the surfaces for which the light close behind them is corrected. Call it
+ * after the frame's lights are placed. */
 static hl_status update_contact(hl_renderer *renderer, const frame *frame, hl_error *error) {
   surface_tree *tree = &renderer->cache.contact;
   double distance = hl_contact_distance(frame);
@@ -91,8 +91,8 @@ static hl_status update_contact(hl_renderer *renderer, const frame *frame, hl_er
 
 /* ---- light ---- */
 
-/* The number of channels of light attenuation: three where matter absorbs the colours differently, or where
- * the colours of an emission image come from different places; otherwise one. */
+/* The number of channels of light attenuation. It is three where matter absorbs the three colours
+ * differently, or where the colours of an emission image come from different places; otherwise it is one. */
 static int attenuation_channels(const frame_plan *plan) {
   for (int i = 0; i < plan->light_count; i++)
     if (plan->lights[i].has_colored_image) return 3;
@@ -152,8 +152,8 @@ static hl_status update_phases(hl_renderer *renderer, const hl_scene_description
 
 /* ---- the plan ---- */
 
-/* Brings the volumes to the frame: their grids and the corners of their visible part. A grid differs from the
- * prepared one where the frame does not fill its samples, and at faces where volumes touch. */
+/* Brings the volumes to the frame: their grids, and the corners of their visible parts. The frame's grid
+ * differs from the prepared grid if no densities are found for it, and at faces where volumes touch. */
 static void place_volumes(const hl_renderer *renderer, const framed_scene *framed, frame_plan *plan) {
   const hl_scene_description *scene = &framed->scene;
   plan_volumes *volumes = &plan->volumes;
@@ -198,7 +198,7 @@ static hl_status place_eye_and_lights(const framed_scene *framed, frame_plan *pl
   frame *frame = &plan->frame;
   hl_status status = hl_frame_set_up_eye(frame, scene, error);
   if (status != HL_OK) return status;
-  /* The spacing is at most the margin by which volumes continue beyond their faces. */
+  /* The spacing is at most the distance by which volumes continue beyond their faces. */
   frame->spacing = fmin(scene->render.sheet_spacing,
                         hl_is_maximum(&scene->render) ? MAXIMUM_SPACING : GRID_MARGIN) *
                    frame->content.voxel;
@@ -223,8 +223,8 @@ static hl_status share_picture(hl_renderer *renderer, frame_plan *plan, hl_error
   return status == HL_OK ? hl_share_create(renderer->context, &content, &plan->picture.share, error) : status;
 }
 
-/* Finds the light that does not travel along the sheets: light scattered more than once, and the sky's light.
- * Finds the tables of phase functions, too. */
+/* Finds the light that does not travel from sheet to sheet: light scattered more than once, and the sky's
+ * light. Also finds the tables of phase functions. */
 static hl_status find_fields(hl_renderer *renderer, const framed_scene *framed, uint64_t sky_mark,
                              frame_plan *plan, hl_error *error) {
   const hl_scene_description *scene = &framed->scene;

@@ -32,7 +32,8 @@ static bool same_clip(const prepared_volume *prepared, const hl_scene_volume *sc
                              memcmp(prepared->clip + 3, scene->clip_max, sizeof scene->clip_max) == 0);
 }
 
-/* The shape of a cut in the index space of the grid, which may be shifted from the volume's. */
+/* The shape of a cut in the index space of the grid, which may be shifted against the volume's index
+ * space. */
 static cut_shape cut_in_grid(const hl_scene_volume *scene, size_t cut, const grid *grid) {
   cut_shape shape = hl_cut_shape(scene, cut);
   const vec3 shift = mat3_apply(shape.to_shape.linear, vec3_of(grid->shift));
@@ -137,7 +138,7 @@ void hl_prepared_release(hl_context *context, prepared_volume *prepared) {
   *prepared = (prepared_volume){.version = prepared->version, .tables_version = prepared->tables_version};
 }
 
-/* Whether the grid that is kept still serves the scene's volume. */
+/* Whether the grid that is kept still fits the scene's volume. */
 static bool has_same_voxels(const prepared_volume *prepared, const hl_scene_volume *scene, hl_kernel kernel) {
   return prepared->volume == scene->volume && prepared->kernel == hl_kernel_of_volume(scene, kernel) &&
          prepared->empty == hl_scene_volume_empty_value(scene) && same_clip(prepared, scene);
@@ -165,7 +166,7 @@ static void set_up_mask(const preparation *with, prepared_volume *prepared, cons
 }
 
 /* Keeps the volume's mask; a maximum projection ignores masks. The mask is retained so that no other mask can
- * get its address, which is part of the keys of kept light. Returns whether it is the mask of the frame
+ * get its address: the address is part of the keys of kept light. Returns whether it is the mask of the frame
  * before. */
 static bool hold_mask(const preparation *with, prepared_volume *prepared, const hl_scene_volume *scene) {
   const mask_lattice before = prepared->classifier.mask;
@@ -177,7 +178,8 @@ static bool hold_mask(const preparation *with, prepared_volume *prepared, const 
   return now->factors == before.factors && now->rest == before.rest;
 }
 
-/* The volume of the second number of a function of two numbers; null: there is none. */
+/* The volume whose values are the second number of a function of two numbers; null: there is no such
+ * volume. */
 static const hl_scene_volume *second_of(const hl_scene_description *all, const hl_scene_volume *scene) {
   const hl_function_plane *plane = &scene->transfer_function.plane;
   return plane->second == HL_SECOND_VOLUME ? hl_scene_volume_named(all, plane->volume) : NULL;
@@ -188,8 +190,8 @@ static bool same_second(const prepared_volume *prepared, const hl_scene_volume *
   return prepared->second == second->volume && prepared->second_empty == hl_scene_volume_empty_value(second);
 }
 
-/* Keeps the second volume of a function of two numbers. It is retained for the same reason as the mask: no
- * other volume can get its address. */
+/* Keeps the second volume of a function of two numbers. It is retained so that no other volume can get its
+ * address, which is part of the keys of kept light. */
 static void hold_second(prepared_volume *prepared, const hl_scene_volume *second) {
   hl_volume *volume = second != NULL ? second->volume : NULL;
   hl_volume_retain(volume);
@@ -266,9 +268,9 @@ hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_funct
 
 /* ---- isosurfaces ---- */
 
-/* Finds the surface of the frame before that has the same value, axes and caps as the wanted surface; null:
- * there is none. Where voxels, clip box or cuts changed, prepare_volume() has released all surfaces of the
- * frame before. */
+/* Finds, among the surfaces of the frame before, the one that has the same value, axes and caps as the wanted
+ * surface; null: there is none. If voxels, clip box or cuts have changed, prepare_volume() has already
+ * released all surfaces of the frame before. */
 static const prepared_iso *known_iso(const prepared_volume *prepared, const prepared_iso *wanted) {
   for (size_t i = 0; i < prepared->iso_count; i++) {
     const prepared_iso *known = &prepared->iso[i];
@@ -279,7 +281,8 @@ static const prepared_iso *known_iso(const prepared_volume *prepared, const prep
   return NULL;
 }
 
-/* Prepares the isosurfaces of a volume. grid: the prepared grid, with open faces. */
+/* Prepares the isosurfaces of a volume. grid: the prepared grid, with its faces open where other volumes go
+ * on. */
 static hl_status prepare_iso(hl_context *context, hl_pool *pool, const hl_scene_volume *scene,
                              const grid *grid, prepared_volume *prepared, hl_error *error) {
   prepared_iso *made = hl_allocate_zeroed(context, scene->iso_count, sizeof *made);

@@ -1,4 +1,4 @@
-/* render/prepare.h - volumes made ready for rendering, and kept for the next frame. */
+/* render/prepare.h - prepares volumes for rendering, and keeps them for the next frame. */
 #ifndef HL_RENDER_PREPARE_H
 #define HL_RENDER_PREPARE_H
 
@@ -17,8 +17,8 @@ typedef struct prepared_iso {
   hl_mesh *mesh;        /* owned; null: the surface is empty */
 } prepared_iso;
 
-/* A volume made ready; kept between frames while its voxels, kernel, clip box and transfer function stay the
- * same. */
+/* A prepared volume. It is kept between frames while its voxels, kernel, clip box and transfer function stay
+ * the same. */
 typedef struct prepared_volume {
   const hl_scene_volume *scene; /* the volume in the frame's scene */
   hl_volume *volume;            /* retained */
@@ -29,9 +29,10 @@ typedef struct prepared_volume {
   classifier classifier;
   double empty;                  /* data value */
   hl_kernel kernel;              /* the kernel for which the grid's cells are bounded */
-  hl_transfer_function function; /* the function from which the classifier was made; its points are owned */
-  uint64_t plane_mark; /* identifies the content of a transfer function of two numbers (a value and a
-                        * second number); 0: there is none */
+  hl_transfer_function function; /* the transfer function from which the classifier was made; its points are
+                                  * owned */
+  uint64_t plane_mark; /* the mark of a transfer function of two numbers, which identifies its content; 0: the
+                        * function has one number */
   double clip[6];
   int clipped;
   uint64_t version, tables_version; /* versions of the grid's voxels, and of everything that follows from the
@@ -50,7 +51,7 @@ hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_funct
 /* Brings the volumes' isosurfaces up to date, after the volumes. */
 hl_status hl_prepare_isosurfaces(hl_context *context, hl_pool *pool, const hl_scene_description *scene,
                                  prepared_volume *prepared, hl_error *error);
-/* Releases each volume in prepared[0 .. count) whose grid the scene's volume cannot use any more. */
+/* Releases those volumes of prepared[0 .. count) whose grids the scene's volumes cannot use any more. */
 void hl_prepared_release_stale(hl_context *context, const hl_scene_description *scene,
                                prepared_volume *prepared);
 /* Counts the memory that preparing one volume takes. kernel: the scene's kernel. */

@@ -1,4 +1,4 @@
-/* render/reaching_lanes.h - the light that reaches a slab: shadow buffers read where samples are (step
+/* render/reaching_lanes.h - the light that reaches a slab: look-ups of shadow buffers at samples (step
  * 14). */
 #ifndef HL_RENDER_REACHING_LANES_H
 #define HL_RENDER_REACHING_LANES_H
@@ -17,8 +17,8 @@ LANES_INLINE shadow_taps taps_of_position(const shade_light *light, const shadow
                           lanes_select(ahead, place[2] / safe, outside));
 }
 
-/* The mean, over all sub-lights of a light, of the transmittance from the sub-light, or of its light at the
- * outside of surfaces (outside: 1). */
+/* The mean over all sub-lights of a light: of the transmittance from the sub-light, or (outside: 1) of the
+ * sub-light's light at the outside of surfaces. */
 LANES_INLINE color_lanes mean_of_sublights(const shade_light *light, lanes3 position, uint32_t active,
                                            int outside) {
   color_lanes sum = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
@@ -35,8 +35,8 @@ LANES_INLINE color_lanes mean_of_sublights(const shade_light *light, lanes3 posi
   return sum;
 }
 
-/* Interpolates between the light in the buffer of the previous chunk (older) and in the buffer of this chunk
- * (younger). */
+/* Interpolates between the light in the buffer of the previous chunk (older) and the light in the buffer of
+ * this chunk (younger). */
 LANES_INLINE lanes between_chunks(const shadow_lookup *lookup, lanes older, lanes younger) {
   return lanes_add_scaled(older, younger - older, lookup->young);
 }
@@ -61,10 +61,10 @@ LANES_INLINE void near_light(const shadow_lookup *lookup, const shadow_taps *tap
   lanes_gather_pairs(buffer + lookup->map.stride, at, &light[2], &light[3]);
 }
 
-/* Near a box's face, the light's transmittance from the face to the slab, from the lengths of its ways.
- * found: the transmittance that the buffer holds. own: the transmittance that the box's matter would have
- * if it were even and nothing else were in the way. If `found` is greater, the matter is thinner there: the
- * depths are scaled by the ratio of the two optical depths. */
+/* Near a box's face: finds the optical depths from the face to the slab, from the lengths of the light's
+ * ways. found: the transmittance that the buffer holds. own: the transmittance that the box's matter would
+ * have if it were even and nothing else were in the way. If `found` is greater, the matter there is thinner,
+ * and the depths are scaled by the ratio of the two optical depths. */
 LANES_INLINE void pass_face(light_depths *depths, int channel, lanes found, lanes own) {
   lanes_int some = own < 0.999f;
   lanes ratio = lanes_log2(lanes_clamp(found, 1e-6f, 1)) / lanes_log2(lanes_clamp(own, 1e-36f, 0.999f));
@@ -106,7 +106,8 @@ LANES_INLINE void correct_faces(light_depths *depths, int channels, color_lanes 
   }
 }
 
-/* Where a slab's samples look up a light in the shadow buffer: positions on the first sheet of the slab. */
+/* The position at which a slab's samples look up a light in the shadow buffer; it lies on the slab's first
+ * sheet. */
 typedef struct light_place {
   const shade_light *light;
   const shadow_lookup *lookup; /* the look-up on this sheet */
@@ -143,9 +144,9 @@ LANES_INLINE color_lanes reaching(const light_place *place, light_depths *depths
   return reached;
 }
 
-/* The transmittance from one light to the media of a slab: through everything before the slab, and through
- * the slab's own matter, averaged with the weights with which the eye sees it. path: length of the light's
- * way through the slab. */
+/* The transmittance from one light to the media of a slab. It is the transmittance of everything before the
+ * slab, times the transmittance of the slab's own matter; this one is averaged with the weights with which
+ * the eye sees the matter. path: length of the light's way through the slab. */
 LANES_INLINE color_lanes passing_to_media(const shade_job *job, const light_place *place,
                                           const block_slab *slab, block_density *densities, int count,
                                           lanes3 towards, lanes path) {
@@ -169,19 +170,19 @@ LANES_INLINE color_lanes passing_to_media(const shade_job *job, const light_plac
   return passing;
 }
 
-/* Where the light's way to a volume's sample begins, at the slab's first sheet: coordinates of the
+/* The begin of the light's way to a volume's sample, at the slab's first sheet. Values are coordinates of the
  * classifier's tables. */
 typedef struct way_begin {
-  lanes start, change; /* the table coordinate of the value where the way begins, and the coordinate's change
-                        * per unit of the way */
-  lanes first, foot; /* the coordinate where the surface begins to which the value at the way's begin belongs,
-                      * and the coordinate where the sample's own surface begins */
-  lanes_int there;   /* lanes in which some of the volume's matter may be visible where the way begins */
+  lanes start, change; /* start: the value where the way begins; change: how much the value changes per unit
+                        * of the way */
+  lanes first, foot;   /* first: where the surface begins to which the value `start` belongs; foot: where the
+                        * sample's own surface begins */
+  lanes_int there;     /* lanes in which some of the volume's matter may be visible where the way begins */
 } way_begin;
 
-/* Finds the value where the light's way begins. If values rise so little from it that they cannot have
- * risen from lower values within the slab, the value counts as belonging to a layer below the sample's
- * surface. way: the length of the light's way within the slab. */
+/* Finds the value where the light's way begins. If values rise so little from there that they cannot have
+ * risen from lower values within the slab, the value belongs to a layer below the sample's surface. way: the
+ * length of the light's way within the slab. */
 LANES_INLINE way_begin find_begin(const block_density *d, lanes3 towards, lanes way) {
   const classifier *classifier = d->patch->volume->classifier;
   lanes seen = lanes_clamp(coordinate_seen(d), 0, CLASSIFIER_ENTRIES),
@@ -191,7 +192,7 @@ LANES_INLINE way_begin find_begin(const block_density *d, lanes3 towards, lanes 
   lanes side = lanes_select(seen >= foot, lanes_set(1.0f), lanes_set(-1.0f));
   lanes below = lanes_gather(classifier->outside,
                              lanes_truncate(lanes_clamp(foot - side * 0.5f, 0, CLASSIFIER_ENTRIES)));
-  /* Matter just below the foot is visible: it is a layer of its own. */
+  /* matter just below the foot is visible, so it is a layer of its own */
   lanes_int layer = lanes_abs(below - foot) > 1.0f;
   lanes_int beyond = layer & ((start - below) * side < 0.0f);
   start = lanes_select(beyond, below, start);
@@ -200,17 +201,19 @@ LANES_INLINE way_begin find_begin(const block_density *d, lanes3 towards, lanes 
   return (way_begin){start, change, first, foot, (first != lanes_from_int(entry)) | beyond};
 }
 
-/* How much of the light at the slab's first sheet lights a sample's surface. */
+/* How much of the light at the slab's first sheet lights a sample's surface: light that was absorbed before
+ * the slab, and light that was not. */
 typedef struct own_surface {
-  lanes kept;    /* of the light that was taken before the slab, the fraction that still lights the sample's
+  lanes kept;    /* the fraction of the light absorbed before the slab that still lights the sample's
                   * surface */
-  lanes passing; /* of the light that was not taken before the slab, the fraction that reaches the surface
-                  * within the slab */
+  lanes passing; /* the fraction of the light not absorbed before the slab that reaches the surface within the
+                  * slab */
 } own_surface;
 
-/* Where the light's way leaves another surface of the volume within the slab, that other surface has taken
- * the light that was taken before the slab. A sample near a face which cuts matter belongs to the face's
- * surface. light, outside: at the slab's first sheet. */
+/* Finds the own_surface of a volume's sample. If the light's way leaves another surface of the volume within
+ * the slab, that surface has absorbed the light that is missing before the slab. A sample near a face that
+ * cuts matter belongs to the face's surface. light, outside: the transmittance and the light at the outside,
+ * at the slab's first sheet. */
 LANES_INLINE own_surface find_own_surface(const block_density *d, const way_begin *begin, lanes light,
                                           lanes outside) {
   const classifier *classifier = d->patch->volume->classifier;
@@ -225,8 +228,8 @@ LANES_INLINE own_surface find_own_surface(const block_density *d, const way_begi
   return own;
 }
 
-/* The mean of find_own_surface() over a slab's volumes, weighted by extinction. Where another volume has
- * matter at the slab's first sheet and a volume has none there, the other volume has taken the light. */
+/* The mean of find_own_surface() over a slab's volumes, weighted by extinction. If a volume has no matter at
+ * the slab's first sheet but another volume has, the other volume has absorbed the light. */
 LANES_INLINE own_surface find_own_surfaces(const block_density *densities, int count, lanes3 towards,
                                            lanes way, lanes light, lanes outside) {
   own_surface sum = {lanes_set(0), lanes_set(0)};

@@ -1,5 +1,5 @@
-/* render/renderer.c - hl_renderer: brings a scene up to date, has its frame planned (plan_frame.h), has a
- * back end make the picture of the plan (backend.h), and writes the pixels (target.h). */
+/* render/renderer.c - hl_renderer: brings a scene up to date, lets plan_frame.h plan its frame, lets a back
+ * end make the picture of the plan (backend.h), and writes the pixels (target.h). */
 #include <stdio.h>
 #include <string.h>
 
@@ -31,8 +31,8 @@ hl_status hl_renderer_create(hl_context *context, hl_renderer **renderer, hl_err
   return HL_OK;
 }
 
-/* Takes the renderer for one frame. False where a frame is under way already; then a callback of that frame,
- * or another thread, has asked for another frame. */
+/* Reserves the renderer for one frame. Returns false if a frame is under way: a callback of that frame, or
+ * another thread, has asked for another one. */
 static bool take(hl_renderer *renderer) { return !atomic_exchange(&renderer->busy, true); }
 
 static hl_status fail_busy(const char *caller, hl_error *error) {
@@ -173,7 +173,7 @@ static hl_status prepare_scene(hl_renderer *renderer, const frame_request *reque
   return status;
 }
 
-/* Runs all sweeps of a plan by a back end that is ready. */
+/* Runs all sweeps of a plan with a back end that is prepared. */
 static hl_status run_plan(const backend *backend, hl_renderer *renderer, const frame_plan *plan,
                           frame_target *target, hl_render_statistics *statistics, hl_error *error) {
   const int sweeps = plan->frame.content.point_count > 0 ? plan->sweeps.count : 0;
@@ -188,8 +188,8 @@ static hl_status run_plan(const backend *backend, hl_renderer *renderer, const f
 static const backend *const backends[] = {HL_BACKENDS};
 #undef HL_BACKEND
 
-/* Makes the plan's picture. Where a device fails, the processors make it, and statistics->device_reason says
- * why. */
+/* Makes the plan's picture. If a device fails, the processors make the picture, and statistics->device_reason
+ * says why. */
 static hl_status make_picture(hl_renderer *renderer, const frame_plan *plan, frame_target *target,
                               hl_render_statistics *statistics, hl_error *error) {
   enum { LAST = sizeof backends / sizeof *backends - 1 };
@@ -222,7 +222,7 @@ static void count_frame(const hl_renderer *renderer, const frame_plan *plan,
   }
 }
 
-/* The data of one frame; released when it ends. */
+/* The data of one frame; they are released when the frame ends. */
 typedef struct frame_work {
   framed_scene framed;
   frame_plan plan;

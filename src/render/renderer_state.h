@@ -1,4 +1,5 @@
-/* render/renderer_state.h - hl_renderer: what it keeps between frames, and what a caller asks of a frame. */
+/* render/renderer_state.h - hl_renderer: the data that it keeps between frames, and a caller's request for a
+ * frame. */
 #ifndef HL_RENDER_RENDERER_STATE_H
 #define HL_RENDER_RENDERER_STATE_H
 
@@ -12,25 +13,26 @@
 #include "scatter/scatter.h"
 #include "shadow/shadow_method.h"
 
-/* Results of a frame that the next frame may use; all of it is owned. */
+/* Results of a frame that the next frame may use again; all of them are owned. */
 typedef struct frame_cache {
   prepared_volume *prepared; /* [prepared_count] */
   size_t prepared_count;
   shadow_buffer *buffers; /* [buffer_count]; LIGHT_SECTORS buffers for each of the scene's lights */
   size_t buffer_count;
   shadow_memory shadow_memory[FRAME_LIGHTS]; /* memory of the lights of a sweep */
-  surfaces surfaces;       /* the meshes of the last frame; kept while the meshes stay where they are */
+  surfaces surfaces;       /* the surfaces of the last frame's meshes; kept while the meshes stay where they
+                            * are */
   surface_tree contact;    /* the tree of these surfaces */
-  scatter_field scattered; /* kept while the scene's matter and lights stay the same */
+  scatter_field scattered; /* scattered light; kept while the scene's matter and lights stay the same */
   sky_field sky;           /* the light of the scene's sky */
   phase_tables phases;     /* means of the media's phase functions over the scene's lights */
-  hl_reserve reserve;      /* blocks of memory that frames and sweeps have returned, for later frames */
+  hl_reserve reserve;      /* blocks of memory that frames and sweeps have returned, kept for later frames */
 } frame_cache;
 
 /* The device that makes a renderer's frames. */
 typedef struct renderer_device {
   struct hl_gpu *gpu; /* owned; null: the processors make the frames */
-  char wanted[128];   /* name of the wanted device; empty: the device that the context names */
+  char wanted[128];   /* name of the wanted device; empty: the device that the context names is wanted */
   bool tried;         /* the device was looked for */
   char problem[400];  /* why the device makes no frames */
 } renderer_device;
@@ -38,13 +40,15 @@ typedef struct renderer_device {
 /* A renderer. renderer.c creates it and releases it. */
 struct hl_renderer {
   hl_context *context;
-  atomic_bool busy;      /* a call uses the renderer; another call is refused meanwhile */
-  atomic_bool abandoned; /* the renderer was destroyed during a frame; the end of the frame releases it */
+  atomic_bool busy;      /* whether a call uses the renderer; other calls are refused meanwhile */
+  atomic_bool abandoned; /* whether the renderer was destroyed during a frame; if so, it is released at the
+                          * end of the frame */
   hl_pool *pool;
-  int threads;             /* number of threads, as the scene says: 0 means one per processor */
-  int part, parts;         /* the part of each picture that this renderer makes, and the number of parts */
-  light_exchange exchange; /* how light is exchanged with the other parts; gather is null where there is no
-                            * exchange */
+  int threads;             /* number of threads that the scene asks for: 0 means one per processor */
+  int part, parts;         /* part: number of the part of each picture that this renderer makes; parts: number
+                            * of parts */
+  light_exchange exchange; /* exchanges light with the other parts; its `gather` is null where light is not
+                            * exchanged */
   frame_cache cache;
   renderer_device device;
   uint64_t estimate; /* bytes; see render/estimate.h */
@@ -58,12 +62,12 @@ typedef struct frame_request {
   size_t row_stride;       /* counted in floats */
 } frame_request;
 
-/* Lets the renderer make one part of each picture, as hl_renderer_share() does, for renderers that exchange
- * light among the parts. The renderers of all parts must render the same scenes in the same order. */
+/* Lets the renderer make one part of each picture, as hl_renderer_share() does. Here the renderers of the
+ * parts exchange light. The renderers of all parts must render the same scenes in the same order. */
 void hl_renderer_exchange(hl_renderer *renderer, const light_exchange *exchange);
 
-/* Refuses a frame that does not fit. Before that, it releases blocks kept for later frames if they are in the
- * way, and then pages of volumes. */
+/* Refuses a frame that does not fit into memory. Before that, it tries to make room: it releases blocks that
+ * are kept for later frames, and then pages of volumes. */
 hl_status hl_renderer_check_room(hl_renderer *renderer, uint64_t bytes, hl_error *error);
 
 /* Releases the shadow buffers and everything that shadow methods keep beside them. */

@@ -1,4 +1,4 @@
-/* render/shade_lanes.h - one slab's pixels lit and composited (steps 14 to 16). */
+/* render/shade_lanes.h - lights and composites one slab's pixels (steps 14 to 16). */
 #ifndef HL_RENDER_SHADE_LANES_H
 #define HL_RENDER_SHADE_LANES_H
 
@@ -10,10 +10,11 @@
 #include "render/voxel_color_lanes.h"
 #include "scatter/scatter_lanes.h"
 
-/* The light that arrives from one light, with its direction (step 14 and the first half of step 15; eqs. 1
- * and 2). */
+/* The light that arrives from one light source, and its direction (step 14 and the first half of step 15;
+ * eqs. 1 and 2). */
 typedef struct arriving_light {
-  int dark;               /* no light arrives here, or it lights nothing; the other members are not set */
+  int dark;               /* no light arrives, or the light that arrives lights nothing; the other members are
+                           * not set */
   lanes3 towards;         /* unit */
   color_lanes full;       /* the light without attenuation */
   color_lanes shadowed;   /* the light with attenuation, as media receive it */
@@ -26,7 +27,7 @@ LANES_INLINE lanes within_cone(const light_cone *cone, lanes3 towards) {
   return x * x * lanes_line(x, -2.0f, 3.0f);
 }
 
-/* The fraction of the light at a position that the sector of a light gives (light_source.h); the other
+/* The fraction of a light's rays at a position that one sector of the light gives (light_source.h); the other
  * sectors give the rest. */
 LANES_INLINE lanes fraction_of_sector(const sector_fraction *sector, lanes3 towards) {
   lanes own = lanes_set(0), sum = lanes_set(1e-30f);
@@ -42,8 +43,8 @@ LANES_INLINE int is_dark(const color_lanes *light) {
   return lanes_bits((light->c[0] > 0.0f) | (light->c[1] > 0.0f) | (light->c[2] > 0.0f)) == 0;
 }
 
-/* Whether light from this direction can light anything that is visible in the lanes `seen`: a medium, a
- * surface that faces the light, or a surface that sends on light from any angle (even). */
+/* Whether light from the direction `towards` can light anything that is visible in the lanes `seen`: a
+ * medium, a surface that faces the light, or a surface that sends on light from any angle (even). */
 LANES_INLINE int is_faced(const block_density *densities, int count, lanes_int seen, lanes3 towards) {
   lanes_int faced = lanes_set_int(0);
   for (int i = 0; i < count; i++) {
@@ -55,8 +56,8 @@ LANES_INLINE int is_faced(const block_density *densities, int count, lanes_int s
   return lanes_bits(faced & seen) != 0;
 }
 
-/* Finds the direction from which a light's rays come at a position, and stores the light's strength there,
- * without colour, in arriving->full. Returns the length of the light's way through the slab. */
+/* Finds the direction from which a light's rays come at a position. Stores the light's strength at the
+ * position, without colour, in arriving->full. Returns the length of the light's way through the slab. */
 LANES_INLINE lanes find_direction(const shade_job *job, const shade_light *light, lanes3 position,
                                   arriving_light *arriving) {
   lanes path = lanes_set(light->path), strength = lanes_set(1.0f);
@@ -109,7 +110,7 @@ LANES_INLINE void attenuate_light(const shade_job *job, const shade_light *light
   }
 }
 
-/* Whether some lane of a slab's visible volumes has a medium, and whether some lane has a surface. */
+/* What the visible volumes of a slab have in some lane: media, and surfaces. */
 typedef struct receivers {
   int media, surfaces;
 } receivers;
@@ -195,8 +196,8 @@ LANES_INLINE void add_scattered(const shade_job *job, const block_density *d, co
   for (int c = 0; c < 3; c++) lit->c[c] = lanes_fma(light[c], color->c[c] * volume->albedo[c], lit->c[c]);
 }
 
-/* Adds the light that white surfaces send on. On the side of the light they send on the light that arrives at
- * their outside, on the other side the light that passes their matter. */
+/* Adds the light that white surfaces send on. On the side that faces the light, this is the light that
+ * arrives at their outside; on the other side, it is the light that passes their matter. */
 LANES_INLINE void add_even(const arriving_light *light, int receives_shadow, lanes_int faces, lanes surface,
                            color_lanes *lit) {
   for (int c = 0; c < 3; c++) {
@@ -206,9 +207,9 @@ LANES_INLINE void add_even(const arriving_light *light, int receives_shadow, lan
   }
 }
 
-/* Finds the light that a volume's matter sends to the eye (step 15): eqs. (3) and (4) with the light's
- * centre; a medium scatters by the mean of its phase function over the light. Emission is added; a volume
- * shaded flat has emission only. */
+/* Finds the light that a volume's matter sends to the eye (step 15): it follows eqs. (3) and (4), with the
+ * direction to the light's centre. A medium scatters by the mean of its phase function over the light.
+ * Emission is added; a volume that is shaded flat has only emission. */
 LANES_INLINE color_lanes illuminate(const shade_job *job, const block_density *d, const block_geometry *g,
                                     const arriving_light *lights, color_lanes color) {
   const shade_volume *volume = d->patch->volume;
@@ -297,15 +298,15 @@ LANES_INLINE color_lanes color_of_block(const shade_job *job, const block_slab *
       color_lanes sky = sky_of_volume(job, slab, d, &color);
       for (int c = 0; c < 3; c++) lit.c[c] = lanes_fma(sky.c[c], color.c[c], lit.c[c]);
     }
-    if (count == 1) return lit; /* a single volume has all of the extinction */
+    if (count == 1) return lit; /* a single volume has the whole extinction of the slab */
     lanes weight = lanes_select(d->extinction == total, lanes_set(1.0f), d->extinction * inverse);
     for (int c = 0; c < 3; c++) sum.c[c] = lanes_fma(lit.c[c], weight, sum.c[c]);
   }
   return sum;
 }
 
-/* Weighs the slabs whose numbers stand in `seen`, and drops slabs of which nothing is left. Returns how many
- * slabs stay. */
+/* Applies the factors on extinction to the slabs whose numbers are in `seen`, and drops the slabs in which
+ * nothing is visible afterwards. Returns how many slabs stay. */
 LANES_INLINE int weigh_slabs(const shade_job *job, packed_tile *tile, block_density *const *of,
                              int patch_count, int *seen, int count, color_lanes *lit) {
   int left = 0;
@@ -318,9 +319,9 @@ LANES_INLINE int weigh_slabs(const shade_job *job, packed_tile *tile, block_dens
   return left;
 }
 
-/* Lights a tile's slabs. Each step is done for all slabs before the next step: a slab's sums are long chains
- * of dependent operations, and the processor works on one slab while another slab's results are pending. lit:
- * 0 where nothing is seen. */
+/* Lights a tile's slabs. Each step is done for all slabs before the next step is done. The reason is that a
+ * slab's sums are long chains of dependent operations: so the processor can work on one slab while another
+ * slab's results are pending. lit: 0 where nothing is seen. */
 LANES_INLINE void light_slabs(const shade_job *job, packed_tile *tile, block_density *densities,
                               int patch_count, int weighed, color_lanes *lit, uint64_t *samples) {
   arriving_light lights[TILE_BLOCKS][MAXIMUM_SWEEP_LIGHTS];
@@ -352,7 +353,8 @@ LANES_INLINE void light_slabs(const shade_job *job, packed_tile *tile, block_den
   }
 }
 
-/* Returns true while some pixel of the block is not opaque. */
+/* Composites the lit colours of a packed slab into a block. Returns whether some pixel of the block is not
+ * opaque. */
 LANES_INLINE int composite_packed(const shade_job *job, const packed_block *block, const block_slab *slab,
                                   const color_lanes *lit, float *pixels) {
   color_lanes color = *lit;
@@ -369,14 +371,14 @@ LANES_INLINE int composite_packed(const shade_job *job, const packed_block *bloc
  * packed slab share voxels. */
 static const unsigned char NEAR_EACH_OTHER[TILE_BLOCKS] = {0,  1,  4,  5,  2, 3, 6,  7,
                                                            10, 11, 14, 15, 8, 9, 12, 13};
-/* The place of each block in NEAR_EACH_OTHER. */
+/* The inverse of NEAR_EACH_OTHER: the place of each block in that order. */
 static const unsigned char RANK_OF_BLOCK[TILE_BLOCKS] = {0,  1,  4, 5, 2,  3,  6,  7,
                                                          12, 13, 8, 9, 14, 15, 10, 11};
 
 /* The blocks among `blocks` in which something may be seen, as bits at the blocks' ranks in the packing
  * order. bits: for each block, the pixels in which something may be seen. All blocks are tested before the
- * first is shaded. About half of them show nothing, and the processor cannot predict which; tests between
- * shadings would stall its loads. */
+ * first block is shaded. About half of them show nothing, and the processor cannot predict which. So tests
+ * between the shading of blocks would stall the processor's loads. */
 LANES_INLINE uint32_t visible_blocks(const shade_job *job, const shade_patch *patches, int patch_count,
                                      uint32_t blocks, const float *pixels, uint16_t bits[TILE_BLOCKS]) {
   uint32_t ranks = 0;
@@ -405,7 +407,7 @@ LANES_INLINE uint32_t shade_patches(const shade_job *job, const tile_slab *tile,
     block_slab slab;
     slab_of_block(job, tile, patch_count, block, bits[block], ways, &slab);
     seen |= 1u << block;
-    for (int c = 0; c < 3; c++) /* The pixels are needed once the tile is lit. */
+    for (int c = 0; c < 3; c++) /* prefetches the pixels, which are needed when the tile has been lit */
       __builtin_prefetch(pixels + (block * 4 + c) * BLOCK_PIXELS, 1);
     if (bits[block] == 0xffff)
       keep_block(&packed, &slab, ways, patch_count, densities, &packed.blocks[block]);

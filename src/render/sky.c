@@ -1,7 +1,7 @@
-/* render/sky.c - the sky of a frame: brings a scene's volumes to the field of its light, and keeps the field
- * while volumes and sky stay as they are.
+/* render/sky.c - the sky of a frame. Gives the scene's volumes to the field of the sky's light, and keeps the
+ * field while volumes and sky stay the same.
  *
- * A field's key is the bytes of all that it depends on. */
+ * The key of a field holds the bytes of everything on which the field depends. */
 #include "render/sky.h"
 
 #include <string.h>
@@ -17,7 +17,7 @@ static const double MOST_CELLS = 1200000;
 /* ---- the key ---- */
 
 static void add_volume(hl_key *key, const prepared_volume *prepared, const grid *grid) {
-  /* the address of the voxels may be in the key, because the prepared volume keeps the voxels */
+  /* the key may hold the address of the voxels, because the prepared volume keeps the voxels */
   hl_matter_key_add(key, prepared->scene, prepared->plane_mark, grid, &prepared->classifier);
   hl_key_add_whole(key, 2 * (int64_t)prepared->kernel + (prepared->scene->visible != 0));
 }

@@ -1,5 +1,5 @@
-/* render/sky.h - a frame's sky: the input of its field, and the check whether the last frame's field still
- * fits. */
+/* render/sky.h - a frame's sky: collects the input of the sky's field, and checks whether the last frame's
+ * field still fits this input. */
 #ifndef HL_RENDER_SKY_H
 #define HL_RENDER_SKY_H
 
@@ -19,7 +19,7 @@ typedef struct frame_sky {
 } frame_sky;
 
 /* Checks whether the sky's field fits a frame, and makes it anew where it does not. Without a sky the field
- * is released. `room` is a function that is called before memory is taken, and that may refuse. */
+ * is released. room: a function that is called before memory is taken, and that may refuse the memory. */
 typedef struct sky_room {
   hl_status (*check)(void *data, uint64_t bytes, hl_error *error);
   void *data;

@@ -1,19 +1,19 @@
 /* render/sky_lanes.h - the sky's light that a slab's samples send on.
  *
- * A surface is lit by the light that arrives at its outside. A sample belongs to the matter below
- * such a surface, so the field is read outside of it, at a distance along the normal. The distance is the way
- * on which the matter's values fall until nothing is visible, and some cells more: a cell is thicker than a
- * surface, and dark where it holds matter. */
+ * A surface is lit by the light that arrives at its outside. A sample belongs to the matter below its
+ * surface. So the field is read outside of the matter, at a distance along the normal. On this distance the
+ * matter's values fall until nothing is visible. Some cells are added to it, because a cell is thicker than a
+ * surface, and is dark where it holds matter. */
 #ifndef HL_RENDER_SKY_LANES_H
 #define HL_RENDER_SKY_LANES_H
 
 #include "render/light_depth_lanes.h"
 #include "render/sky_phase_lanes.h"
 
-/* The field's light reaches a cell before the cell itself has absorbed any. On its way to a medium's sample
- * it crosses half of the cell: in a direction of a slice (field/sky_lanes.h), half of sqrt(1 + u^2 + v^2)
- * edges. The mean over all directions is 3 / (4 pi) times the integral of 1 / (1 + u^2 + v^2) over -1 < u, v
- * < 1 (derived). */
+/* The field holds the light that reaches a cell, before the cell itself absorbs light. On its way to a
+ * medium's sample, light crosses half of the cell. For a direction with the slopes u and v
+ * (field/sky_lanes.h), this is half of sqrt(1 + u^2 + v^2) edges of a cell. The mean of this length over all
+ * directions is 3 / (4 pi) times the integral of 1 / (1 + u^2 + v^2) over -1 < u, v < 1 (derived). */
 static const float HALF_CELL = 0.6107f;
 
 /* The greatest distance, in voxels, by which a sample is moved to the outside of its surface. */
@@ -21,7 +21,7 @@ static const float MOST_TO_OUTSIDE = 8.0f;
 
 /* The length of the way along the normal from a volume's samples to the outside of their surface; frame
  * units. Derived: along this way the values fall by the gradient's length per unit. Behind the face of a cut
- * there is no such way: the gradient describes matter outside of the face, which is cut away. */
+ * the length is 0, because there the gradient leads through matter that is cut away. */
 LANES_INLINE lanes way_to_outside(const block_density *d) {
   const shade_volume *volume = d->patch->volume;
   const classifier *classifier = volume->classifier;
@@ -39,10 +39,10 @@ typedef struct sky_parts {
   lanes medium[3], surface[3], mean[3];
 } sky_parts;
 
-/* The fraction of the sky's light that a volume sends on, without its colour. For a medium it is the
- * albedo. Where the medium scatters light more than once, the fraction w of its light is in the grid of
- * scattered light (scatter/parts.h), where w is the albedo with the colour. The sky lights a surface by
- * another law; there the grid holds the fraction w of the sky's mean light. */
+/* The fraction of the sky's light that a volume sends on, without its colour. For a medium it is the albedo.
+ * Where the medium scatters light more than once, the grid of scattered light holds the fraction w of this
+ * light (scatter/parts.h); w is the albedo times the colour. A surface is lit by another law; for it the grid
+ * holds the fraction w of the sky's mean light. */
 LANES_INLINE lanes sent_on(const shade_volume *volume, const sky_parts *parts, lanes surface, int c,
                            lanes color) {
   lanes medium = parts->medium[c], on_surface = parts->surface[c];
@@ -62,7 +62,7 @@ LANES_INLINE void place_sky(const shade_job *job, const block_slab *slab, block_
                             int count) {
   for (int i = 0; i < count; i++) {
     block_density *d = &densities[i];
-    if (!d->there) continue; /* a volume without density in the tile has no patch, either */
+    if (!d->there) continue; /* a volume without density in the tile has no patch, so it is left out, too */
     const shade_volume *volume = d->patch->volume;
     if (!volume->visible || !volume->lit || !volume->receives_shadow) continue;
     d->outside = slab->geometry.position;
@@ -99,7 +99,8 @@ LANES_INLINE void find_arriving_sky(const shade_job *job, const block_slab *slab
   }
 }
 
-/* The light of the sky that a volume's samples send to the eye, as factors for the volume's colour. */
+/* The light of the sky that a volume's samples send to the eye, as a factor for each channel of the volume's
+ * colour. */
 LANES_INLINE color_lanes sky_of_volume(const shade_job *job, const block_slab *slab, const block_density *d,
                                        const color_lanes *color) {
   const sky_light *sky = job->sky;

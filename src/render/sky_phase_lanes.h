@@ -1,26 +1,27 @@
 /* render/sky_phase_lanes.h - the light of the sky that a medium sends to the eye, by its phase function.
  *
- * Harmonics give the mean of light and phase function up to the second degree. This is too little where the
- * function points forwards and half of the sky is hidden. So the light is modelled as even light and a
- * brighter cap. A table has the mean over the cap (phase_table.h), and harmonics correct the result up to the
- * second degree. */
+ * The harmonics give the mean of light times phase function up to the second degree. This is not enough where
+ * the phase function points forwards and half of the sky is hidden. So the light is modelled as even light
+ * plus a brighter cap. A table gives the mean over the cap (phase_table.h). The harmonics then correct the
+ * result up to the second degree. */
 #ifndef HL_RENDER_SKY_PHASE_LANES_H
 #define HL_RENDER_SKY_PHASE_LANES_H
 
 #include "field/lookup_lanes.h"
 #include "render/phase_lanes.h"
 
-/* A model of the sky's light: even light from all directions, and more light from a cap of directions. */
+/* A model of the sky's light: even light from all directions, plus more light from a cap of directions. */
 typedef struct sky_cap {
-  lanes even, more; /* means over all directions: of the even light, and of the light that the cap adds */
+  lanes even, more; /* means over all directions. even: of the even light; more: of the light that the cap
+                     * adds */
   lanes cosine;     /* cosine of the angle from the cap's middle to its edge */
   lanes3 middle;    /* unit */
 } sky_cap;
 
 /* The cap whose light has the mean and the flux that the harmonics give, and their second degree along the
  * flux. Derived: where x is the cosine to the cap's middle and c the cosine of its edge, the mean of x over
- * the cap is (1 + c) / 2, and the mean of (3 x^2 - 1) / 2 is c (1 + c) / 2. So c is the ratio of the two,
- * whatever part of the light is even. The cap is given all light at most. */
+ * the cap is (1 + c) / 2, and the mean of (3 x^2 - 1) / 2 is c (1 + c) / 2. So c is the ratio of these two
+ * means, however much of the light is even. The cap gets at most all of the light. */
 LANES_INLINE sky_cap cap_of_sky(const lanes *light) {
   sky_cap cap;
   lanes mean = light[0] * (float)HARMONIC_0, least = lanes_set(1e-12f);
@@ -35,9 +36,9 @@ LANES_INLINE sky_cap cap_of_sky(const lanes *light) {
   return cap;
 }
 
-/* The mean of light and Henyey and Greenstein's phase function, whose factors for harmonics are g^l (derived
- * from its series in Legendre polynomials). onwards: the direction of the eye's ray; table: null where g is
- * 0. */
+/* The mean, over all directions, of the light times Henyey and Greenstein's phase function. The factors of
+ * this function for harmonics of degree l are g^l (derived from its series in Legendre polynomials). onwards:
+ * the direction of the eye's ray. table: null where g is 0. */
 LANES_INLINE lanes light_of_medium(const phase_table *table, float g, const lanes *light, lanes3 onwards) {
   if (g == 0) return lanes_max(light[0] * (float)HARMONIC_0, lanes_set(0));
   const float size = fabsf(g), most = 1 / ((1 - size) * (1 - size));

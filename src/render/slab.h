@@ -1,7 +1,7 @@
 /* render/slab.h - steps 12 to 16: gradient, classification, shadow look-up, illumination, compositing.
  *
- * The slab between two sheets is shaded. Along each ray the density runs linearly from one sheet to the
- * other; the gradient is the kernel's, at the position where the slab's matter is seen; the shadow buffer
+ * The slab between two sheets is shaded. Along each ray the density is linear between the two sheets. The
+ * gradient is that of the kernel's sum, at the position where the slab's matter is seen. The shadow buffer
  * holds the light that reaches the first sheet. */
 #ifndef HL_RENDER_SLAB_H
 #define HL_RENDER_SLAB_H
@@ -20,8 +20,8 @@ struct surface_samples;
 
 /* The colours of a volume's voxels, or of its mask. */
 typedef struct voxel_colors {
-  const unsigned char *voxels; /* owned by the volume or mask; [k][j][i][4] colours of voxels
-                                * (volume/colors.h, label/mask.h); null: there are none */
+  const unsigned char *voxels; /* owned by the volume or mask; [k][j][i][4]; the colours of voxels
+                                * (volume/colors.h, label/mask.h); null: there are no colours */
   int32_t last[3];             /* the greatest index along i, j, k */
   int32_t step_bytes[3];       /* bytes from a voxel to the next along i, j, k */
   const float *decode;         /* [256]: the linear values of codes */
@@ -33,13 +33,13 @@ typedef struct shade_volume {
   const kernel *kernel;
   int phong, visible, receives_shadow;
   int lit;     /* 0: the volume is shaded flat: its colour is the same in any light */
-  int even;    /* surfaces reflect all light that arrives, from whatever angle it comes; set for the shadow
-                * layer of a light */
+  int even;    /* surfaces reflect all light that arrives, from whatever angle it comes; set in the passes for
+                * a light's shadow layer */
   float voxel; /* the smallest edge of a voxel; frame units */
   float ambient, diffuse, specular, shininess; /* ka kd ks n */
   float emission;                              /* ke; 1 for a volume shaded flat */
-  float cast[HL_CHANNELS];                     /* factors of the extinction towards the lights over the
-                                                * extinction towards the eye; 0: the volume casts no shadow */
+  float cast[HL_CHANNELS];                     /* the extinction for lights divided by the extinction for the
+                                                * eye, in each channel; 0: the volume casts no shadow */
   float to_index[3][4], low[3], high[3];       /* frame space to index space, and the volume's box there */
   int32_t face_cuts[3][2]; /* [axis][low, high]: -1 where this face of the volume's box cuts visible matter,
                             * else 0 */
@@ -48,33 +48,35 @@ typedef struct shade_volume {
                             * and so on); else null */
   int rank;                /* among the visible volumes */
   float anisotropy;        /* g of the phase function */
-  const phase_table *phase_once, *phase_twice; /* phase functions for g and for g^2; null where g is 0, or no
-                                                * light is wide and there is no sky */
+  const phase_table *phase_once, *phase_twice; /* tables of the phase functions for g and for g^2; null where
+                                                * g is 0, or where there is no sky and no wide light */
   voxel_colors colors;                         /* colours that multiply the transfer function's colours */
   float albedo[3];                             /* the medium's albedo times its colour */
   int absorbs;                                 /* some channel of the albedo is not 1 */
   int multiple;                                /* light scattered more than once lights the volume */
   const shade_cut *cuts;                       /* [cut_count] */
-  int cut_count, light_cut_count; /* number of the cuts that remove matter from the eye's view, and number of
-                                   * those that remove matter from the lights' views: the same number, or 0
-                                   * where removed matter still casts shadows */
+  int cut_count, light_cut_count; /* cut_count: number of the cuts that remove matter from the eye's view.
+                                   * light_cut_count: number of the cuts that remove matter from the lights'
+                                   * views. It is the same number, or 0 where removed matter still casts
+                                   * shadows */
   int cut_shading;                /* hl_cut_shading */
-  int mask_faces;                 /* where the mask leaves faces, normals turn to these faces */
-  voxel_colors tints;             /* the mask's colours; the matter's colours are mixed with
-                                   * them, by the weights of the mask's voxels */
+  int mask_faces;                 /* whether normals are turned to the faces that the mask makes, where the
+                                   * mask hides matter */
+  voxel_colors tints;             /* the mask's colours; the matter's colours are mixed with these, by the
+                                   * weights of the mask's voxels */
   int object;                     /* the volume's number in the layer of objects */
 } shade_volume;
 
-/* The densities of one volume in a tile, on the two sheets of a slab. Each patch has cache lines of its own,
- * because each thread writes its own patches. */
+/* The densities of one volume in a tile, on the two sheets of a slab. Each thread writes its own patches, so
+ * each patch has cache lines of its own. */
 typedef struct shade_patch {
   _Alignas(64) const shade_volume *volume;
   const float *before, *current; /* [256], block-major; densities on sheet k-1 and on sheet k */
   uint32_t blocks;               /* blocks with density on either sheet */
   const float *enter, *leave; /* [256], block-major; where each pixel's ray enters the volume's box and leaves
                                * it; null: the box cuts nothing visible */
-  int uncut;                  /* the box cuts neither the slab in this tile nor the ways of light through
-                               * it */
+  int uncut;                  /* the box cuts neither the slab in this tile, nor the ways of light that lead
+                               * through the box to the slab */
 } shade_patch;
 
 typedef struct shade_light {
@@ -82,17 +84,17 @@ typedef struct shade_light {
   float towards[3];  /* for a parallel light: unit direction to the light; frame space */
   float position[3]; /* for a light that is not parallel: its centre; frame space */
   float color[3];    /* color * intensity */
-  float of_sky;      /* the fraction of this light that a medium takes, where the light is a sun of the sky,
-                      * which makes no highlights; else 0 */
+  float of_sky;      /* where the light is a sun of the sky, which makes no highlights: the fraction of it
+                      * that a medium takes; for other lights 0 */
   int inverse_square;
   int shadowed;
   float path; /* length of the light's way through the slab. For a parallel light it is the sheet spacing /
                * |l.h|. For other lights it is the sheet spacing, which each sample divides by its own
                * |l.h| */
-  const shadow_lookup *lookups;     /* [planes of the buffer's ring]; for a light with shadows: how the light
-                                     * that reaches a sample is looked up */
-  const sublight_lookup *sublights; /* [sublight_count]; where there are any, a sample gets the mean of their
-                                     * light */
+  const shadow_lookup *lookups;     /* [planes of the buffer's ring]; set for a light with shadows: how
+                                     * samples look up the light that reaches them */
+  const sublight_lookup *sublights; /* [sublight_count]; if there are any sub-lights, a sample gets the mean
+                                     * of their light */
   int sublight_count, channels;
   light_texture texture;  /* the picture that the light projects */
   light_cone cone;        /* the cone of a spot light */
@@ -100,33 +102,37 @@ typedef struct shade_light {
   light_caps caps;        /* the caps of a wide light that is not parallel */
   int parallel_row;       /* for a wide parallel light: its row in the phase tables; for other lights -1 */
   int number;             /* the light's number among the sweep's lights */
-  int nearest, cubic;     /* nearest: the look-up takes the nearest pixel; cubic: it interpolates by cubic
-                           * convolution (never for sub-lights); else it interpolates bilinearly */
+  int nearest, cubic;     /* nearest: look-ups take the nearest pixel; cubic: look-ups interpolate by cubic
+                           * convolution (never for sub-lights); neither: look-ups interpolate bilinearly */
 } shade_light;
 
 typedef struct shade_job {
-  sheet_rays rays; /* the rays through the image's pixels: positions in frame space, in the middle between the
-                    * two sheets */
+  sheet_rays rays; /* the rays through the picture's pixels; they give positions in frame space, in the middle
+                    * between the two sheets */
   float through[3];     /* for parallel rays: the step from one sheet to the next along a ray of the eye */
   float towards_eye[3]; /* for parallel rays: unit direction to the eye */
-  float eye[3];    /* the eye's position in frame space; for parallel rays, a position where depth is 0 */
+  float eye[3];    /* the eye's position in frame space; for parallel rays, a position at which depth is 0 */
   float normal[3]; /* h */
   float path; /* length of the eye's ray through the slab. For parallel rays it is the sheet spacing / |w.h|.
                * For a perspective eye it is the sheet spacing, and each pixel divides it by its own |w.h| */
   int sheet;  /* k, the number of the slab's last sheet: the slab lies between sheets k-1 and k */
-  int plane;  /* the plane, in the rings of the lights' buffers, that has the light which reaches sheet k-1 */
-  float height, spacing; /* height of sheet k above the first sheet, and distance to sheet k-1; frame units */
+  int plane;  /* in the rings of the lights' buffers, the number of the plane that holds the light which
+               * reaches sheet k-1 */
+  float height, spacing; /* height: of sheet k above the first sheet; spacing: distance from sheet k to sheet
+                          * k-1; frame units */
   int back_to_front;
   const shade_light *lights;
   int light_count;
   float ambient[3];               /* Ia; zero in all sweeps but the first */
-  float emission;                 /* 1 in the first sweep, 0 in the others: volumes' emission is added once */
+  float emission;                 /* 1 in the first sweep, 0 in the others, so that the volumes' emission is
+                                   * added only once */
   int channels;                   /* number of channels of light attenuation: 1 or 3 */
   const scatter_field *scattered; /* the light that media scatter more than once; set in the first sweep;
                                    * null: there is none */
-  const sky_light *sky;           /* null: no sky, or the sky belongs to another sweep */
-  /* [lights of the sweep][channels]; for one tile, row by row: the fraction that surfaces close before the
-   * samples let through (late/); null: everything. */
+  const sky_light *sky;           /* the field of the sky's light; null: there is no sky, or its light is
+                                   * added in another sweep */
+  /* [lights of the sweep][channels]; for one tile, row by row: the fraction of light that passes the surfaces
+   * close before the samples (late/); null: all light passes. */
   const float (*near_passing)[TILE_PIXELS];
   float near_u, near_v; /* the tile's first pixel */
 } shade_job;
@@ -140,22 +146,23 @@ typedef struct tile_slab {
   const shade_job *job;       /* the job of the slab */
   size_t tile;                /* index of the tile */
   int x, y;                   /* column and row of the tile */
-  const shade_patch *patches; /* [patch_count]; patches of the volumes with density */
+  const shade_patch *patches; /* [patch_count]; the patches of those volumes that have density */
   int patch_count;
   uint32_t blocks; /* one bit for each block that has density and is not opaque yet */
   int worker;      /* number of the thread */
-  void *scratch;   /* [patch_count][SHADE_SCRATCH_BYTES], aligned to 64; belongs to the thread */
+  void *scratch;   /* [patch_count][SHADE_SCRATCH_BYTES], aligned to 64; memory of the thread */
 } tile_slab;
 
-/* Shades the tile's blocks. pixels: [16 blocks][R G B A][16]. Returns the blocks that are still open: some
- * pixel is not opaque yet. *samples is raised by the number of pixels composited. */
+/* Shades the tile's blocks. pixels: [16 blocks][R G B A][16]. Returns the blocks that are still open: those
+ * in which some pixel is not opaque yet. *samples is raised by the number of pixels composited. */
 typedef uint32_t shade_tile_function(const shade_job *job, const tile_slab *tile, float *pixels,
                                      uint64_t *samples);
 
-/* What is measured in each pixel for the layers depth, normal and object, while sheets go front to back:
- * alpha; the depth at which alpha first reaches 0.01 (infinite until then); the object that is met there (0
- * until then); which of the pixel's sixteen samples a mesh covers there, one bit each; and the sums of
- * depth and normal, weighted by the alpha that each sample adds. pixels: [16 blocks][MEASURES][16]. */
+/* The values that are measured in each pixel for the layers depth, normal and object. Sheets go from front to
+ * back. The values are: alpha; the depth at which alpha first reaches 0.01 (infinite until then); the object
+ * at this depth (0 until then); those of the pixel's sixteen samples that a mesh covers at this depth, one
+ * bit each; and the sums of depth and normal, weighted by the alpha that each sample adds. pixels: [16
+ * blocks][MEASURES][16]. */
 enum {
   MEASURE_ALPHA,
   MEASURE_DEPTH_FIRST,
@@ -169,10 +176,10 @@ enum {
 /* The alpha at which depth_first and object are measured (halflight/layers.h). */
 #define FIRST_OPACITY 0.01f
 
-/* The numbers that a maximum projection keeps for each pixel and visible volume, as coordinates in the
- * volume's table: the greatest shown value so far, -1 where there is none; the value on the sheet before
- * the last slab; and this slab's number, -1 where the box cuts the slab. A tile holds
- * [volumes][MAXIMUM_ROWS][16 blocks][16]. */
+/* The numbers that a maximum projection keeps for each pixel and visible volume. MAXIMUM_GREATEST: the
+ * greatest shown value so far, -1 where there is none. MAXIMUM_BEFORE: the value on the sheet before the last
+ * slab. MAXIMUM_SHEET: the last slab's number, -1 where the box cuts the slab. Values are coordinates in the
+ * volume's table. A tile holds [volumes][MAXIMUM_ROWS][16 blocks][16]. */
 enum { MAXIMUM_GREATEST, MAXIMUM_BEFORE, MAXIMUM_SHEET, MAXIMUM_ROWS };
 
 typedef struct maximum_values {

@@ -1,21 +1,21 @@
 /* render/slab_color_lanes.h - the transfer function's colour of a volume's matter in a slab, at sixteen
  * samples (step 13).
  *
- * A slab that spans several colours shows their mean. Derived: the place in a slab where the part s of its
- * optical depth e is passed counts with the weight e exp(-e s) / (1 - exp(-e)). The mean of s with this
- * weight is u = seen_part(e), which is 1/2 in thin slabs and 1 / e in opaque ones. Equal weights over the
- * first part of the slab, up to 2 u of the depth, have the same mean and leave out hidden matter. Depth
- * grows with the integral of extinction over density. So the mean colour is (K(f2) - K(f1)) / (T(f2) -
- * T(f1)): T is the integral of extinction, K the integral of extinction times colour, f1 the density where
- * the slab begins, f2 the density where 2 u of its depth are passed. As f2 nears f1 this is the colour of
- * f1. */
+ * A slab that spans several colours shows their mean. Derived: a place in a slab with the optical depth e has
+ * the weight e exp(-e s) / (1 - exp(-e)), where s is the part of e that lies before this place. The mean of s
+ * with this weight is u = seen_part(e), which is 1/2 in thin slabs and 1 / e in opaque ones. Equal weights
+ * over the first part of the slab, up to 2 u of the depth, have the same mean and leave out hidden matter.
+ * The depth is proportional to the integral of extinction over density. So the mean colour is (K(f2) - K(f1))
+ * / (T(f2) - T(f1)). T is the integral of extinction, and K the integral of extinction times colour. f1 is
+ * the density where the slab begins, f2 the density where the part 2 u of its depth is passed. As f2 nears f1
+ * this is the colour of f1. */
 #ifndef HL_RENDER_SLAB_COLOR_LANES_H
 #define HL_RENDER_SLAB_COLOR_LANES_H
 
 #include "render/light_depth_lanes.h"
 
-/* The least difference of T(f2) and T(f1), as a part of T. A smaller difference of two floats has too few
- * exact digits. */
+/* The least difference of T(f2) and T(f1) that is used, as a part of T. A smaller difference of two floats
+ * has too few exact digits. */
 static const float LEAST_PART_OF_SHOWN = 0x1p-12f;
 
 /* Looks up the integrals K (red, green, blue) and T, in this order, at a coordinate of the tables. */
@@ -27,16 +27,16 @@ LANES_INLINE void shown_below(const classifier *classifier, lanes x, lanes sums[
   for (int i = 0; i < 4; i++) sums[i] = lanes_fma(b[i] - a[i], at.fraction, a[i]);
 }
 
-/* Lanes in which the colour changes its slope somewhere between the slab's ends. */
+/* The lanes in which the slope of the colour changes somewhere between the slab's ends. */
 LANES_INLINE lanes_int is_color_bent(const classifier *classifier, const block_density *d) {
   lanes bent = lanes_gather(classifier->bent, lanes_truncate(d->after)) -
                lanes_gather(classifier->bent, lanes_truncate(d->before));
   return lanes_abs(bent * (d->after - d->before)) > CLASSIFIER_LEAST_BENDING;
 }
 
-/* The coordinate in the tables at which the visible part of a way's depth ends; *from: the coordinate at
- * which it begins. From back to front d->evenly is 1 - u, and the visible part is the last 2 u of the
- * slab. */
+/* The visible part of a way's depth, as coordinates in the tables: returns where it ends, and sets *from to
+ * where it begins. Where matter is seen from the other side, d->evenly is 1 - u, and the visible part is the
+ * last 2 u of the depth. */
 LANES_INLINE lanes end_of_shown(const block_density *d, lanes *from) {
   way_means m = means_of_way(d->before, d->after, &d->sums);
   lanes_int front = d->evenly <= 0.5f;

@@ -1,5 +1,5 @@
 /* render/slab_lanes.h - the slab between two sheets before it is lit (steps 12 and 13): the volumes' matter
- * on sixteen rays through the slab, where it is seen, and its gradient there.
+ * on sixteen rays through the slab, the place where this matter is seen, and its gradient at this place.
  *
  * The sixteen pixels are a 4x4 block, or pixels of several blocks packed together (pack_lanes.h). */
 #ifndef HL_RENDER_SLAB_LANES_H
@@ -12,15 +12,15 @@
 
 /* The rays of the eye through sixteen pixels, within a slab. They are the same for all volumes. */
 typedef struct block_geometry {
-  lanes3 position;    /* the position in the slab at which it is lit; frame space */
+  lanes3 position;    /* the position in the slab for which the slab is lit; frame space */
   lanes3 start;       /* where the ray enters the slab */
   lanes3 step_sheet;  /* the step along the ray from one sheet to the next */
   lanes3 towards_eye; /* unit */
   lanes path;         /* length of the eye's ray through the slab; 0 behind the eye */
 } block_geometry;
 
-/* Finds the rays of a block's pixels through a slab. Derived: on the ray E + s W, where s = step / H and H
- * = h.W, moving by one sheet moves the point by W ds / H. */
+/* Finds the rays of a block's pixels through a slab. Derived: a ray is E + s W, where s = step / H and H =
+ * h.W. From one sheet to the next, the point on the ray moves by W ds / H. */
 LANES_INLINE block_geometry geometry_of_block(const shade_job *job, lanes u, lanes v) {
   const sheet_rays *rays = &job->rays;
   block_geometry g;
@@ -59,28 +59,29 @@ typedef struct block_density {
   block_way way;
   lanes before, after; /* table coordinates of the densities at the two ends of the slab's covered part */
   way_sums sums;       /* sums of extinction, from one of these coordinates to the other */
-  lanes extinction;    /* extinction averaged over the whole slab; outside of the box it counts as 0 */
-  lanes centre;        /* in joined lanes: the centre of gravity of the extinction, as a fraction of the
-                        * slab, 0 to 1 */
+  lanes extinction;    /* the mean extinction over the whole slab; outside of the box the extinction counts as
+                        * 0 */
+  lanes centre;        /* in joined lanes (block_slab): the centre of gravity of the extinction, as a fraction
+                        * of the slab, 0 to 1 */
   lanes factor;        /* with gradient opacity, a mask or a function of two numbers: the factor by which
-                        * extinction and the sums were multiplied */
-  lanes row;  /* with a function of two numbers: the row of the table for the second number (plane_lanes.h) */
-  lanes seen; /* where the matter is seen: the fraction of the way through the slab's covered part */
-  lanes evenly;     /* where the matter would be seen if the extinction were the same on the whole way */
+                        * extinction and the sums have been multiplied */
+  lanes row;    /* with a function of two numbers: the table's row for the second number (plane_lanes.h) */
+  lanes seen;   /* where the matter is seen, as a fraction of the way through the slab's covered part */
+  lanes evenly; /* where the matter would be seen if the extinction were the same on the whole way */
   lanes_int sloped; /* lanes in which the gradient is known */
   lanes3 slope;     /* the gradient where the matter is seen; elsewhere 0 */
   lanes3 normal;    /* unit, away from the matter */
-  lanes surface;    /* how much matter is a surface: 1 for a surface, falling to 0 for a medium, which has
-                     * no normal */
-  lanes skin;       /* how much matter belongs to the face of a cut that is shaded: 1 at the face, 0 two
-                     * voxels behind it */
-  lanes3 outside; /* the position at which the sky's light is looked up; set where there is a sky that volumes
-                   * hide from each other */
+  lanes surface;    /* how much of the matter counts as a surface: 1 for a surface, falling to 0 for a medium,
+                     * which has no normal */
+  lanes skin;       /* how much of the matter belongs to the face of a cut that is shaded as a surface: 1 at
+                     * the face, 0 two voxels behind it */
+  lanes3 outside; /* the position at which the sky's light is looked up; set if volumes hide the sky from each
+                   * other */
   lanes light_first, light_last; /* lengths of the light's way within the volume's box, to the start and to
                                   * the end of the slab's covered part */
 } block_density;
 
-/* Optical depth below which the gradient hardly changes how much light a slab absorbs. */
+/* The optical depth below which the gradient has hardly any effect on how much light a slab absorbs. */
 static const float THIN_DEPTH = 1.0f / 64;
 
 /* A block's pixels in which a volume may be visible. */
@@ -101,7 +102,7 @@ LANES_INLINE block_way way_of_block(const shade_job *job, const shade_patch *pat
 }
 
 /* Finds, for one volume, the sums of extinction (step 13) over a part of the volume's way through the slab.
- * It ignores the volume's box. */
+ * The volume's box is not taken into account. */
 LANES_INLINE void classify_way(block_density *d, covered_span part) {
   const classifier *classifier = d->patch->volume->classifier;
   table_coordinate a = coordinate_of_density(classifier, d->way.first),
@@ -119,10 +120,10 @@ LANES_INLINE lanes centre_of_way(const block_density *d) {
   return m.from_a / (m.from_a + m.from_b);
 }
 
-/* The mean, over the visible light, of the fraction of a slab's optical depth at which matter is seen: int e
- * s exp(-e s) ds / (1 - exp(-e)) = 1 / e - exp(-e) / (1 - exp(-e)) = (1 - exp(-e) - e exp(-e)) / (e (1 -
- * exp(-e))) (derived); 1/2 - e / 12 for small e. left: exp(-e). Above e = 100, exp(-e) is 0 as a float, and e
- * is limited to 100. */
+/* The mean of the fractions s of a slab's optical depth at which matter is seen, weighted by visible light:
+ * int e s exp(-e s) ds / (1 - exp(-e)) = 1 / e - exp(-e) / (1 - exp(-e)) = (1 - exp(-e) - e exp(-e)) / (e (1
+ * - exp(-e))) (derived); 1/2 - e / 12 for small e. left: exp(-e). Above e = 100, exp(-e) is 0 as a float, so
+ * e is limited to 100. */
 LANES_INLINE lanes seen_part(lanes e, lanes left) {
   lanes_int thin = e < 0.05f;
   lanes lost = lanes_select(thin, lanes_set(1.0f), 1.0f - left);
@@ -137,21 +138,22 @@ typedef struct block_slab {
   lanes_int open;          /* the pixels that can still show something */
   uint32_t starts;         /* the first lane of each block, one bit each */
   block_geometry geometry; /* the rays, and the position where the slab is seen on average and is lit */
-  covered_span part;       /* from the place where the first visible volume begins to the place where the last
-                            * one ends */
-  lanes place;        /* the fraction of the slab in front of geometry.position, from 0 (first sheet) to 1 */
-  lanes_int joined;   /* lanes where one of several volumes fills less than `part` */
-  lanes centre;       /* in joined lanes: the centre of gravity of all volumes' extinction, as a
+  covered_span part;       /* the part of the slab from the place where the first visible volume begins to the
+                            * place where the last one ends */
+  lanes place;        /* the position of geometry.position between the two sheets, from 0 (first sheet) to
+                       * 1 */
+  lanes_int joined;   /* lanes in which there are several volumes, and one of them fills less than `part` */
+  lanes centre;       /* in joined lanes: the centre of gravity of the extinction of all volumes, as a
                        * fraction of the slab, 0 to 1 */
-  lanes total, depth; /* extinction averaged over the slab; optical depth */
+  lanes total, depth; /* total: mean extinction over the slab; depth: optical depth */
   lanes left;         /* exp(-depth) */
   lanes opacity;      /* 0 where nothing is seen */
   lanes_int seen;
 } block_slab;
 
-/* The fraction of the way at which the fraction u of the optical depth is reached: u^(b / a) for rising
- * extinction, mirrored for falling extinction. from_a, from_b: the distances of the extinction's centre from
- * the ends of the way. */
+/* The fraction of the way after which the fraction u of the optical depth is reached. It is u^(b / a) for
+ * rising extinction; for falling extinction the formula is mirrored. from_a, from_b: the distances a and b of
+ * the extinction's centre of gravity from the ends of the way. */
 LANES_INLINE lanes way_of_depth(lanes from_a, lanes from_b, lanes u) {
   lanes_int rising = from_a >= from_b;
   lanes t = lanes_power_of_part(lanes_select(rising, u, 1.0f - u),
@@ -159,9 +161,9 @@ LANES_INLINE lanes way_of_depth(lanes from_a, lanes from_b, lanes u) {
   return lanes_select(rising, t, 1.0f - t);
 }
 
-/* Finds where the matter of a slab is seen that several boxes share: where the matter would be seen if it
- * all belonged to one volume. The mean of the parts' centres, weighted by extinction, is the centre of the
- * whole. */
+/* Finds where the matter of a slab is seen if several boxes share the slab: at the place where it would be
+ * seen if all of it belonged to one volume. The mean of the parts' centres of gravity, weighted by
+ * extinction, is the centre of gravity of the whole. */
 LANES_INLINE lanes place_of_joined(block_density *densities, int count, const block_slab *slab, lanes u,
                                    lanes place) {
   lanes length = lanes_max(slab->part.length, lanes_set(1e-6f));
@@ -173,8 +175,8 @@ LANES_INLINE lanes place_of_joined(block_density *densities, int count, const bl
 }
 
 /* Finds the position at which the fraction u of the slab's optical depth is reached. (In a dense slab all
- * visible matter may lie at one end.) Extinction is taken to rise as t^q along the way, with the centre m =
- * (q + 1) / (q + 2) that the tables give; then the fraction u of the depth is reached at t = u^((1 - m) / m)
+ * visible matter may lie at one end.) Extinction is taken to rise as t^q along the way. The tables give its
+ * centre of gravity m = (q + 1) / (q + 2). Then the fraction u of the depth is reached at t = u^((1 - m) / m)
  * (derived; mirrored where extinction falls). Returns the mean of the volumes' positions, 0 to 1 through the
  * slab. */
 LANES_INLINE lanes place_of_part(block_density *densities, int count, const block_slab *slab, lanes u) {
@@ -207,8 +209,8 @@ LANES_INLINE lanes3 seen_position(const block_slab *slab, const block_density *d
   return add_scaled3(g->start, g->step_sheet, lanes_fma(slab->part.length, d->seen, slab->part.begin));
 }
 
-/* Finds gradients (step 12) where they are needed: for surfaces, and in dense slabs, in which the light's
- * optical depth differs from the eye's optical depth. */
+/* Finds gradients (step 12) where they are needed: for surfaces, and in dense slabs. In a dense slab the
+ * light's optical depth, which follows from the gradient, differs from the eye's optical depth. */
 LANES_INLINE void find_slopes(const shade_job *job, const block_slab *slab, block_density *densities,
                               int count) {
   const block_geometry *g = &slab->geometry;
@@ -229,10 +231,10 @@ LANES_INLINE void find_slopes(const shade_job *job, const block_slab *slab, bloc
   }
 }
 
-/* Finds a volume's normal. Matter that a mask hides leaves a face. The visible matter is f m, where m is the
- * mask's factor; its slope is m grad f + f grad m, in which the first m is taken as 1 (derived). The slope is
- * measured in steps of the transfer function's table, because floats cannot hold the squares of data values
- * of 1e-27 or 1e30. Where components are still below 1e-19, the normal is shorter than 1. */
+/* Finds a volume's normal. Where a mask hides matter, the matter beside it gets a face. The visible matter is
+ * f m, where m is the mask's factor. Its slope is m grad f + f grad m; the first m is taken as 1 (derived).
+ * The slope is measured in steps of the transfer function's table, because floats cannot hold the squares of
+ * data values of 1e-27 or 1e30. A normal whose components are still below 1e-19 gets a length below 1. */
 LANES_INLINE void find_normal(const block_slab *slab, block_density *d) {
   const shade_volume *volume = d->patch->volume;
   const float scale = fabsf(volume->classifier->scale);
@@ -254,8 +256,8 @@ LANES_INLINE void find_normal(const block_slab *slab, block_density *d) {
 typedef struct cut_face {
   lanes way;      /* the distance from the point back to the face; frame units */
   lanes3 outward; /* the face's unit normal */
-  lanes_int cuts; /* lanes in which the face cuts matter: no other volume goes on there, and visible matter
-                   * touches the face of a box */
+  lanes_int cuts; /* lanes in which the face cuts matter: no other volume goes on behind it, and at a face of
+                   * a box there is visible matter on the face */
 } cut_face;
 
 LANES_INLINE void take_nearer(cut_face *nearest, lanes way, lanes3 outward, lanes_int cuts) {
@@ -305,7 +307,8 @@ LANES_INLINE lanes_int shows_on_face(const shade_volume *volume, lanes3 crossing
   return may_be_visible(volume->classifier, there, there);
 }
 
-/* Whether some points are so near to a face of the box that shows matter that they may belong to it. */
+/* Whether some points lie so near to a face of the box with visible matter that the points may belong to the
+ * face. */
 LANES_INLINE int is_near_box_face(const shade_volume *volume, lanes3 point, lanes_int seen) {
   const float reach = FACE_VOXELS * volume->voxel * 1.001f; /* a little is added for rounding */
   lanes_int near = lanes_set_int(0);
@@ -319,8 +322,9 @@ LANES_INLINE int is_near_box_face(const shade_volume *volume, lanes3 point, lane
   return lanes_bits(near & seen) != 0;
 }
 
-/* How much a point belongs to the face of a cut, or of the volume's box, through whose matter it is seen: 1
- * at the face, 0 two voxels behind it. The gradient of even matter is only the noise of the data there. */
+/* The skin of a point: how much of it belongs to a face of a cut, or of the volume's box, through which it is
+ * seen. It is 1 at the face, and 0 two voxels behind the face. There the gradient of even matter is only
+ * noise of the data, so the face's normal serves in its place. */
 LANES_INLINE lanes find_skin(const block_slab *slab, const block_density *d, lanes3 *outward) {
   const shade_volume *volume = d->patch->volume;
   const lanes3 point = seen_position(slab, d), towards_eye = slab->geometry.towards_eye;
@@ -341,7 +345,8 @@ LANES_INLINE lanes find_skin(const block_slab *slab, const block_density *d, lan
   return lanes_keep(shown, lanes_clamp(FACE_VOXELS - depth * (1.0f / volume->voxel), 0, 1));
 }
 
-/* Behind a face, turns a volume's normal to the normal of the face, or makes the surface a medium. */
+/* Behind a face that cuts matter, turns a volume's normal to the normal of the face, or makes the surface a
+ * medium. */
 LANES_INLINE void find_cut_face(const block_slab *slab, block_density *d) {
   const shade_volume *volume = d->patch->volume;
   lanes3 outward;
@@ -368,8 +373,8 @@ LANES_INLINE void find_normals(const block_slab *slab, block_density *densities,
   }
 }
 
-/* The pixels of a block in which something may be seen, one bit each. alpha: the pixels' alpha before the
- * slab. */
+/* The pixels of a block in which something may be seen, one bit each. alpha: the alpha of the pixels before
+ * the slab. */
 LANES_INLINE uint32_t visible_in_block(const shade_job *job, const shade_patch *patches, int patch_count,
                                        int block, const float *alpha) {
   lanes_int open = job->back_to_front ? lanes_set_int(-1) : lanes_load(alpha) < PIXEL_OPAQUE,
@@ -381,7 +386,8 @@ LANES_INLINE uint32_t visible_in_block(const shade_job *job, const shade_patch *
 }
 
 /* Sets up a slab for a block of pixels: its volumes and their ways. bits: the pixels in which something may
- * be seen, at least one. patch_count: the tile's number of patches, which the compiler may know to be 1. */
+ * be seen, at least one. patch_count: the tile's number of patches; in some calls the compiler knows that it
+ * is 1. */
 LANES_INLINE void slab_of_block(const shade_job *job, const tile_slab *tile, int patch_count, int block,
                                 uint32_t bits, block_density *densities, block_slab *slab) {
   const shade_patch *patches = tile->patches;
@@ -418,8 +424,9 @@ LANES_INLINE void join_parts(const block_density *densities, int count, block_sl
 }
 
 /* Step 13 for several volumes. Each volume's extinction is found over the part of the slab in the volume's
- * own box. The position at which the slab is seen, and the light that it absorbs, are found over the part
- * that all boxes cover together. So a volume that is cut into several boxes looks as before. */
+ * own box. The position at which the slab is seen, and the light that the slab absorbs, are found over the
+ * part that all boxes cover together. So a volume that is divided into several boxes looks the same as the
+ * undivided volume. */
 LANES_INLINE void classify_joined(block_density *densities, int count, block_slab *slab) {
   join_parts(densities, count, slab);
   int joined = lanes_bits(slab->joined) != 0;
@@ -466,8 +473,8 @@ LANES_INLINE void classify_slab(block_density *densities, int count, block_slab 
 LANES_INLINE void place_slab(const shade_job *job, block_density *densities, int count, block_slab *slab) {
   block_geometry *g = &slab->geometry;
   *g = geometry_of_block(job, slab->u, slab->v);
-  slab->depth = lanes_keep(slab->seen,
-                           slab->total * g->path); /* a lane without a pixel has an arbitrary path */
+  slab->depth = lanes_keep(slab->seen, slab->total * g->path); /* a lane without a pixel has an arbitrary
+                                                                * path, so its depth is set to 0 */
   slab->left = lanes_exp_negative(slab->depth);
   slab->opacity = lanes_keep(slab->seen, 1.0f - slab->left);
   lanes u = seen_part(slab->depth, slab->left);
@@ -478,15 +485,16 @@ LANES_INLINE void place_slab(const shade_job *job, block_density *densities, int
   slab->place = seen_at;
 }
 
-/* Whether some volume's extinction depends on more than its value, so that weigh_slab() has work. */
+/* Whether weigh_slab() has work: whether some volume's extinction depends on more than its value. */
 LANES_INLINE int is_weighed(const tile_slab *tile) {
   for (int i = 0; i < tile->patch_count; i++)
     if (hl_classifier_is_weighed(tile->patches[i].volume->classifier)) return 1;
   return 0;
 }
 
-/* Gradient opacity, masks and functions of two numbers, after place_slab(): multiplies the volumes'
- * extinction by the factor where their matter would be seen without it, and places the slab again. */
+/* Applies gradient opacity, masks and functions of two numbers, after place_slab(). The factor on a volume's
+ * extinction is found at the place where its matter would be seen without this factor. Then the extinction is
+ * multiplied by the factor, and the slab is placed again. */
 LANES_INLINE void weigh_slab(const shade_job *job, block_density *densities, int count, block_slab *slab) {
   const block_geometry *g = &slab->geometry;
   int changed = 0;
@@ -526,7 +534,7 @@ LANES_INLINE void weigh_slab(const shade_job *job, block_density *densities, int
 }
 
 /* Steps 12 and 13 for a slab that slab_of_block() set up. Returns the pixels in which something is visible,
- * one bit each. Where there are none, only the opacity is set, to 0. */
+ * one bit each. If there are no such pixels, only the opacity is set, to 0. */
 LANES_INLINE uint32_t find_slab(const shade_job *job, const tile_slab *tile, block_density *densities,
                                 block_slab *slab) {
   const int count = tile->patch_count;

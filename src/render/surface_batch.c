@@ -26,7 +26,7 @@ static void set_material(surface_samples *samples, const surface_look *look) {
   for (int c = 0; c < 3; c++) samples->behind[c] = (float)(1 - look->opacity * look->attenuation_color[c]);
 }
 
-/* Step 16 for one fragment. pixels: the tile's. */
+/* Does step 16 for one fragment. pixels: the pixels of the tile. */
 static void composite_fragment(int back_to_front, const fragment *f, const float lit[3], float *pixels) {
   float *at = pixels + (size_t)(f->pixel / BLOCK_PIXELS) * 4 * BLOCK_PIXELS + f->pixel % BLOCK_PIXELS;
   float *alpha = at + 3 * BLOCK_PIXELS;

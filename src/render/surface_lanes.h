@@ -1,4 +1,4 @@
-/* render/surface_lanes.h - sixteen samples of surfaces lit (steps 14 and 15). */
+/* render/surface_lanes.h - lights sixteen samples of surfaces (steps 14 and 15). */
 #ifndef HL_RENDER_SURFACE_LANES_H
 #define HL_RENDER_SURFACE_LANES_H
 
@@ -10,21 +10,21 @@ LANES_INLINE lanes3 load3(const float v[3][SURFACE_SAMPLES]) {
   return (lanes3){lanes_load(v[0]), lanes_load(v[1]), lanes_load(v[2])};
 }
 
-/* A surface's sample and the light that arrives there. */
+/* A sample of a surface, and the direction of the light that arrives there. */
 typedef struct lit_sample {
   lanes3 position, normal; /* unit normal, on the side that is lit */
   lanes3 towards;          /* unit direction to the light */
-  lanes facing; /* the cosine of the angle between the normal and the way to the light; the light is
-                 * wanted in lanes where it is above 0 */
+  lanes facing; /* the cosine of the angle between the normal and the direction to the light; only lanes in
+                 * which it is above 0 need the light */
 } lit_sample;
 
 /* The direction in which a look-up moves away from a surface, at most of length 1: along the normal n, but
- * not to where the buffer meets the surface earlier than at the sample, since the buffer may hold the
- * surface there already. Derived: let t be the direction to the light and h that of growing heights of
- * sheets. Moving the look-up along e, at a right angle to t, moves it in the light's view. The ray of this
- * view meets the surface's plane e + t (n.e) / (n.t) farther on, so that the height there grows by e.g,
- * where g = h - a n and a = (h.t) / (n.t); g is at a right angle to t. For e = n - (n.t) t that is h.n - a.
- * Where it is less than 0, the part of e along g is left out. */
+ * not to places where the buffer meets the surface earlier than at the sample, because the buffer may hold
+ * the surface there already. Derived: let t be the direction to the light, and h the direction in which the
+ * heights of sheets grow. A vector e at a right angle to t moves the look-up in the light's view. The ray of
+ * this view meets the surface's plane e + t (n.e) / (n.t) farther on, so that the height there grows by e.g,
+ * where g = h - a n and a = (h.t) / (n.t); g is at a right angle to t. For e = n - (n.t) t, the growth e.g is
+ * h.n - a. Where it is less than 0, the part of e along g is left out. */
 LANES_INLINE lanes3 way_from_surface(const float h[3], const lit_sample *sample) {
   lanes3 sheets = {lanes_set(h[0]), lanes_set(h[1]), lanes_set(h[2])};
   lanes along = dot3(sheets, sample->normal),
@@ -35,9 +35,9 @@ LANES_INLINE lanes3 way_from_surface(const float h[3], const lit_sample *sample)
   return add_scaled3(sample->normal, g, lanes_set(0) - falls / lanes_max(dot3(g, g), lanes_set(1e-12f)));
 }
 
-/* The position at which a sample's light is looked up: moved away from the surface. Derived: the buffer's
- * column is (r1.p) / (r0.p); a way d at a right angle to the light moves the column by about |r1| d / (r0.p).
- */
+/* The position at which a sample's light is looked up: moved away from the surface. Derived: in the buffer,
+ * the column of a point p is (r1.p) / (r0.p). A step of length d at a right angle to the light moves the
+ * column by about |r1| d / (r0.p). */
 LANES_INLINE lanes3 moved_away(const shade_job *job, const shade_light *light, const shadow_map *map,
                                const lit_sample *sample) {
   const float *row = map->rows[1];
@@ -61,8 +61,8 @@ LANES_INLINE color_lanes light_before_slab(const shade_job *job, const shade_lig
   return passing;
 }
 
-/* The light on the side that the eye sees. Light from behind, through the surface itself, counts only where
- * the material sends on light from any angle. */
+/* The light on the side that the eye sees. Light from behind passes through the surface itself; it counts
+ * only where the material sends on light from any angle. */
 LANES_INLINE color_lanes light_of_sample(const shade_job *job, const shade_light *light,
                                          const surface_samples *samples, const lit_sample *seen) {
   if (samples->even == 0) return light_before_slab(job, light, seen);
@@ -75,8 +75,8 @@ LANES_INLINE color_lanes light_of_sample(const shade_job *job, const shade_light
   return passing;
 }
 
-/* The fraction of the light that surfaces close before the samples let through. The buffer may hold all,
- * some or none of these surfaces. */
+/* The fraction of light that passes the surfaces close before the samples. The buffer may hold all, some or
+ * none of these surfaces. */
 LANES_INLINE lanes contact_of(const shade_job *job, const shade_light *light, const surface_samples *samples,
                               int channel) {
   if (samples->contact == NULL) return lanes_set(1.0f);
@@ -113,11 +113,11 @@ LANES_INLINE void add_light(const shade_job *job, const shade_light *light, cons
   }
 }
 
-/* Cells by which look-ups of the sky's light are moved off a mesh. */
+/* The number of cells by which look-ups of the sky's light are moved off a mesh. */
 static const float MESH_LIFT = 1;
 
-/* Adds the sky's light. It is read a little outside of the surface, whose own matter hides the sky behind
- * it. */
+/* Adds the sky's light. It is looked up a little outside of the surface, because the surface's own matter
+ * hides the sky behind it. */
 LANES_INLINE void add_sky(const sky_light *sky, const surface_samples *samples, color_lanes *lit) {
   lanes3 normal = load3(samples->normal);
   lanes_int lit_side = dot3(normal, normal) > 0.0f;

@@ -4,15 +4,16 @@
 
 #include "render/sweep.h"
 
-/* A point of a surface that is lit: where a ray of the eye meets a fragment, with the normal and the colour
- * there. */
+/* A point of a surface that is to be lit: the point where a ray of the eye meets a fragment. Also the normal
+ * and the colour at this point. */
 typedef struct surface_point {
-  vec3 position, normal,
-      towards_eye; /* frame space; the normal is turned towards the eye; 0 on the back of one-sided meshes */
-  double color[3]; /* linear RGB */
+  vec3 position, normal, towards_eye; /* frame space; the normal is turned towards the eye, and is 0 on the
+                                       * back of a one-sided mesh */
+  double color[3];                    /* linear RGB */
 } surface_point;
 
-/* The point at a height, above the first sheet, of the eye's ray that meets a fragment; frame space. */
+/* A point of the eye's ray that meets a fragment: the point at a height above the first sheet; frame
+ * space. */
 vec3 hl_surface_place(const sweep *sweep, const tile_slab *slab, const fragment *f, double height);
 
 surface_point hl_surface_point_of(const sweep *sweep, const tile_slab *slab, const fragment *f);

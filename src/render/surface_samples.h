@@ -10,17 +10,20 @@ enum { SURFACE_SAMPLES = 16 };
 /* Up to sixteen samples of one mesh in one slab. Unused samples repeat the first one. */
 typedef struct surface_samples {
   _Alignas(64) float position[3][SURFACE_SAMPLES]; /* frame space */
-  float normal[3][SURFACE_SAMPLES];                /* unit normal on the eye's side; 0: the sample is black */
+  float normal[3][SURFACE_SAMPLES];                /* unit normal on the eye's side; if it is 0, the sample is
+                                                    * black */
   float towards_eye[3][SURFACE_SAMPLES];           /* unit */
   float color[3][SURFACE_SAMPLES];                 /* linear RGB */
-  float lit[3][SURFACE_SAMPLES];                   /* the result: the light that leaves towards the eye */
+  float lit[3][SURFACE_SAMPLES];                   /* the result: the light that leaves each sample towards
+                                                    * the eye */
   float ambient, diffuse, specular, shininess, emission; /* ka kd ks n ke */
-  float even; /* the fraction of light that the material sends on equally from any angle, as a medium does */
-  float behind[3]; /* R, G, B: of the part `even`, the fraction that is sent on where light comes from
-                    * behind the surface */
+  float even; /* the fraction of light that the material sends on evenly, from whatever angle the light comes,
+               * as a medium does */
+  float behind[3]; /* R, G, B: the fraction of the part `even` that is sent on if the light comes from behind
+                    * the surface */
   int receives_shadow;
-  /* [lights of the sweep][channels]; the fraction of light that surfaces close before the samples let through
-   * (late/); null: everything. */
+  /* [lights of the sweep][channels]; the fraction of light that passes the surfaces close before the samples
+   * (late/); null: all light passes. */
   const float (*contact)[SURFACE_SAMPLES];
 } surface_samples;
 

@@ -1,8 +1,9 @@
 /* render/sweep.h - one pass over the sheets on the processors: its state, and the stages that the sheet
  * loop calls. The plan says what the pass does (plan/frame_plan.h), and the pass never changes it.
  *
- * Threads own tiles: an image tile is filled, shaded and composited by one task, a light tile filled and
- * composited by one task, always in the same order, so that the picture does not depend on threads. */
+ * Each tile is worked on by one task at a time. A task fills, shades and composites a tile of the picture, or
+ * fills and composites a tile of a light's buffer. The order of the work on a tile is always the same, so
+ * that the picture does not depend on threads. */
 #ifndef HL_RENDER_SWEEP_H
 #define HL_RENDER_SWEEP_H
 
@@ -25,39 +26,42 @@ typedef struct sweep_light {
   void *reads;              /* owned; holds the next three arrays (light_reads.h) */
   int32_t *needed_until;    /* [tiles of the buffer]; the last slab that needs each tile; 0: no slab needs it.
                              * Null: all slabs need all tiles */
-  int32_t *sublights_until; /* the same for the buffers of sub-lights; as in light_shadow */
+  int32_t *sublights_until; /* as needed_until, for the buffers of sub-lights; as in light_shadow */
   unsigned char *owned; /* [tiles of the buffer]; 1 for tiles whose light this part of a shared picture sends
-                         * to the other parts; null: this part sends nothing */
+                         * to the other parts; null: this part sends no light */
 } sweep_light;
 
 static inline bool hl_light_needs(const sweep_light *light, size_t tile, int slab) {
   return light->needed_until == NULL || light->needed_until[tile] >= slab;
 }
 
-/* The sweep advances in stretches of slabs: a tile is taken through all slabs of a stretch by one thread. The
- * lights are a stretch ahead of the picture, and both share the threads (sweep_loop.c). */
+/* The sweep advances in stretches of slabs. One thread does the work on all slabs of a stretch in one tile.
+ * The lights are a stretch ahead of the picture, and both share the threads (sweep_loop.c). */
 typedef struct slab_stretch {
   int first, end; /* the stretch has the slabs that end at sheets `first` to `end` - 1; it is empty where the
                    * two are equal */
 } slab_stretch;
 
-/* What one thread has counted and timed, on cache lines of its own. */
+/* One thread's counts and times, on cache lines of its own. */
 typedef struct sweep_counts {
   _Alignas(64) uint64_t samples, filled_image, filled_light, skipped_image,
-      skipped_light; /* `samples` is a number of pixels that were shaded; the others are numbers of tiles */
+      skipped_light; /* samples: number of shaded pixels; the other members: numbers of tiles */
   uint64_t pixels_image, pixels_light, pixels_skipped_image, pixels_skipped_light;
-  uint64_t pixels_seen, pixels_covered; /* pixels that are seen, and pixels that opaque matter covers; counted
-                                         * only by the sweep of hidden.c */
+  uint64_t pixels_seen, pixels_covered; /* pixels_seen: number of seen pixels; pixels_covered: number of
+                                         * pixels that opaque matter covers; counted only by the sweep of
+                                         * hidden.c */
   double seconds_fill, seconds_shade;   /* of the image stage */
   double seconds_light;                 /* of the light stage */
   double seconds_composite;             /* of the compositing in the light stage */
 } sweep_counts;
 
-/* The matter that a pass shades: the scene's own matter; white matter whose surfaces send on the same light
- * whatever the angle at which it comes; white matter; white matter that receives no shadow. */
+/* The matter that a pass shades. MATTER_OWN: the scene's own matter. MATTER_EVEN: white matter whose surfaces
+ * send on the same light whatever the angle at which it comes. MATTER_WHITE: white matter. MATTER_OPEN: white
+ * matter that receives no shadow. */
 typedef enum layer_matter { MATTER_OWN, MATTER_EVEN, MATTER_WHITE, MATTER_OPEN } layer_matter;
 
-/* A pass over a sweep: its tiles are shaded once more, for one of the picture's layers (hl_layers). */
+/* A pass over a sweep: the sweep's tiles are shaded once more, for one of the picture's layers
+ * (hl_layers). */
 typedef struct layer_pass {
   shade_tile_function *shade;
   const shade_light *lights; /* [light_count] */
@@ -71,24 +75,26 @@ typedef struct layer_pass {
 } layer_pass;
 
 typedef struct sweep_layers {
-  layer_pass *passes; /* owned with all arrays below; [pass_count] */
+  layer_pass *passes; /* owned, together with all arrays below; [pass_count] */
   int pass_count;
   shade_light *white_lights;                  /* [light_count of the sweep] */
   shade_volume *even_volumes;                 /* [volume_count]; white volumes whose surfaces send on all
                                                * light that arrives */
-  shade_volume *white_volumes, *open_volumes; /* [volume_count]; white volumes, and white volumes that receive
-                                               * no shadow */
-  shade_patch *patches;                       /* [threads][volume_count]; patches of a pass's own volumes */
-  classifier *white;   /* [volume_count]; the volumes' tables, borrowed, with white colours */
+  shade_volume *white_volumes, *open_volumes; /* [volume_count]; white_volumes: white copies of the volumes;
+                                               * open_volumes: white copies that receive no shadow */
+  shade_patch *patches;                       /* [threads][volume_count]; patches whose volumes are a pass's
+                                               * own volumes */
+  classifier *white;   /* [volume_count]; the volumes' tables with white colours; the tables are borrowed */
   sky_light white_sky; /* the sky without its colour */
   float (*ones)[4];    /* a colour table */
 } sweep_layers;
 
-/* The number of points along each side of a light that stand for the light, where samples of surfaces look
- * for surfaces close before them (late/). */
+/* The greatest number of points along each side of a light. Samples of surfaces cast rays to these points to
+ * find the surfaces close before them (late/). */
 enum { LIGHT_POINTS_SIDE = 4 };
 typedef struct light_points {
-  vec3 offset[LIGHT_POINTS_SIDE * LIGHT_POINTS_SIDE]; /* [count]; from the light's centre (hl_light_point) */
+  vec3 offset[LIGHT_POINTS_SIDE * LIGHT_POINTS_SIDE]; /* [count]; offsets from the light's centre
+                                                       * (hl_light_point) */
   int count;                                          /* number of points; 1 where shadows are hard */
   double reach;                                       /* the greatest length of an offset */
 } light_points;
@@ -96,12 +102,12 @@ typedef struct light_points {
 /* Fragments and surfaces of the sweep's views; all zeros where the frame has no surfaces. */
 typedef struct surface_state {
   fragments image, lights[FRAME_LIGHTS];
-  fragments unseen;             /* fragments, in the eye's view, of meshes that are not visible and shade
-                                 * volumes */
+  fragments unseen;             /* fragments, in the eye's view, of those meshes that are not visible but cast
+                                 * shadows on volumes */
   void *memory;                 /* owned; holds all arrays below */
   shade_patch *patches;         /* [threads][volumes] */
-  float (*cuts)[TILE_PIXELS];   /* [threads][volumes][2]; for each pixel, where a piece of the slab enters and
-                                 * leaves a volume's box */
+  float (*cuts)[TILE_PIXELS];   /* [threads][volumes][2]; for each pixel, the heights at which the ray enters
+                                 * and leaves a volume's box within a piece of the slab */
   float (*bounds)[TILE_PIXELS]; /* [threads][2]; for each pixel, the heights at which a piece of the slab
                                  * begins and ends */
   float (*passing)[TILE_PIXELS];     /* [threads][lights][channels]; the result of hl_near_surfaces_find() */
@@ -111,15 +117,16 @@ typedef struct surface_state {
 
 typedef struct sweep sweep;
 
-/* A function that a sweep calls for each tile of a slab. Returns the blocks that stay open: in them, later
- * sheets may still change the picture. */
+/* The function that a sweep calls for each tile of a slab. Returns the blocks that stay open: the blocks in
+ * which later sheets may still change the picture. */
 typedef uint32_t tile_action(const sweep *sweep, const tile_slab *slab);
 
 /* The arrays that the sheet loop works in. */
 typedef struct loop_arrays {
   void *memory;                      /* owned; holds the arrays that follow */
   uint16_t *open;                    /* [tiles]; blocks not yet opaque */
-  uint32_t *tasks;                   /* [tiles of the image and of all lights]; the stretches' tiles */
+  uint32_t *tasks;                   /* [tiles of the image and of all lights]; the tiles on which a stretch
+                                      * has work */
   shade_job *slab_shades;            /* [stretch]; jobs for the picture's slabs */
   attenuate_job *slab_attenuates;    /* [lights][stretch]; jobs for the lights' slabs */
   shade_patch *shade_patches;        /* [threads][volumes] */
@@ -136,11 +143,11 @@ typedef struct sweep_times {
 
 /* The loop over the sheets. */
 typedef struct sweep_loop {
-  int ring; /* number of sheets whose light a buffer keeps; 1: the picture and the lights take turns, slab by
-             * slab */
+  int ring; /* number of sheets whose light a buffer keeps; 1: the work on the picture and on the lights
+             * alternates, slab by slab */
   slab_stretch picture_stretch, light_stretch;
-  int task_start[FRAME_LIGHTS + 2]; /* index of the picture's first task, of each light's first task, and one
-                                     * past the last task */
+  int task_start[FRAME_LIGHTS + 2]; /* indices among the tasks: of the picture's first task, of each light's
+                                     * first task, and one past the last task */
   sweep_times times;
 } sweep_loop;
 
@@ -149,18 +156,18 @@ typedef struct sweep_target {
   float *pixels;                 /* [tiles][16][4][16]; the sweep's own */
   const int32_t *shown_from;     /* [tiles][16]; first visible slab of each block; null: nothing is hidden */
   const layer_pixels *layers;    /* pixels of the layers; null: none */
-  const maximum_values *maximum; /* values of a maximum projection; null, or a struct with null values: the
-                                  * picture shows lit matter */
+  const maximum_values *maximum; /* values of a maximum projection; null, or a struct whose `values` is null:
+                                  * the picture shows lit matter */
 } sweep_target;
 
-/* The purpose of a sweep: to make a picture, or to search for hidden matter before the picture is made; a
+/* The purpose of a sweep: to make a picture, or to search for hidden matter before the picture is made. A
  * search lights nothing (hidden.c). */
 typedef enum sweep_purpose { SWEEP_PICTURE, SWEEP_SEARCH } sweep_purpose;
 
-/* The purpose of a sweep, and what it does with a tile. */
+/* The purpose of a sweep, and the function that it calls for each tile. */
 typedef struct sweep_act {
   sweep_purpose purpose;
-  tile_action *run; /* what the sweep does with a tile: steps 12 to 16, or what replaces them */
+  tile_action *run; /* the action on a tile: steps 12 to 16, or what replaces these steps */
   void *data;       /* the caller's data for `run` */
 } sweep_act;
 
@@ -184,7 +191,7 @@ struct sweep {
   sweep_loop loop;
 };
 
-/* The processors, and the memory that they may use. */
+/* What a sweep works with: the context, the threads, and memory. */
 typedef struct sweep_means {
   hl_context *context;
   hl_pool *pool;
@@ -197,8 +204,8 @@ void hl_sweep_set_up(sweep *sweep, const sweep_means *means, const frame_plan *f
                      const sweep_plan *plan, const sweep_target *target);
 
 /* Finds, before a sweep that goes from back to front, what opaque matter hides from the eye (hidden.c).
- * pixels: the sweep's pixels, which must be zeros and are zeros again afterwards. *shown_from: [tiles][16];
- * the caller releases it; null where the sweep goes from front to back. */
+ * pixels: the sweep's pixels; they must be zeros, and are zeros again afterwards. *shown_from: receives
+ * [tiles][16], which the caller releases; null if the sweep goes from front to back. */
 hl_status hl_find_hidden(const sweep_means *means, const frame_plan *frame_plan, const sweep_plan *plan,
                          float *pixels, int32_t **shown_from, hl_render_statistics *statistics,
                          hl_error *error);
@@ -206,14 +213,14 @@ hl_status hl_find_hidden(const sweep_means *means, const frame_plan *frame_plan,
 /* The tile action of a lit picture: steps 12 to 16, and the layers (sweep_stages.c). */
 uint32_t hl_light_tile(const sweep *sweep, const tile_slab *slab);
 
-/* Does steps 1 to 4, and allocates the memory. The caller keeps both arrays from frame to frame: buffers
- * holds one buffer per light of the frame, memory [FRAME_LIGHTS] blocks that the frame's sweeps use in
- * turn. */
+/* Does steps 1 to 4, and allocates the memory. The caller keeps both arrays from frame to frame: buffers: one
+ * for each light of the frame. memory: [FRAME_LIGHTS]; blocks that the frame's sweeps use one after the
+ * other. */
 hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, shadow_memory *memory, hl_error *error);
 /* Seconds of a clock that never runs backwards. */
 double hl_clock_seconds(void);
 
-/* Opens all blocks of the sweep's part of the picture. */
+/* Marks all blocks of the sweep's part of the picture as open. */
 void hl_sweep_open(sweep *sweep);
 /* Adds the sweep's counts and seconds to the statistics. */
 void hl_sweep_count(const sweep *sweep, hl_render_statistics *statistics);
@@ -222,10 +229,10 @@ void hl_sweep_end(sweep *sweep);
 /* The memory that hl_sweep_begin() takes, summed over the sweeps of a frame that were counted. */
 typedef struct sweeps_memory {
   hl_layout buffers;         /* the lights' shadow buffers, which the renderer keeps between frames */
-  size_t kept[FRAME_LIGHTS]; /* number of bytes that shadow methods keep between frames; the sweeps use them
-                              * in turn */
-  hl_layout passing;         /* memory that a sweep releases at its end; light textures and lists of splatted
-                              * voxels are not counted */
+  size_t kept[FRAME_LIGHTS]; /* number of bytes that shadow methods keep between frames; the sweeps use these
+                              * bytes one after the other */
+  hl_layout passing;         /* memory that a sweep releases at its end, without light textures and lists of
+                              * splatted voxels */
 } sweeps_memory;
 
 /* Adds the memory that hl_sweep_begin() takes for a sweep that is set up. The sweep cannot be used any more:
@@ -235,7 +242,7 @@ void hl_sweep_count_memory(sweep *sweep, sweeps_memory *memory);
 /* The sheet loop: steps 3 to 18 (sweep_loop.c). */
 hl_status hl_sweep_run(sweep *sweep, hl_error *error);
 
-/* The work on one tile in one slab; each function does the steps named beside it (sweep_stages.c). */
+/* The work on one tile in one slab. The steps that a function does stand beside it (sweep_stages.c). */
 void hl_sweep_shade(sweep *sweep, const shade_job *job, size_t tile, int worker); /* steps 6, 8 to 16 */
 void hl_sweep_attenuate(sweep *sweep, int light, const attenuate_job *job, size_t tile,
                         int worker); /* steps 7 to 11 and 17 */

@@ -38,8 +38,8 @@ static void end_light(const sweep *sweep, sweep_light *light) {
 /* ---- how long stretches are ---- */
 
 /* A stretch has LONGEST_STRETCH slabs where nothing limits it (measured: docs/laboratory/threads.md). The
- * planes that all lights of a frame keep for a stretch take at most RING_BYTES. With one thread there is no
- * waiting, so picture and lights are worked on by turns. */
+ * planes that all lights of a frame keep for a stretch take at most RING_BYTES. With one thread, no thread
+ * waits for another, so the work on picture and lights alternates slab by slab. */
 enum { LONGEST_STRETCH = 8 };
 static const uint64_t RING_BYTES = 64 << 20;
 
@@ -106,7 +106,8 @@ static void count_light(sweep *sweep, int index, sweeps_memory *memory) {
   hl_view_sheets_count(&sweep->content, &shadow->plan.view, shadow->plan.spare, passing);
 }
 
-/* The number of tiles of the picture and of all lights that are planned and cast shadows. */
+/* The number of tiles of the picture, and of the buffers of those lights that cast shadows and are
+ * planned. */
 static size_t count_tasks(const sweep *sweep) {
   size_t tasks = sweep->frame_plan->picture.tiles;
   for (int i = 0; i < sweep->geometry->light_count; i++)
@@ -187,11 +188,11 @@ static void connect_light(sweep *sweep, int index) {
   sweep->constants.attenuate[index].stride = shadow->buffer->stride;
 }
 
-/* A light whose rays climb by less than this fraction of their length counts as running along the sheets. */
+/* A light's rays that rise by less than this fraction of their length count as running along the sheets. */
 static const double LEAST_CLIMB = 0.05;
 
-/* The least rise of a light's rays, within the content, per unit of their length. Directions within some
- * angle of the normal form a cone, so the ray to one of the content's corners has the least rise. */
+/* The least rise, per unit of length, of a light's rays within the content. All directions within some angle
+ * of the normal form a cone, so the ray with the least rise leads to one of the content's corners. */
 static double least_climb(const sweep *sweep, const light_source *source) {
   vec3 normal = sweep->geometry->sheets.normal;
   if (source->parallel) return vec3_dot(source->direction, normal);
@@ -211,8 +212,7 @@ static double longest_way(const sweep *sweep) {
   return least < LEAST_CLIMB ? INFINITY : sweep->geometry->sheets.spacing / least;
 }
 
-/* The distance from the faces that cut volumes up to which these faces change what is a surface for the
- * lights. */
+/* The distance within which faces that cut volumes change which matter is a surface for the lights. */
 static double reach_of_faces(const sweep *sweep) {
   double greatest = 0;
   for (int g = 0; g < sweep->content.volume_count; g++)

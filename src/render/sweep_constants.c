@@ -21,8 +21,8 @@ void hl_sweep_constants_lay_out(const frame_plan *plan, sweep_constants *constan
 
 /* ---- the volumes ---- */
 
-/* Where the colours of a volume's voxels lie in memory. volume: null: there are no colours. Indices of
- * colours fit 32 bits, because a volume with colours has at most 2^29 voxels. */
+/* Where the colours of a volume's voxels lie in memory. volume: null: there are no colours. 32 bits hold the
+ * indices of colours, because a volume with colours has at most 2^29 voxels. */
 static voxel_colors colors_of(const hl_volume *volume, const float *decode) {
   voxel_colors colors = {.decode = decode};
   if (volume == NULL || volume->colors == NULL) return colors;
@@ -64,7 +64,7 @@ static void set_up_cuts(const plan_volumes *volumes, sweep_constants *constants)
   }
 }
 
-/* Finds the faces of a volume's box that cut visible matter: at such a face no other volume continues the
+/* Finds the faces of a volume's box that cut visible matter: the faces at which no other volume continues the
  * matter. */
 static void find_box_faces(const grid *grid, shade_volume *shade) {
   for (int axis = 0; axis < 3; axis++) {
@@ -77,7 +77,7 @@ static void find_box_faces(const grid *grid, shade_volume *shade) {
   }
 }
 
-/* A volume's material and the numbers that follow from it. */
+/* A volume's material, and numbers that follow from the material. */
 static shade_volume material_of(const frame_volume *volume, const plan_fields *fields) {
   shade_volume shade = {
       .phong = volume->look.shading == HL_SHADING_PHONG,
@@ -102,7 +102,7 @@ static shade_volume material_of(const frame_volume *volume, const plan_fields *f
   return shade;
 }
 
-/* Sets the members that say where a volume lies and how large its voxels are. */
+/* Sets the members that describe where a volume lies and how large its voxels are. */
 static void place_volume(const grid *grid, shade_volume *shade) {
   shade->voxel = (float)hl_smallest_edge(grid);
   affine3_store(shade->to_index, &grid->frame_to_index);

@@ -1,5 +1,5 @@
-/* render/sweep_constants.h - what all slabs of a sweep have in common, in the form that the loops over
- * samples read. It is made from the plan, for every back end. */
+/* render/sweep_constants.h - the constants that all slabs of a sweep have in common, in the form that the
+ * loops over samples read. They are made from the plan, for every back end. */
 #ifndef HL_RENDER_SWEEP_CONSTANTS_H
 #define HL_RENDER_SWEEP_CONSTANTS_H
 
@@ -20,8 +20,8 @@ typedef struct sweep_constants {
 /* Takes the arrays. */
 void hl_sweep_constants_lay_out(const frame_plan *plan, sweep_constants *constants, hl_layout *layout);
 
-/* Fills the arrays, which must be allocated, and all members except those for a light's shadow buffer and
- * texture, which a back end sets. constants must not move afterwards. */
+/* Fills the arrays, which must be allocated, and the members of `constants`. A back end sets the members for
+ * the shadow buffers and textures of lights. `constants` must not move in memory afterwards. */
 void hl_sweep_constants_find(const frame_plan *plan, const sweep_plan *sweep, sweep_constants *constants);
 
 #endif

@@ -1,12 +1,12 @@
-/* render/sweep_layers.c - the layers of a sweep: its tiles shaded once more for each of them. */
+/* render/sweep_layers.c - see sweep_layers.h. */
 #include "render/sweep_layers.h"
 
 #include <string.h>
 
 #include "core/memory.h"
 
-/* Sets up copies of the volumes with white matter: copies that send on all light that arrives, and copies
- * that shade as the volumes do, with and without the matter that hides the sky. */
+/* Sets up white copies of the volumes. There are copies that send on all light that arrives; copies that
+ * shade as the volumes do; and such copies without the matter that hides the sky. */
 static void set_up_white_volumes(sweep *sweep) {
   sweep_layers *layers = &sweep->layers;
   for (size_t i = 0; i < CLASSIFIER_ENTRIES + 2; i++)
@@ -38,15 +38,15 @@ static void set_up_white_light(const shade_light *from, shade_light *white) {
   for (int c = 0; c < 3; c++) white->color[c] = 1;
 }
 
-/* At most these passes beside those of lights: ambient light, emission, the sky, the sky's two pictures of
- * white volumes, and measures. */
+/* The greatest number of passes besides those of lights: ambient light, emission, the sky, the sky's two
+ * pictures of white volumes, and measures. */
 enum { MOST_OTHER_PASSES = 6 };
 
 static bool wants_layers(const sweep *sweep) {
   return sweep->target.layers != NULL && sweep->target.layers->wanted != NULL;
 }
 
-/* Lays out all arrays of the layers in one block. The passes come first in it. */
+/* Lays out all arrays of the layers in one block, which begins with the passes. */
 static void lay_out(sweep *sweep, hl_layout *layout) {
   sweep_layers *layers = &sweep->layers;
   const size_t lights = (size_t)sweep->geometry->light_count, volumes = (size_t)sweep->content.volume_count,
@@ -133,7 +133,7 @@ hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error) {
 
 void hl_sweep_layers_end(sweep *sweep) { hl_release(sweep->content.context, sweep->layers.passes); }
 
-/* The tile's patches, but with the volumes that have the pass's matter. */
+/* The tile's patches, with volumes that have the pass's matter in place of the scene's volumes. */
 static const shade_patch *patches_of(const sweep *sweep, const tile_slab *slab, layer_matter matter) {
   const shade_volume *volumes = matter == MATTER_EVEN    ? sweep->layers.even_volumes
                                 : matter == MATTER_WHITE ? sweep->layers.white_volumes
@@ -146,7 +146,8 @@ static const shade_patch *patches_of(const sweep *sweep, const tile_slab *slab, 
   return patches;
 }
 
-/* The slab's job, but with the lights, the ambient light, the sky and the emission of the pass. */
+/* The slab's job, with the lights, the ambient light, the sky and the emission of the pass in place of its
+ * own. */
 static shade_job job_of_pass(const layer_pass *pass, const shade_job *slab) {
   shade_job job = *slab;
   job.lights = pass->lights;
@@ -165,14 +166,14 @@ void hl_sweep_layers_tile(const sweep *sweep, const tile_slab *slab) {
     const shade_job job = job_of_pass(pass, slab->job);
     tile_slab own = *slab;
     if (pass->matter != MATTER_OWN) own.patches = patches_of(sweep, slab, pass->matter);
-    uint64_t samples = 0; /* the samples of passes are counted here, and left out of the statistics */
+    uint64_t samples = 0; /* receives the number of samples of passes, which the statistics leave out */
     (void)pass->shade(&job, &own, pass->pixels + slab->tile * pass->tile_floats, &samples);
   }
 }
 
 /* ---- surfaces ---- */
 
-/* Gives samples of surfaces the matter of a pass. */
+/* Replaces the material of samples of surfaces by the matter of a pass. */
 static void change_matter(layer_matter matter, surface_samples *samples) {
   if (matter == MATTER_OWN) return;
   for (int c = 0; c < 3; c++)
@@ -197,10 +198,10 @@ static float depth_of_sample(const shade_job *job, const surface_samples *sample
   return eye - dot_of_sample(samples->position, i, towards_eye);
 }
 
-/* Measures the first depth of a pixel in which a mesh is seen. The mesh's parts in the pixel are several
- * fragments, which lie side by side or one behind another: the depth is the mean over the samples at which
- * one of them is met first. at: the pixel's measures; alpha: the pixel's alpha before and after the
- * fragment. */
+/* Measures the first depth of a pixel in which a mesh is seen. A mesh may have several fragments in the
+ * pixel, which lie side by side or one behind another. The depth is the mean over the pixel's samples, each
+ * with the depth of the first of these fragments that covers it. at: the pixel's measures; alpha: the pixel's
+ * alpha before and after the fragment. */
 static void measure_first(const fragment *f, float depth, int object, float before, float after, float *at) {
   float *first = at + MEASURE_DEPTH_FIRST * BLOCK_PIXELS, *covered = at + MEASURE_SAMPLES * BLOCK_PIXELS;
   const unsigned known = (unsigned)*covered, met = f->samples & ~known;
@@ -213,7 +214,8 @@ static void measure_first(const fragment *f, float depth, int object, float befo
   at[MEASURE_OBJECT * BLOCK_PIXELS] = (float)object;
 }
 
-/* Measures a batch, in sheets that go front to back. pixels: the tile's pixels. */
+/* Measures depth, normal and object of a batch, in a sweep that goes from front to back. pixels: the tile's
+ * pixels. */
 static void measure_batch(const shade_job *job, const surface_batch *batch, int object, float *pixels) {
   for (int i = 0; i < batch->count; i++) {
     const fragment *f = batch->fragments[i];

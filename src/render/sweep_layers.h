@@ -1,12 +1,12 @@
-/* render/sweep_layers.h - the layers of a sweep: its tiles shaded once more for each of them. */
+/* render/sweep_layers.h - the layers of a sweep: its tiles are shaded once more for each layer. */
 #ifndef HL_RENDER_SWEEP_LAYERS_H
 #define HL_RENDER_SWEEP_LAYERS_H
 
 #include "render/surface_batch.h"
 
-/* hl_sweep_layers_begin() is called at the end of hl_sweep_begin(). hl_sweep_layers_tile() shades one tile of
- * every layer. hl_sweep_layers_batch() shades the fragments of a tile for every layer; the samples of the
- * batch are placed already. */
+/* hl_sweep_layers_begin() is called at the end of hl_sweep_begin(). hl_sweep_layers_tile() shades one tile
+ * for every layer. hl_sweep_layers_batch() shades fragments of a tile for every layer; the samples of the
+ * batch must have been placed. */
 hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error);
 void hl_sweep_layers_end(sweep *sweep);
 /* Counts the memory that hl_sweep_layers_begin() takes. Sets no pointers. */

@@ -1,23 +1,25 @@
 /* render/sweep_loop.c - the loop over the sheets: stretches of slabs, their tiles shared out to the threads.
  *
  * Light never depends on the picture. So the lights' stretch r + 1 and the picture's stretch r are one set of
- * tasks, with one wait for all threads at its end. With K slabs in a stretch, the picture's stretch r reads
- * the planes of the K sheets before its slabs. Meanwhile the lights write K more planes, and start from the
- * plane before these. So the buffers keep the planes of 2 K + 1 sheets. A task takes one tile through all
- * slabs of a stretch, in the order of the sheets: bytes depend neither on K nor on threads. Where a light's
- * buffer changes as a whole after a stretch, in many short runs (cascade), threads that have no work in these
- * runs work on the picture.
+ * tasks. At the end of the set all threads wait for each other. With K slabs in a stretch, the picture's
+ * stretch r reads the planes of the K sheets before its slabs. Meanwhile the lights write K more planes, and
+ * start from the plane before these. So the buffers keep the planes of 2 K + 1 sheets. A task takes one tile
+ * through all slabs of a stretch, in the order of the sheets: bytes depend neither on K nor on threads. With
+ * some methods (cascade), a light's buffer changes as a whole after a stretch, in many short sets of tasks.
+ * Threads that have no work in these sets work on the picture.
  *
- * Where some light's method cannot be run in stretches, picture and lights take turns, slab by slab. */
+ * Where some light's method cannot be run in stretches, the work on picture and lights alternates, slab by
+ * slab. */
 #include "core/context.h"
 #include "render/sweep.h"
 
 /* ---- tasks ---- */
 
-/* The number of tiles in a task. A tile in a single slab is little work, so two tiles are one task then. */
+/* The number of tiles in a task when a stretch is a single slab. A tile in a single slab is little work, so a
+ * task has two tiles then. */
 static int tiles_a_task(const sweep *sweep) { return sweep->content.stretch == 1 ? 2 : 1; }
 
-/* The tiles that the sheets of a stretch may touch: one bit for each tile, of the 64 tiles of word number
+/* The tiles that the sheets of a stretch may touch: one bit for each of the 64 tiles in word number
  * `word`. */
 static uint64_t touched_tiles(const occupancy *occupancy, slab_stretch stretch, size_t word) {
   uint64_t bits = 0;
@@ -26,8 +28,8 @@ static uint64_t touched_tiles(const occupancy *occupancy, slab_stretch stretch, 
   return bits;
 }
 
-/* The tiles of a light's buffer that must be carried on to the sheets of a stretch: one bit for each tile, of
- * the 64 tiles of word number `word`. */
+/* The tiles of a light's buffer that must be copied on to the sheets of a stretch: one bit for each of the 64
+ * tiles in word number `word`. */
 static uint64_t carried_tiles(const shadow_buffer *buffer, slab_stretch stretch, size_t word) {
   size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y, end = word * 64 + 64;
   uint64_t bits = 0;
@@ -84,7 +86,7 @@ static void stretch_task(void *data, size_t index, int worker) {
   }
 }
 
-/* A task of the lights, where each tile is one task. */
+/* Task number `index` of the lights; each tile is a task of its own. */
 static void light_task(void *data, size_t index, int worker) {
   const sweep *sweep = data;
   stretch_task(data, (size_t)sweep->loop.task_start[1] + index, worker);
@@ -128,8 +130,8 @@ static void reach_light(sweep *sweep, int index) {
     reach_light_slab(sweep, index, sheet, &jobs[sheet - stretch.first]);
 }
 
-/* Sets how the picture looks up light before the slabs of a stretch. Call it when the lights' buffers have
- * the light that reaches the stretch's first slab. */
+/* Sets how the picture's slabs of a stretch look up light. Call it when the lights' buffers hold the light
+ * that reaches the stretch's first slab. */
 static void prepare_lookups(sweep *sweep, slab_stretch stretch) {
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     light_shadow *shadow = &sweep->lights[i].shadow;
@@ -142,8 +144,8 @@ static void prepare_lookups(sweep *sweep, slab_stretch stretch) {
 /* ---- stretches ---- */
 
 /* Takes the picture through one stretch and the lights through another; either stretch may be empty. offers:
- * the picture's tasks are only offered, until finish_picture(): threads work on them while they wait for
- * other threads. It is used only where stretches have several slabs. */
+ * if set, the picture's tasks are only offered until finish_picture() is called: threads work on them while
+ * they would wait for other threads. It is set only where stretches have several slabs. */
 static void run_stretches(sweep *sweep, slab_stretch picture, slab_stretch light, bool offers) {
   hl_pool *pool = sweep->content.pool;
   double start = hl_clock_seconds();
@@ -176,7 +178,7 @@ static void finish_picture(sweep *sweep) {
   sweep->loop.times.seconds_tiles += hl_clock_seconds() - start;
 }
 
-/* Whether some light's buffer changes as a whole at a sheet. */
+/* Whether the buffer of some light changes as a whole at a sheet. */
 static bool any_advances(const sweep *sweep, int sheet) {
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     const light_shadow *shadow = &sweep->lights[i].shadow;
@@ -198,7 +200,8 @@ static slab_stretch stretch_from(const sweep *sweep, int first) {
   return (slab_stretch){first, end};
 }
 
-/* Lets the lights' buffers change as a whole at the end of a stretch (section 5 of the paper). */
+/* Changes the lights' buffers as a whole at the end of a stretch, where their methods do so (section 5 of the
+ * paper). */
 static void advance_lights(sweep *sweep, slab_stretch stretch) {
   double start = hl_clock_seconds();
   int sheet = stretch.end - 1;

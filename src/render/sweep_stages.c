@@ -1,11 +1,11 @@
-/* render/sweep_stages.c - the work on one tile in one slab: a tile of the picture, or a tile of a light's
+/* render/sweep_stages.c - the work on one tile in one slab. It is a tile of the picture, or of a light's
  * buffer. */
 #include "core/context.h"
 #include "render/sweep_layers.h"
 #include "render/sweep_surfaces.h"
 
-/* Whether the clock is read at a tile on a sheet. It is read at one tile in 32, on each sheet at other tiles.
- * This is enough to measure how a stage's time divides. */
+/* Whether the clock is read for a tile on a sheet. On each sheet it is read for one tile in 32; which tiles
+ * these are differs from sheet to sheet. This is enough to measure how a stage's time divides. */
 static bool is_timed(size_t tile, int sheet) {
   return ((tile * 11 + (tile >> 5) + (size_t)sheet * 5) & 31) == 0;
 }
@@ -13,13 +13,13 @@ static double read_clock(bool timed) { return timed ? hl_clock_seconds() : 0; }
 
 /* ---- the image ---- */
 
-/* Prefetches a tile's alpha while its densities are being filled. */
+/* Prefetches a tile's alpha, while the tile's densities are being filled. */
 static void fetch_opacities(const float *pixels, uint32_t blocks) {
   for (; blocks != 0; blocks &= blocks - 1)
     __builtin_prefetch(pixels + (__builtin_ctz(blocks) * 4 + 3) * BLOCK_PIXELS, 1);
 }
 
-/* The blocks of a tile in which no opaque matter hides a slab from the eye. */
+/* The blocks of a tile in which a slab is not hidden from the eye by opaque matter. */
 static uint32_t shown_blocks(const sweep *sweep, size_t tile, int slab) {
   if (sweep->target.shown_from == NULL) return ALL_BLOCKS;
   const int32_t *shown_from = sweep->target.shown_from + tile * TILE_BLOCKS;
@@ -28,8 +28,7 @@ static uint32_t shown_blocks(const sweep *sweep, size_t tile, int slab) {
   return shown;
 }
 
-/* The number of the last slab of the run to which a slab belongs. Sheets are filled for one run of slabs at a
- * time. */
+/* The number of the last slab in the run of a slab. Sheets are filled for one run of slabs at a time. */
 static int last_of_run(int slab) { return (slab - 1) / RUN_SLABS * RUN_SLABS + RUN_SLABS; }
 
 /* Does steps 6 and 8 to 11 for one tile: finds those of its patches that have density in the needed blocks.
@@ -107,8 +106,7 @@ void hl_sweep_shade(sweep *sweep, const shade_job *job, size_t tile, int worker)
 
 /* ---- the lights ---- */
 
-/* Whether a face that cuts a volume's visible matter is lit as a surface, and such a face is near the slab.
- */
+/* Whether faces that cut a volume's visible matter are lit as surfaces, and such a face is near the slab. */
 static bool faces_are_lit(const shade_volume *volume, const patch_slab *slab) {
   return volume->phong && volume->cut_shading == HL_CUT_SHADING_FACE &&
          (volume->any_face || volume->light_cut_count > 0) && slab->enter != NULL && !slab->uncut;

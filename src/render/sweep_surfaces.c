@@ -9,7 +9,7 @@
 
 /* ---- begin and end ---- */
 
-/* Makes the fragments of a view. light: the light to which the view belongs; null: the eye. */
+/* Makes the fragments of a view. light: the light whose view it is; null: the view is the eye's. */
 static hl_status make_fragments(sweep *sweep, const view *view, const sweep_light *light,
                                 const occupancy *occupancy, fragments *made, hl_error *error) {
   const light_shadow *shadow = light != NULL ? &light->shadow : NULL;
@@ -137,8 +137,8 @@ static void shade_batch(const sweep *sweep, const tile_slab *slab, surface_batch
   batch->count = 0;
 }
 
-/* Finds the fragments that are worked on in one round of a slab: each pixel's fragment number `round`,
- * counted from the lowest. */
+/* Finds the fragments of one round of work on a slab: of each pixel, fragment number `round`, counted from
+ * the lowest one. */
 static size_t fragments_of_round(fragment_range range, int round, fragment *list) {
   size_t count = 0;
   int number = 0;
@@ -167,8 +167,8 @@ static void shade_fragments(const sweep *sweep, const tile_slab *slab, uint32_t 
   shade_batch(sweep, slab, &batch);
 }
 
-/* Does the sweep's action (steps 12 to 16) for a slab, or for a piece of a slab. Fragments of this slab and
- * of the few slabs before it may hide light from it. */
+/* Runs the sweep's action (steps 12 to 16) for a slab, or for a piece of a slab. Before that it finds the
+ * light that fragments of this slab and of the few slabs before it hide from the slab. */
 static uint32_t act_behind(const sweep *sweep, const tile_slab *slab, slab_piece piece) {
   float(*passing)[TILE_PIXELS] = sweep->surfaces.passing + (size_t)slab->worker * passings(sweep);
   int first = slab->job->sheet - NEAR_SLABS;
@@ -212,7 +212,7 @@ static uint32_t shade_piece(const sweep *sweep, const tile_slab *slab, const flo
   return act_behind(sweep, &piece, (slab_piece){from, to});
 }
 
-/* The blocks, among `blocks`, in which some pixel is not opaque. */
+/* Those of the blocks `blocks` in which some pixel is not opaque. */
 static uint32_t open_blocks(const sweep *sweep, const tile_slab *slab, uint32_t blocks) {
   const float *pixels = sweep->target.pixels + slab->tile * 4 * TILE_PIXELS;
   uint32_t open = 0;
@@ -228,8 +228,8 @@ static uint32_t open_blocks(const sweep *sweep, const tile_slab *slab, uint32_t 
 /* Heights beyond all sheets. */
 static const float BELOW = -1e30f, ABOVE = 1e30f;
 
-/* Shades the slab of a tile that has density. The slab is cut into pieces at the fragments: first at each
- * pixel's lowest fragment, then at the next one, and so on. */
+/* Shades a tile's slab, which has density and is cut into pieces at fragments. It is cut first at each
+ * pixel's lowest fragment, then at each pixel's next fragment, and so on. */
 static void shade_cut_slab(const sweep *sweep, const tile_slab *slab, uint32_t blocks, fragment_range range) {
   fragment list[TILE_PIXELS];
   float *from = sweep->surfaces.bounds[slab->worker * 2], *to = sweep->surfaces.bounds[slab->worker * 2 + 1];
@@ -241,7 +241,7 @@ static void shade_cut_slab(const sweep *sweep, const tile_slab *slab, uint32_t b
     (void)shade_piece(sweep, slab, from, to);
     if (count == 0) return;
     shade_fragments(sweep, slab, blocks, (fragment_range){list, count});
-    /* Where the slab was shaded to its end, this height is above all sheets. */
+    /* in a pixel whose slab has been shaded to its end, `from` is now above all sheets */
     for (int i = 0; i < TILE_PIXELS; i++) from[i] = to[i];
   }
 }
@@ -255,7 +255,8 @@ uint32_t hl_sweep_surfaces_tile(const sweep *sweep, const tile_slab *slab, uint3
 
 /* ---- the lights ---- */
 
-/* The transmittance of a pixel behind a surface that lets the fraction `passing` through. */
+/* The transmittance of a pixel behind a surface. passing: the fraction of light that the surface lets
+ * through. */
 static float behind_surface(const attenuate_job *job, float before, float passing) {
   if (!job->marks || (before >= DARK_AT_START && passing > 0)) return before * passing;
   if (before >= DARK_AT_START) return -LEAST_MARK;

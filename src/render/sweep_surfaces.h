@@ -10,12 +10,12 @@ bool hl_sweep_has_unseen(const sweep *sweep);
 
 /* hl_sweep_surfaces_begin() makes the surfaces of the picture. Call it after the sweep's views and lights
  * have begun. hl_sweep_surfaces_begin_lights() makes the surfaces of the lights. Call it when it is known
- * which tiles of the lights' buffers are needed. Both do nothing where the frame has no surfaces. */
+ * which tiles of the lights' buffers are needed. Both functions do nothing if the frame has no surfaces. */
 hl_status hl_sweep_surfaces_begin(sweep *sweep, hl_error *error);
 hl_status hl_sweep_surfaces_begin_lights(sweep *sweep, hl_error *error);
 void hl_sweep_surfaces_end(sweep *sweep);
-/* Counts approximately the memory that both functions above take (fragments.h), for lights whose shadows
- * are planned. Sets no pointers. */
+/* Counts approximately the memory that hl_sweep_surfaces_begin() and hl_sweep_surfaces_begin_lights() take
+ * (fragments.h), for lights whose shadows are planned. Sets no pointers. */
 void hl_sweep_surfaces_count(sweep *sweep, hl_layout *layout);
 
 /* Finds the fragments of the eye's view in a slab of a tile. Call it once for each slab, in rising order. */
@@ -23,15 +23,15 @@ fragment_range hl_sweep_surfaces_reach(const sweep *sweep, size_t tile, int slab
 
 /* Steps 12 to 16 for a tile with fragments: each pixel's slab is cut at its fragments, and its pieces and the
  * fragments are composited in the order of their heights. slab->blocks: the blocks with density. blocks: all
- * blocks that shall be shaded. Returns the blocks that stay open. */
+ * blocks that are to be shaded. Returns the blocks that stay open. */
 uint32_t hl_sweep_surfaces_tile(const sweep *sweep, const tile_slab *slab, uint32_t blocks,
                                 fragment_range range);
 
-/* Does steps 12 to 16 for a tile without fragments in the slab; there may be fragments in the slabs before
- * it. Returns the blocks that stay open. */
+/* Does steps 12 to 16 for a tile that has no fragments in the slab, but may have fragments in the slabs
+ * before it. Returns the blocks that stay open. */
 uint32_t hl_sweep_surfaces_beside(const sweep *sweep, const tile_slab *slab);
 
-/* Does step 17 for the surfaces of a slab in a tile of a light's buffer. Returns whether any surface took
+/* Does step 17 for the surfaces of a slab in a tile of a light's buffer. Returns whether any surface absorbed
  * light. */
 bool hl_sweep_surfaces_attenuate(const sweep *sweep, const attenuate_job *job, fragment_range range);
 fragment_range hl_sweep_surfaces_reach_light(const sweep *sweep, int light, size_t tile, int slab);

@@ -9,7 +9,7 @@
 
 static size_t floats_of_sweep(const frame_plan *plan) { return plan->picture.tiles * TILE_PIXELS * 4; }
 
-/* Lays out the target's own pixels, or rows of tiles beside the caller's pixels. */
+/* Lays out the target's own pixels; or, if it uses the caller's pixels, rows of tiles beside them. */
 static void lay_out_pixels(const hl_renderer *renderer, const frame_plan *plan, frame_target *target,
                            hl_layout *layout) {
   const size_t floats = TILE_PIXELS * 4 * sizeof(float), threads = (size_t)hl_pool_threads(renderer->pool);
@@ -30,7 +30,7 @@ static hl_status take_pixels(hl_renderer *renderer, const frame_request *request
   return HL_OK;
 }
 
-/* Whether the sweep composites right into the caller's pixels. It does where there is one sweep, and the
+/* Whether the sweep composites directly into the caller's pixels. It does so if there is only one sweep, and
  * tiles fill these pixels exactly. */
 static bool is_in_place(const frame_request *request, const frame_plan *plan) {
   const bool whole = plan->picture.width % TILE == 0 && plan->picture.height % TILE == 0 &&

@@ -1,5 +1,5 @@
-/* render/target.h - the pixels that the back ends make: the picture's, its layers', and the values of a
- * maximum projection. */
+/* render/target.h - the pixels that the back ends make: pixels of the picture, pixels of its layers, and the
+ * values of a maximum projection. */
 #ifndef HL_RENDER_TARGET_H
 #define HL_RENDER_TARGET_H
 
@@ -9,12 +9,12 @@
 #include "render/slab.h"
 
 typedef struct frame_target {
-  float *pixels; /* [sweeps][tiles][16][4][16]; zeros at the start; the target's own, or the caller's if
-                    in_place */
+  float *pixels; /* [sweeps][tiles][16][4][16]; zeros at the start; the target's own pixels, or the caller's
+                  * pixels if in_place is true */
   bool in_place;
   float *tile_rows; /* where in_place is true: [threads][tiles_x][16][4][16]; room to reorder rows of tiles */
   layer_pixels layers;
-  maximum_values maximum; /* a struct with null values: the picture shows lit matter */
+  maximum_values maximum; /* a struct whose `values` is null means that the picture shows lit matter */
 } frame_target;
 
 /* Makes a frame's target. target: must be zeros before, and must be released after an error, too. */

@@ -23,14 +23,15 @@ static size_t cuts_of(const view_sheets *sheets, int grid) {
   return sheets->of_light && of->cut_casts_shadow ? 0 : of->cut_count;
 }
 
-/* The number of cuts that count, of all grids before this one; for grid = volume_count, of all grids. */
+/* The number of those cuts that count, of all grids before this grid. For grid = volume_count: of all
+ * grids. */
 static size_t cuts_before(const view_sheets *sheets, int grid) {
   size_t count = 0;
   for (int g = 0; g < grid; g++) count += cuts_of(sheets, g);
   return count;
 }
 
-/* The most cuts of a grid that keep an outside. */
+/* The greatest number of cuts that keep their outside, of any grid. */
 static size_t most_removed(const view_sheets *sheets) {
   size_t most = 0;
   for (int g = 0; g < sheets->content->volume_count; g++) {
@@ -43,7 +44,7 @@ static size_t most_removed(const view_sheets *sheets) {
 
 void hl_view_cut(const view *view, const sheet_stack *stack, const grid *grid, const cut_shape *shape,
                  run_cut *cut, box_rays *rays) {
-  /* the inside of a plane's shape counts as a box whose other faces are very far away */
+  /* the inside of a plane's shape counts as a box; its other faces are very far away */
   const double edge = 1e15, plane_low[3] = {0, -edge, -edge}, plane_high[3] = {edge, edge, edge};
   const double box_low[3] = {-1, -1, -1}, box_high[3] = {1, 1, 1};
   bool plane = shape->type == HL_CUT_PLANE;
@@ -66,8 +67,8 @@ static void set_up_cuts(view_sheets *sheets) {
   }
 }
 
-/* Fills the part of a row of entries that belongs to cuts: shortens the box's sections to the insides that
- * are kept, and stores the sections that cuts remove. */
+/* Fills the part of a row of entries that belongs to cuts: shortens the ray's sections in the box to the
+ * insides that cuts keep, and stores the sections that cuts remove. */
 static void enter_cuts(const view_sheets *sheets, slab_place place, float *enter) {
   int grid = (int)sheets->occupancy.patch_grid[place.patch];
   size_t tiles_x = (size_t)sheets->occupancy.tiles_x, first = cuts_before(sheets, grid);
@@ -88,9 +89,9 @@ static void enter_cuts(const view_sheets *sheets, slab_place place, float *enter
   }
 }
 
-/* The row of a patch's entries, which say where the patch's rays enter and leave the box. One task at a time
- * uses a patch. Rows of entries are handed out in order, so that memory beyond the requested rows is never
- * touched. */
+/* The row of a patch's entries, which say where the patch's rays enter and leave the box. Only one task at a
+ * time uses a patch. Rows are handed out in order, so that memory beyond the rows that were requested is
+ * never touched. */
 static float *entries_of(view_sheets *sheets, slab_place place) {
   uint32_t *entry = &sheets->entry_of[place.patch];
   if (*entry != NO_ENTRY) return sheets->entries + *entry * sheets->entry_floats;
@@ -104,8 +105,8 @@ static float *entries_of(view_sheets *sheets, slab_place place) {
   return enter;
 }
 
-/* Takes the removed section of a ray from the section of a slab. One section remains: where a cut removes the
- * middle of a slab, the second part moves up to the first. */
+/* Subtracts a removed section of a ray from the ray's section in a slab. The result is one section: if a cut
+ * removes the middle of the slab, the second part is moved so that it follows the first. */
 static void remove_section(float from, float to, float *enter, float *leave) {
   if (!(from < to) || to <= *enter || from >= *leave) return;
   if (from > *enter && to < *leave) *leave -= to - from;
@@ -114,8 +115,8 @@ static void remove_section(float from, float to, float *enter, float *leave) {
   else *leave = *enter;
 }
 
-/* The places where a patch's rays enter and leave the part of a slab that no cut removes; null as for
- * entries_of(). */
+/* The places where a patch's rays enter and leave the part of a slab that no cut removes. Null in the same
+ * cases as for entries_of(). */
 static const float *entries_of_slab(view_sheets *sheets, slab_place place) {
   float *enter = entries_of(sheets, place), *here = enter + INTERVAL_FLOATS,
         *removed = here + INTERVAL_FLOATS;
@@ -125,8 +126,8 @@ static const float *entries_of_slab(view_sheets *sheets, slab_place place) {
   for (size_t i = 0; i < cuts_of(sheets, grid); i++) count += !cuts[i].keep_inside;
   if (count == 0) return enter;
   const sheet_stack *stack = sheets->content->sheets;
-  /* The ends of the slab are rounded as in covered(), so that uncut rays have the sums of a slab that nothing
-   * cuts. */
+  /* The ends of the slab are rounded as in covered(). So rays that nothing cuts get the same sums as in a
+   * slab that nothing cuts. */
   float top = (float)(place.sheet * stack->spacing), bottom = top - (float)stack->spacing;
   for (int p = 0; p < TILE_PIXELS; p++) {
     float from = enter[p] > bottom ? enter[p] : bottom, to = enter[TILE_PIXELS + p];
@@ -153,8 +154,9 @@ static hl_status sort_voxels(view_sheets *sheets, hl_error *error) {
   return status;
 }
 
-/* Several sheets of a tile are filled in one go, while the tile's voxels are in the cache: one for each slab
- * of a run, or two where the sheets of a run would take more than BUNDLE_BYTES. */
+/* Several sheets of a tile are filled one after the other, while the tile's voxels are in the cache. Such a
+ * bundle has one sheet for each slab of a run; or two sheets, where the sheets of a run would take more than
+ * BUNDLE_BYTES. */
 enum { BUNDLE_BYTES = 1 << 24, LARGE_BUNDLE = RUN_SLABS, SMALL_BUNDLE = 2 };
 _Static_assert(RUN_SLABS % SMALL_BUNDLE == 0, "a bundle lies within a run");
 
@@ -163,8 +165,8 @@ static int bundle_of_patches(size_t patches) {
                                                                                     : SMALL_BUNDLE;
 }
 
-/* Lays out the arrays, after the patches are counted. The entries lie at the end of the block: memory that no
- * patch asks for is never touched. */
+/* Lays out the arrays, after the patches have been counted. The entries lie at the end of the block, because
+ * memory of entries that no patch requests is never touched. */
 static void lay_out(view_sheets *sheets, hl_layout *layout) {
   size_t patches = sheets->occupancy.patch_count, grids = (size_t)sheets->content->volume_count;
   sheets->bundle = bundle_of_patches(patches);
@@ -217,7 +219,8 @@ static hl_status keep_patches(view_sheets *sheets, hl_error *error) {
   return HL_OK;
 }
 
-/* The first sheet of the run to which the slab before `sheet` belongs. Runs are RUN_SLABS slabs long. */
+/* The sheet at which a run begins: the run that holds the slab before `sheet`. Runs are RUN_SLABS slabs
+ * long. */
 static int first_of_run(int sheet) { return (sheet - 1) / RUN_SLABS * RUN_SLABS; }
 
 static slab_run *run_of_grid(const view_sheets *sheets, int first, int grid) {
@@ -225,14 +228,14 @@ static slab_run *run_of_grid(const view_sheets *sheets, int first, int grid) {
   return &sheets->runs[run * sheets->content->volume_count + grid];
 }
 
-/* Whether a grid touches slabs that end or begin at one of the sheets from `first` to `last`. */
+/* Whether a grid touches a slab that begins or ends at one of the sheets from `first` to `last`. */
 static bool reaches_sheets(const view_sheets *sheets, int grid, int first, int last) {
   const sheet_range *range = &sheets->occupancy.sheets_of[grid];
   return last >= range->first - 1 && first <= range->last + 1;
 }
 
-/* Finds the slabs of a run that a box cuts. A face of the box may cross the slab, or cross the way of light
- * to a sample in the slab; this way begins up to `beside` away. */
+/* Finds the slabs of a run that a box cuts. A face of the box may cross the slab. Or it may cross the way of
+ * light to a sample in the slab; such a way begins at a distance of up to `beside` from the slab. */
 static void reach_run(view_sheets *sheets, int first) {
   const sheet_content *content = sheets->content;
   for (int g = 0; g < content->volume_count; g++) {
@@ -257,8 +260,8 @@ static void reach_run(view_sheets *sheets, int first) {
   }
 }
 
-/* Makes the sources of a sheet. Their rays belong to the run of the slab before the sheet, which was reached
- * before. */
+/* Makes the sources of a sheet. Their rays are those of the run that holds the slab before the sheet.
+ * reach_run() must have been called for this run. */
 static void reach_sheet(view_sheets *sheets, int sheet) {
   const sheet_content *content = sheets->content;
   const int run = sheet == 0 ? 0 : first_of_run(sheet);
@@ -309,8 +312,8 @@ void hl_view_sheets_end(view_sheets *sheets) {
   hl_occupancy_release(content->context, &sheets->occupancy);
 }
 
-/* Returns the densities that are kept for a patch on a sheet. If the place holds another sheet's densities,
- * they are dropped. */
+/* Returns the densities that are kept for a patch on a sheet. If their place in the ring holds densities of
+ * another sheet, these are dropped. */
 static kept_patch *patch_on_sheet(const view_sheets *sheets, size_t patch, int sheet) {
   kept_patch *kept = &sheets->kept[patch * (size_t)sheets->ring + (size_t)(sheet % sheets->ring)];
   if (kept->sheet != sheet) *kept = (kept_patch){.sheet = sheet};
@@ -322,8 +325,8 @@ static const fill_source *source_on_sheet(const view_sheets *sheets, size_t patc
                           (int)sheets->occupancy.patch_grid[patch]];
 }
 
-/* Finds which of the needed blocks of a patch are relevant, for all slabs of a run at once. Soft shadows may
- * need more blocks in a later slab. */
+/* Finds which of the needed blocks of a patch are relevant, for all slabs of a run at once. With soft
+ * shadows, a later slab may need more blocks. */
 static void find_relevant(const view_sheets *sheets, slab_place place, uint32_t need, patch_run *run) {
   size_t patch = place.patch;
   const occupancy *o = &sheets->occupancy;
@@ -346,24 +349,24 @@ static float *density_on_sheet(const view_sheets *sheets, size_t patch, int shee
   return sheets->density + (patch * (size_t)sheets->ring + (size_t)(sheet % sheets->ring)) * TILE_PIXELS;
 }
 
-/* A patch while its densities are filled on the sheets of a bundle. A sheet's number i counts from the sheet
- * before the bundle, which has 0. */
+/* A patch while its densities are filled on the sheets of a bundle. Functions number these sheets by i; the
+ * sheet before the bundle has the number 0. */
 typedef struct patch_bundle {
   const view_sheets *sheets;
   size_t tile, patch;
-  int first, slabs;             /* the sheet before the bundle; the number of slabs of the bundle */
+  int first, slabs;             /* first: the sheet before the bundle; slabs: number of slabs of the bundle */
   uint32_t relevant[RUN_SLABS]; /* blocks where each slab may show something */
   uint64_t pixels;              /* number of filled pixels */
 } patch_bundle;
 
-/* The blocks of the bundle's sheet i that are filled and show something. */
+/* The blocks of sheet number i of the bundle that are filled and show something. */
 static uint32_t visible_on(const patch_bundle *b, int i) {
   return i < 0 || i > b->slabs ? 0 : patch_on_sheet(b->sheets, b->patch, b->first + i)->blocks;
 }
 
-/* Finds relevant blocks of a bundle's slabs. relevant_in_slab: the relevant blocks of a slab.
- * relevant_beside: the relevant blocks of the two slabs beside a sheet. beside_visible: of these, the
- * blocks in which the slab's other sheet shows something. */
+/* Relevant blocks of a bundle. relevant_in_slab(): the relevant blocks of a slab. relevant_beside(): the
+ * relevant blocks of the two slabs beside a sheet. beside_visible(): of the blocks of relevant_beside(),
+ * those in which the slab's other sheet shows something. */
 static uint32_t relevant_in_slab(const patch_bundle *b, int slab) {
   return slab < 0 || slab >= b->slabs ? 0 : b->relevant[slab];
 }
@@ -375,8 +378,8 @@ static uint32_t beside_visible(const patch_bundle *b, int i) {
          (relevant_in_slab(b, i) & visible_on(b, i + 1));
 }
 
-/* Fills blocks of a sheet that are not filled yet: all wanted blocks, and those other blocks in which the
- * sheet's own cells may show something. */
+/* Fills those blocks of a sheet that are not filled yet: all blocks in `wanted`, and those other blocks in
+ * which the sheet's own cells may show something. */
 static void fill_sheet(patch_bundle *b, int i, uint32_t wanted, uint32_t others) {
   const occupancy *o = &b->sheets->occupancy;
   kept_patch *kept = patch_on_sheet(b->sheets, b->patch, b->first + i);
@@ -393,17 +396,18 @@ static void fill_sheet(patch_bundle *b, int i, uint32_t wanted, uint32_t others)
   b->pixels += hl_pixels_of_blocks(blocks.filled);
 }
 
-/* A slab shows something where one of its two sheets does; then both sheets are wanted. First the odd
- * sheets are filled where their cells may show something. Then the even sheets are filled where a
- * neighbouring odd sheet shows something or their own cells may. Last the remaining blocks of odd sheets
- * are filled where a neighbouring even sheet shows something. */
+/* A slab shows something where one of its two sheets shows something; there both sheets are needed. First the
+ * odd sheets are filled where their cells may show something. Then the even sheets are filled where a
+ * neighbouring odd sheet shows something, or where their own cells may show something. Last the remaining
+ * blocks of odd sheets are filled where a neighbouring even sheet shows something. */
 static void fill_sheets(patch_bundle *b) {
   for (int i = 1; i <= b->slabs; i += 2) fill_sheet(b, i, 0, relevant_beside(b, i));
   for (int i = 0; i <= b->slabs; i += 2) fill_sheet(b, i, beside_visible(b, i), relevant_beside(b, i));
   for (int i = 1; i <= b->slabs; i += 2) fill_sheet(b, i, beside_visible(b, i), 0);
 }
 
-/* Fills a patch in the slabs of a bundle, in the blocks `more`. Returns the number of filled pixels. */
+/* Fills the densities of a patch in the slabs of a bundle, in the blocks `more`. Returns the number of filled
+ * pixels. */
 static uint64_t fill_bundle(const view_sheets *sheets, slab_place place, uint32_t more, patch_run *run) {
   int slab = place.sheet - 1 - run->first;
   patch_bundle b = {.sheets = sheets,
@@ -419,8 +423,9 @@ static uint64_t fill_bundle(const view_sheets *sheets, slab_place place, uint32_
   return b.pixels;
 }
 
-/* The last slab of the row of touched slabs that begins with `slab`, as far as one word of bits tells. A slab
- * is touched through its own sheet or through the sheet before it. */
+/* The last slab of a row of consecutive slabs that touch a patch. The row begins with `slab`; it ends early
+ * if it goes on beyond one word of bits. A slab touches the patch if its own sheet does, or the sheet before
+ * it. */
 static int32_t last_of_row(const occupancy *o, size_t patch, int slab) {
   uint64_t without = ~(o->by_patch[patch * (size_t)o->words + (size_t)(slab / 64)] >> slab % 64);
   return slab + (without == 0 ? 64 : __builtin_ctzll(without));

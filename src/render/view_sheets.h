@@ -1,5 +1,5 @@
-/* render/view_sheets.h - the last sheets of one view, the eye's or a light's: the densities of patches, which
- * are filled on demand and kept for the next slab. */
+/* render/view_sheets.h - the densities of patches on the last sheets of one view, the eye's or a light's.
+ * They are filled on demand, and kept for the next slab. */
 #ifndef HL_RENDER_VIEW_SHEETS_H
 #define HL_RENDER_VIEW_SHEETS_H
 
@@ -20,7 +20,7 @@ typedef struct sheet_content {
   int volume_count;
   const kernel *kernel;
   bool splat;  /* true: densities are splatted; false: densities are gathered */
-  int stretch; /* the greatest number of slabs of a view that one call reaches */
+  int stretch; /* the greatest number of slabs of a stretch */
 } sheet_content;
 
 /* A patch's densities on one sheet, kept for the next slab. */
@@ -36,8 +36,8 @@ typedef struct patch_run {
   int32_t end;               /* one past the last sheet of the last requested bundle */
   uint16_t asked;            /* blocks whose relevance is known */
   uint16_t filled;           /* blocks for which the bundle's densities are filled */
-  relevant_blocks relevant;  /* per slab: the asked blocks in which matter may be visible */
-  uint16_t shows[RUN_SLABS]; /* per slab of the bundle: the filled blocks in which matter is visible */
+  relevant_blocks relevant;  /* for each slab: of the blocks `asked`, those in which matter may be visible */
+  uint16_t shows[RUN_SLABS]; /* for each slab of the bundle: the filled blocks in which matter is visible */
 } patch_run;
 
 /* A row of consecutive slabs that all touch a patch: the first and the last slab. */
@@ -50,88 +50,92 @@ typedef struct view_sheets {
   const sheet_content *content;
   const view *view;
   bool of_light; /* the view of a light; else the eye's */
-  double beside; /* the eye's view: the longest way of light through a slab, frame units. A light's view:
-                  * FACE_VOXELS where the light lights surfaces, else 0 */
+  double beside; /* in the eye's view: the length of the light's longest way through a slab, frame units. In a
+                  * light's view: FACE_VOXELS if the light lights surfaces, else 0 */
   occupancy occupancy;
   voxel_lists *lists; /* owned; [grids]; splat only */
-  int bundle;         /* number of sheets that are filled in one go; a divisor of RUN_SLABS */
-  int ring;       /* number of sheets whose densities are kept: bundle + 1; sheet k lies at place k % ring */
+  int bundle;         /* number of sheets in a bundle, which are filled one after the other; a divisor of
+                       * RUN_SLABS */
+  int ring;       /* number of sheets whose densities are kept: bundle + 1; sheet k has the place k % ring */
   void *memory;   /* borrowed from the reserve; holds all arrays below */
   float *density; /* [patches][ring][256], block-major */
-  kept_patch *kept; /* [patches][ring]; says which densities are in `density` */
+  kept_patch *kept; /* [patches][ring]; describes the densities in `density` */
   int reached; /* number of sheets for which `sources` are kept: the sheets of a stretch and of its bundles */
   fill_source *sources; /* [reached][grids]; the source of sheet k lies in row k % reached */
   slab_run
       *runs; /* [run_count][grids]; the runs of slabs that a stretch touches; run k is in row k % run_count */
   int run_count;
   patch_run *patch_runs; /* [patches] */
-  slab_row *rows; /* [patches]; the next row of slabs that touch the patch: no slab between the last requested
-                   * one and this row touches it */
+  slab_row *rows; /* [patches]; the next row of slabs that touch the patch. No slab between the last requested
+                   * slab and this row touches the patch */
   /* the next two arrays exist only where a box cuts visible matter; else they are null */
   uint32_t *entry_of; /* [patches]; the number of the patch's row of entries; NO_ENTRY where no row was
                        * requested */
   box_rays *box_rays; /* [grids] */
-  float *entries; /* [patches][entry_floats], used up to entry_count: where rays enter a box and leave it */
+  float *entries; /* [patches][entry_floats]; rows of entries, of which entry_count are used: the heights at
+                   * which rays enter a box and leave it */
   uint32_t entry_count; /* atomic */
-  /* The number of floats in a row of entries: [2][256] for the box and the cuts that keep an inside. If some
-   * cuts keep an outside, there are [2][256] more for the current slab, and [2][256] for each of these cuts.
-   */
+  /* The number of floats in a row of entries. [2][256] are for the box and the cuts that keep their inside.
+   * If some cuts keep their outside, there are [2][256] more for the current slab, and [2][256] for each of
+   * these cuts. */
   size_t entry_floats;
-  /* the next two arrays: the cuts of all grids, one grid after the other; null where no cut counts in this
+  /* the next two arrays hold the cuts of all grids, one grid after the other; null if no cut counts in this
    * view */
   run_cut *cuts;
   box_rays *cut_rays;
 } view_sheets;
 
-/* content and view are borrowed until the end. of_light: the view is a light's; cuts whose removed matter
- * casts shadows do not count in it. spare: as for hl_occupancy_build(). After a failure, too,
- * hl_view_sheets_end() must be called. */
+/* content and view are borrowed until hl_view_sheets_end(), which must be called after a failure, too.
+ * of_light: whether the view is a light's. In a light's view, cuts whose removed matter casts shadows do not
+ * count. spare: as for hl_occupancy_build(). */
 hl_status hl_view_sheets_begin(const sheet_content *content, const view *view, bool of_light, double spare,
                                view_sheets *sheets, hl_error *error);
 void hl_view_sheets_end(view_sheets *sheets);
-/* Counts the memory that hl_view_sheets_begin() takes. It leaves out the lists of splatted voxels, whose size
- * is known only when they are made. */
+/* Counts the memory that hl_view_sheets_begin() takes. It leaves out the lists of splatted voxels, because
+ * their size is known only when they are made. */
 void hl_view_sheets_count(const sheet_content *content, const view *view, double spare, hl_layout *layout);
 
-/* Sets up a cut of a grid for a view: its shape in the view's units, and the view's rays in it. */
+/* Sets up a cut of a grid for a view: the cut's shape in the units of the view, and the view's rays in the
+ * shape's own space. */
 void hl_view_cut(const view *view, const sheet_stack *stack, const grid *grid, const cut_shape *shape,
                  run_cut *cut, box_rays *rays);
 
-/* Tells which slab comes next: the one that ends at a sheet. It must be called before the patches of the slab
- * are asked for, for each slab in rising order. sheet: from 1 on. */
+/* Announces the next slab: the slab that ends at a sheet. Call it for each slab in rising order, before any
+ * patch of the slab is requested. sheet: from 1 on. */
 void hl_view_sheets_reach(view_sheets *sheets, int sheet);
 
-/* A patch of a tile, in the slab before a sheet. */
+/* A patch of a tile, in the slab that ends at a sheet. */
 typedef struct slab_place {
   size_t tile, patch;
   int sheet;
 } slab_place;
 
 bool hl_patch_reaches(view_sheets *sheets, size_t patch, int slab);
-/* Whether a slab touches a patch. Ask for slabs in rising order. Where many volumes share a tile, most of
- * them lie before or behind a slab. */
+/* Whether a slab touches a patch. Ask for the slabs in rising order. Where many volumes share a tile, most of
+ * the volumes lie before or behind a slab. */
 static inline bool hl_patch_is_touched(view_sheets *sheets, size_t patch, int slab) {
   const slab_row *row = &sheets->rows[patch];
   return slab >= row->first && (slab <= row->last || hl_patch_reaches(sheets, patch, slab));
 }
 
-/* The needed blocks of a patch in which a slab, which touches the patch, may show something.
+/* Of the needed blocks of a patch, those in which a slab may show something. The slab must touch the patch.
  * hl_patch_slab() may then find fewer blocks. */
 uint32_t hl_patch_relevant(const view_sheets *sheets, slab_place place, uint32_t need);
 
 /* A patch's densities on a slab's two sheets. */
 typedef struct patch_slab {
   const float *before, *current; /* [256] block-major; valid in blocks */
-  const float *enter, *leave;    /* where rays enter and leave the box, [256] block-major; null where the box
-                                  * cuts nothing visible, unset where uncut */
-  int uncut; /* the box cuts nothing in this slab, and nothing on the light's ways through the box to the
-              * eye's pixels */
-  const slab_run *run; /* the run to which the slab belongs, and the slab's number in it */
+  const float *enter, *leave;    /* [256], block-major; the heights at which rays enter and leave the box;
+                                  * null where the box cuts nothing visible; not set where `uncut` is set */
+  int uncut; /* the box cuts nothing in this slab, nor on the light's ways that lead through the box to the
+              * eye's pixels in this slab */
+  const slab_run *run; /* run: the run to which the slab belongs; slab: the slab's number in the run */
   int slab;
   uint32_t blocks; /* blocks in which any density may be visible */
 } patch_slab;
-/* Call after hl_patch_relevant() gave at least one block. need: all blocks that this slab and the next slabs
- * of the bundle may ask for. *pixels is raised by the number of filled pixels. */
+/* Gives the densities of a patch. Call it after hl_patch_relevant() has found at least one block. need: all
+ * blocks that this slab and the next slabs of the bundle may request. *pixels is raised by the number of
+ * filled pixels. */
 patch_slab hl_patch_slab(view_sheets *sheets, slab_place place, uint32_t need, uint64_t *pixels);
 
 #endif

@@ -12,8 +12,8 @@ typedef struct color_sums {
   lanes color[3], weight;
 } color_sums;
 
-/* Adds the colour of one of the eight voxels around a position. offset: bytes from the first voxel to this
- * voxel; share: its trilinear weight. */
+/* Adds the colour of one of the eight voxels around a position. offset: bytes from the first voxel of the
+ * volume to this voxel. share: the trilinear weight of this voxel. */
 LANES_INLINE void add_corner(const voxel_colors *colors, lanes_int offset, lanes share, color_sums *sums) {
   lanes_int packed = lanes_gather_bytes(colors->voxels, offset);
   lanes weight = share * lanes_from_int((packed >> 24) & 255);
@@ -26,8 +26,8 @@ LANES_INLINE void add_corner(const voxel_colors *colors, lanes_int offset, lanes
 
 /* The mean of the eight voxels' linear colours, each weighted trilinearly and by its own weight (colors.h).
  * This is the interpolated colour times opacity, divided by the interpolated opacity (Porter and Duff,
- * "Compositing digital images", 1984). Beyond the outermost voxels their colours continue. Returns the mean
- * weight, 0 to 255; where it is 0 the colour is black. */
+ * "Compositing digital images", 1984). Beyond the outermost voxels, the colours of these voxels continue.
+ * Returns the mean weight, 0 to 255; where the mean weight is 0, the colour is black. */
 LANES_INLINE lanes voxel_color_at(const voxel_colors *colors, const float to_index[3][4], lanes3 position,
                                   lanes color[3]) {
   lanes_int near[3], far[3]; /* bytes along each axis */

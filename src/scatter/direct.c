@@ -2,8 +2,8 @@
  *
  * The light that reaches a node is found for a few points of each light: extinction is summed on the way from
  * the node to the point, in steps as long as the distance of the nodes. A node holds the mean of the light
- * over its box. This is the light that reaches the box's lit side, times (1 - exp(-t)) / t for the optical
- * depth t of the box. */
+ * over the node's box. This mean is the light that reaches the lit side of the box, times (1 - exp(-t)) / t,
+ * where t is the optical depth of the box. */
 #include <math.h>
 #include <string.h>
 
@@ -12,9 +12,9 @@
 
 enum { SOFT_SIDE = 3 /* points along each side of a soft light's square */ };
 
-/* exp(-x) for x >= 0, the same on every machine. Derived: it is 2^n (1 + a + ... + a^6 / 6!), where n is -x /
- * ln 2 rounded to a whole number, and a is the rest times ln 2. |a| is at most 0.35, so the remainder of the
- * series is below 1e-7. */
+/* exp(-x) for x >= 0, with the same result on every machine. Derived: it is 2^n (1 + a + ... + a^6 / 6!),
+ * where n is -x / ln 2 rounded to a whole number, and a is ln 2 times the remainder of this rounding. |a| is
+ * at most 0.35, so the remainder of the series is below 1e-7. */
 static float falling(float x) {
   if (!(x < 80)) return 0;
   float y = -x * 1.44269504f, whole = floorf(y + 0.5f), a = (y - whole) * 0.693147181f;
@@ -33,11 +33,11 @@ typedef struct direct_job {
   const hl_light *light; /* whose source is `source` */
   const light_source *source;
   light_cone cone;
-  int side; /* points along each side of the light's square */
+  int side; /* number of points along each side of the unit square that stands for the light */
 } direct_job;
 
-/* Adds the extinction at a position in the grid, in units of its spacing, to sums[channels]; false: the
- * position lies outside the grid. */
+/* Adds the extinction at a position in the grid, times a weight, to sums[channels]. at: the position, in
+ * units of the grid's spacing. Returns false if the position lies outside the grid. */
 static bool add_extinction(const direct_job *job, const float at[3], float weight, float *sums) {
   const int32_t *count = job->nodes->count;
   size_t low[3];
@@ -61,8 +61,8 @@ static bool add_extinction(const direct_job *job, const float at[3], float weigh
   return true;
 }
 
-/* Finds, for each channel, the fraction of a light's light that volumes leave at a node. towards: unit vector
- * towards the light, which is `distance` away. */
+/* Finds, for each channel, the fraction of a light that passes the volumes on its way to a node. towards:
+ * unit vector towards the light, which is `distance` away. */
 static void find_passing(const direct_job *job, const int32_t at[3], size_t node, vec3 towards,
                          double distance, float passing[3]) {
   const double way[3] = {towards.x, towards.y, towards.z};
@@ -89,15 +89,15 @@ static float within_cone(const light_cone *cone, vec3 towards) {
   return (float)(x * x * (3 - 2 * x));
 }
 
-/* Multiplies the light by the fraction that a mesh lets through where the light meets it. */
+/* Multiplies the light by the fraction that a mesh lets through at the point where the light meets the
+ * mesh. */
 static void meet_mesh(void *data, const surface_hit *hit) {
   float *passing = data;
   const double *color = hit->mesh->look.attenuation_color;
   for (int c = 0; c < 3; c++) passing[c] *= (float)(1 - hit->opacity * color[c]);
 }
 
-/* Adds the light of one point of a light to a node. Each of the light's points has an equal part of its
- * light. */
+/* Adds the light of one point of a light to a node. The points of a light have equal parts of its light. */
 static void add_point(const direct_job *job, const int32_t at[3], size_t node, const double square[2]) {
   const light_source *source = job->source;
   vec3 offset = job->side > 1 ? hl_light_point(source, square[0], square[1]) : (vec3){0, 0, 0};

@@ -1,4 +1,5 @@
-/* scatter/field.c - makes a field from volumes and lights, and keeps it while they stay the same. */
+/* scatter/field.c - makes a field of scattered light from volumes and lights, and keeps it while these stay
+ * the same. */
 #include "scatter/scatter.h"
 
 #include <math.h>
@@ -37,7 +38,8 @@ static bool has_sky(const hl_scene_description *scene) { return scene->sky.type 
 
 /* ---- where the nodes are ---- */
 
-/* Widens bounds by the box of a volume's content, so that no mask moves the nodes. */
+/* Widens the bounds by the box of a volume's content. The box includes matter that only a mask hides, so that
+ * no mask moves the nodes. */
 static void add_box(const grid *grid, double low[3], double high[3]) {
   for (int corner = 0; corner < 8; corner++) {
     double p[3];
@@ -51,7 +53,7 @@ static void add_box(const grid *grid, double low[3], double high[3]) {
   }
 }
 
-/* Places the nodes. False where there is no matter. */
+/* Places the nodes of the grid. Returns false if there is no matter. */
 static bool place_nodes(const scatter_scene *scene, scatter_nodes *nodes) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, longest = 0;
   for (size_t v = 0; v < scene->scene->volume_count; v++)
@@ -178,17 +180,16 @@ typedef struct channel {
   float *light, *flux;
 } channel;
 
-/* The albedo of all matter together: the fraction of the light that meets matter which the matter
- * scatters. */
+/* The albedo of all matter together: of the light that meets matter, the fraction that is scattered. */
 static float mean_albedo(const channel *of, size_t count) {
   double met = 0, kept = 0;
   for (size_t n = 0; n < count; n++) met += of->own[n], kept += of->extinction[n] - of->scattering[n];
   return met > 0 ? (float)(1 - kept / met) : 0;
 }
 
-/* Subtracts the fraction (1 - w) of the sky's unscattered light from the grid's light (parts.h). The
- * similarity of the two media (scatter.h) keeps the absorbed light, so the albedo w is 1
- * - (extinction - scattering) / own. Empty nodes beside matter have the albedo of all matter. */
+/* Subtracts the fraction (1 - w) of the sky's unscattered light from the grid's light (parts.h). The evenly
+ * scattering medium absorbs as much light as the real one (similarity, scatter.h). So the albedo w is 1 -
+ * (extinction - scattering) / own. Empty nodes beside matter have the albedo of all matter. */
 static void leave_sky(const channel *of, const scatter_work *work, size_t count) {
   float elsewhere = mean_albedo(of, count);
   for (size_t n = 0; n < count; n++) {
@@ -200,7 +201,8 @@ static void leave_sky(const channel *of, const scatter_work *work, size_t count)
   }
 }
 
-/* Solves one channel. begun: the lines have been prepared already, for the same extinction. */
+/* Solves for the light of one channel. begun: whether the lines have been prepared already, for the same
+ * extinction. */
 static void solve_channel(const scatter_scene *scene, const scatter_nodes *nodes, const channel *of,
                           bool begun, scatter_work *work) {
   const bool two = of->inflow != NULL && of->own != of->extinction;

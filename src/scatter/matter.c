@@ -1,4 +1,4 @@
-/* scatter/matter.c - extinction and scattering at the nodes: means over the boxes around them. */
+/* scatter/matter.c - finds extinction and scattering at the nodes: means over the boxes around the nodes. */
 #include "scatter/parts.h"
 
 #include <math.h>
@@ -98,12 +98,13 @@ static float extinction_at(const scatter_volume *volume, vec3 point, float color
   return found * hl_mask_factor(&classifier->mask, at);
 }
 
-/* Sums for the medium that scatters evenly, and for the real medium. */
+/* Sums over the samples in a node's box, for the medium that scatters evenly and for the real medium. */
 typedef struct matter {
   float extinction[3], scattering[3], own[3];
 } matter;
 
-/* Adds a volume's matter at a point, times a weight, as the similarity in scatter.h says. */
+/* Adds a volume's matter at a point to the sums, times a weight. Converts it to the evenly scattering medium
+ * by the similarity in scatter.h. */
 static void add_volume(const scatter_volume *volume, vec3 point, float weight, matter *sum) {
   const hl_scene_volume *scene = volume->scene;
   float color[3], found = extinction_at(volume, point, color);

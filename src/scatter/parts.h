@@ -1,4 +1,4 @@
-/* scatter/parts.h - data and functions that the files of this room share. */
+/* scatter/parts.h - the data and functions that the files of this room share. */
 #ifndef HL_SCATTER_PARTS_H
 #define HL_SCATTER_PARTS_H
 
@@ -6,8 +6,8 @@
 #include "scatter/scatter.h"
 #include "surface/surface_tree.h"
 
-/* The number of lines of the grid through a node: 3 along the axes, 6 along diagonals of faces, 4 along
- * diagonals of cells. */
+/* The number of the grid's lines through a node: 3 along axes, 6 along diagonals of faces, 4 along diagonals
+ * of cells. */
 enum { SCATTER_LINES = 13 };
 
 enum {
@@ -17,23 +17,25 @@ enum {
 };
 
 /* Rays that look for meshes pass beside the nodes, at this offset in units of the nodes' spacing. So no ray
- * runs along the common edge of triangles that stand on the grid. */
+ * runs along an edge between triangles that lie in the planes of the grid. */
 #define SCATTER_BESIDE ((vec3){0.0117, 0.0071, 0.0139})
 
-/* Matter and light at the nodes, each array [channels][nodes]. */
+/* Matter and light at the nodes. Each array is [channels][nodes]. */
 typedef struct scatter_arrays {
   float *extinction; /* extinction, per frame unit, of the evenly scattering medium (scatter.h) that replaces
                       * the real one */
-  float *scattering; /* scattering of the same medium, per frame unit */
-  float *own;        /* extinction of the real medium, per frame unit. Where all media scatter evenly, it
-                      * is the array `extinction` */
-  float *direct;     /* [3][nodes]; the mean over all directions of the light that was not scattered */
-  int channels;      /* channels of extinction and scattering: 1 where all colours have the same, else 3 */
-  const surface_tree *tree; /* borrowed; the tree of meshes, without boxes where there are no meshes */
+  float *scattering; /* scattering of the evenly scattering medium, per frame unit */
+  float *own;        /* extinction of the real medium, per frame unit. If all media scatter evenly, this is
+                      * the same array as `extinction` */
+  float *direct;     /* [3][nodes]; the mean, over all directions, of the light that was not scattered */
+  int channels;      /* number of channels of extinction and scattering: 1 if these are the same for all
+                      * colours, else 3 */
+  const surface_tree *tree; /* borrowed; the tree of meshes; if there are no meshes, it has no boxes */
 } scatter_arrays;
 
-/* Light of one channel that enters the grid at the ends of its lines: for each direction of lines, the
- * radiance that travels along the direction, and the radiance that travels against it. */
+/* The light, in one channel, that enters the grid at the ends of its lines. For each direction of lines there
+ * are two numbers: the radiance that travels along the direction, and the radiance that travels against
+ * it. */
 typedef struct scatter_inflow {
   float along[SCATTER_LINES], against[SCATTER_LINES];
 } scatter_inflow;
@@ -65,12 +67,14 @@ void hl_scatter_sky_inflow(const hl_sky *sky, scatter_inflow inflow[3]);
 /* Meshes on the lines, each array [nodes]: the fractions of light that they let through, and the optical
  * depths that walls.c makes from these fractions and from a channel's extinction. */
 typedef struct scatter_walls {
-  float *outside[SCATTER_LINES]; /* at first nodes of lines: the fraction let through between the sky and the
-                                  * node; 0 at other nodes */
-  float *after[SCATTER_LINES];   /* the fraction let through between the node and the line's next node; at
-                                  * last nodes, between the node and the sky */
-  float *at_node[SCATTER_LINES], *between[SCATTER_LINES]; /* the depth of the node's own box, and the depth
-                                                           * between the node and the line's next node */
+  float *outside[SCATTER_LINES]; /* at the first node of a line: the fraction of light that meshes let through
+                                  * between the sky and the node; at other nodes 0 */
+  float *after[SCATTER_LINES];   /* the fraction of light that meshes let through between the node and the
+                                  * line's next node; at the last node of a line, between the node and the
+                                  * sky */
+  float *at_node[SCATTER_LINES], *between[SCATTER_LINES]; /* at_node: the optical depth of the node's own box;
+                                                           * between: the optical depth between the node and
+                                                           * the line's next node */
 } scatter_walls;
 
 /* Working memory of transport.c, one channel at a time. */
@@ -79,7 +83,7 @@ typedef struct scatter_work {
   float *along[SCATTER_LINES];                        /* [nodes] */
   float *vectors[5];                                  /* [nodes] */
   float *flux[SCATTER_LINES], *before[SCATTER_LINES]; /* [nodes]; null where no flux is wanted */
-  float *sky;          /* [nodes]; the sky's light that was not scattered; null without a sky */
+  float *sky;          /* [nodes]; the sky's light that was not scattered; null if there is no sky */
   float *sky_flux;     /* [3][nodes]; null where no flux is wanted */
   scatter_walls walls; /* arrays are null without meshes */
 } scatter_work;
@@ -90,13 +94,13 @@ void hl_scatter_fill_matter(const scatter_scene *scene, const scatter_nodes *nod
 /* Fills direct. */
 void hl_scatter_fill_direct(const scatter_scene *scene, const scatter_nodes *nodes, scatter_arrays *arrays);
 
-/* Fills the fractions that meshes let through. */
+/* Fills the fractions of light that meshes let through. */
 void hl_scatter_fill_walls(const scatter_scene *scene, const scatter_nodes *nodes, const surface_tree *tree,
                            const scatter_walls *walls);
 
-/* Sets the optical depth between a node and the next node of a line, which are `length` apart: the depth of
- * the medium and of the meshes between them. Raises the depths at both nodes by a part of the meshes' depth.
- */
+/* Sets the optical depth between a node and the next node of a line, which are `length` apart. It is the
+ * depth of the medium and of the meshes between the two. Also raises the depths of both nodes' boxes by a
+ * part of the meshes' depth. */
 void hl_scatter_add_wall(const scatter_walls *walls, int line, size_t node, size_t next,
                          const float *extinction, float length);
 
@@ -108,16 +112,16 @@ void hl_scatter_continue(const scatter_nodes *nodes, const float *extinction, co
 /* Prepares the working memory of all lines for the extinction of one channel. */
 void hl_scatter_begin_lines(hl_pool *pool, const scatter_nodes *nodes, const float *extinction,
                             scatter_work *work);
-/* Finds the light that enters the grid and is not scattered, as the mean over all directions. flux: as for
- * hl_scatter_solve(). scratch: [nodes]. */
+/* Finds the sky's light that enters the grid and is not scattered there, as the mean over all directions.
+ * flux: as for hl_scatter_solve(). scratch: [nodes]. */
 void hl_scatter_enter(hl_pool *pool, const scatter_nodes *nodes, const float *extinction,
                       const scatter_inflow *inflow, scatter_work *work, float *scratch, float *light,
                       float *flux);
 
-/* Solves one channel. direct: the lights' unscattered light. inflow: the sky's light that enters; null: there
- * is none. light: receives the mean over all directions of the scattered light and of the sky's light,
- * scattered or not. flux: [3][nodes]; receives the mean of this light times its direction of travel; null:
- * not wanted. */
+/* Solves one channel. direct: the lights' unscattered light. inflow: the sky's light that enters the grid;
+ * null: there is none. light: receives the mean over all directions of two kinds of light: scattered light,
+ * and the sky's light that was not scattered. flux: [3][nodes]; receives the mean of this light times its
+ * direction of travel; null: not wanted. */
 void hl_scatter_solve(hl_pool *pool, const scatter_nodes *nodes, const float *extinction,
                       const float *scattering, const float *direct, const scatter_inflow *inflow,
                       scatter_work *work, float *light, float *flux);

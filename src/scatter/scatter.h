@@ -1,7 +1,6 @@
 /* scatter/scatter.h - light that media scatter more than once, on a coarse grid over the scene.
  *
- * The grid does not depend on the camera. It is found once for volumes and lights that stay the same:
- *
+ * The grid does not depend on the camera. Its light is found once, while volumes and lights stay the same:
  *
  *     matter.c      extinction and scattering at the grid's nodes, from the volumes
  *     direct.c      the lights' unscattered light at the nodes
@@ -25,10 +24,11 @@
 #include "light/light_source.h"
 #include "surface/surfaces.h"
 
-/* A volume of the scene, ready for this room. */
+/* A volume of the scene, in the form in which this room reads it. */
 typedef struct scatter_volume {
   const hl_scene_volume *scene; /* in frame space */
-  uint64_t plane_mark; /* a mark that identifies the content of the volume's function of two numbers */
+  uint64_t plane_mark; /* the mark of the volume's function of two numbers, which identifies the function's
+                        * content */
   const grid *grid;
   const classifier *classifier;
 } scatter_volume;
@@ -44,7 +44,7 @@ typedef struct scatter_scene {
   const surfaces *surfaces;          /* the scene's meshes, which absorb light; null: none */
 } scatter_scene;
 
-/* The places of the nodes, in frame space: node (x, y, z) is at origin + spacing * (x, y, z). */
+/* The places of the nodes, in frame space: node (x, y, z) lies at origin + spacing * (x, y, z). */
 typedef struct scatter_nodes {
   int32_t count[3];
   float origin[3], spacing;
@@ -52,13 +52,14 @@ typedef struct scatter_nodes {
 
 typedef struct scatter_field {
   scatter_nodes nodes;
-  /* owned; [channels][count z][count y][count x]: the mean over all directions of scattered light, and of the
-   * part of the sky's light that samples leave out (parts.h), in the units of a light's color; null: there is
-   * no field. */
+  /* owned; [channels][count z][count y][count x]: the mean over all directions of scattered light, and of
+   * that part of the sky's light that the sky's field does not give to samples (parts.h). The units are those
+   * of a light's color. Null: there is no field. */
   float *light;
-  float *flux;  /* in the block of `light`; [channels][3][count z][count y][count x]: the mean of the light
-                 * in `light` times its direction of travel; null where all matter scatters evenly */
-  int channels; /* 1: red, green and blue are the same; or 3 */
+  float *flux;  /* in the block of `light`; [channels][3][count z][count y][count x]: the mean over all
+                 * directions of the light times its direction of travel; null if all matter scatters
+                 * evenly */
+  int channels; /* number of channels: 1 if red, green and blue are the same, else 3 */
   hl_key key;   /* the key of the field's input */
 } scatter_field;
 
@@ -68,7 +69,7 @@ bool hl_scatter_wanted(const hl_scene_description *scene);
 /* Counts the memory that hl_scatter_update() takes where it has to make the field anew. */
 void hl_scatter_count(const scatter_scene *scene, hl_layout *layout);
 
-/* Brings the field up to date. Does nothing where its input has stayed the same. */
+/* Brings the field up to date. It does nothing if the field's input has stayed the same. */
 hl_status hl_scatter_update(const scatter_scene *scene, scatter_field *field, hl_error *error);
 void hl_scatter_release(hl_context *context, scatter_field *field);
 

@@ -5,7 +5,8 @@
 #include "scatter/scatter.h"
 #include "simd/gathers.h"
 
-/* The index of the node before a place along an axis, and the fraction of the spacing from there. */
+/* The index of the last node before a place along an axis, and the distance from this node to the place as a
+ * fraction of the spacing. */
 LANES_INLINE lanes_int node_before(const scatter_nodes *nodes, int axis, lanes at, lanes *fraction) {
   lanes place = lanes_clamp((at - nodes->origin[axis]) * (1.0f / nodes->spacing), 0,
                             (float)(nodes->count[axis] - 1) - 1e-3f);
@@ -43,9 +44,9 @@ LANES_INLINE lanes between_nodes(const scatter_nodes *nodes, const node_cell *ce
   return lanes_fma(side[1] - side[0], cell->fraction[2], side[0]);
 }
 
-/* The light that a medium with anisotropy g scatters on in a direction (unit vector towards the eye): the
- * mean over all directions, plus 3 g times the flux in this direction (derived: the phase function's first
- * two moments). */
+/* The light that a medium with anisotropy g scatters towards the eye: the mean over all directions, plus 3 g
+ * times the component of the flux in this direction (derived: the phase function's first two moments). The
+ * direction is a unit vector. */
 LANES_INLINE void scattered_light(const scatter_field *field, const lanes position[3],
                                   const lanes direction[3], float g, lanes light[3]) {
   const scatter_nodes *nodes = &field->nodes;

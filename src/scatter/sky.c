@@ -11,15 +11,16 @@ enum { BANDS = 64, MOST_BANDS = 512 };
 
 enum { DIRECTIONS = 2 * SCATTER_LINES };
 
-/* The light of the sky for each direction in which light travels: first the directions of all lines, then
- * their opposites. */
+/* The radiance of the sky for each direction of the grid in which light travels: first for the directions of
+ * all lines, then for the opposite directions. */
 typedef struct sky_sums {
   vec3 directions[DIRECTIONS];
   double sums[DIRECTIONS][3], samples[DIRECTIONS];
 } sky_sums;
 
-/* The number of the grid's direction that is nearest to the direction in which light of the sky travels.
- * from: the direction from which the light comes, opposite to its travel. */
+/* Among the directions of the grid, the number of the direction that is nearest to the direction in which
+ * light of the sky travels. from: the direction from which the light comes, which is opposite to its
+ * travel. */
 static int nearest_direction(const sky_sums *sums, vec3 from) {
   int nearest = 0;
   double greatest = -INFINITY;

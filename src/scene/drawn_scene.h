@@ -1,8 +1,8 @@
-/* scene/drawn_scene.h - what frames draw of a scene, made when the first frame asks for it.
+/* scene/drawn_scene.h - the form of a scene that frames draw; it is made when the first frame asks for it.
  *
- * Label maps and masks are drawn by smooth fields, which take long to make for large maps. Many
- * scenes are only composed, written or described, or are shown at a coarser resolution first. So the first
- * frame of a scene makes these fields, and the scene keeps them. */
+ * Label maps and masks are drawn by smooth fields, which take long to make for large maps. Many scenes never
+ * need these fields, because they are only composed, written or described, or are shown at a coarser
+ * resolution. So the first frame of a scene makes the fields, and the scene keeps them. */
 #ifndef HL_SCENE_DRAWN_SCENE_H
 #define HL_SCENE_DRAWN_SCENE_H
 
@@ -18,12 +18,14 @@
 typedef struct drawn_scene {
   pthread_mutex_t lock; /* held while the rest is made */
   bool made;
-  hl_scene_description description; /* the placed description, in which volumes of occupancy replace label
-                                     * maps, and lattices (label/mask.h) replace masks */
+  hl_scene_description description; /* the placed description, in which volumes of occupancy take the place of
+                                     * label maps, and lattices (label/mask.h) that of the masks' label
+                                     * maps */
   drawn_labels labels;              /* the volumes of occupancy and the lattices */
-  scene_order order;                /* the order in which frames take the lists of the description */
-  /* Owned; [volume_count]; for each function of two numbers, a number that identifies its content; 0 for
-   * other functions. The numbers are parts of the keys of kept results. */
+  scene_order order;                /* the order in which frames use the lights, volumes and meshes of the
+                                     * description */
+  /* Owned; [volume_count]. For a transfer function of two numbers: a number that identifies its content, as a
+   * part of keys of kept results. For other functions: 0. */
   uint64_t *plane_marks;
 } drawn_scene;
 
@@ -32,9 +34,10 @@ typedef struct drawn_scene {
 drawn_scene *hl_drawn_scene_create(hl_context *context);
 void hl_drawn_scene_destroy(hl_context *context, drawn_scene *drawn); /* null is allowed */
 
-/* Makes what frames draw, unless it was made before. given: the description as it was given; placed: the same
- * with lights and cuts in their places. Any number of threads may call it: one makes it, and the others wait.
- * After a failure the next call tries again. */
+/* Makes the form of a scene that frames draw, unless it was made before. given: the description as it was
+ * given; placed: the same description, with lights converted to the world and the scene's cuts in its
+ * volumes. Any number of threads may call this function: one makes the form, and the others wait. After a
+ * failure the next call tries again. */
 hl_status hl_drawn_scene_make(hl_context *context, const hl_scene_description *given,
                               const hl_scene_description *placed, drawn_scene *drawn, hl_error *error);
 

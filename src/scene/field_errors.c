@@ -1,6 +1,6 @@
-/* scene/field_errors.c - tells how much the fields of a scene's volumes differ from their files.
+/* scene/field_errors.c - writes how much the fields of a scene's volumes differ from their files.
  *
- * In: the volumes. Out: JSON, which pictures carry and the program prints. */
+ * In: the volumes. Out: JSON, which pictures carry and which the program prints. */
 #include <math.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
-/* scene/order.c - see order.h. Each thing has a key, the bytes of its settings; keys are compared byte by
- * byte. */
+/* scene/order.c - see order.h. Each light, volume or mesh has a key, which contains its settings. Keys are
+ * compared byte by byte. */
 #include "scene/order.h"
 
 #include <string.h>
@@ -22,9 +22,9 @@ static void add_pixels(hl_key *key, const float *pixels, int width, int height) 
     hl_key_add_whole(key, (int64_t)hl_key_mark(pixels, 3 * (size_t)width * (size_t)height * sizeof *pixels));
 }
 
-/* A light's type and place come first, so that the order stays while colours and intensities change. Of
- * lights of one type, lights that shine from above come first: sheets suit the first light best, and the main
- * light of a scene mostly stands above. */
+/* A key begins with the light's type and place, so that the order stays while colours and intensities change.
+ * Among lights of one type, those that shine from above come first, because sheets suit the first light best,
+ * and the main light of a scene mostly stands above. */
 static void write_light(const void *data, hl_key *key) {
   const hl_light *light = data;
   hl_key_add_whole(key, light->type);
@@ -75,7 +75,7 @@ static void add_mask(hl_key *key, const hl_mask *mask) {
   add_voxels(key, mask->volume);
 }
 
-/* A volume's place and voxels come first, so that the order stays while its look is changed. */
+/* A key begins with the volume's place and voxels, so that the order stays while its look is changed. */
 static void write_volume(const void *data, hl_key *key) {
   const hl_scene_volume *volume = data;
   affine3 place = hl_scene_volume_index_to_world(volume);
@@ -99,8 +99,8 @@ static int compare_bytes(const void *a, const void *b, size_t count) {
   return memcmp(a, b, count);
 }
 
-/* Compares the voxels of volumes with equal size and storage. Voxels outside of memory are compared only by
- * their histograms, which are equal here. */
+/* Compares the voxels of volumes with equal size and storage. Voxels that are not in memory count as equal,
+ * because their histograms are equal here. */
 static int compare_voxels(const hl_volume *a, const hl_volume *b) {
   if (a == b || a == NULL || b == NULL || a->voxels == NULL || b->voxels == NULL) return 0;
   const size_t row = a->dimension[0] * hl_storage_bytes(a->storage);
@@ -145,7 +145,7 @@ typedef struct sort_kind {
   const void *items;
   size_t count, size;
   hl_key_write *write;
-  /* Compares things whose keys are equal; null: keys hold everything that counts. */
+  /* Compares things whose keys are equal; null: keys contain everything that matters. */
   int (*compare)(const void *a, const void *b);
 } sort_kind;
 

@@ -1,5 +1,5 @@
-/* scene/preview.c - see halflight/preview.h: a scene's volumes at coarser resolutions, and which of them suit
- * its sheets. */
+/* scene/preview.c - see halflight/preview.h: makes coarser copies of a scene's volumes, and chooses those
+ * that suit the scene's sheets. */
 #include <halflight/preview.h>
 #include <math.h>
 #include <string.h>
@@ -14,7 +14,7 @@
 
 enum { MOST_LEVELS = 3, LEAST_VOXELS = 64 * 64 * 64 };
 
-/* A volume, and copies of it from fine to coarse. */
+/* A volume, and its copies from fine to coarse. */
 typedef struct levels {
   hl_volume *volume;               /* retained */
   hl_coarser_kind kind;            /* what the copies are made of */
@@ -96,7 +96,7 @@ hl_status hl_preview_create(hl_context *context, const hl_scene *scene, hl_previ
   return status;
 }
 
-/* The smallest voxel edge of a map in the scene's world. The map is placed as the scene's volume is. */
+/* The smallest voxel edge, in the scene's world, of a map that is placed as the scene's volume is. */
 static double edge_of(const hl_scene_volume *volume, hl_volume *map) {
   hl_scene_volume placed = *volume;
   hl_scene_description alone;
@@ -107,8 +107,8 @@ static double edge_of(const hl_scene_volume *volume, hl_volume *map) {
   return hl_scene_smallest_edge(&alone);
 }
 
-/* The coarsest copy of a volume or of its mask whose voxels are about as long as the sheets are apart; null:
- * no copy is used. */
+/* The coarsest copy of a volume, or of its mask, whose voxels are not much longer than the distance between
+ * sheets; null: no copy is used. */
 static hl_volume *copy_for(const hl_preview *preview, const hl_scene_volume *volume, const hl_volume *map,
                            hl_coarser_kind kind, double apart) {
   const levels *l = levels_of(preview, map, kind);
@@ -117,7 +117,7 @@ static hl_volume *copy_for(const hl_preview *preview, const hl_scene_volume *vol
   return NULL;
 }
 
-/* Gives a volume and its mask their copies. False: both stay as they are. */
+/* Replaces a volume and its mask by their copies. False: both stay as they are. */
 static bool replace(const hl_preview *preview, hl_scene_volume *volume, double apart) {
   hl_volume *copy = copy_for(preview, volume, volume->volume, kind_of(volume), apart);
   hl_volume *mask = copy_for(preview, volume, volume->mask.volume, HL_COARSER_LABELS, apart);

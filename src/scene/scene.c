@@ -117,7 +117,7 @@ static void destroy(hl_scene *scene) {
   hl_release(context, scene);
 }
 
-/* Copies an array into memory owned by the caller; null for no items. */
+/* Copies an array into memory that the caller owns; null if there are no items. */
 static hl_status copy_array(hl_context *context, const void *items, size_t count, size_t size,
                             const char *what, void **copy, hl_error *error) {
   *copy = NULL;
@@ -159,7 +159,8 @@ hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_funct
   return status;
 }
 
-/* Copies a volume's function. A function of two numbers gets its outline over the value. */
+/* Copies a volume's transfer function. For a function of two numbers, opacity and colour become its outline,
+ * a function of the value alone. */
 static hl_status copy_function(hl_context *context, const hl_transfer_function *from, const hl_volume *volume,
                                hl_transfer_function *to, hl_error *error) {
   hl_status status = hl_transfer_function_copy(context, from, to, error);
@@ -169,8 +170,8 @@ static hl_status copy_function(hl_context *context, const hl_transfer_function *
   return hl_plane_outline(context, volume->minimum, volume->maximum, to, error);
 }
 
-/* Copies a volume. Pointers in *to are null until they are owned, so that release_volume() can follow a
- * failure. */
+/* Copies a volume. A pointer in *to is null until *to owns what it points to, so that release_volume() can be
+ * called after a failure. */
 static hl_status copy_volume(hl_context *context, const hl_scene_volume *from, hl_scene_volume *to,
                              hl_error *error) {
   *to = *from;
@@ -274,7 +275,7 @@ static hl_status copy_picture(hl_context *context, light_picture from, const flo
   return status == HL_OK ? copy_text(context, from.file, file, error) : status;
 }
 
-/* Copies a light's images. Pointers in *to are null until they are owned. */
+/* Copies a light's images. A pointer in *to is null until *to owns what it points to. */
 static hl_status copy_images(hl_context *context, const hl_light *from, hl_light *to, hl_error *error) {
   const hl_light_texture *texture = &from->texture;
   const hl_light_emission *emission = &from->emission;
@@ -320,14 +321,14 @@ static hl_status copy_sky(hl_scene *scene, const hl_sky *from, hl_error *error) 
                       &to->pixels, &to->file, error);
 }
 
-/* Whether bright spots of the sky's image become lights of the scene (suns). They do so only where the scene
- * has shadows. */
+/* Whether bright spots of the sky's image become lights of the scene (suns). They do only if the scene has
+ * shadows, half-vector slicing and lit matter. */
 static bool has_suns(const hl_scene_description *d) {
   return d->sky.suns && d->sky.strength > 0 && d->render.shadows != HL_SHADOWS_OFF &&
          d->render.slicing == HL_SLICING_HALF_VECTOR && d->render.compositing == HL_COMPOSITING_LIGHT;
 }
 
-/* Gives the camera another up vector where its own lies along the line of sight. */
+/* Gives the camera another up vector if its own lies along the line of sight. */
 static void mend_up(hl_camera *camera) {
   vec3 right, up, forward;
   if (hl_camera_basis(camera, &right, &up, &forward)) return;

@@ -18,20 +18,20 @@ struct hl_scene {
   hl_context *context;
   atomic_int references;
   hl_scene_description description; /* its arrays and texts are owned by the scene */
-  hl_scene_description placed;      /* the description with all lights in the world, followed by the suns
-                                     * of the sky, whose image lacks them, and with the scene's cuts in its
-                                     * volumes; owns its array of lights */
-  sky_suns suns;      /* the suns of the sky; they are lights of `placed` where placed.sky.suns is set */
-  placed_cuts cut;    /* the volumes of `placed`, where the scene has cuts of its own */
-  drawn_scene *drawn; /* owned; what frames draw of the scene; null until a frame asks for it */
+  hl_scene_description placed;      /* the description with all lights in the world, and with the scene's cuts
+                                     * in its volumes. The suns of the sky follow the lights, and the sky's
+                                     * image lacks them. Owns its array of lights */
+  sky_suns suns;      /* the suns of the sky; if placed.sky.suns is set, they are lights of `placed` */
+  placed_cuts cut;    /* the volumes of `placed`, if the scene has cuts of its own */
+  drawn_scene *drawn; /* owned; the form of the scene that frames draw; null until a frame asks for it */
   char *field_errors; /* owned; JSON that says how much the volumes' fields differ from their files
-                       * (field_errors.c); null if this is known of no volume */
+                       * (field_errors.c); null if no difference is known */
   uint64_t sky_mark;  /* a number that identifies the pixels of the sky's image, for the keys of kept
                        * results */
 };
 
-/* Makes what frames draw of the scene, unless it was made before (hl_drawn_scene_make()). *drawn is the
- * scene's own. */
+/* Makes the form of the scene that frames draw, unless it was made before (hl_drawn_scene_make()). *drawn is
+ * owned by the scene. */
 hl_status hl_scene_draw(const hl_scene *scene, const drawn_scene **drawn, hl_error *error);
 
 /* Writes how much the volumes' fields differ from their files, as a JSON array with an object for each

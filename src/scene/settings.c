@@ -104,7 +104,7 @@ void hl_setting_mend(const hl_setting *setting, char *text, size_t size) {
   }
 }
 
-/* key: the number's key in errors ("position/2"). */
+/* key: the key of the number in errors ("position/2"). */
 static hl_status check_number(const hl_setting *setting, double value, const char *place, const char *key,
                               hl_error *error) {
   if (value <= setting->high && (setting->open_low ? value > setting->low : value >= setting->low))

@@ -1,7 +1,6 @@
-/* scene/soft_methods.h - the registry of methods of soft shadows: the enumerator, and the name that scene
- * files use. A method's folder is src/shadow_NAME/, its table hl_shadow_NAME (shadow/shadow_method.h).
- * meson.build reads the names here.
- */
+/* scene/soft_methods.h - the registry of the methods of soft shadows: for each, the enumerator and the name
+ * in scene files. A method's folder is src/shadow_NAME/, and its table is hl_shadow_NAME
+ * (shadow/shadow_method.h). meson.build reads the names in this file. */
 /* clang-format off */
 #define HL_SOFT_METHODS                     \
   HL_SOFT_METHOD(HL_SOFT_CASCADE, cascade)  \

@@ -1,8 +1,8 @@
-/* server/bases.c - scenes that a page sends as differences from a scene that it has sent as a whole.
+/* server/bases.c - scenes that a page sends as differences from a scene that it has sent whole.
  *
  * While something moves, a page sends many scenes that hardly differ. The server keeps a page's base: the
- * newest scene that the page has sent as a whole, and the number of its frame. link.js makes the differences.
- * A difference is {"to": VALUE}, {"gone": 1}, or {"in": {KEY: DIFFERENCE}} of an object or an array. */
+ * newest scene that the page has sent whole, and the number of its frame. link.js makes the differences. A
+ * difference is {"to": VALUE}, {"gone": 1} or, for an object or an array, {"in": {KEY: DIFFERENCE}}. */
 #define _GNU_SOURCE
 #include <jansson.h>
 #include <stdlib.h>
@@ -17,7 +17,7 @@ void base_forget(server_page *page) {
 }
 
 void base_keep(server *s, server_page *page, const frame_request *request) {
-  /* One byte is added for a zero at the end, which a request's body does not have. */
+  /* One byte is added for a terminating zero, which the body of a request does not have. */
   char *text = malloc(request->length + 1);
   if (text != NULL) text[request->length] = '\0';
   if (text != NULL && request->length > 0) memcpy(text, request->text, request->length);
@@ -47,8 +47,8 @@ static bool change_element(json_t *whole, const char *key, json_t *part) {
   return json_object_set_new(whole, key, changed(json_object_get(whole, key), part)) == 0;
 }
 
-/* The changed value, as a reference that the caller owns; null: the difference is malformed. `from` may be
- * changed, or be null. */
+/* Applies a difference to a value. Returns a reference that the caller owns; null: the difference is
+ * malformed. `from` may be changed, and may be null. */
 static json_t *changed(json_t *from, json_t *part) {
   json_t *to = json_object_get(part, "to"), *in = json_object_get(part, "in"), *inner;
   const char *key;

@@ -1,11 +1,11 @@
 /* server/connections.c - the connections that are open, and how long each may take.
  *
- * A connection is a stranger until it has sent a request with the token. Strangers are let in, because a
- * browser is a stranger at first. But only MOST_WAITING connections may wait for a request: beyond that, a
- * new connection takes the place of the stranger that has waited for longest. Then no connection is let in
- * for a moment, so that a browser's request, which comes with its connection, is read before this connection
- * is the oldest. Heads and bodies of requests have deadlines. A connection ends by shutdown(), which its own
- * thread of libmicrohttpd notices. */
+ * A connection is a stranger until it has sent a request with the token. Strangers are accepted, because a
+ * browser is a stranger at first. But only MOST_WAITING connections may wait for a request. If there are
+ * more, a new connection takes the place of the stranger that has waited for longest. After that, no
+ * connection is accepted for a moment. A browser sends its request at once, and so this request is read
+ * before its connection can become the one that has waited for longest. Heads and bodies of requests have
+ * deadlines. A connection is ended by shutdown(), which its own thread of libmicrohttpd notices. */
 #define _GNU_SOURCE
 #include "connections.h"
 
@@ -41,8 +41,8 @@ static void end(connection_place *c) {
   shutdown(c->socket, SHUT_RDWR);
 }
 
-/* Chooses the waiting connection that ends to make room for another one: among strangers, or where there
- * are none among all, the one that has waited for longest. */
+/* Chooses the waiting connection that ends to make room for another one. It is the one that has waited for
+ * longest, among strangers if there are any. */
 static connection_place *least_missed(connection_table *table) {
   connection_place *best = NULL;
   for (int n = 0; n < MOST_CONNECTIONS; n++) {
@@ -56,7 +56,7 @@ static connection_place *least_missed(connection_table *table) {
   return best;
 }
 
-/* Takes a place for a new connection; null: there is none. *crowded: another connection had to end for it. */
+/* Takes a place for a new connection; null: there is none. *crowded: a waiting connection had to end. */
 static connection_place *let_in(connection_table *table, int socket, bool *crowded) {
   connection_place *taken = NULL;
   int waiting = 0;
@@ -96,7 +96,7 @@ void connection_changed(void *user_data, struct MHD_Connection *connection, void
     *place = NULL;
   }
   pthread_mutex_unlock(&table->lock);
-  /* The sleep keeps other connections out, because this thread lets connections in. */
+  /* This thread accepts connections, so that its sleep keeps others out. */
   if (crowded) nanosleep(&moment, NULL);
 }
 

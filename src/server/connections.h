@@ -12,7 +12,8 @@
 enum {
   MOST_CONNECTIONS = 256, /* the most connections at once */
   MOST_WAITING = 128,     /* the most connections that wait for a request */
-  IDLE_SECONDS = 20,      /* seconds that a request may take to arrive, and that a connection may be silent */
+  IDLE_SECONDS = 20,      /* seconds that a request may take to arrive, and for which a connection may be
+                           * silent */
   LEAST_BYTES_PER_SECOND = 1 << 14 /* least speed at which a body must arrive after IDLE_SECONDS */
 };
 
@@ -21,7 +22,7 @@ typedef struct connection_place {
   int socket;
   int state;         /* one of the states in connections.c; 0: this place is free */
   double since;      /* time at which the state began, by server_seconds() */
-  uint64_t received; /* number of bytes of the body that have come */
+  uint64_t received; /* number of bytes of the body that have arrived */
 } connection_place;
 
 typedef struct connection_table {
@@ -42,9 +43,9 @@ void connections_end(connection_table *table);
 void connection_changed(void *user_data, struct MHD_Connection *connection, void **place,
                         enum MHD_ConnectionNotificationCode code);
 
-/* Tell the table what a connection does now. connection_sends(): the connection has shown the token, and the
- * body of its request follows. connection_is_answered(): all of the body has arrived. connection_is_idle():
- * the request has ended. */
+/* These functions tell the table what a connection does now. connection_sends(): the connection has shown the
+ * token, and the body of its request follows. connection_is_answered(): all of the body has arrived.
+ * connection_is_idle(): the request has ended. */
 void connection_sends(connection_table *table, struct MHD_Connection *connection);
 void connection_is_answered(connection_table *table, struct MHD_Connection *connection);
 void connection_is_idle(connection_table *table, struct MHD_Connection *connection);
@@ -56,8 +57,8 @@ int connection_socket(struct MHD_Connection *connection);
 /* Ends connections that are beyond their deadline. Call it some times a second. */
 void connections_expire(connection_table *table);
 
-/* Counts connections. open, waiting: the connections that are open, or wait, now. turned_away: all
- * connections that have ended for others. */
+/* Counts connections. open, waiting: the number of connections that are open now, and of those that wait for
+ * a request. turned_away: the number of all connections that were ended to make room for others. */
 void connections_count(connection_table *table, int *open, int *waiting, unsigned long long *turned_away);
 
 /* Whether the other end has closed the connection. */

@@ -44,7 +44,7 @@ static hl_status output_add(film_output *out, const unsigned char *png, size_t l
   return status;
 }
 
-/* Ends the output, or abandons it after a failure. */
+/* Finishes the output; after a failure, abandons it. */
 static hl_status output_end(film_output *out, hl_status status, hl_error *error) {
   bool good = !out->zipped || picture_zip_end(&out->zip);
   if (!good && status == HL_OK) {

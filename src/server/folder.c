@@ -17,9 +17,8 @@
 
 enum { MOST_ENTRIES = 2000 };
 
-/* Whether a name ends with one of some endings, after at least one other character. Blanks separate the
- * endings.
- * *length: the name's length; afterwards its length without the ending. */
+/* Whether a name ends with one of some endings, after at least one other character. endings: separated by
+ * blanks. *length: the name's length; it becomes the length without the ending. */
 static bool ends_with_one(const char *name, size_t *length, const char *endings) {
   while (*(endings += strspn(endings, " ")) != '\0') {
     size_t end = strcspn(endings, " ");
@@ -32,8 +31,8 @@ static bool ends_with_one(const char *name, size_t *length, const char *endings)
   return false;
 }
 
-/* Whether a name ends like the files that one of the formats reads. get: hl_volume_get_format() or a function
- * like it. */
+/* Whether a name has an ending of the files that one of the formats reads. get: hl_volume_get_format() or a
+ * function like it. */
 static bool ends_as_read(const char *name, size_t *length, hl_status (*get)(size_t, hl_file_format *)) {
   hl_file_format format = {.struct_size = sizeof format};
   for (size_t f = 0; get(f, &format) == HL_OK; f++)
@@ -55,8 +54,8 @@ static bool is_folder(const char *path) {
   return stat(path, &about) == 0 && S_ISDIR(about.st_mode);
 }
 
-/* The absolute path of a file or folder below the server's folder. False: it does not lie there when links
- * are followed. */
+/* Finds the absolute path of a file or folder below the server's folder. False: it does not lie there, after
+ * links were followed. */
 static bool folder_resolve(const server *s, const char *inside, char path[PATH_BYTES]) {
   char asked[PATH_BYTES];
   const char *folder = s->options.folder;
@@ -84,8 +83,8 @@ bool folder_find(const server *s, const char *inside, char path[PATH_BYTES], ser
   return hl_context_confine(s->below, slash > below ? below : "", &file->confined, NULL) == HL_OK;
 }
 
-/* How the list of a folder's content shows an entry. 'd': as a folder; 'f': as a file that can be opened; 0:
- * the list leaves it out. */
+/* How a folder's list shows an entry. 'd': as a folder; 'f': as a file that can be opened; 0: it does not
+ * list the entry. */
 static char kind_of(const server *s, const char *at, const char *name, off_t *bytes) {
   char inside[PATH_BYTES], path[PATH_BYTES];
   struct stat about;

@@ -1,10 +1,10 @@
 /* server/frames.c - pages and their frames: which page renders, and which frames are outdated.
  *
- * Each page has a renderer of its own, which keeps everything that does not change from frame to frame. A
- * page's other pictures, which are small or are saved, are made by lanes. A lane is a page with the name
- * NAME-LANE; its renderer ends when no more of its pictures are asked for. A frame makes all frames of its
- * page with lower numbers outdated. An outdated frame that is being rendered stops at its next check for
- * cancellation; outdated frames that wait are not begun. */
+ * Each page has a renderer of its own, which keeps everything that does not change from frame to frame. Other
+ * pictures of a page, such as small ones and ones to be saved, are made by lanes. A lane is treated as a page
+ * of its own, with the name NAME-LANE. Its renderer ends when no more of its pictures are asked for. A frame
+ * makes all frames of its page with lower numbers outdated. An outdated frame that is being rendered stops at
+ * its next check for cancellation; outdated frames that wait are not begun. */
 #define _GNU_SOURCE
 #include <limits.h>
 #include <stdio.h>
@@ -21,7 +21,7 @@ static _Thread_local struct {
   int socket;        /* socket of the client that has asked for the frame */
   server_page *page; /* null: there is no page */
   unsigned long long number;
-  const server_opened *opened; /* the open scene whose preview this thread makes; null: it makes none */
+  const server_opened *opened; /* the open scene for which this thread makes a preview; null: it makes none */
   bool opening;                /* a file is being opened */
 } current;
 
@@ -89,7 +89,8 @@ void pages_end(server *s) {
 
 /* ---- pages ---- */
 
-/* Finds the page with this name, or an idle page whose place the new page takes; null: all pages are busy. */
+/* Finds the page with this name. If there is none, returns an idle page, whose place the new page can take;
+ * null: all pages are busy. */
 static server_page *find_page(server *s, const char *name) {
   server_page *best = NULL;
   for (int p = 0; p < MOST_PAGES; p++) {
@@ -106,13 +107,14 @@ static void release_page(server *s, server_page *page) {
   forget_renderers(page);
   base_forget(page);
   page->name[0] = '\0';
-  /* With 0 here, the next new page takes this place, and not the place of an idle page. */
+  /* The value 0 lets the next new page take this place, and not that of an idle page. */
   page->last_use = 0;
   page->leaving = false;
   atomic_store(&page->newest, 0);
 }
 
-/* Finds the page with this name, and holds it until leave_page(). Null: all pages are busy. */
+/* Finds the page with this name, or makes it in a free place, and holds it until leave_page(). Null: all
+ * pages are busy. */
 static server_page *enter_page(server *s, const char *name, unsigned long long number) {
   pthread_mutex_lock(&s->pages_lock);
   server_page *page = find_page(s, name);
@@ -196,8 +198,8 @@ int page_progress(server *s, const char *name, bool *prepares, int *others) {
   return part;
 }
 
-/* Frees memory: ends the renderers of all pages that no request holds. They are made anew with the next
- * frame. */
+/* Frees memory by ending the renderers of all pages that no request holds. Their next frames make them
+ * anew. */
 static void spare_memory(server *s) {
   pthread_mutex_lock(&s->pages_lock);
   for (int p = 0; p < MOST_PAGES; p++)
@@ -215,7 +217,7 @@ void refuse_line(server_answer *answer, unsigned status, const char *line) {
   snprintf(answer->problem, sizeof answer->problem, "%s", line);
 }
 
-/* Refuses a request with status 410 if the scene that its page has opened is closed by now. The page then
+/* Refuses a request with status 410 if the scene that its page has opened was closed meanwhile. The page then
  * opens the scene again. */
 static bool refuse_closed(server *s, long long number, server_answer *answer) {
   server_opened *opened = opened_enter(s, number);
@@ -224,15 +226,15 @@ static bool refuse_closed(server *s, long long number, server_answer *answer) {
   return opened == NULL;
 }
 
-/* Answers with the error. Status 204 says that nobody waits for this frame any more. */
+/* Answers with the error. Status 204 means that nobody waits for this frame any more. */
 static void fail_frame(server_answer *answer, hl_status status, const hl_error *error) {
   if (status == HL_ERROR_CANCELLED) answer->status = 204;
   else if (status == HL_ERROR_MEMORY || status == HL_ERROR_INTERNAL) refuse_line(answer, 500, error->message);
   else refuse_line(answer, 400, error->message);
 }
 
-/* The scene that is rendered while something moves; it may be the scene itself. The function waits for the
- * coarser volumes; making them takes less time than a frame of a large volume. */
+/* Makes the scene that is rendered while something moves; it may be the scene itself. This function waits for
+ * the coarser volumes, whose making takes less time than a frame of a large volume. */
 static hl_status make_quick(server *s, long long number, hl_scene *scene, hl_scene **quick, hl_error *error) {
   const struct timespec moment = {.tv_nsec = 2000000};
   server_opened *opened = opened_enter(s, number);
@@ -283,8 +285,8 @@ void answer_scene(server *s, const frame_request *request, const composed_choice
   answer->length = strlen(answer->text);
 }
 
-/* The page's renderer for a scene of coarser volumes. Where all places are taken, it takes the first
- * place. */
+/* The page's renderer for a scene of coarser volumes. If all places are taken, the scene gets the renderer in
+ * the first place. */
 static hl_renderer **quick_renderer_of(server_page *page, const hl_scene *scene) {
   const hl_volume *volume = hl_scene_describe(scene)->volumes[0].volume;
   quick_renderer *found = NULL;
@@ -296,7 +298,8 @@ static hl_renderer **quick_renderer_of(server_page *page, const hl_scene *scene)
   return &found->renderer;
 }
 
-/* Renders a frame. renderer: the page's renderer, for moving or for resting scenes. */
+/* Renders a frame. renderer: the one of the page's renderers that is for moving scenes, or for scenes at
+ * rest. */
 static hl_status render(server *s, server_page *page, hl_renderer **renderer, const hl_scene *scene,
                         const frame_request *request, server_answer *answer, hl_error *error) {
   const hl_scene_description *d = hl_scene_describe(scene);
@@ -343,8 +346,8 @@ static hl_status make_frame(server *s, server_page *page, const frame_request *r
   return status;
 }
 
-/* Puts the whole scene's text into a request whose text is a difference. A whole scene becomes the page's
- * base. False: the request is refused. *text: owned by the caller (free()), or null. */
+/* If a request's text is a difference, replaces it by the text of the whole scene. If it is a whole scene, it
+ * becomes the page's base. False: the request is refused. *text: owned by the caller (free()), or null. */
 static bool complete_request(server *s, server_page *page, frame_request *request, char **text,
                              server_answer *answer) {
   *text = NULL;
@@ -358,7 +361,7 @@ static bool complete_request(server *s, server_page *page, frame_request *reques
   return *text != NULL;
 }
 
-/* Answers with the frame of a page that was entered. */
+/* Answers with a frame of a page that this request holds. */
 static void answer_page(server *s, server_page *page, const frame_request *request, const film_request *film,
                         server_answer *answer) {
   hl_error error = {0};
@@ -368,8 +371,8 @@ static void answer_page(server *s, server_page *page, const frame_request *reque
   atomic_store(&page->frame_part, 0);
   atomic_store(&page->prepares, false);
   hl_status status = make_frame(s, page, request, film, answer, &error);
-  /* The frame is tried once more after the memory of idle pages, and what this page held before, was
-   * released. */
+  /* If memory is short, releases the memory of idle pages and of this page's earlier frames, and tries once
+   * more. */
   if (status == HL_ERROR_MEMORY) {
     spare_memory(s);
     forget_renderers(page);
@@ -416,7 +419,7 @@ bool film_progress(server *s, const char *name, int *done, int *frames) {
   return found;
 }
 
-/* Opens a scene, and answers with its start.json or with the error. Releases the scene. */
+/* Adds a scene to the open ones, and answers with its start.json or with the error. Releases the scene. */
 static void answer_opened(server *s, hl_scene *scene, const char *title, hl_status status, hl_error *error,
                           server_answer *answer) {
   if (status == HL_OK) {

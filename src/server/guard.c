@@ -1,4 +1,5 @@
-/* server/guard.c - whether a request is allowed: checks that every request passes before its body is read. */
+/* server/guard.c - whether a request is allowed. Every request must pass these checks before its body is
+ * read. */
 #define _GNU_SOURCE
 #include <string.h>
 #include <strings.h>

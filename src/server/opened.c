@@ -1,7 +1,7 @@
 /* server/opened.c - scenes that are open: the program's input, and scenes that pages have opened.
  *
- * A frame's scene may name the volumes of one open scene. The scene that was used longest ago makes room for
- * another, if no request holds it. */
+ * A frame's scene may name the volumes of one open scene. If there is no room for another scene, the one that
+ * was used longest ago is closed, among those that no request holds. */
 #define _GNU_SOURCE
 #include <pthread.h>
 #include <stdio.h>
@@ -77,8 +77,8 @@ static void *prepare(void *user_data) {
   return NULL;
 }
 
-/* Begins to make the preview of an open scene. If no thread can be started or memory is short, frames show
- * the volumes as they are. */
+/* Begins to make the preview of an open scene. Without memory or another thread there is no preview, and
+ * quick frames show the volumes as they are. */
 static void begin_preview(server *s, server_opened *opened) {
   pthread_t thread;
   preparation *about = malloc(sizeof *about);
@@ -100,7 +100,8 @@ static void wait_for_previews(server *s) {
   while (atomic_load(&s->preparing) > 0) nanosleep(&moment, NULL);
 }
 
-/* Finds a place for another scene, and closes the scene that is in it. Null: requests hold all places. */
+/* Finds a place for another scene. If necessary, closes the scene that was used longest ago. Null: requests
+ * hold all scenes. */
 static server_opened *make_room(server *s) {
   server_opened *best = NULL;
   for (int o = 0; o < MOST_OPENED; o++) {

@@ -18,21 +18,23 @@
 enum {
   TOKEN_DIGITS = 32,
   PAGE_NAME_LENGTH = 32,
-  MOST_PAGES = 8, /* the most pages that keep a renderer; a new page takes the place of the page that was idle
-                   * for longest */
-  QUICK_RENDERERS = 3, /* number of quick renderers of a page: as many as a preview has copies of a volume */
-  MOST_OPENED = 6,     /* the most open scenes; the scene that was not used for longest makes room */
+  MOST_PAGES = 8, /* the most pages that keep a renderer; if there are more, a new page takes the place of the
+                   * one that was idle for longest */
+  QUICK_RENDERERS = 3, /* number of quick renderers of a page: one for each copy that a preview has of a
+                        * volume */
+  MOST_OPENED = 6,     /* the most open scenes; if there are more, the one that was not used for longest is
+                        * closed */
   PATH_BYTES = 4096,   /* bytes of a path: Linux's PATH_MAX, which realpath() fills */
   MOST_FILM_KEYS = 32,
   MOST_FILM_FRAMES = 100000,
-  IDLE_PAGE_SECONDS = 300,   /* seconds after which a page that asks for nothing loses its renderer */
+  IDLE_PAGE_SECONDS = 300,   /* seconds after which a page that has asked for nothing loses its renderer */
   MOST_BODY_BYTES = 4 << 20, /* the most bytes of a scene's text */
   MOST_PIXELS = 64 << 20,    /* the most pixels of a picture */
   LEAST_QUALITY = 10,
   MOST_QUALITY = 100 /* the greatest quality of a JPEG */
 };
 
-#define MOST_NUMBER 1000000000000LL /* the greatest number that a page may give a frame */
+#define MOST_NUMBER 1000000000000LL /* the greatest number that a page may give to a frame */
 
 /* A file of the page, embedded when the program is built (embed.py). */
 typedef struct server_asset {
@@ -45,12 +47,12 @@ typedef struct server_asset {
 extern const server_asset server_assets[];
 extern const size_t server_asset_count;
 
-/* A renderer for frames while something moves. It renders the volumes at one coarser resolution. A renderer
- * prepares a volume anew when the volume changes, so each resolution has a renderer of its own. */
+/* A renderer for frames while something moves, for volumes at one of the coarser resolutions. There is one
+ * for each resolution, because a renderer prepares a volume anew when the volume changes. */
 typedef struct quick_renderer {
   hl_renderer *renderer;   /* owned; null: not made yet */
-  const hl_volume *volume; /* borrowed; the first volume of the scenes that the renderer renders; only its
-                            * address is compared */
+  const hl_volume *volume; /* borrowed; the first volume of the scenes that this renderer renders; it is only
+                            * compared by its address */
 } quick_renderer;
 
 /* A page in a browser. Its frames are rendered one after the other. */
@@ -60,47 +62,46 @@ typedef struct server_page {
   hl_renderer *renderer;                 /* owned; guarded by `rendering`; null: not made yet */
   quick_renderer quick[QUICK_RENDERERS]; /* guarded by `rendering` */
   atomic_ullong newest;                  /* the highest number of a requested frame */
-  atomic_int frame_part; /* how much of the current stage of the frame is finished, in thousandths */
-  atomic_bool prepares;  /* the current stage comes before the picture: it makes the smooth labels that the
-                          * picture needs */
-  atomic_int film_done, film_frames; /* of the film that the page renders: number of finished frames, and
-                                      * number of all frames; 0 frames in all: there is no film */
-  int users;                         /* number of requests that hold the page; guarded by
-                                      * server.pages_lock */
-  bool leaving; /* the page was closed: its place becomes free when the last request that holds it ends;
-                 * guarded by server.pages_lock */
+  atomic_int frame_part; /* how much of the current stage of the frame is done, in thousandths */
+  atomic_bool prepares;  /* the current stage is the one before the picture, which makes smooth labels */
+  atomic_int film_done, film_frames; /* the film that the page renders: number of finished frames, and number
+                                      * of all frames; no film: 0 frames in all */
+  int users;                         /* number of requests that hold the page; guarded by server.pages_lock */
+  bool leaving; /* the page was closed, and its place becomes free when no request holds it any more; guarded
+                 * by server.pages_lock */
   unsigned long long last_use; /* guarded by server.pages_lock */
   double last_seen;            /* when the page last asked for something, by server_seconds();
                                 * guarded by server.pages_lock */
-  char *base; /* owned; the text of the newest scene that came as a whole, or null; guarded by
+  char *base; /* owned; the text of the newest scene that the page has sent whole, or null; guarded by
                * server.pages_lock */
   unsigned long long base_number; /* number of the frame of `base`; guarded by server.pages_lock */
 } server_page;
 
 /* A scene that is open. */
 typedef struct server_opened {
-  long long number; /* the number by which pages name the scene; 0: the scene is the program's input */
-  hl_scene *scene;  /* owned; null: the place is free */
-  char *start;      /* owned; the text of the scene's start.json */
-  _Atomic(hl_preview *) preview; /* owned; null until the preview is made, and where it cannot be made */
+  long long number;              /* the number by which pages name the scene; 0 for the program's input */
+  hl_scene *scene;               /* owned; null: the place is free */
+  char *start;                   /* owned; the text of the scene's start.json */
+  _Atomic(hl_preview *) preview; /* owned; null until the preview was made, and if it cannot be made */
   atomic_bool prepared;          /* the preview is made, or cannot be made */
   int users;                     /* number of requests that use the scene; guarded by server.pages_lock */
-  atomic_bool leaving;           /* the scene's page has gone; set while server.pages_lock is held */
+  atomic_bool leaving;           /* the page that opened the scene was closed; set while server.pages_lock is
+                                  * held */
   unsigned long long last_use;   /* guarded by server.pages_lock */
 } server_opened;
 
 typedef struct server {
   server_options options;
-  hl_context *sealed; /* owned; opens no file; used for the scenes of pages */
+  hl_context *sealed; /* owned; opens no files; for the scenes that pages send */
   hl_context *below;  /* owned; opens files below the server's folder; null: there is no such folder */
   char token[TOKEN_DIGITS + 1];
   server_opened opened[MOST_OPENED];
   long long next_opened; /* guarded by pages_lock */
   atomic_bool announced; /* options.ready has returned */
   atomic_bool visited;   /* options.visited was called */
-  /* Renderers or scenes were released since freed memory was last given back to the system. */
+  /* Whether renderers or scenes were released since freed memory was last given back to the system. */
   atomic_bool released;
-  atomic_int opening_part; /* finished thousandths of the volume that is being read */
+  atomic_int opening_part; /* the part of the volume that has been read, in thousandths */
   atomic_int preparing;    /* number of threads that make previews */
   pthread_mutex_t pages_lock;
   server_page pages[MOST_PAGES];
@@ -117,29 +118,30 @@ typedef struct server_answer {
   unsigned char *bytes;       /* owned, hl_bytes_release(); or null */
   char *text;                 /* owned, hl_text_release(); or null */
   unsigned char *from_malloc; /* owned, free(); or null */
-  char problem[1000];         /* an error line, where the answer has neither bytes nor a text */
+  char problem[1000];         /* an error line, if the answer has neither bytes nor a text */
   double seconds_read, seconds_render, seconds_encode; /* seconds that reading, rendering and encoding a frame
-                                                        * took; all 0: the answer is no frame */
-  double seconds_once; /* the part of these seconds that later frames will not need again: for preparing a new
-                        * renderer, and for waiting for coarser volumes */
+                                                        * took; all 0 if the answer is no frame */
+  double seconds_once; /* of these seconds, those that later frames need not spend again: preparing a new
+                        * renderer, and waiting for coarser volumes */
 } server_answer;
 
 /* The parameters of a request for a frame. */
 typedef struct frame_request {
   const char *page;
   unsigned long long number;
-  long long opened;   /* the number of the open scene from which the scene in the request takes its volumes */
-  const char *format; /* "jpeg", "png", "exr" or "npy"; in place of a picture, "depth": the depth at the
-                       * picture's middle; "overlay": a PNG of what is drawn over the picture */
+  long long opened;   /* the number of the open scene whose volumes the scene in the request uses */
+  const char *format; /* "jpeg", "png", "exr" or "npy". "depth": not a picture, but the depth at its middle.
+                       * "overlay": a PNG with only what is drawn over the picture */
   int quality;        /* quality of a JPEG */
   int depth;          /* bits of a PNG's channels: 8 or 16 */
   int metadata;       /* 1: a PNG carries its scene; 0: it does not */
   int scale_bar, legend; /* 1: drawn over a PNG of 8 bits */
-  int axes;              /* an hl_axes; axes are drawn over a PNG of 8 bits, too */
-  const char *unit; /* unit of lengths, used where the scene's files tell none; null: there is no such unit */
-  int moving;     /* 1: a quick frame, of coarser volumes where the sheets are wide; 0: the scene as it is */
-  long long base; /* 0: `text` is a whole scene; else `text` is a difference, from the scene of the page's
-                   * frame with this number */
+  int axes;              /* an hl_axes; axes, too, are drawn over a PNG of 8 bits */
+  const char *unit;      /* unit of lengths that is used if the scene's files tell none; null: none */
+  int moving;       /* 1: a quick frame, with coarser volumes if the sheets are far apart; 0: the scene as it
+                     * is */
+  long long base;   /* 0: `text` is a whole scene. Else `text` is a difference from an earlier scene: that of
+                     * the page's frame with this number */
   const char *text; /* the scene */
   size_t length;
 } frame_request;
@@ -155,9 +157,8 @@ typedef struct film_request {
 
 /* A plane of voxels that a page asks for. */
 typedef struct slice_request {
-  long long opened, volume; /* number of the open scene, and index of the volume in it */
-  bool of_mask;             /* the plane is cut out of the label map that masks the volume, not out of the
-                             * volume */
+  long long opened, volume; /* the number of the open scene, and the index of the volume in it */
+  bool of_mask;             /* the plane is cut out of the volume's mask, not out of the volume itself */
   hl_reslice_options plane;
 } slice_request;
 
@@ -175,29 +176,30 @@ void pages_end(server *s);
  * work is cancelled when the client has gone. */
 void work_begin(server *s, int socket);
 void work_end(void);
-/* This thread works for an open scene from now on. Its work is cancelled when the scene's page was closed. */
+/* From now on, this thread works for an open scene. Its work is cancelled when the page that opened the scene
+ * was closed. */
 void work_begin_for(server *s, const server_opened *opened);
-/* Call it when a page was closed. It ends the page's frames, the frames of its lanes (NAME-...), and their
+/* Must be called when a page was closed. Ends the frames of the page and of its lanes (NAME-...), and their
  * renderers. */
 void page_is_gone(server *s, const char *name);
-void pages_expire(server *s); /* ends the renderers of pages that have asked for nothing for long; it must be
-                               * called now and then */
+void pages_expire(server *s); /* ends the renderers of pages that have not asked for anything for long; must
+                               * be called now and then */
 /* Counts of the pages of a server and their work. */
 typedef struct pages_state {
   int pages;     /* number of pages that may hold a renderer */
-  int rendering; /* number of frames that are rendered, or wait for it */
-  int renderers; /* number of renderers of pages that render nothing now */
+  int rendering; /* number of frames that are being rendered, or wait to be */
+  int renderers; /* number of renderers of pages that are rendering nothing now */
 } pages_state;
 
 pages_state pages_count(server *s);
-/* The progress of the page's frame, in thousandths of its stage. *prepares: whether it is the stage before
- * the picture, in which labels are smoothed. *others: the number of other pages, and of lanes of this page,
- * that have frames under way. */
+/* The progress of the page's frame, in thousandths of its current stage. *prepares: whether this is the stage
+ * before the picture, in which labels are smoothed. *others: the number of other pages and lanes, this page's
+ * lanes included, that have frames under way. */
 int page_progress(server *s, const char *name, bool *prepares, int *others);
 /* Answers with a frame. film: null for a picture. */
 void answer_frame(server *s, const frame_request *request, const film_request *film, server_answer *answer);
-/* Answers with the scene, its defaults and the page's choices. film: the scene is as it is at this frame of
- * the film; null: there is no film. */
+/* Answers with the scene, its defaults written out and the page's choices applied. film: the scene is that of
+ * this frame of the film; null: there is no film. */
 void answer_scene(server *s, const frame_request *request, const composed_choices *choices,
                   const film_request *film, int frame, server_answer *answer);
 /* Makes the page's frames with lower numbers than this one outdated. */
@@ -207,31 +209,31 @@ bool film_progress(server *s, const char *page, int *done, int *frames);
 /* Opens a file, and answers with its start.json. */
 void answer_open(server *s, const server_file *file, const char *title, server_answer *answer);
 
-/* Joins the scene that is open under the number `with` to the request's scene, and closes it. Answers with
- * the start.json of both together. */
+/* Joins the open scene with the number `with` to the request's scene, and closes it. Answers with the
+ * start.json of the joined scene. */
 void answer_join(server *s, const frame_request *request, long long with, const char *title,
                  server_answer *answer);
 
 /* Sets an answer that is an error line. */
-extern const char closed_line[]; /* the error line for a scene that is no longer open: status 410 */
+extern const char closed_line[]; /* the error line for a scene that is not open any more: status 410 */
 void refuse_line(server_answer *answer, unsigned status, const char *line);
 
-/* The functions of bases.c. They take server.pages_lock, except base_forget(), whose caller holds the lock.
- */
+/* These functions are in bases.c. They lock server.pages_lock, except base_forget(), whose caller must hold
+ * the lock. */
 void base_keep(server *s, server_page *page, const frame_request *request);
 void base_forget(server_page *page);
-/* The text of the whole scene (free()); null: the request is refused, with status 409 where the page has
- * another base. */
+/* Applies the request's difference to the page's base. Returns the text of the whole scene (free()); null:
+ * the request is refused, with status 409 if the page has another base. */
 char *base_changed(server *s, server_page *page, const frame_request *request, server_answer *answer);
 
 /* places.c */
 void answer_slice(server *s, const slice_request *request, server_answer *answer);
 bool read_triple(const char *text, double numbers[3]);
-/* Answers with the depth of the place that the picture's middle pixel shows. */
+/* Answers with the depth of the surface or matter that the picture's middle pixel shows. */
 hl_status render_depth(server_page *page, const hl_scene *scene, server_answer *answer, hl_error *error);
 
 /* pictures.c */
-/* Finds out, before the picture is made, whether the overlays that the request wants can be drawn. */
+/* Finds out, before the picture is made, whether the overlays that the request asks for can be drawn. */
 hl_status check_overlay(const server *s, const hl_scene *scene, const frame_request *request,
                         hl_error *error);
 /* Answers with the overlays alone, as a transparent PNG of the picture's size. */
@@ -248,25 +250,25 @@ hl_status render_film(server *s, server_page *page, const hl_scene *scene, const
 /* Replaces a scene by the scene at a frame of its film. */
 hl_status turn_to_frame(server *s, hl_scene **scene, const film_request *film, int frame, hl_error *error);
 
-/* opened.c: scenes that are open. A scene that was entered is held until it is left. Null: it is no longer
- * open. */
+/* opened.c: open scenes. opened_enter() holds a scene until opened_leave(). Null: the scene is not open any
+ * more. */
 server_opened *opened_enter(server *s, long long number);
 void opened_leave(server *s, server_opened *opened);
 /* Closes a scene that a page has opened, as soon as no request holds it. */
 void opened_close(server *s, long long number);
-/* Adds a scene, which is retained, and enters it. Null: there is no memory or no room. */
+/* Adds a scene, retains it, and holds it as opened_enter() does. Null: there is no memory or no room. */
 server_opened *opened_add(server *s, hl_scene *scene, const char *title);
 int opened_count(server *s);
 void opened_end(server *s);
 
 /* folder.c */
 bool folder_can_open(const char *name); /* judges by the extension */
-/* Finds a file below the server's folder, or a folder, which may hold a volume as slices, DICOM or Zarr.
- * file->confined is owned by the caller. path: its absolute path; file->name and file->folder point into it.
- * False: it does not lie there when links are followed, or cannot be opened. */
+/* Finds a file below the server's folder. It may be a folder that holds a volume as slices, DICOM or Zarr.
+ * The caller owns file->confined. path: set to the absolute path; file->name and file->folder point into it.
+ * False: the file does not lie there, after links were followed, or cannot be opened. */
 bool folder_find(const server *s, const char *inside, char path[PATH_BYTES], server_file *file);
-/* JSON of everything that can be opened in a folder below the server's folder (free()); null: it is no such
- * folder. */
+/* Lists, as JSON (free()), everything that can be opened in a folder below the server's folder; null: there
+ * is no such folder. */
 char *describe_folder(const server *s, const char *at);
 bool upload_folder(const char *name, server_upload *upload); /* makes the folder only */
 bool upload_begin(const char *name, server_upload *upload);
@@ -284,7 +286,7 @@ unsigned char *encode_jpeg(const uint8_t *rgba, int width, int height, int quali
 bool host_is_local(const char *host);
 /* Whether an Origin header names the server's own page, or is absent (null). */
 bool origin_is_own(const char *origin, const char *host);
-/* The rest of a path after "/TOKEN/"; null if the token is wrong. The function takes equally long for all
+/* The rest of a path after "/TOKEN/"; null if the token is wrong. The time that it takes is the same for all
  * wrong tokens. */
 const char *path_after_token(const char *path, const char *token);
 

@@ -29,8 +29,8 @@ static bool has_overlay(const frame_request *request) {
   return request->scale_bar || request->legend || request->axes != HL_AXES_NONE;
 }
 
-/* Makes the page of a figure that the picture fills, with the overlays that the request wants. In a
- * perspective picture the scale bar is right at the depth of the camera's target. */
+/* Describes a figure that the picture fills, with the overlays that the request asks for. In a perspective
+ * picture the scale bar is right at the depth of the camera's target. */
 static void make_figure(const hl_image *image, const hl_scene *scene, const frame_request *request,
                         hl_figure *figure, hl_figure_panel *panel) {
   hl_figure_defaults(figure);

@@ -94,7 +94,7 @@ static enum MHD_Result find_zero(void *found, enum MHD_ValueKind kind, const cha
   return zero ? MHD_NO : MHD_YES;
 }
 
-/* Whether the query holds a zero byte, which would cut a name off. */
+/* Whether a value in the query contains a zero byte, at which a name would be cut off. */
 static bool has_zero(struct MHD_Connection *connection) {
   bool found = false;
   MHD_get_connection_values_n(connection, MHD_GET_ARGUMENT_KIND, find_zero, &found);
@@ -165,7 +165,7 @@ static void answer_problem(server_answer *answer, unsigned status, const char *l
   snprintf(answer->problem, sizeof answer->problem, "%s", line);
 }
 
-/* Answers with a JSON text, which the answer then owns. A null text stands for a lack of memory. */
+/* Answers with a JSON text, which the answer then owns. null: memory was short. */
 static void answer_json(server_answer *answer, char *text) {
   if (text == NULL) {
     answer_problem(answer, 500, "out of memory\n");
@@ -348,7 +348,7 @@ static void post_cancel(server *s, struct MHD_Connection *connection, const requ
   else answer_problem(answer, 400, "?page=NAME&number=N is missing\n");
 }
 
-/* Ends everything that is open for a page that was closed, or that shows another file now. */
+/* For a page that was closed, or that now shows another file: ends all that is open for this page. */
 static void post_leave(server *s, struct MHD_Connection *connection, server_answer *answer) {
   const char *page = query_text(connection, "page");
   long long opened = query_number(connection, "opened", 0, MOST_NUMBER, 0);
@@ -371,7 +371,7 @@ static void post_open(server *s, struct MHD_Connection *connection, server_answe
   }
 }
 
-/* Opens a dropped file. Its folder holds nothing else. */
+/* Opens a file that was dropped on the page. Nothing else lies in its folder. */
 static void open_upload(server *s, const server_upload *upload, const char *name, server_answer *answer) {
   server_file file = {.name = name};
   if (hl_context_confine(s->options.context, upload->folder, &file.confined, NULL) == HL_OK)
@@ -387,7 +387,7 @@ static void post_upload(server *s, struct MHD_Connection *connection, request *r
   upload_end(&r->upload);
 }
 
-/* Adds the scene that a page has opened to the page's scene. */
+/* Joins a scene that the page has opened to the page's own scene. */
 static void post_join(server *s, struct MHD_Connection *connection, const request *r, server_answer *answer) {
   frame_request wanted = query_frame(connection, r->body, r->length);
   long long with = query_number(connection, "with", 1, MOST_NUMBER, 0);
@@ -453,7 +453,7 @@ static enum MHD_Result on_request(void *user_data, struct MHD_Connection *connec
     bool taken = !r->refused && (r->uploads ? upload_add(&r->upload, upload, *upload_size)
                                             : collect(r, upload, *upload_size));
     *upload_size = 0;
-    /* If the body is larger than its header announced, the connection ends. */
+    /* If the body is larger than the request's head said, the connection ends. */
     return taken ? MHD_YES : MHD_NO;
   }
   r->path = path_after_token(url, s->token);

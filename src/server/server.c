@@ -50,9 +50,10 @@ static bool make_token(char token[TOKEN_DIGITS + 1]) {
   return true;
 }
 
-/* The GNU C library keeps freed memory for the thread that had it, which is much with many threads. By itself
- * it keeps up to 64 MiB at the end of each thread's memory, and malloc_trim() does not give those back.
- * Blocks of KEPT_BYTES and more are taken from the system one by one here, and less is kept of the others. */
+/* The GNU C library keeps freed memory for the thread that used it, which is much with many threads. By
+ * default it keeps up to 64 MiB at the end of each thread's memory, and malloc_trim() does not give these
+ * back. With the settings here, each block of KEPT_BYTES or more is taken directly from the system, and of
+ * smaller blocks no more than KEPT_BYTES are kept. */
 static void keep_little_memory(void) {
 #ifdef __GLIBC__
   enum { KEPT_BYTES = 1 << 22 };
@@ -92,7 +93,7 @@ static bool serve(server *s, int listening, char *problem, size_t size) {
   s->options.ready(s->options.user_data, url);
   atomic_store(&s->announced, true);
   wait_for_stop(s);
-  MHD_stop_daemon(daemon); /* frames that are being rendered are outdated by now, and stop */
+  MHD_stop_daemon(daemon); /* frames that are being rendered count as outdated now, and stop */
   return true;
 }
 
@@ -111,8 +112,8 @@ bool server_run(const server_options *options, char *problem, size_t problem_siz
     server_opened *first = opened_add(s, options->scene, options->title);
     good = first != NULL;
     if (good) opened_leave(s, first);
-    /* Numbers begin with the time, so that pages that were opened with an earlier viewer ask for none of
-     * these files. */
+    /* Numbers of scenes begin with the time. So a page of an earlier viewer cannot ask for a scene of this
+     * viewer by its number. */
     s->next_opened = (long long)time(NULL);
   }
   if (!good) snprintf(problem, problem_size, "out of memory for the viewer");

@@ -1,4 +1,4 @@
-/* server/server.h - the viewer's server: one scene, looked at and changed by pages in browsers.
+/* server/server.h - the viewer's server, by which pages in browsers show and change scenes.
  *
  * It answers only on 127.0.0.1, under a path that begins with a random token:
  *
@@ -38,8 +38,8 @@
 
 /* A file that a page opens. */
 typedef struct server_file {
-  hl_context *confined; /* opens files in the file's folder, or in the file itself where it is a folder */
-  const char *name;     /* the file's name in that folder; "." where the file is a folder */
+  hl_context *confined; /* opens only files in the file's folder; if the file is a folder, only files in it */
+  const char *name;     /* the file's name in that folder; "." if the file is a folder */
   const char *folder;   /* the folder's absolute path, by which the scene names files; null: the file was
                          * dropped on the page, and its scene can be saved beside it */
 } server_file;
@@ -53,9 +53,9 @@ typedef struct server_options {
   void *files_data;                        /* data for `open` */
   uint64_t most_upload_bytes;              /* the most bytes of a dropped file; 0: no limit */
   int port;                                /* 0: any free port */
-  bool (*token)(int port, char token[33]); /* sets the URL's token, 32 hexadecimal digits, to the token that
-                                            * was kept for this port. It is called when the server has the
-                                            * port. If it is null or returns false, the token is random */
+  bool (*token)(int port, char token[33]); /* sets the URL's token, 32 hexadecimal digits, to the one that was
+                                            * kept for this port. Called when the server has the port. If the
+                                            * function is null or returns false, the token is random */
   bool (*stopped)(void);                   /* called some times a second; true ends server_run() */
   void *user_data;
   void (*ready)(void *user_data, const char *url); /* called once, as soon as the server answers requests */
@@ -63,16 +63,16 @@ typedef struct server_options {
                                      * the page */
 } server_options;
 
-/* Serves until options->stopped() returns true. False if it could not begin; `problem` then has an error
+/* Serves until options->stopped() returns true. False: the server could not begin, and `problem` has an error
  * line. */
 bool server_run(const server_options *options, char *problem, size_t problem_size);
 
-/* The function for the context's `progress` callback. fraction: how much is done of the file that this thread
- * opens, or of the stage of the frame that it renders. */
+/* A function for the context's `progress` callback. fraction: how much is done of the file that this thread
+ * opens, or of the current stage of the frame that it renders. */
 void server_progress(const char *stage, double fraction);
 
-/* The function for the context's `cancelled` callback: whether the frame that this thread renders is no
- * longer wanted. */
+/* A function for the context's `cancelled` callback: whether nobody wants the frame that this thread renders
+ * any more. */
 bool server_is_outdated(void);
 
 #endif

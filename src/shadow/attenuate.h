@@ -1,5 +1,5 @@
-/* shadow/attenuate.h - step 17: composites a slab's extinction, seen from the light, into the shadow buffer.
- */
+/* shadow/attenuate.h - step 17: composites a slab's extinction into the shadow buffer, as seen from the
+ * light. */
 #ifndef HL_SHADOW_ATTENUATE_H
 #define HL_SHADOW_ATTENUATE_H
 
@@ -7,8 +7,8 @@
 #include "grid/classifier.h"
 #include "light/light_source.h"
 
-/* One volume's densities in a tile. Each thread writes its own densities, so they have cache lines of their
- * own. */
+/* The densities of one volume in a tile. Each thread writes its own densities, so these structs have cache
+ * lines of their own. */
 typedef struct attenuate_volume {
   _Alignas(64) const classifier *classifier;
   const float *density;       /* [256], block-major; on this sheet */
@@ -20,10 +20,10 @@ typedef struct attenuate_volume {
   float voxel;                /* the smallest edge of its voxels; frame units */
   float weight[HL_CHANNELS];  /* relative extinction of R, G, B */
   int uncut;                  /* the box does not cut the slab here */
-  const slab_run *faces; /* the run that holds the slab, where a face that cuts matter and is lit as a surface
-                          * is near; else null */
+  const slab_run *faces; /* set if a face that cuts matter and is lit as a surface is near: the run that holds
+                          * the slab; else null */
   int slab;              /* the slab's number in its run */
-  const grid *grid;      /* with gradient opacity: the grid whose gradient decides the factor */
+  const grid *grid;      /* the grid whose gradient decides the factor of gradient opacity */
   const kernel *kernel;
   const float (*to_index)[4]; /* frame space to index space */
 } attenuate_volume;
@@ -31,40 +31,42 @@ typedef struct attenuate_volume {
 typedef struct attenuate_job {
   sheet_rays rays;  /* light pixels -> frame space */
   float path;       /* length of the rays' way through the slab. For parallel light it is the sheet spacing /
-                     * |l.h|. For a point light it is the sheet spacing, which pixels divide by their own |l.h| */
-  float through[3]; /* parallel light: the step from one sheet to the next along the light's rays;
-                     * frame units */
-  float height, spacing; /* height of the sheet above the first, and distance to the sheet before; frame
-                          * units */
-  int sheet;             /* k: the slab lies between sheets k-1 and k */
+                     * |l.h|. For a point light it is the sheet spacing; pixels divide it by their own
+                     * |l.h| */
+  float through[3]; /* parallel light: the step from one sheet to the next along the light's rays; frame
+                     * units */
+  float height, spacing; /* height: of the sheet above the first sheet; spacing: distance to the sheet before;
+                          * frame units */
+  int sheet;             /* the number k of the sheet: the slab lies between sheets k-1 and k */
   const attenuate_volume *volumes;
   int volume_count;
   int channels;                      /* 1: attenuation is grey; 3 */
   float *transmittance[HL_CHANNELS]; /* the tile's first pixel; rows stride apart */
-  float *older[HL_CHANNELS];         /* further transmittance, laid out as `transmittance` and multiplied by
-                                      * the same factors; null: none */
+  float *older[HL_CHANNELS];         /* a second transmittance, laid out as `transmittance` and multiplied by
+                                      * the same factors; null: there is none */
   float *outside[HL_CHANNELS];       /* the light at the outside of surfaces, laid out as the
                                       * transmittance; null: none */
   size_t stride;
-  float *moment[HL_CHANNELS]; /* the tile's first pixel, with rows moment_stride apart; null: none. The
-                               * light that the slab absorbs, times `position`, is added to it */
+  float *moment[HL_CHANNELS]; /* the tile's first pixel; rows are moment_stride apart. The light that the slab
+                               * absorbs, times `position`, is added to the pixels. Null: there is no
+                               * moment */
   size_t moment_stride;
   float position;
-  bool marks; /* surfaces write marks into pixels that are dark, or that they make dark; see DARK_AT_START */
+  bool marks; /* whether surfaces write marks into pixels that are dark, or that the surfaces make dark; see
+               * DARK_AT_START */
 } attenuate_job;
 
 /* A volume's surface is lit by the light that arrives at its outside. While light goes deeper into one
  * surface, the matter that it crosses shades everything behind it, but not this surface itself. So a pixel
  * keeps two numbers: its transmittance T, and the light Y at the outside. Y - T is the light that the surface
- * has taken so far. A slab with the transmittance t, in which values go from x1 to x2, changes both numbers
- * as follows (derived):
- *
+ * has absorbed so far. A slab with the transmittance t, in which values go from x1 to x2, changes both
+ * numbers as follows (derived):
  *
  *     Y <- T t + k (Y - T) + k' T (1 - t)      T <- T t
  *
  * The depth h of a value is the integral of extinction over values, from the value at which its surface
- * begins, classifier.outside. An edge whose values rise evenly has, up to a value, an optical depth in
- * proportion to h. While light goes on within one surface, which begins at one value, k = k' = min(1, h2 /
+ * begins, classifier.outside. In an edge whose values rise evenly, the optical depth up to a value is
+ * proportional to h. While light goes on within one surface, which begins at one value, k = k' = min(1, h2 /
  * h1)^OUTWARDS_POWER, where h1 and h2 are the depths of x1 and x2. This is 1 while light goes deeper, and
  * falls to 0 where the surface ends. Where light enters another surface within the slab, k = 0 and k' = 1.
  * Where light leaves a surface, or a cut's face, k = k' = 0. The product of k over slabs depends only on h at
@@ -72,40 +74,42 @@ typedef struct attenuate_job {
  * surface (classifier.normal_edge): EVEN_VOXELS of such matter on the light's way divide k and k' by e. In a
  * medium k = k' = 0. Where several volumes share a slab, k and k' are their means, weighted by optical depth.
  *
- * A face that cuts matter is a surface, too. Its outside is the face, and light goes deeper into it
- * whatever the values behind it are: k = k' = 1 for visible matter up to a voxel behind a face through
- * which the light comes in. Deeper, the k of the values gets the power 1 - skin, where the skin falls from
- * 1 to 0 at FACE_VOXELS behind the face. Over the same distance the eye sees less and less of the face
- * (render/slab_lanes.h).
+ * A face that cuts matter is a surface, too. Its outside is the face, and light goes deeper into it whatever
+ * the values behind it are: k = k' = 1 for visible matter up to a voxel behind a face through which the light
+ * comes in. Deeper, the k that follows from the values is raised to the power 1 - skin. The skin is 1 up to a
+ * voxel behind the face, and falls to 0 at FACE_VOXELS behind the face. Over the same distance the eye sees
+ * less and less of the face (render/slab_lanes.h).
  *
- * OUTWARDS_POWER: sets how soon a surface has ended for light that leaves it again. Where h has fallen by a
- * tenth, .19 of the taken light still lights the surface; where it has fallen by a third, .0015 does. */
+ * OUTWARDS_POWER sets how soon a surface has ended for light that leaves it again. Where h has fallen by a
+ * tenth, .19 of the absorbed light still lights the surface. Where h has fallen by a third, .0015 of it
+ * does. */
 #define OUTWARDS_POWER 16
 
 /* The number of voxels of even matter over which k falls by the factor e. Matter that is even over a voxel is
- * no edge of a surface. So light that a wall has absorbed does not light the floor behind such matter again.
- * The faces of cuts, behind which matter is even, have a rule of their own. */
+ * no edge of a surface. So light that a wall has absorbed does not light a floor behind even matter again.
+ * For the faces of cuts, behind which matter is often even, skin is used in addition. */
 #define EVEN_VOXELS 1
 
-/* Marks of surfaces in the dark. A surface in the dark absorbs no light. But a method that blurs the light
- * which was absorbed before needs to know where the surface is, because light from beside the shadow ends at
- * it, too. Where less than DARK_AT_START of the light is left, the pixel becomes -DARK_MARK times the
- * transmittance of the chunk's surfaces, but not more than -LEAST_MARK. Where a surface absorbs all light,
- * the pixel becomes -LEAST_MARK. Whoever reads light takes marks as 0. */
+/* Marks of surfaces in the dark. A surface in the dark absorbs no light. But a method that blurs absorbed
+ * light needs to know where the surface is, because light from beside the shadow ends at the surface, too.
+ * Where less than DARK_AT_START of the light is left, the pixel becomes -DARK_MARK times the transmittance of
+ * the chunk's surfaces, but not more than -LEAST_MARK. Where a surface absorbs all light, the pixel becomes
+ * -LEAST_MARK. A reader of the light must take marks as 0. */
 #define DARK_AT_START (1.0f / 256)
 #define DARK_MARK     0x1p-64f
 #define LEAST_MARK    0x1p-88f
 
 /* Blocks of a tile, one bit each. */
 typedef struct attenuated_blocks {
-  uint32_t lit; /* blocks with density that some light still reaches, or whose surface is lit from outside */
+  uint32_t lit;   /* blocks with density that some light still reaches, or whose surface is lit at its
+                   * outside */
   uint32_t taken; /* blocks in which some light was absorbed */
 } attenuated_blocks;
 
 /* Multiplies the tile's transmittance by exp(-sum of extinction * path) where volumes have density. */
 typedef attenuated_blocks attenuate_tile_function(const attenuate_job *job, int tile_x, int tile_y);
 
-/* The blocks of a tile that light reaches. transmittance: the tile's first pixel of each channel. */
+/* The blocks of a tile that light reaches. transmittance: for each channel, the tile's first pixel. */
 typedef uint32_t lit_blocks_function(const float *const transmittance[HL_CHANNELS], int channels,
                                      size_t stride);
 

@@ -8,16 +8,18 @@
 #include "shadow/attenuate.h"
 #include "view/rays_lanes.h"
 
-/* Transmittance below which a pixel of the shadow buffer counts as dark: a quarter of a step of 8 bits. */
+/* The transmittance below which a pixel of the shadow buffer counts as dark: a quarter of a step of 8
+ * bits. */
 static const float DARK = 1.0f / 1024;
 
-/* Lanes whose sheet lies ahead of the view's origin, or behind it by at most the height `reach`. */
+/* The lanes in which the sheet lies ahead of the view's origin, or behind it by at most the height
+ * `reach`. */
 LANES_INLINE lanes_int is_ahead(const sheet_rays *rays, lanes climb, float reach) {
   return lanes_add_scaled(climb * rays->step, lanes_abs(climb), reach) > 0.0f;
 }
 
-/* Length of the rays' way through one sheet: spacing * |W| / |h.W| (algorithm: dt = ds / |w.h|); 0 behind the
- * view's origin. */
+/* The length of the rays' way through one sheet, spacing * |W| / |h.W| (algorithm: dt = ds / |w.h|); 0 behind
+ * the view's origin. */
 LANES_INLINE lanes path_through_sheet(const sheet_rays *rays, float path, lanes u, lanes v) {
   if (!rays->perspective) return lanes_set(path);
   lanes3 w = rays_directions(rays, u, v);
@@ -26,7 +28,8 @@ LANES_INLINE lanes path_through_sheet(const sheet_rays *rays, float path, lanes 
   return lanes_keep(is_ahead(rays, climb, 0), length);
 }
 
-/* The part of the slab in the volume's box, for one block. uncut: the whole slab lies in the box. */
+/* The part of a slab that lies in the volume's box, for one block. uncut: whether the whole slab lies in the
+ * box. */
 LANES_INLINE covered_span covered_block(const float *enter, const float *leave, int uncut, int block,
                                         float height, float spacing) {
   if (enter == NULL) return (covered_span){lanes_set(0), lanes_set(1.0f)};
@@ -50,16 +53,16 @@ static __attribute__((unused)) uint32_t lit_blocks_tile(const float *const trans
   return lit;
 }
 
-/* Moves a and b, the densities on the slab's two sheets, to the ends of its covered part; density runs
- * linearly between them. */
+/* Moves a and b, the densities on the slab's two sheets, to the ends of the slab's covered part. Between the
+ * sheets density is linear. */
 LANES_INLINE void cut_way(covered_span span, table_coordinate *a, table_coordinate *b) {
   lanes from = a->x, way = b->x - a->x;
   *a = split_coordinate(lanes_fma(way, span.begin, from));
   *b = split_coordinate(lanes_fma(way, lanes_min(span.begin + span.length, lanes_set(1.0f)), from));
 }
 
-/* The points at a fraction of the way through the slab, on the rays of a block; frame space. Derived: on the
- * ray E + s W with s = step / H, H = h.W, moving by one sheet adds W ds / H. */
+/* The points on the rays of a block at a fraction of the way through the slab; frame space. Derived: a ray is
+ * E + s W with s = step / H and H = h.W; moving by one sheet adds W ds / H. */
 LANES_INLINE lanes3 position_in_slab(const attenuate_job *job, lanes u, lanes v, lanes fraction) {
   const sheet_rays *rays = &job->rays;
   lanes3 step = set3(job->through), end = rays_positions(rays, u, v);
@@ -90,30 +93,29 @@ LANES_INLINE lanes factor_in_block(const attenuate_job *job, const attenuate_vol
       .factor;
 }
 
-/* The fractions k and k' of attenuate.h. They say how much of the light that a surface has taken still
- * lights it after the slab: of the light that it took before the slab, and of the light that it takes
- * within the slab. */
+/* The fractions k and k' of attenuate.h: how much of the light that a surface has absorbed still lights it
+ * after the slab. k is for light absorbed before the slab, k' for light absorbed within the slab. */
 typedef struct kept_light {
   lanes before, within;
 } kept_light;
 
-/* min(1, h2 / h1)^OUTWARDS_POWER. The depths h1 and h2 are the differences of the integrals of extinction up
- * to the values and up to the beginnings of the values' surfaces. */
+/* min(1, h2 / h1)^OUTWARDS_POWER. A depth h1 or h2 is the difference of two integrals of extinction: up to a
+ * value, and up to the beginning of this value's surface. */
 LANES_INLINE lanes power_of_depth(lanes h1, lanes h2) {
   lanes left = lanes_min(lanes_abs(h2) / lanes_max(lanes_abs(h1), lanes_set(1e-30f)), lanes_set(1.0f));
   for (int power = 1; power < OUTWARDS_POWER; power *= 2) left = left * left;
   return left;
 }
 
-/* k to the power 1 - skin. The product of such powers over slabs does not depend on how thick the slabs
- * are. */
+/* The number k to the power 1 - skin. The product of such powers over slabs does not depend on how thick the
+ * slabs are. */
 LANES_INLINE lanes kept_in_skin(lanes kept, lanes skin) {
   return lanes_select(skin > 0.0f, lanes_power_of_part(kept, 1.0f - skin), kept);
 }
 
 /* The kept light near a face that cuts matter. The matter belongs to the face's surface if it is visible
- * where the light leaves the slab. b: the table coordinate of the value there. corner: the block's first
- * pixel. */
+ * where the light leaves the slab. b: the table coordinate of the value at that place. corner: the block's
+ * first pixel. */
 LANES_INLINE kept_light kept_by_face(const attenuate_volume *volume, kept_light kept, table_coordinate b,
                                      const int corner[2]) {
   lanes skin = skin_of_faces(volume->faces, volume->slab, block_u(corner[0]), block_v(corner[1]));
@@ -124,14 +126,14 @@ LANES_INLINE kept_light kept_by_face(const attenuate_volume *volume, kept_light 
   return (kept_light){kept_in_skin(kept.before, skin), kept_in_skin(kept.within, skin)};
 }
 
-/* If the part of a slab that lies in the box ends within this fraction of the slab before the slab's end, it
- * is taken to reach the end: such a difference is only rounding. */
+/* The part of a slab in the box is taken to reach the slab's end if it ends by less than this fraction of the
+ * slab before it. Such a difference is only rounding. */
 static const float ROUNDING_OF_SPAN = 1e-3f;
 
 /* The kept light where the matter begins or ends within the slab, at a face of the box. Where matter ends,
  * light leaves the surface, and k = k' = 0. Where matter begins, no surface lies before it. But blurs may
- * have brought absorbed light across the face: they spread the shadow of the face's own matter, and the light
- * that this matter has absorbed. This light goes on to light the face, so k is not changed there. */
+ * have spread the shadow of the face's own matter across the face, together with the light that this matter
+ * has absorbed. This light still lights the face, so k is not changed there. */
 LANES_INLINE kept_light kept_in_span(const attenuate_volume *volume, kept_light kept, covered_span span) {
   if (volume->enter == NULL) return kept;
   lanes_int ends = (span.begin + span.length) < (1.0f - ROUNDING_OF_SPAN);
@@ -140,7 +142,8 @@ LANES_INLINE kept_light kept_in_span(const attenuate_volume *volume, kept_light 
 
 /* The kept light that follows from one volume's own values. a, b: the values' coordinates at the ends of the
  * slab's covered part. to: the integrals of extinction up to a and up to b. path: length of the light's ray
- * through the slab. extinction: the volume's in the slab. at: offset of the block's first pixel. */
+ * through the slab. extinction: the volume's extinction in the slab. at: offset of the block's first
+ * pixel. */
 LANES_INLINE kept_light kept_by_values(const attenuate_job *job, const attenuate_volume *volume,
                                        table_coordinate a, table_coordinate b, const way_ends *to,
                                        covered_span span, lanes path, lanes extinction, size_t at) {
@@ -190,8 +193,8 @@ typedef struct attenuated_block {
   int taken, lit;
 } attenuated_block;
 
-/* Composites a slab into a channel of the light at the outside. before, after: the transmittance before and
- * after the slab. Returns the new light. */
+/* Composites a slab into a channel of the light at the outside of surfaces. before, after: the transmittance
+ * before and after the slab. Returns the new light. */
 LANES_INLINE lanes pass_outside(float *at, size_t stride, lanes before, lanes after, kept_light kept) {
   lanes light = lanes_max(before, lanes_set(0)), left = lanes_max(after, lanes_set(0));
   lanes taken = lanes_max(lanes_load_block(at, stride) - light, lanes_set(0));
@@ -200,16 +203,16 @@ LANES_INLINE lanes pass_outside(float *at, size_t stride, lanes before, lanes af
   return outside;
 }
 
-/* Attenuates one block by the slab. Returns whether the slab absorbed any light there (taken), and whether
- * enough light is left after it, or at the outside of surfaces (lit). */
+/* Attenuates one block by the slab. Returns whether the slab absorbed any light in the block (taken), and
+ * whether enough light is left after the slab, or at the outside of surfaces (lit). */
 LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volume_count, int channels,
                                               int tile_x, int tile_y, int block) {
   const int x = block % 4 * BLOCK, y = block / 4 * BLOCK, corner[2] = {tile_x * TILE + x, tile_y * TILE + y};
   lanes depth[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)}, total = lanes_set(0);
   kept_light kept = {lanes_set(0), lanes_set(0)};
   lanes path = path_through_sheet(&job->rays, job->path, block_u(corner[0]), block_v(corner[1]));
-  int hidden = 0; /* not 0: a surface may have ended because a factor hides its matter, and not because values
-                   * are low */
+  int hidden = 0; /* not 0: a surface may have ended because a factor hides its matter, though values are not
+                   * low */
   for (int i = 0; i < volume_count; i++) {
     const attenuate_volume *volume = &job->volumes[i];
     if (volume_count > 1 && (volume->blocks >> block & 1) == 0) continue;
@@ -285,7 +288,7 @@ LANES_INLINE attenuated_blocks attenuate_volumes(const attenuate_job *job, int v
   return blocks;
 }
 
-/* The function is compiled a second time for one volume with grey shadows, the usual case, which needs no
+/* The code for one volume with grey shadows, the usual case, is compiled separately, because it needs no
  * loops. */
 static __attribute__((unused)) attenuated_blocks attenuate_tile(const attenuate_job *job, int tile_x,
                                                                 int tile_y) {

@@ -7,7 +7,7 @@
 
 #include "shadow/attenuate.h"
 
-/* A box blur of width 2 reach + 1 + 2 edge, in pixels: pixels up to `reach` away have the weight 1, and
+/* A box blur, whose width is 2 reach + 1 + 2 edge pixels. Pixels up to `reach` away have the weight 1, and
  * pixels reach + 1 away have the weight `edge`, 0 to 1. */
 typedef struct blur_box {
   int reach;
@@ -27,8 +27,8 @@ typedef void blur_tile_function(const blur_job *job, int tile_x, int tile_y);
 
 enum { BLUR_GREATEST_REACH = 46 };
 
-/* A blur by the taps of a penumbra (light_emission.h): each pixel becomes a weighted sum of the pixels at its
- * taps. */
+/* A blur by the taps of a penumbra (light_emission.h): each pixel becomes the weighted sum of the pixels at
+ * its taps. */
 typedef struct emission_job {
   const float *from; /* pixel (0,0); rows stride apart */
   float *to;
@@ -46,16 +46,16 @@ typedef struct blur_functions {
   emission_tile_function *emission; /* to = sum of from */
 } blur_functions;
 
-/* The box of a given width in pixels, at least 1. Boxes whose width is an even number have half weights at
- * both ends, so that they are centred. */
+/* The box of a given width in pixels, at least 1. If the width is an even number, the pixels at both ends
+ * have half weights, so that the box is centred. */
 static inline blur_box hl_blur_box(float width) {
   int reach = (int)((width - 1) / 2);
   return (blur_box){reach, (width - 1) / 2 - (float)reach, 1 / width};
 }
 
-/* The box of a given variance, as far as BLUR_GREATEST_REACH allows. Derived: weights of 1 up to r pixels
- * away have the variance r (r + 1) / 3. With the weight e at r + 1 on both sides, n = 2 r + 1 and the
- * variance v, v (n + 2 e) = n r (r + 1) / 3 + 2 e (r + 1)^2, which gives e. */
+/* The box of a given variance v, or the widest box if BLUR_GREATEST_REACH does not allow this variance.
+ * Derived: weights of 1 up to r pixels away have the variance r (r + 1) / 3. With the weight e at r + 1 on
+ * both sides, and n = 2 r + 1, v (n + 2 e) = n r (r + 1) / 3 + 2 e (r + 1)^2, which gives e. */
 static inline blur_box hl_blur_box_of_variance(double variance) {
   int most = BLUR_GREATEST_REACH - 2, reach = (int)fmin(sqrt(3 * variance + 0.25) - 0.5, most);
   double whole = reach * (reach + 1) / 3.0, width = 2 * reach + 1;

@@ -6,7 +6,7 @@
 #include "core/memory.h"
 #include "light/light_source.h"
 
-/* Tangent of the widest angle that a point light's buffer covers. */
+/* The tangent of the greatest angle, from the middle, that a point light's buffer covers. */
 static const double WIDEST = 6;
 enum { GREATEST_SIDE = 8192, BORDER_PIXELS = 2 };
 
@@ -35,7 +35,7 @@ static void bound_points(const view *unit, const light_source *source, const vec
   }
 }
 
-/* Bounds the points and a margin around them for penumbrae. The margin ends where the content ends. */
+/* Bounds the points, and a margin around them for penumbrae. The margin does not reach beyond the content. */
 static void bound_buffer(const view *unit, const light_source *source, const shadow_extent *extent,
                          double low[2], double high[2]) {
   double content_low[2], content_high[2];
@@ -48,8 +48,8 @@ static void bound_buffer(const view *unit, const light_source *source, const sha
   }
 }
 
-/* The edge of a buffer's pixel: in frame units for parallel light; for a near light its size at distance 1.
- * Pixels of a near light grow with distance, and must be small enough at the farthest point. */
+/* The edge of a buffer's pixel. For parallel light it is in frame units; for a near light it is the edge at
+ * distance 1. Pixels of a near light grow with distance, and must be small enough at the farthest point. */
 static double pixel_edge(const light_source *source, vec3 normal, const shadow_extent *extent,
                          const double size[2]) {
   double pixel = extent->pixel;
@@ -77,7 +77,7 @@ static pixel_row row_around(double low, double high, double size, double pixel) 
   return (pixel_row){count, (low + high) / 2 - count * pixel / 2, pixel};
 }
 
-/* The least width of bounds, in pixels, that are fitted by row_between(). It makes pixels a little smaller,
+/* The least width, in pixels, of bounds that row_between() fits. This function makes pixels a little smaller,
  * so that the middles of the first and the last pixel, without the borders, lie just inside the bounds. Light
  * along a box's face is then not mixed with light that passes outside the face. Bounds of soft shadows are
  * not fitted. */
@@ -136,8 +136,8 @@ static size_t tiles_of(const shadow_buffer *buffer) {
   return (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
 }
 
-/* Lays out the memory of a buffer whose size is set. plane_count: planes of all channels, second planes
- * included. */
+/* Lays out the memory of a buffer whose size is set. plane_count: number of planes of all channels and all
+ * kinds. */
 static void lay_out(shadow_buffer *buffer, size_t plane_count, hl_layout *layout) {
   buffer->planes = hl_layout_take(layout, plane_count, buffer->plane * sizeof *buffer->planes);
   buffer->changed = hl_layout_take(layout, tiles_of(buffer), sizeof *buffer->changed);
@@ -145,7 +145,7 @@ static void lay_out(shadow_buffer *buffer, size_t plane_count, hl_layout *layout
   buffer->tile_touched = hl_layout_take(layout, tiles_of(buffer), 2);
 }
 
-/* How many planes of each channel a sheet has. */
+/* The number of kinds of planes of a sheet: each channel has one plane of each kind. */
 static size_t kinds_of_planes(bool outside, bool second) {
   return 1 + (size_t)(outside ? 1 : 0) + (size_t)(second ? 1 : 0);
 }
@@ -163,7 +163,7 @@ static hl_status reserve(hl_context *context, shadow_buffer *buffer, size_t plan
   return HL_OK;
 }
 
-/* All planes of one sheet, of all channels. */
+/* All planes of one sheet, of all channels and kinds. */
 static size_t planes_of_sheet(const shadow_buffer_size *size) {
   return (size_t)size->channels * kinds_of_planes(size->outside, size->second);
 }

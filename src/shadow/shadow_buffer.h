@@ -1,17 +1,17 @@
 /* shadow/shadow_buffer.h - the 2D shadow buffer: transmittance from the light to the last sheets.
  *
- * It is perpendicular to the light's direction for hard shadows, parallel to the sheets for soft ones (fig.
- * 17). At the volume its pixels are hardly larger than the picture's pixels. Around it is a margin of ones,
- * unattenuated light, which blurs read.
+ * For hard shadows the buffer is perpendicular to the light's direction, for soft shadows parallel to the
+ * sheets (fig. 17). At the volume its pixels are hardly larger than the picture's pixels. Around the buffer
+ * is a margin of ones (unattenuated light), which blurs read.
  *
- * The buffer is brought forward ahead of the picture, which reads the planes of earlier sheets. So the buffer
- * keeps the planes of the last sheets in a ring: sheet k has the planes number k % ring. A tile that has
- * changed is copied from sheet to sheet until all planes of the ring hold its last content. A tile that never
- * changes costs nothing.
+ * The buffer advances from sheet to sheet ahead of the picture, and the picture reads the planes of earlier
+ * sheets. So the buffer keeps the planes of the last sheets in a ring: sheet k has the planes number k %
+ * ring. A tile that has changed is copied from sheet to sheet until all planes of the ring hold its last
+ * content. A tile that never changes costs nothing.
  *
  * Surfaces of volumes are lit by the light that arrives at their outside. Where a scene has such surfaces, a
- * pixel also holds this light. It is the transmittance, plus the light that the pixel's ray has lost to the
- * surface in which the ray is (attenuate.h). */
+ * pixel also holds this light. This light is the transmittance, plus the light that the surface in which the
+ * pixel's ray is has absorbed (attenuate.h). */
 #ifndef HL_SHADOW_SHADOW_BUFFER_H
 #define HL_SHADOW_SHADOW_BUFFER_H
 
@@ -24,10 +24,10 @@
 /* The planes of one sheet. */
 typedef enum shadow_plane {
   SHADOW_TRANSMITTANCE,
-  SHADOW_OUTSIDE, /* the light that arrives at the outside of the surface in which a pixel's ray is; not less
-                   * than the transmittance */
-  SHADOW_SECOND   /* planes for the method's own use: for `paper` the result of half a blur, for `cascade`
-                   * the light from which samples fade */
+  SHADOW_OUTSIDE, /* the light that arrives at the outside of the surface in which a pixel's ray is. It is not
+                   * less than the transmittance */
+  SHADOW_SECOND   /* planes for the method's own use. `paper`: the result of half a blur. `cascade`: the light
+                   * from which samples fade to the transmittance */
 } shadow_plane;
 
 typedef struct shadow_buffer {
@@ -38,14 +38,16 @@ typedef struct shadow_buffer {
   size_t plane;                      /* floats of one channel, margins included */
   size_t origin;                     /* offset of pixel (0,0) in a plane */
   int ring;                          /* number of sheets that are kept */
-  bool has_outside, has_second;      /* whether each sheet has planes of these two kinds beside the
+  bool has_outside, has_second;      /* whether each sheet has planes of these two kinds in addition to the
                                       * transmittance */
-  float *transmittance[HL_CHANNELS]; /* pixel (0,0) of each channel, in the planes of the sheet to which the
-                                      * buffer was brought last; a part of `memory` */
-  float *outside[HL_CHANNELS], *second[HL_CHANNELS]; /* the same for other planes; null: there are none */
+  float *transmittance[HL_CHANNELS]; /* pixel (0,0) of each channel, in the planes of the sheet for which
+                                      * hl_shadow_buffer_reach() was called last; a part of `memory` */
+  float *outside[HL_CHANNELS], *second[HL_CHANNELS]; /* the same for the other two kinds of planes; null:
+                                                      * there are no such planes */
   int sheet;                                         /* that was reached last */
-  float *planes;                                     /* in memory; [ring][1 to 3][channels][plane] */
-  int32_t *changed;            /* in memory; [tiles]; the last sheet at which the tile's planes changed */
+  float *planes;                                     /* a part of `memory`; [ring][1 to 3][channels][plane] */
+  int32_t *changed;            /* a part of `memory`; [tiles]; the last sheet at which the tile's planes
+                                * changed */
   uint16_t *tile_lit;          /* a part of `memory`; [tiles]; the blocks that light still reaches */
   unsigned char *tile_touched; /* a part of `memory`; [2][tiles]; 1 where some transmittance is below 1 */
   void *memory;    /* owned; the memory of all arrays; kept from frame to frame while it is large enough */
@@ -59,11 +61,12 @@ typedef struct shadow_extent {
   double pixel;           /* wanted edge of a pixel at the volume, frame units */
   int resolution;         /* number of pixels along the longer side; 0: `pixel` decides */
   size_t greatest_pixels; /* limit of width * height */
-  double margin;          /* width of the margin for penumbrae around the points: frame units; for a near
-                           * light its width at distance 1 */
+  double margin;          /* the margin for penumbrae around the points: its width in frame units; for a near
+                           * light, its width at distance 1 */
   const vec3 *content;    /* corners of all content; no margin is needed beyond the content; frame space */
   int content_count;
-  vec3 u; /* unit vector along the buffer's rows; zero: the light's tilt decides */
+  vec3 u; /* unit vector along the buffer's rows; if it is zero, the light's tilt decides the direction of
+           * rows */
 } shadow_extent;
 
 /* Lays out the view: plane_normal is the light's direction (hard) or the sheets' normal (soft). */
@@ -78,7 +81,7 @@ typedef struct shadow_buffer_size {
   int ring;             /* sheets that are kept; at least 1 */
 } shadow_buffer_size;
 
-/* Allocates a buffer's memory, or allocates it again if it is too small, and sets all transmittances to 1. */
+/* Allocates a buffer's memory, or allocates it anew if it is too small. Sets all transmittances to 1. */
 hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buffer *buffer,
                                  const shadow_buffer_size *size, hl_error *error);
 /* Sets a buffer's view, tiles, stride, plane and origin. reach: as in shadow_buffer_size. */
@@ -92,18 +95,18 @@ uint64_t hl_shadow_sheet_bytes(const shadow_buffer_size *size);
 
 /* Pixel (0,0) of a channel, in a sheet's planes of one kind. The buffer must have planes of this kind. */
 float *hl_shadow_plane_at(const shadow_buffer *buffer, int sheet, shadow_plane kind, int channel);
-/* Points `transmittance`, `outside` and `second` to a sheet's planes. */
+/* Sets the pointers `transmittance`, `outside` and `second` to the planes of a sheet. */
 void hl_shadow_buffer_reach(shadow_buffer *buffer, int sheet);
-/* Whether a tile must still be carried to a sheet, or to a sheet after it. */
+/* Whether a tile must still be copied to a sheet, or to a sheet after it. */
 static inline bool hl_shadow_is_carried(const shadow_buffer *buffer, size_t tile, int sheet) {
   return buffer->changed[tile] > 0 && buffer->changed[tile] > sheet - buffer->ring;
 }
-/* Copies a tile from the planes of the sheet before to the planes of this sheet, unless these hold the same
- * numbers already. Where hl_shadow_is_carried() is true, call this function for each sheet in turn, before
- * the tile changes at the sheet. */
+/* Copies a tile from the planes of the sheet before to the planes of this sheet, unless the planes of this
+ * sheet hold the same numbers already. Where hl_shadow_is_carried() is true, call this function for each
+ * sheet in turn, before the tile changes at the sheet. */
 void hl_shadow_buffer_carry(shadow_buffer *buffer, size_t tile, int sheet);
-/* Finds the lit blocks of a tile (tile_lit) again after a blur. both: blocks in which only the second planes
- * have light count as lit, too. */
+/* Finds the lit blocks of a tile (tile_lit) again after a blur. both: whether blocks count as lit, too, in
+ * which only the second planes have light. */
 void hl_shadow_buffer_find_lit(shadow_buffer *buffer, int x, int y, bool both,
                                lit_blocks_function *lit_blocks);
 void hl_shadow_buffer_release(hl_context *context, shadow_buffer *buffer);
@@ -120,14 +123,15 @@ typedef struct shadow_map {
 typedef struct shadow_lookup {
   shadow_map map;
   const float *transmittance[HL_CHANNELS]; /* pixel (0,0) */
-  const float *outside[HL_CHANNELS];       /* planes like `transmittance`, of the light at the outside of
-                                            * surfaces; null: none */
+  const float *outside[HL_CHANNELS];       /* planes of the light at the outside of surfaces, laid out as
+                                            * `transmittance`; null: there are none */
   const float *older[HL_CHANNELS]; /* pixel (0,0) of the earlier transmittance, from which samples fade to
                                     * `transmittance`; null: none */
-  float young;                     /* how far samples have faded to `transmittance`, 0 to 1 */
+  float young;                     /* how far samples have faded from the earlier transmittance to
+                                    * `transmittance`, 0 to 1 */
 } shadow_lookup;
 
-/* Transmittance in units of 1 / SUBLIGHT_ONE, which takes half of a float's memory traffic. */
+/* Transmittance in units of 1 / SUBLIGHT_ONE. It takes half of the memory traffic of a float. */
 typedef uint16_t sublight_pixel;
 enum { SUBLIGHT_ONE = 65535 };
 
@@ -135,12 +139,13 @@ enum { SUBLIGHT_ONE = 65535 };
 typedef struct sublight_lookup {
   shadow_map map;
   const sublight_pixel *transmittance[HL_CHANNELS]; /* pixel (0,0) */
-  const sublight_pixel *outside[HL_CHANNELS];       /* the same, at the outside of surfaces; null: none */
+  const sublight_pixel *outside[HL_CHANNELS];       /* the light at the outside of surfaces, in the same form;
+                                                     * null: there is none */
   float weight[HL_CHANNELS]; /* the sub-light's weight in the mean over all sub-lights; 1 for lights
                               * without an emission image */
 } sublight_lookup;
 
-/* The map of a view's pixels; the caller sets its stride. */
+/* The map of a view's pixels. The caller sets the map's stride. */
 shadow_map hl_map_of_view(const view *view);
 
 #endif

@@ -6,15 +6,15 @@
 #include "shadow/shadow_buffer.h"
 #include "simd/gathers.h"
 
-/* The samples' positions in a shadow buffer: the first of the two by two pixels around each, and the
- * fractions of a pixel from there. */
+/* The samples' positions in a shadow buffer. Around each position there are two by two pixels: `first` is the
+ * first of these, and the fractions count from there. */
 typedef struct shadow_taps {
   lanes_int inside;
   lanes_squares first;
   lanes fx, fy;
 } shadow_taps;
 
-/* The taps for positions in the buffer, in continuous pixel coordinates. */
+/* The taps for positions in the buffer, which are given in continuous pixel coordinates. */
 LANES_INLINE shadow_taps taps_at_position(const shadow_map *map, int nearest, lanes u, lanes v) {
   shadow_taps taps;
   taps.inside = (u > 0.0f) & (v > 0.0f) & (u < (float)map->width) & (v < (float)map->height);
@@ -45,9 +45,9 @@ LANES_INLINE lanes look_up(const shadow_map *map, const shadow_taps *taps, const
   return between_taps(taps, a, b, c, d, 1);
 }
 
-/* Weights of cubic convolution with a = -1/2 (Keys, "Cubic convolution interpolation for digital image
- * processing", 1981, eq. 15) for the four pixels from the one before the first on. It keeps second moments:
- * it does not blur. */
+/* The weights of cubic convolution with a = -1/2 (Keys, "Cubic convolution interpolation for digital image
+ * processing", 1981, eq. 15) for four pixels; the first of them lies one pixel before `first`. This
+ * convolution keeps second moments, so it does not blur. */
 LANES_INLINE void cubic_weights(lanes way, lanes weight[4]) {
   lanes rest = 1.0f - way, both = way * rest * -0.5f;
   weight[0] = both * rest;
@@ -56,9 +56,9 @@ LANES_INLINE void cubic_weights(lanes way, lanes weight[4]) {
   weight[3] = both * way;
 }
 
-/* Interpolates between four by four pixels, clamped to the range of the nearest four. Without the clamp, the
- * result would overshoot beside an edge, and would be too dark just inside a box's face. The function is not
- * inlined, so that it takes no registers from the bilinear look-up. */
+/* Interpolates between four by four pixels. The result is clamped to the range of the nearest four pixels.
+ * Without the clamp, the result would overshoot beside an edge, and would be too dark just inside a box's
+ * face. The function is not inlined, so that it takes no registers from the bilinear look-up. */
 static __attribute__((noinline, unused)) lanes look_up_cubic(const shadow_map *map, const shadow_taps *taps,
                                                              const float *buffer) {
   lanes across[4], down[4], pixel[4], sum = lanes_set(0);

@@ -35,7 +35,7 @@ shadow_layouts hl_light_shadow_count(light_shadow *shadow) {
   return layouts;
 }
 
-/* Makes room for the planes that the method keeps from frame to frame. */
+/* Allocates the planes that the method keeps from frame to frame, or makes them larger. */
 static hl_status grow(hl_context *context, shadow_memory *memory, size_t bytes, hl_error *error) {
   if (memory->capacity >= bytes) return HL_OK;
   hl_release(context, memory->planes);
@@ -75,7 +75,7 @@ static hl_status set_up_lookups(light_shadow *shadow, hl_error *error) {
   return HL_OK;
 }
 
-/* The method's own numbers, as the plan has them. */
+/* The method's own numbers, as they were planned. */
 static hl_status copy_state(const light_shadow *planned, light_shadow *shadow, hl_error *error) {
   const size_t bytes = planned->method->state_bytes;
   if (bytes == 0) return HL_OK;
@@ -113,14 +113,14 @@ void hl_light_shadow_end(light_shadow *shadow) {
 
 /* ---- the size of a shadow buffer's pixels and the region that it covers, for all methods ---- */
 
-/* Pixels of shadow buffers are as large as possible without visibly adding to the sheets' error (measured
- * against the reference, docs/experiments.md): their edge is SHADOW_PIXEL_PER_SPACING times the sheets'
- * distance, but at least LEAST_SHADOW_PIXEL and at most GREATEST_SHADOW_PIXEL of a voxel. It is also at most
- * SHADOW_PIXEL_PER_IMAGE_PIXEL times the edge of a picture's pixel. */
+/* Pixels of shadow buffers are as large as possible: their error must not visibly add to the error of the
+ * sheets (measured against the reference, docs/experiments.md). Their edge is SHADOW_PIXEL_PER_SPACING times
+ * the sheets' distance, but at least LEAST_SHADOW_PIXEL and at most GREATEST_SHADOW_PIXEL of a voxel. It is
+ * also at most SHADOW_PIXEL_PER_IMAGE_PIXEL times the edge of a picture's pixel. */
 static const double SHADOW_PIXEL_PER_SPACING = 0.75, LEAST_SHADOW_PIXEL = 0.3, GREATEST_SHADOW_PIXEL = 0.75;
 static const double SHADOW_PIXEL_PER_IMAGE_PIXEL = 1.4;
-/* Look-ups by cubic convolution are as exact as bilinear look-ups even if pixels are larger by this fraction
- * of a voxel. */
+/* With cubic convolution, pixels may be larger by this fraction of a voxel, and look-ups are still as exact
+ * as bilinear look-ups. */
 static const double CUBIC_LARGER = 1.0 / 8;
 enum { SHADOW_PIXELS_PER_IMAGE_PIXEL = 4, LEAST_SHADOW_PIXELS = 1 << 20 };
 
@@ -144,8 +144,8 @@ double hl_sharp_pixel(const shadow_setup *setup, bool cubic) {
 
 double hl_blurred_pixel(const shadow_setup *setup, bool cubic) {
   const light_source *source = setup->source;
-  /* seen along the light, a pixel on the sheets is narrower; it is enlarged until it is as large as a hard
-   * shadow's pixel there */
+  /* seen along the light, a pixel on the sheets is narrower than a pixel of a hard shadow's buffer; so it is
+   * enlarged to that size */
   double slant = source->parallel ? fabs(vec3_dot(source->direction, setup->sheets->normal)) : 1;
   return fmin(SHADOW_PIXEL_PER_IMAGE_PIXEL * setup->middle_pixel,
               hl_shadow_pixel(setup, cubic) / sqrt(fmax(slant, 0.5)));
@@ -162,8 +162,8 @@ shadow_extent hl_extent_of_seen(const shadow_setup *setup, double pixel) {
                          .content_count = setup->content_count};
 }
 
-/* The buffer's margin for penumbrae: the whole width of this sweep's widest penumbra, in the buffer's units.
- * A penumbra reaches half its width beyond its occluder; blurs in several steps reach further. */
+/* The buffer's margin for penumbrae, in the buffer's units: the whole width of this sweep's widest penumbra.
+ * A penumbra reaches only half of its width beyond its occluder, but blurs in several steps reach further. */
 static double penumbra_margin(const shadow_setup *setup, const sheet_light *seen) {
   const sheet_stack *sheets = setup->sheets;
   double width = fmax(seen->width_u, seen->width_v), depth = sheets->spacing * sheets->count;

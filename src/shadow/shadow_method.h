@@ -42,30 +42,30 @@ typedef struct shadow_functions {
   const struct sublight_functions *sublights; /* shadow_sublights/sublight_field.h */
 } shadow_functions;
 
-/* The means by which a back end makes shadows. */
+/* The context, threads and functions with which a back end makes shadows. */
 typedef struct shadow_means {
   hl_pool *pool;
   hl_reserve *reserve; /* of blocks for one sweep */
   const shadow_functions *functions;
 } shadow_means;
 
-/* The input of a method: one light of one sweep. Borrowed; it must outlive the method. */
+/* The input of a method: one light of one sweep. All of it is borrowed, and must outlive the method. */
 typedef struct shadow_setup {
   hl_context *context;
   const hl_render_settings *settings;
   const light_source *source;
-  light_emission *emission; /* the light's emission image; null where the light is even. The method sets
-                             * the positions of its cells */
+  light_emission *emission; /* the light's emission image; null: the light is even. The method sets the
+                             * positions of the image's cells */
   const sheet_stack *sheets;
   const view *eye;
-  const light_exchange *exchange; /* exchange with the other parts of a shared picture; null: there are no
-                                   * other parts, or messages cannot be exchanged with them */
-  bool surfaces;         /* some volume has surfaces, which are lit by the light at the surfaces' outside */
-  int channels;          /* of attenuation: 1 or 3 */
-  double voxel;          /* the smallest edge of a voxel, frame units */
-  double pixel;          /* edge of a picture's pixel where the content is nearest, frame units */
-  double middle_pixel;   /* the same at the content's middle */
-  size_t picture_pixels; /* how many the frame has */
+  const light_exchange *exchange; /* exchanges light with the other parts of a shared picture; null: there are
+                                   * no other parts, or they exchange nothing */
+  bool surfaces;                  /* some volume has surfaces; these are lit by the light at their outside */
+  int channels;                   /* of attenuation: 1 or 3 */
+  double voxel;                   /* the smallest edge of a voxel, frame units */
+  double pixel;                   /* edge of a picture's pixel where the content is nearest, frame units */
+  double middle_pixel;            /* the same at the content's middle */
+  size_t picture_pixels;          /* how many the frame has */
   const vec3 *
       seen; /* [seen_count]; corners of the content that the eye sees, frame space; valid in plan and begin */
   int seen_count;
@@ -79,17 +79,18 @@ typedef struct shadow_plan {
   sheet_light seen;     /* soft methods: the light as the sheets see it */
   view view;            /* the buffer's view */
   bool cubic;           /* the buffer is read by cubic convolution */
-  bool outside;         /* the buffer keeps the light at the outside of surfaces, too */
+  bool outside;         /* the buffer also keeps the light at the outside of surfaces */
   bool second;          /* the buffer has second planes */
-  int reach;            /* pixels beyond a tile that the method reads */
-  double spare;         /* how many pixels beyond a brick's projection the picture's look-ups may read */
+  int reach;            /* number of pixels beyond a tile that the method reads */
+  double spare;         /* number of pixels beyond a brick's projection that the picture's look-ups may
+                         * read */
 } shadow_plan;
 
 /* Planes that a method may keep from frame to frame. The renderer owns them. */
 typedef struct shadow_memory {
   void *planes;    /* owned; [capacity] */
   size_t capacity; /* bytes */
-  bool zeros;      /* all bytes are zeros; it is false while a method uses the planes, and after a cancelled
+  bool zeros;      /* whether all bytes are zeros; false while a method uses the planes, and after a cancelled
                     * frame */
 } shadow_memory;
 
@@ -103,106 +104,114 @@ typedef struct light_shadow {
   shadow_plan plan;
   shadow_buffer *buffer;  /* the renderer's */
   shadow_lookup *lookups; /* owned; [the buffer's ring]; how the picture reads the light at each sheet */
-  const sublight_lookup *sublights; /* [sublight_count]; where there are any, the picture reads their mean */
-  int sublight_count, sublight_tiles_x, sublight_tiles_y; /* set by plan; tiles: of each sub-light's buffer */
+  const sublight_lookup *sublights; /* [sublight_count]; if there are any sub-lights, the picture reads the
+                                     * mean of their light */
+  int sublight_count, sublight_tiles_x, sublight_tiles_y; /* set by `plan`; sublight_tiles_x,
+                                                           * sublight_tiles_y: size in tiles of each
+                                                           * sub-light's buffer */
   void *state;                                            /* owned; method->state_bytes */
   shadow_memory *kept;                                    /* the renderer's */
   void *passing;                                          /* lent by the reserve */
   const int32_t *needed_until;    /* [tiles]; the last slab at which this part of a shared picture needs a
-                                   * tile, 0: never; null: it needs all tiles at all slabs. Borrowed; set
-                                   * before the first slab */
+                                   * tile, 0: never; null: it needs all tiles at all slabs. Borrowed; must be
+                                   * set before the first slab */
   const int32_t *sublights_until; /* [sublight_count][sublight_tiles_y][sublight_tiles_x]; as needed_until,
-                                   * for the tiles of the sub-lights' buffers, where there are sub-lights */
-  const unsigned char *owned;     /* [tiles]; 1 where this part of a shared picture tells the other parts
-                                   * about a tile; null: it tells nothing */
+                                   * for the tiles of the sub-lights' buffers; set only if there are
+                                   * sub-lights */
+  const unsigned char *owned;     /* [tiles]; 1 for tiles whose light this part of a shared picture sends to
+                                   * the other parts; null: it sends no light */
 } light_shadow;
 
 /* A method's memory besides the buffer. */
 typedef struct shadow_layouts {
-  hl_layout kept;    /* stays from frame to frame, see shadow_memory */
+  hl_layout kept;    /* kept from frame to frame, see shadow_memory */
   hl_layout passing; /* until the sweep ends; uninitialised */
 } shadow_layouts;
 
 struct shadow_method {
   const char *name;
   size_t state_bytes; /* of light_shadow.state, zeros before plan */
-  int first_slab;     /* the first slab that casts shadows of a near light that lies within a slab. 0: this
-                       * slab, with its part beyond the light; 1: the next slab */
+  int first_slab;     /* the first slab that casts shadows of a near light, if the light lies within a slab.
+                       * 0: this slab, of which the part beyond the light counts; 1: the next slab */
   /* The delay of surfaces where look-ups are bilinear, in pixels of the buffer: the distance after which a
    * surface absorbs light (surface/late/lateness.h). Bilinear look-ups read less than a pixel to each side,
-   * so with a delay of 1 a flat surface does not darken itself. Methods that blur by a pixel or more need a
-   * greater delay. */
+   * so with a delay of 1 pixel a flat surface does not darken itself. Methods that blur by a pixel or more
+   * need a greater delay. */
   double surface_delay;
-  double surface_rise; /* number of pixels by which surfaces lie higher in the buffer than they are */
+  double surface_rise; /* number of pixels by which surfaces are moved up in the buffer */
   void (*plan)(light_shadow *shadow);
   hl_status (*check)(const light_shadow *shadow, hl_error *error);
   void (*lay_out)(light_shadow *shadow, shadow_layouts *layouts);
   hl_status (*begin)(light_shadow *shadow, hl_error *error);
-  /* Prepares the look-ups of the picture in a slab. lookup: set to the way in which the light at the sheet
+  /* Prepares the look-ups of the picture in a slab. lookup: receives the way in which the light at the sheet
    * before the slab is looked up. */
   void (*before_shading)(light_shadow *shadow, int sheet, shadow_lookup *lookup);
   /* job: of all tiles of the slab. */
   void (*before_slab)(light_shadow *shadow, int sheet, attenuate_job *job);
-  /* Finds the lit blocks of a tile (buffer->tile_lit). Null: the sweep finds them itself. Only one task at
-   * a time works on a tile. */
+  /* Finds the lit blocks of a tile (buffer->tile_lit). Null: the sweep finds them itself. Only one task at a
+   * time calls this for a tile. */
   void (*find_lit)(light_shadow *shadow, size_t tile);
   void (*before_tile)(const light_shadow *shadow, size_t tile, attenuate_job *job);
   void (*after_tile)(light_shadow *shadow, size_t tile);
   void (*advance)(light_shadow *shadow, const occupancy *occupancy, int sheet);
-  /* Each part of a shared picture works through only those tiles that it needs, by needed_until or
+  /* Whether each part of a shared picture computes only those tiles that it needs, by needed_until or
    * sublights_until. */
   bool divides;
-  /* Raises needed_until, [tiles], for those tiles on whose pixels needed pixels of other tiles will depend.
-   * Null: no tile depends on other tiles. */
+  /* Raises needed_until, [tiles]: some tiles are needed because the pixels of needed tiles will depend on
+   * their pixels. Null: no tile depends on other tiles. */
   void (*widen_needs)(light_shadow *shadow, int32_t *needed_until);
-  /* Each part of a shared picture works through only those tiles that it needs, and gets the rest from the
-   * other parts (the setup's exchange, needed_until, owned). Each tile that any brick touches has one owner
-   * among the parts, which needs the tile as long as bricks touch it. */
+  /* Whether each part of a shared picture computes only those tiles that it needs, and gets the light of the
+   * other tiles from the other parts (the setup's exchange, needed_until, owned). Each tile that any brick
+   * touches is owned by one of the parts. This part needs the tile as long as bricks touch it. */
   bool exchanges;
-  /* Whether `advance` changes anything at a sheet. Null: it may at every sheet. */
+  /* Whether `advance` changes anything at a sheet. Null: it may change something at every sheet. */
   bool (*advances)(const light_shadow *shadow, int sheet);
   void (*end)(light_shadow *shadow);
 };
 
-/* The method that makes a light's shadows, as the light's settings `shadows` and soft method say; null
- * where the light casts no shadows. */
+/* The method that makes a light's shadows. The light's settings `shadows` and soft_method decide it. Null:
+ * the light casts no shadows. */
 const shadow_method *hl_shadow_method(const light_source *source);
 
 /* ---- for the sweep ---- */
 
-/* Chooses a light's shadow method, and lets it plan. shadow->method is null afterwards where there are no
- * shadows to make. */
+/* Chooses a light's shadow method, and lets the method plan. shadow->method is null afterwards if there are
+ * no shadows to make. */
 hl_status hl_light_shadow_plan(light_shadow *shadow, const shadow_setup *setup, hl_error *error);
 /* Whether the planned method can be run in stretches. */
 static inline bool hl_runs_in_stretches(const shadow_method *method) {
   return method->advance == NULL || method->advances != NULL;
 }
-/* The size of a planned light's buffer that keeps a given number of sheets. The renderer owns the buffer. */
+/* The size of the buffer of a planned light. ring: number of sheets that the buffer keeps. The renderer owns
+ * the buffer. */
 shadow_buffer_size hl_light_shadow_buffer_size(const light_shadow *shadow, int ring);
-/* After plan: the bytes of the method's memory. */
+/* Counts the bytes of the method's memory. Call it after the method has planned. */
 shadow_layouts hl_light_shadow_count(light_shadow *shadow);
-/* Begins a copy of a planned shadow, which stays as it is. buffer and memory are the renderer's. */
+/* Begins a copy of a planned shadow; the planned shadow does not change. The renderer owns buffer and
+ * memory. */
 hl_status hl_light_shadow_begin(light_shadow *shadow, const light_shadow *planned, const shadow_means *means,
                                 int ring, shadow_buffer *buffer, shadow_memory *memory, hl_error *error);
-/* Releases what a planned or begun shadow holds. Call it after a failure, too; a struct of zeros is
- * allowed. */
+/* Releases what a planned or begun shadow holds. Call it after a failure, too. The struct may be all
+ * zeros. */
 void hl_light_shadow_end(light_shadow *shadow);
 
 /* ---- for methods ---- */
 
-/* The edge of a buffer's pixel that suits the sheets' distance, in frame units. It is larger for cubic
+/* The edge of a buffer's pixel, in frame units, that suits the distance of the sheets. It is larger for cubic
  * convolution. */
 double hl_shadow_pixel(const shadow_setup *setup, bool cubic);
-/* Whether hard shadows, or soft ones of an even light, are best read by cubic convolution. */
+/* Whether the light's buffer is best read by cubic convolution: for hard shadows, and for soft shadows of an
+ * even light. */
 bool hl_cubic_is_better(const shadow_setup *setup);
-/* Plans a buffer that is parallel to the sheets, and has room for penumbrae around the points that the eye
- * sees. pixel: frame units. */
+/* Plans a buffer that is parallel to the sheets. It covers the points that the eye sees, and penumbrae around
+ * them. pixel: edge of a pixel; frame units. */
 void hl_plan_soft(light_shadow *shadow, double pixel);
-/* The edge of a buffer's pixel in frame units: the first function is for light that is looked up as it is,
- * the second for light that the method blurs. */
+/* Both functions give the edge of a buffer's pixel in frame units: hl_sharp_pixel() for light that is looked
+ * up as it is, hl_blurred_pixel() for light that the method blurs. */
 double hl_sharp_pixel(const shadow_setup *setup, bool cubic);
 double hl_blurred_pixel(const shadow_setup *setup, bool cubic);
-/* An extent around the content that the eye sees. pixel: wanted edge of a buffer's pixel; frame units. */
+/* The input for a buffer that covers the content that the eye sees. pixel: wanted edge of a buffer's pixel;
+ * frame units. */
 shadow_extent hl_extent_of_seen(const shadow_setup *setup, double pixel);
 
 /* The last sheet's height. */

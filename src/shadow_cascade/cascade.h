@@ -11,33 +11,34 @@
  * T(o) is the light that reached slab o, t(o) the slab's transmittance. Light is counted only where it is
  * absorbed first, so a thick occluder is not counted twice.
  *
- * Groups. The absorbed light of slabs is kept in groups, which are thin near the receiver and thick far from
- * it: groups of levels 0 and 1 hold one chunk of slabs, those of level j hold 2^(j-1) chunks. From the
- * farthest group on, the sum is blurred by the variance (w(o)^2 - w(o')^2) / 12 on its way from group o to
- * the next group o', and the absorbed light of o' is added. The variances add up so that in the end each
- * group is blurred by the variance of its own penumbra. Far levels have coarser pixels, because their
- * penumbrae are wide. They are summed less often, because the widths of their penumbrae change slowly.
+ * Groups. The absorbed light of slabs is kept in groups of slabs. Groups are thin near the receiver and thick
+ * far from it: a group of level 0 or 1 holds one chunk of slabs, a group of level j > 1 holds 2^(j-1) chunks.
+ * From the farthest group on, the sum is blurred by the variance (w(o)^2 - w(o')^2) / 12 on its way from
+ * group o to the next group o', and the absorbed light of o' is added. The variances add up so that in the
+ * end each group is blurred by the variance of its own penumbra. Far levels have coarser pixels, because
+ * their penumbrae are wide. The groups of far levels are summed less often, because the widths of their
+ * penumbrae change slowly.
  *
  * Near matter. Slabs join the groups one chunk late. The slabs of the current chunk and of the chunk before
- * attenuate the buffer directly, without blur. There are two reasons. Their penumbrae are at most a few
- * pixels wide. And the matter of the receiver's own surface is among these slabs, which a blur would spread
- * over the surface. (Derived: for a receiver on a plane that sees the whole light, the plane's matter that is
- * more than a chunk away lies farther aside than the light's rim reaches.) At each chunk's end the buffer is
- * refilled from the sum. Its second planes keep the light of the filling before. In the course of a chunk
- * samples fade from the second planes to the buffer, so that no line shows where a chunk ends. So each
- * filling serves two chunks. Its penumbrae have the right width at the border between the two, where it
- * counts fully.
+ * attenuate the buffer directly, without blur. There are two reasons. The penumbrae of these slabs are at
+ * most a few pixels wide. And these slabs hold the matter of the receiver's own surface, whose absorption a
+ * blur would spread over the surface. (Derived: for a receiver on a plane that sees the whole light, the
+ * plane's matter that is more than a chunk away lies farther aside than the light's rim reaches.) At each
+ * chunk's end the buffer is refilled from the sum. The buffer's second planes keep the light of the filling
+ * before. In the course of a chunk, samples fade from the second planes to the buffer's first planes, so that
+ * no line shows where a chunk ends. So each filling serves two chunks. Its penumbrae have the right width at
+ * the border between these two chunks, where the filling has its full weight.
  *
  * Haze. The sum above holds for solid matter, which absorbs light at its edges. Thin matter absorbs the
- * fraction F of every ray through it. Rays towards r keep their directions. So of the light on its way to r
- * thin matter absorbs F (1 - s), and not F T(o), where s is the sum so far, blurred for o and r. A group
- * therefore turns s into G + F + (1 - F) s, where G = T(o) (1 - t(o)) belongs to its solid matter and F to
- * its thin matter (derived). Two groups can be joined to one with 1 - F = (1 - F1) (1 - F2); G + F follows
- * from applying one group after the other.
+ * fraction F of every ray through it. The light that arrives at r comes along rays with fixed directions. So
+ * thin matter absorbs F (1 - s) of the light on its way to r, and not F T(o); s is the sum so far, blurred
+ * for o and r. A group therefore turns s into G + F + (1 - F) s, where G = T(o) (1 - t(o)) belongs to its
+ * solid matter and F to its thin matter (derived). Two groups can be joined to one with 1 - F = (1 - F1) (1 -
+ * F2); G + F follows from applying one group after the other.
  *
- * Surfaces of meshes that let nothing pass count as solid matter in full light and next to their edges, which
- * is right where several edges lie one behind the other. Elsewhere they have F = 1, so that behind them no
- * light is left, whatever the matter before them lets pass.
+ * Surfaces of meshes that let no light pass count as solid matter in full light and next to their edges. This
+ * is right where several edges lie one behind the other. Elsewhere these surfaces have F = 1, so that no
+ * light is left behind them, whatever light the matter before them lets pass.
  *
  * The buffer's axes are the principal axes of the light as the sheets see it. Along each axis the light has a
  * width of its own, stored as a fraction of the greater width. */
@@ -51,27 +52,29 @@
 #include "shadow_cascade/cascade_field.h"
 #include "shadow_cascade/cascade_reads.h"
 
-/* CASCADE_MARGIN: pixels of zeros between rows, and rows of zeros between planes, which blurs may read. */
+/* CASCADE_MARGIN: the number of pixels of zeros between rows, and of rows of zeros between planes. Blurs may
+ * read these zeros. */
 enum { CASCADE_LEVELS = 16, CASCADE_GROUPS = 7, CASCADE_FEW_GROUPS = 4, CASCADE_MARGIN = 48 };
 
-/* Absorbed light over the pixels of a level, with a margin of zeros around them. The margin at the end of a
- * row is also the margin before the next row, and likewise between fields. */
+/* Absorbed light in the pixels of a level, with a margin of zeros around them. The margin at the end of a row
+ * is also the margin before the next row. Likewise, the margin after a field is also the margin before the
+ * next field. */
 typedef struct cascade_field {
   field_pixel *pixels;  /* pixel (0,0); in the level's memory */
-  unsigned char *zeros; /* [tiles]; 1 where all pixels of the tile are zeros, so that work skips it; a part
-                         * of the level's flags */
+  unsigned char *zeros; /* [tiles]; 1 where all pixels of the tile are zeros, so that passes skip the tile; a
+                         * part of the level's flags */
 } cascade_field;
 
 /* The light that a group's slabs have absorbed. */
 typedef struct cascade_group {
   cascade_field absorbed[HL_CHANNELS]; /* G + F */
   cascade_field thin[HL_CHANNELS];     /* F */
-  double omega;                        /* the group's position; pixels of the buffer */
+  double omega;                        /* the omega of the group; pixels of the buffer */
   bool filled;                         /* not all zeros */
 } cascade_group;
 
-/* How a column or a row of tiles is blurred. fraction: the variance of its penumbrae as a fraction of the
- * variance where the light is widest. box: the box of the current blur. */
+/* How a column or a row of tiles is blurred. fraction: the variance of the penumbrae in it, as a fraction of
+ * the variance where the light is widest. box: the box of the current blur. */
 typedef struct cascade_box {
   double fraction;
   blur_box box;
@@ -80,87 +83,88 @@ typedef struct cascade_box {
 typedef struct cascade_level {
   int scale; /* edge of this level's pixels, pixels of the buffer */
   int tiles_x, tiles_y;
-  size_t stride, plane, origin, pixels; /* numbers of pixels. stride: from row to row; plane: of a field;
-                                         * origin: before a field's pixel (0,0); pixels: of all fields and the
-                                         * margin after them */
+  size_t stride, plane, origin, pixels; /* numbers of pixels. stride: from row to row; plane: in a field;
+                                         * origin: from a field's start to its pixel (0,0); pixels: in all
+                                         * fields and the margin after them */
   cascade_group group[CASCADE_GROUPS];  /* oldest first */
   int count, capacity;
-  double fraction[2], greatest_fraction; /* of `boxes`: the mean fraction along rows and along columns, and
-                                          * the greatest fraction */
-  cascade_field sum[2][HL_CHANNELS]; /* two sums of all groups from the farthest one to a group of this level;
-                                      * each was made for a recent receiver */
-  int newest;                        /* which of the two sums includes the newest group */
+  double fraction[2], greatest_fraction; /* from the fractions in `boxes`: the mean along rows and the mean
+                                          * along columns, and the greatest fraction */
+  cascade_field sum[2][HL_CHANNELS];     /* two sums; each is the sum of all groups from the farthest one to a
+                                          * group of this level, made for a recent receiver */
+  int newest;                            /* the index of the sum that includes the newest group */
   bool filled;      /* the sum includes a group of this level; if not, the sum of the next farther level is
-                     * used in its place */
+                     * used instead */
   double sum_omega; /* omega of the newest group in the sum */
-  double owed[2];   /* along rows and columns, the variance by which the sum has been blurred too much; in
+  double owed[2];   /* along rows and along columns: the variance by which the sum is blurred too much; in
                      * squared pixels of the buffer */
   bool renewed;     /* the sum must be made again */
-  cascade_field scratch;              /* for sums from farther levels; not on level 0 */
-  cascade_field mean[2][HL_CHANNELS]; /* for lights with an emission image: averages of one group's `absorbed`
-                                       * and `thin` over the step between taps */
+  cascade_field scratch;              /* used for sums from farther levels; level 0 has none */
+  cascade_field mean[2][HL_CHANNELS]; /* for lights with an emission image: one group's `absorbed` and `thin`,
+                                       * averaged over the step between taps */
   cascade_box *boxes;                 /* owned; [tiles_x], then [tiles_y] */
   field_pixel *memory;                /* the shadow_memory's */
   size_t planes;
   unsigned char *flags; /* owned */
 } cascade_level;
 
-/* Messages between the renderers that make the parts of one picture. A message holds the light of one tile
- * (cascade_exchange.c). */
+/* The exchange of messages between the renderers that make the parts of one picture. A message holds the
+ * light of one tile (cascade_exchange.c). */
 typedef struct cascade_exchange {
   const light_exchange *with;         /* null: nobody */
   size_t slot_bytes;                  /* of a message */
   size_t slots;                       /* messages of a post, at most */
   light_post post;                    /* of the next two */
   unsigned char *outgoing, *incoming; /* owned; [post.most]; [parts][post.most] */
-  unsigned char *sends;               /* owned; [tiles]; 1 where this part sends the tile's light of the
-                                       * last chunk to the other parts */
+  unsigned char *sends;               /* owned; [tiles]; 1 for tiles whose light of the last chunk this part
+                                       * sends to the other parts */
   uint32_t count;                     /* of these tiles */
   size_t tile;                        /* the next one to tell of */
   bool sent;                          /* a post of the last chunk is under way */
 } cascade_exchange;
 
 typedef struct soft_cascade {
-  bool begun; /* its memory may hold numbers other than zero */
+  bool begun; /* the cascade's memory may hold numbers other than zero */
   bool parallel;
-  double rate; /* the rate at which penumbrae widen: for parallel light, omega per frame unit of height; for
-                * near light, L in units of the size that the buffer's pixels have at distance 1 */
+  double rate; /* the rate at which penumbrae widen. For parallel light: omega per frame unit of height. For
+                * near light: L, in units of the edge that the buffer's pixels have at distance 1 */
   double light_height;
-  double widest;                        /* the greater of the light's widths along the buffer's axes */
-  double least_fraction;                /* the smaller width as a fraction of the greater */
-  const light_emission *emission;       /* null: the light is even, and blurs are boxes */
-  double slope_start[2], slope_step[2]; /* the slope of the light's rays at the buffer's corner, and the
-                                         * change of the slope from one pixel to the next */
-  double chunk;                         /* length of the current chunk in omega, pixels */
+  double widest;                        /* the greater of the light's two widths along the buffer's axes */
+  double least_fraction;                /* the smaller of these two widths, as a fraction of the greater */
+  const light_emission *emission;       /* null: the light is even, and blurs use boxes */
+  double slope_start[2], slope_step[2]; /* slope_start: the slope of the light's rays at the buffer's corner;
+                                         * slope_step: the change of the slope from pixel to pixel */
+  double chunk;                         /* length of the current chunk in omega; pixels */
   double chunk_start;                   /* omega */
   double shortest_chunk;                /* of the sweep */
-  double shrink; /* length of a chunk, as a fraction of -omega at the chunk's start; 0: all chunks have the
-                  * same length */
-  double evened; /* the omega, in pixels, from which on chunks are equally long again */
-  double lookup_variance; /* variance by which look-ups blur the buffer, in squared pixels */
+  double shrink; /* the length of a chunk divided by -omega at the chunk's start; 0: all chunks have the same
+                  * length */
+  double evened; /* the omega from which on all chunks have the same length again; pixels */
+  double lookup_variance; /* variance of the blur by look-ups of the buffer, in squared pixels */
   uint64_t chunks;        /* finished */
   int channels;
   int level_count; /* levels with memory */
   cascade_level level[CASCADE_LEVELS];
-  cascade_field absorbed[HL_CHANNELS];   /* the absorbed light with which the buffer was filled last; one of
-                                          * level 0's sums */
-  float *absorbed_at_start[HL_CHANNELS]; /* pixel (0,0) on level 0: 1 - the light at the start of the chunk */
-  float *moment[HL_CHANNELS]; /* pixel (0,0) on level 0: the sum of the light that the chunk's slabs
-                               * absorbed, each times the slab's position */
-  unsigned char *refilled;    /* owned; [tiles]; REFILLED_BEFORE, REFILLED_NOW */
-  unsigned char *touched;     /* owned; [tiles]; 1 where the chunk's slabs absorbed light */
-  cascade_reads reads;        /* the tiles that the next chunk's slabs read */
+  cascade_field absorbed[HL_CHANNELS];   /* the absorbed light from which the buffer was filled last; it is
+                                          * one of the sums of level 0 */
+  float *absorbed_at_start[HL_CHANNELS]; /* pixel (0,0), on level 0; 1 minus the light at the start of the
+                                          * chunk */
+  float *moment[HL_CHANNELS]; /* pixel (0,0), on level 0; the sum, over the chunk's slabs, of the light that a
+                               * slab absorbed times the slab's position */
+  unsigned char *refilled;    /* owned; [tiles]; the bits REFILLED_BEFORE and REFILLED_NOW */
+  unsigned char *touched;     /* owned; [tiles]; 1 where slabs of the current chunk have absorbed light */
+  cascade_reads reads;        /* the tiles that slabs of the next chunk read */
   cascade_exchange exchange;  /* with the other parts of a shared picture */
 } soft_cascade;
 
-/* Data for every pass over a cascade's fields. */
+/* The threads and functions for passes over a cascade's fields. */
 typedef struct cascade_crew {
   hl_pool *pool;
   const cascade_functions *functions;
   const cascade_reads *reads;
 } cascade_crew;
 
-/* cascade_levels.c: as shadow_method has them. */
+/* These functions are in cascade_levels.c; they do what shadow_method says. */
 void hl_cascade_plan(light_shadow *shadow);
 void hl_cascade_lay_out(light_shadow *shadow, shadow_layouts *layouts);
 hl_status hl_cascade_begin(light_shadow *shadow, hl_error *error);
@@ -168,12 +172,12 @@ void hl_cascade_end(light_shadow *shadow);
 
 /* cascade_exchange.c */
 void hl_cascade_exchange_lay_out(soft_cascade *cascade, const light_exchange *with, shadow_layouts *layouts);
-/* Begins to send messages to the other parts. They hold the pixels of the groups at the two ends of the last
- * chunk, for those tiles that this part owns and that the chunk has touched. */
+/* Begins to send messages to the other parts. The messages hold the pixels of two groups, those at the two
+ * ends of the last chunk, in the tiles that this part owns and that the chunk has touched. */
 void hl_cascade_exchange_send(soft_cascade *cascade, const unsigned char *owned);
 /* Lets what is under way get on. */
 void hl_cascade_exchange_look(const soft_cascade *cascade);
-/* Waits for the messages of the other parts, stores the pixels of the others' tiles in the groups, and notes
+/* Waits for the messages of the other parts, and stores the pixels of their tiles in the groups. Notes
  * whether the chunk has touched any tile of any part. Call it before anything reads the groups. It does
  * nothing where no messages are under way. */
 void hl_cascade_exchange_receive(soft_cascade *cascade);
@@ -186,7 +190,7 @@ static inline double hl_cascade_omega(const soft_cascade *cascade, double height
 }
 
 /* The value of omega after a number of further chunks. Derived: a chunk that begins at omega ends at omega (1
- * - shrink). All chunks that begin beyond `evened` have the length of a chunk that begins at `evened`. */
+ * - shrink). A chunk that begins beyond `evened` has the same length as a chunk that begins at `evened`. */
 static inline double hl_cascade_chunks_on(const soft_cascade *cascade, double omega, double chunks) {
   if (!(cascade->shrink > 0)) return omega + cascade->chunk * chunks;
   if (omega < cascade->evened) {
@@ -198,9 +202,9 @@ static inline double hl_cascade_chunks_on(const soft_cascade *cascade, double om
   return omega - cascade->shrink * cascade->evened * chunks;
 }
 
-/* Finds the absorbed light for receivers around omega = receiver, for a light with an emission image, and
- * stores it in cascade->absorbed in the tiles that are read (cascade_emission.c). False: nothing is in the
- * light's way. */
+/* For a light with an emission image (cascade_emission.c): finds the absorbed light for receivers around
+ * omega = receiver, and stores it in cascade->absorbed, in the tiles that are read. Returns false if nothing
+ * is in the light's way. */
 bool hl_cascade_pass_emission(soft_cascade *cascade, double receiver, const cascade_crew *crew);
 
 #endif

@@ -1,12 +1,12 @@
-/* shadow_cascade/cascade_emission.c - a cascade for lights with an emission image: each group has a kernel of
- * its own.
+/* shadow_cascade/cascade_emission.c - a cascade for lights with an emission image. Each group has a blur
+ * kernel of its own.
  *
  * Blurs by boxes can be made step by step, because only their variance matters. But an emission image must
  * appear complete in every penumbra. So the absorbed light of group o is blurred in one step, by the image's
  * taps (light_emission.h), scaled to the width w of the group's penumbra on the receiver. Far groups come
- * first: the sum s becomes K(G + F) + (1 - K(F)) s, with the group's kernel K (derived as in cascade.h;
- * without thin matter it is the sum over groups of K(G), the mean of what the light's cells see). Sums are
- * made anew for each receiver. This is affordable because far groups have coarse pixels. */
+ * first. With a group's kernel K, the sum s becomes K(G + F) + (1 - K(F)) s (derived as in cascade.h; without
+ * thin matter it is the sum over groups of K(G), the mean of the shadows of the light's cells). Sums are made
+ * anew for each receiver. This is not too slow, because far groups have coarse pixels. */
 #include "shadow_cascade/cascade_passes.h"
 
 #include <string.h>
@@ -17,19 +17,19 @@ typedef struct emission_pass {
   const soft_cascade *cascade;
   cascade_level *level;
   const cascade_group *group;
-  double width; /* width of the group's penumbra, in pixels of the level */
+  double width; /* width of the group's penumbra on the receiver, in pixels of the level */
   int step[2];
-  bool averaged; /* the level's `mean` holds the group's means over `step` pixels */
+  bool averaged; /* whether the level's `mean` holds the group's means over `step` pixels */
   int reach;     /* reach of the taps and the means, tiles */
   const cascade_functions *functions;
 } emission_pass;
 
-/* The field to which the groups of a level are added. */
+/* The sum to which the groups of a level are added. */
 static const cascade_field *sum_of(const soft_cascade *cascade, const cascade_level *level, int channel) {
   return level == &cascade->level[0] ? &cascade->absorbed[channel] : &level->sum[0][channel];
 }
 
-/* Finds the tiles of a row that are read: by the next slabs, or by the next finer level, which interpolates
+/* Finds the tiles of a row that are read: by the next slabs, or by the next finer level when it interpolates
  * between pixels. */
 static read_row row_read(const soft_cascade *cascade, const cascade_level *level, size_t y) {
   return hl_cascade_read_row(&cascade->reads, level->scale, (int)y,
@@ -44,8 +44,8 @@ static bool any_near(const cascade_level *level, const cascade_field *field, int
 
 typedef struct start_task {
   const soft_cascade *cascade;
-  const cascade_level *level, *farther; /* the level, and the next farther level with a filled sum; null:
-                                         * none */
+  const cascade_level *level, *farther; /* level: the level; farther: the nearest farther level that has a
+                                         * filled sum; null: there is none */
   const cascade_functions *functions;
 } start_task;
 
@@ -85,7 +85,7 @@ static void start_row(void *data, size_t index, int worker) {
 
 /* ---- a group ---- */
 
-/* Averages a group's absorbed light and thin matter over step pixels. */
+/* Averages a group's absorbed light, and its thin matter, over `step` pixels. */
 static void average_row(void *data, size_t index, int worker) {
   (void)worker;
   const emission_pass *pass = data;
@@ -113,7 +113,7 @@ static void average_row(void *data, size_t index, int worker) {
 }
 
 /* Finds the offsets of the taps for a tile. Leaves out taps that lie outside the level for all pixels of the
- * tile, because there all pixels are zeros. Returns how many taps are left. */
+ * tile, because all pixels outside are zeros. Returns how many taps are left. */
 static int offsets_of(const cascade_level *level, const emission_taps *taps, int x, int y, ptrdiff_t *offset,
                       int *kept) {
   int count = 0;

@@ -1,22 +1,22 @@
-/* shadow_cascade/cascade_exchange.c - the parts of a shared picture tell each other what their light
+/* shadow_cascade/cascade_exchange.c - the parts of a shared picture exchange the light that their slabs have
  * absorbed.
  *
  * A part attenuates the tiles that it needs. Penumbrae reach into these tiles from matter in other tiles,
- * which other parts attenuate. So after each chunk, the owner of each tile that the chunk has touched sends
- * the pixels that the groups at the chunk's ends have in this tile. Then the groups of every part are
- * complete, as if one renderer made them, and each part blurs them where its own tiles read them.
+ * which other parts attenuate. So after each chunk, for each tile that the chunk has touched, the tile's
+ * owner sends this tile's pixels of the two groups at the chunk's ends. Then every part has complete groups,
+ * as if one renderer made the whole picture. Each part blurs the groups where its own tiles read them.
  *
- * The groups of a chunk are read first at the end of the next chunk, when matter before it is blurred (Near
- * matter, cascade.h). So the messages of a chunk are under way while all parts work on the next chunk, and a
- * part waits only for parts that are more than a chunk behind. Messages are sent in posts, each of a limited
- * number of messages, so that their memory does not grow with the number of tiles. The first post is sent at
- * the chunk's end. If a part has further posts, it sends them when the first one is received. */
+ * The groups of a chunk are first read at the end of the next chunk (Near matter, cascade.h). So the messages
+ * of a chunk are under way while all parts work on the next chunk, and a part waits only for parts that are
+ * more than a chunk behind. Messages are sent in posts, each of a limited number of messages, so that their
+ * memory does not grow with the number of tiles. The first post is sent at the chunk's end. If a part has
+ * further posts, it sends each of them when the post before it has been received. */
 #include <string.h>
 
 #include "shadow_cascade/cascade_passes.h"
 
-/* The number of bytes, approximately, that the posts of all parts take, where the exchange gives no number.
- */
+/* The approximate number of bytes that the posts of all parts take, if the exchange does not give a
+ * number. */
 enum { MOST_POSTED = 8 << 20 };
 
 /* The head of a post. */
@@ -25,14 +25,14 @@ typedef struct post_head {
   uint32_t unused; /* messages begin at a multiple of 8 bytes */
 } post_head;
 
-/* The fields of a channel that a chunk changes: absorbed and thin, of the group at its start and at its end.
- */
+/* The fields of a channel that a chunk changes: `absorbed` and `thin`, of the group at the chunk's start and
+ * of the group at its end. */
 enum { MESSAGE_FIELDS = 4 };
 
-/* The head of a message. After it: [channels][MESSAGE_FIELDS][TILE_PIXELS] pixels. */
+/* The head of a message. [channels][MESSAGE_FIELDS][TILE_PIXELS] pixels follow it. */
 typedef struct message_head {
   uint32_t tile;
-  uint32_t filled; /* one bit for each field that is not all zeros, in the fields' order */
+  uint32_t filled; /* one bit for each field, in the order of the fields: 0 where the field is all zeros */
 } message_head;
 
 void hl_cascade_exchange_lay_out(soft_cascade *cascade, const light_exchange *with, shadow_layouts *layouts) {
@@ -61,7 +61,7 @@ static const cascade_field *field_of(const cascade_group *start, const cascade_g
   return field % 2 == 0 ? &group->absorbed[channel] : &group->thin[channel];
 }
 
-/* Copies one tile's pixels from a field to a message, or back. */
+/* The first function copies one tile's pixels from a field to a message, the second one copies them back. */
 static void pack_tile(const cascade_level *level, const cascade_field *field, size_t tile, field_pixel *to) {
   const field_pixel *from = field->pixels + tile / (size_t)level->tiles_x * TILE * level->stride +
                             tile % (size_t)level->tiles_x * TILE;
@@ -138,7 +138,7 @@ static size_t count_of(const cascade_exchange *exchange, int part) {
   return head.count;
 }
 
-/* done: messages of each part that have been read. */
+/* Stores the received messages. done: number of messages of each part that were stored before. */
 static void read_messages(const chunk_exchange *chunk, size_t done) {
   const cascade_exchange *exchange = &chunk->cascade->exchange;
   for (int part = 0; part < exchange->with->parts; part++) {

@@ -6,8 +6,8 @@
 
 #include "shadow/blur.h"
 
-/* Absorbed light in units of 1 / FIELD_ONE, which takes half of a float's memory traffic. A pixel is at most
- * FIELD_ONE, but may be a little more in sums of several groups' penumbrae. */
+/* Absorbed light in units of 1 / FIELD_ONE. It takes half of the memory traffic of a float. A pixel is at
+ * most FIELD_ONE, but may be a little more in sums of several groups' penumbrae. */
 typedef uint16_t field_pixel;
 enum { FIELD_ONE = 32768 };
 
@@ -17,13 +17,16 @@ typedef struct tile_rows {
 } tile_rows;
 static const tile_rows ALL_ROWS = {0, TILE};
 
-/* An operation on fields, given by their pixel (0,0); rows are stride apart, with zeros all around. */
+/* An operation on fields. A field is given by its pixel (0,0); its rows are `stride` apart, and zeros
+ * surround its pixels. */
 typedef struct field_job {
-  const field_pixel *a, *b; /* inputs; cascade_functions tells their resolutions. Null stands for zeros. b may
-                             * be null only if it is not coarser than the output, a only if b is coarser */
+  const field_pixel *a, *b; /* inputs; cascade_functions tells their resolutions. Null stands for zeros. `b`
+                             * may be null only if it is not coarser than the output; `a` may be null only if
+                             * `b` is coarser */
   field_pixel *to;
-  size_t stride_in, stride; /* stride_in: of inputs of another resolution */
-  const field_pixel *thin;  /* the fraction of b that a's thin matter absorbs; null: none */
+  size_t stride_in, stride; /* stride_in: the stride of inputs of another resolution */
+  const field_pixel *thin;  /* the fraction of b that the thin matter of a absorbs; null: there is no thin
+                             * matter */
   tile_rows rows;
 } field_job;
 
@@ -43,20 +46,20 @@ typedef struct field_blur_job {
 /* Returns whether any pixel of the tile is more than zero. */
 typedef int field_blur_tile_function(const field_blur_job *job, int tile_x, int tile_y);
 
-/* How the buffer is refilled at a chunk's end. A pixel becomes 1 - absorbed, limited to 0 to 1, times the
- * transmittance of the slabs of the chunk that ends. */
+/* How the buffer is refilled at a chunk's end. A pixel becomes the transmittance of the slabs of the chunk
+ * that ends, times 1 - absorbed, which is limited to 0 to 1. */
 typedef struct refill_job {
   const field_pixel *absorbed; /* rows stride apart */
-  float *absorbed_at_start; /* rows are `stride` apart; 1 - the light at the chunk's start; afterwards 1 - the
-                             * new value of `to` */
-  float *to;                /* rows stride_to apart; the buffer */
-  float *older;   /* rows are stride_to apart; the second planes. They get the old value of `to`, or the new
-                   * value where `again` is not set */
-  float *outside; /* rows are stride_to apart; the light at the outside of surfaces, whose difference from
-                   * `to` stays the same; null: none */
+  float *absorbed_at_start;    /* rows are `stride` apart; at first 1 minus the light at the chunk's start,
+                                * afterwards 1 minus the new value of `to` */
+  float *to;                   /* rows stride_to apart; the buffer */
+  float *older;   /* rows are stride_to apart; the buffer's second planes. They get the old value of `to` if
+                   * `again` is set, else the new value */
+  float *outside; /* rows are stride_to apart; the light at the outside of surfaces. Its difference from `to`
+                   * stays the same. Null: there is none */
   size_t stride, stride_to;
   int kept;  /* the chunk's slabs absorbed some light */
-  int again; /* `to` was refilled at the chunk's start as well */
+  int again; /* whether `to` was also refilled at the chunk's start */
 } refill_job;
 typedef void refill_tile_function(const refill_job *job, int tile_x, int tile_y);
 
@@ -74,28 +77,28 @@ typedef int field_emission_tile_function(const field_emission_job *job, int tile
 
 enum { GREATEST_EDGE = 16 };
 
-/* Adds matter to two groups: the light that a chunk's slabs have absorbed, (1 - absorbed_at_start) - now, and
- * the fraction of it that thin matter absorbed. The fraction moment / (length * absorbed light) of the matter
- * goes to the group at the chunk's end, the rest to the group at the chunk's start. Where the chunk began in
- * the dark, surfaces that left marks (shadow/attenuate.h) absorb the light that the groups before the chunk
- * leave, one half in each group. Inside of opaque surfaces the group at the chunk's end hides all matter
- * before it. */
+/* Adds matter to two groups. The matter is the light that a chunk's slabs have absorbed, (1 -
+ * absorbed_at_start) - now, and the fraction of this light that thin matter absorbed. The fraction moment /
+ * (length * absorbed light) of the matter goes to the group at the chunk's end, the rest to the group at the
+ * chunk's start. Where the chunk began in the dark, surfaces that left marks (shadow/attenuate.h) absorb the
+ * light that passes the groups before the chunk; one half counts for each group. Within opaque surfaces, the
+ * group at the chunk's end hides all matter before it. */
 typedef struct absorbed_job {
   const float *absorbed_at_start; /* rows stride apart */
   const float *now; /* transmittance at the chunk's end, or marks of surfaces; rows are stride_now apart;
                      * readable up to `edge` pixels beside a tile */
-  float *moment;    /* sum, over the chunk's slabs, of the absorbed light times the slab's position in the
-                     * chunk; it is cleared afterwards */
+  float *moment;    /* sum, over the chunk's slabs, of the light that a slab absorbed times the slab's
+                     * position in the chunk; the function clears it */
   float length;     /* of the chunk */
-  const field_pixel *before; /* rows are `stride` apart; the light that the groups before the chunk
-                              * absorbed; null: unknown */
+  const field_pixel *before; /* rows are `stride` apart; the light that the groups before the chunk absorbed;
+                              * null: it is not known */
   field_pixel *start_absorbed, *start_thin; /* rows are `stride` apart; the matter is added to them */
   field_pixel *end_absorbed, *end_thin;     /* rows are `stride` apart; the matter is written to them */
   size_t stride, stride_now;
-  int edge; /* width, in pixels, of the strip along the edges of opaque surfaces that does not hide the matter
-             * before it; at most GREATEST_EDGE */
+  int edge; /* along the edges of opaque surfaces, the width in pixels of a strip that does not hide the
+             * matter before it; at most GREATEST_EDGE */
 } absorbed_job;
-/* Returns which of the four fields got more than zero, one bit each in their order. */
+/* Returns which of the four fields have pixels above zero, one bit each in the order of the fields. */
 typedef uint32_t absorbed_tile_function(const absorbed_job *job, int tile_x, int tile_y);
 
 /* Splits matter between two groups. The first output may be the input. */
@@ -105,23 +108,23 @@ typedef struct split_job {
   size_t stride;
   float late; /* the fraction that goes to the second */
 } split_job;
-/* Returns which of the four outputs have a pixel above zero: absorbed and thin of the first, then of the
- * second, one bit each. */
+/* Returns which of the four outputs have a pixel above zero, one bit each: absorbed and thin of the first
+ * group, then of the second group. */
 typedef uint32_t split_tile_function(const split_job *job, int tile_x, int tile_y);
 
 typedef struct cascade_functions {
   lit_blocks_function *lit_blocks;
   field_blur_tile_function *blur_add;
   field_tile_function *add;        /* to = a + (1 - thin) b */
-  field_tile_function *add_half;   /* to (rows `stride` apart) = the mean over 2x2 pixels of a + (1 - thin)
-                                    * b (rows stride_in apart) */
-  field_tile_function *add_double; /* to = a + (1 - thin) b, where b has half the resolution (rows
-                                    * stride_in apart) and is interpolated bilinearly */
+  field_tile_function *add_half;   /* to = the mean over 2x2 pixels of a + (1 - thin) b; the rows of `to` are
+                                    * `stride` apart, the rows of the inputs stride_in */
+  field_tile_function *add_double; /* to = a + (1 - thin) b; b has half the resolution (rows stride_in apart),
+                                    * and is interpolated bilinearly */
   refill_tile_function *refill;
   absorbed_tile_function *absorbed;
   split_tile_function *split;
-  field_tile_function *double_tile; /* to = a, where a has half the resolution (rows stride_in apart) and
-                                     * is interpolated bilinearly */
+  field_tile_function *double_tile; /* to = a; a has half the resolution (rows stride_in apart), and is
+                                     * interpolated bilinearly */
   field_emission_tile_function *emission_add;
 } cascade_functions;
 

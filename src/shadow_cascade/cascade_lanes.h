@@ -5,11 +5,11 @@
 #include "shadow/blur_lanes.h"
 #include "shadow_cascade/cascade_field.h"
 
-/* Where an umbra should be dark, blurred sums leave a little light. So a transmittance below this becomes
+/* Where an umbra should be dark, blurred sums leave a little light. So a transmittance below UMBRA becomes
  * 0. */
 static const float UMBRA = 1.0f / 160;
 
-/* Prefetches a tile's rows, each on a cache line of its own. field null: does nothing. */
+/* Prefetches a tile's rows; each row is a cache line of its own. field: null: nothing is prefetched. */
 LANES_INLINE void fetch_rows(const field_pixel *field, size_t stride, int tile_x, int tile_y, tile_rows rows,
                              const int to_write) {
   if (field == NULL) return;
@@ -26,8 +26,7 @@ LANES_INLINE void fetch_float_tile(const float *field, size_t stride, int tile_x
   for (int i = 0; i < TILE; i++, row += stride) __builtin_prefetch(row, 0);
 }
 
-/* Stores sixteen pixels, rounded. *greatest becomes the greatest pixels that were stored so far, lane by
- * lane. */
+/* Stores sixteen pixels, rounded. *greatest: raised, lane by lane, to the stored pixels. */
 LANES_INLINE void store_pixels(field_pixel *p, lanes pixels, lanes *greatest) {
   lanes_store_short(p, pixels);
   *greatest = lanes_max(*greatest, pixels);
@@ -46,7 +45,8 @@ LANES_INLINE lanes transmittance_outside_umbra(const field_pixel *absorbed) {
   return lanes_clamp(lanes_min(left, 2.0f * (left - UMBRA)), 0, 1.0f);
 }
 
-/* Blurs sixteen pixels along a row of a field as blur_sixteen() does, but sums pixels as integers. */
+/* Blurs sixteen pixels along a row of a field. It does so as blur_sixteen() does, but sums pixels as
+ * integers. */
 LANES_INLINE lanes blur_field_row(const field_pixel *from, const blur_box *box) {
   lanes_int ends = lanes_load_short_int(from - (box->reach + 1)) +
                    lanes_load_short_int(from + (box->reach + 1));
@@ -56,7 +56,7 @@ LANES_INLINE lanes blur_field_row(const field_pixel *from, const blur_box *box) 
   return lanes_add_scaled(lanes_from_int(sum), lanes_from_int(ends), box->edge) * box->scale;
 }
 
-/* Computes a + (1 - thin) b at a row of a tile; a and thin may be null, which stands for 0. */
+/* Computes a + (1 - thin) b at a row of a tile. a and thin may be null, which stands for zeros. */
 LANES_INLINE lanes left_and_a(lanes b, const field_pixel *thin, const field_pixel *a, size_t at) {
   if (a == NULL) return thin == NULL ? b : b * transmittance_of(thin + at);
   lanes more = lanes_load_short(a + at);
@@ -82,7 +82,7 @@ static int field_blur_tile(const field_blur_job *job, int tile_x, int tile_y) {
   return is_above_zero(greatest);
 }
 
-/* a + (1 - thin) b; b and thin may be null: 0. */
+/* Computes a + (1 - thin) b at sixteen pixels. b and thin may be null, which stands for zeros. */
 LANES_INLINE lanes a_and_b(const field_job *job, size_t at) {
   if (job->b == NULL) return lanes_load_short(job->a + at);
   return left_and_a(lanes_load_short(job->b + at), job->thin, job->a, at);
@@ -129,7 +129,7 @@ LANES_INLINE lanes double_row(const field_pixel *from, size_t stride, int tile_x
   const field_pixel *near = from + (ptrdiff_t)(y / 2) * (ptrdiff_t)stride + tile_x * TILE / 2 - 1;
   const field_pixel *far = y & 1 ? near + stride : near - stride;
   lanes coarse = lanes_add_scaled(0.25f * lanes_load_short(far), lanes_load_short(near),
-                                  0.75f); /* coarse pixels; the first one lies before the tile */
+                                  0.75f); /* coarse pixels, of which the first one lies before the tile */
   lanes own = __builtin_shufflevector(coarse, coarse, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8, 8);
   lanes other = __builtin_shufflevector(coarse, coarse, 0, 2, 1, 3, 2, 4, 3, 5, 4, 6, 5, 7, 6, 8, 7, 9);
   return lanes_add_scaled(0.25f * other, own, 0.75f);
@@ -158,8 +158,8 @@ static int double_tile(const field_job *job, int tile_x, int tile_y) {
 
 enum { EMISSION_ROWS = 4 };
 
-/* Weighs a few neighbouring rows of sixteen pixels at once: while one row waits for memory, the processor
- * works on the others. */
+/* Weighs several neighbouring rows of sixteen pixels at once: while one row waits for memory, the processor
+ * works on the other rows. */
 LANES_INLINE void weigh_rows(const emission_job *job, const float *from, lanes sum[EMISSION_ROWS]) {
   for (int row = 0; row < EMISSION_ROWS; row++) sum[row] = lanes_set(0);
   for (int tap = 0; tap < job->count; tap++) {
@@ -205,13 +205,14 @@ static void emission_tile(const emission_job *job, int tile_x, int tile_y) {
   }
 }
 
-/* The fraction of light that surfaces let pass in the dark; 1 where a pixel has no mark (attenuate.h). */
+/* In the dark: the fraction of light that surfaces let pass. It is 1 where a pixel has no mark
+ * (attenuate.h). */
 LANES_INLINE lanes passing_in_dark(lanes end) {
   return lanes_select(end < 0.0f, end * (-1.0f / DARK_MARK), lanes_set(1.0f));
 }
 
 /* The transmittance of a chunk's own slabs. Where hardly any light was left at the chunk's start, it is the
- * transmittance of surfaces alone: blocks of volumes are not composited there. */
+ * transmittance of surfaces alone, because blocks of volumes are not composited there. */
 LANES_INLINE lanes chunk_transmittance(lanes end, lanes start) {
   lanes least = lanes_set(DARK_AT_START);
   return lanes_select(start < least, passing_in_dark(end),
@@ -234,10 +235,10 @@ static void refill_tile(const refill_job *job, int tile_x, int tile_y) {
   }
 }
 
-/* Splits matter into two parts, one behind the other, of which the second one gets the fraction `late`.
- * Derived: thin matter's transmittance 1 - F is the product of the parts' transmittances, (1 - F)^(1 - late)
- * and (1 - F)^late. The light A2 + (1 - F2) A1 that both parts absorb one after the other equals the light A
- * that the whole absorbs. */
+/* Splits matter into two parts, one behind the other. The second part gets the fraction `late` of the matter.
+ * Derived: the transmittance 1 - F of thin matter is the product of the transmittances of the parts, (1 -
+ * F)^(1 - late) and (1 - F)^late. The light A2 + (1 - F2) A1 that both parts absorb one after the other
+ * equals the light A that the whole absorbs. */
 typedef struct matter_pair {
   lanes absorbed[2], thin[2];
 } matter_pair;
@@ -282,33 +283,35 @@ static uint32_t split_tile(const split_job *job, int tile_x, int tile_y) {
  * absorbs more than SOLID_MATTER. */
 static const float THIN_MATTER = 0.25f, SOLID_MATTER = 0.75f;
 
-/* The light that surfaces take in a chunk which began in the dark. job->before is not null. */
+/* The light that surfaces absorb in a chunk that began in the dark. job->before must not be null. */
 LANES_INLINE lanes taken_in_dark(const absorbed_job *job, size_t at, lanes start, lanes end) {
   lanes reaching = transmittance_outside_umbra(job->before + at);
   return lanes_keep(start < DARK_AT_START, reaching * (1.0f - passing_in_dark(end)));
 }
 
-/* Pixels whose transmittance is at most this are opaque: each slab of an opaque surface takes all light. */
+/* The greatest transmittance of pixels that count as opaque. Each slab of an opaque surface absorbs all
+ * light. */
 static const float OPAQUE_PASSING = 0x1p-20f;
 
-/* Whether surfaces of the chunk take all light of sixteen pixels in a row. */
+/* Whether surfaces of the chunk absorb all light of sixteen pixels in a row. */
 LANES_INLINE lanes_int is_opaque(const float *now) {
   lanes end = lanes_load(now);
   return (end < 0.0f) & (passing_in_dark(end) < OPAQUE_PASSING);
 }
 
-/* Whether pixels are hidden: surfaces of the chunk take all light, or the chunk began in the dark there. */
+/* Whether pixels are hidden: either surfaces of the chunk absorb all light, or the chunk began in the dark
+ * there. */
 LANES_INLINE lanes_int is_hidden(const float *now, const float *absorbed_at_start) {
   return is_opaque(now) | (lanes_load(absorbed_at_start) > 1.0f - DARK_AT_START);
 }
 
-/* Where more than this fraction of the light was left at a chunk's start, surfaces are not made to hide the
- * matter before them, because the sums are right there. */
+/* Surfaces are made to hide the matter before them only where at most this fraction of the light was left at
+ * a chunk's start. Where more is left, the sums are right without this. */
 static const float HARDLY_HIDDEN = 0.9f;
 
 /* Finds which of sixteen pixels lie inside an opaque surface. Such a pixel is opaque, had at most
  * HARDLY_HIDDEN of the light at the chunk's start, and is not near the surface's edge: in four directions,
- * the pixels that are 1, 2, 4 ... and job->edge pixels away are hidden. at: the first pixel's offset in
+ * the pixels that are 1, 2, 4 ... and job->edge pixels away are hidden. at: offset of the first pixel in
  * absorbed_at_start. */
 LANES_INLINE lanes_int is_inside_surface(const absorbed_job *job, const float *now, size_t at) {
   const float *start = job->absorbed_at_start + at;
@@ -323,10 +326,10 @@ LANES_INLINE lanes_int is_inside_surface(const absorbed_job *job, const float *n
 }
 
 /* Makes the group at a chunk's end hide everything that lies before it, where surfaces let nothing pass.
- * Derived: a surface at o takes T(o) of the light, and 1 - T(o) is the sum up to o, blurred for a receiver
- * at o. For a receiver r far behind, that sum is blurred more, so that a little light would be left beside
- * the umbra of matter before o. But rays that meet an opaque surface end there, whatever they have met
- * before: 1 = F + (1 - F) s with F = 1. */
+ * Derived: a surface at o absorbs the light T(o), and 1 - T(o) is the sum up to o, blurred for a receiver at
+ * o. For a receiver r far behind o, this sum is blurred more, so that a little light would be left beside the
+ * umbra of matter before o. But rays that meet an opaque surface end there, whatever they have met before. So
+ * the sum must become 1 = F + (1 - F) s with F = 1. */
 LANES_INLINE void hide_behind(lanes_int inside, matter_pair *to) {
   to->thin[1] = lanes_select(inside, lanes_set(1.0f), to->thin[1]);
   to->absorbed[1] = lanes_select(inside, lanes_set(1.0f), to->absorbed[1]);

@@ -4,21 +4,22 @@
 
 #include "shadow_cascade/cascade_passes.h"
 
-/* Limits of a sweep's chunks; their thickness is measured in omega, in pixels. Chunks are as thick as needed
- * so that there are at most ENOUGH_CHUNKS, but at most THICK_CHUNK thick. If there would then be more than
- * NEAR_CHUNKS, or FAR_CHUNKS for a parallel light, they become thicker, up to THICKEST_CHUNK. Thicker chunks
- * are not allowed, because the chunks next to a receiver cast shadows without penumbrae, which is visible
- * where objects touch. With 64 chunks, balls under parallel lights 60 to 90 degrees wide showed rings. With
- * some greater numbers of chunks below 200, balls under lights 90 to 120 degrees wide showed rings. */
+/* Limits of a sweep's chunks. The thickness of chunks is measured in omega, in pixels. Chunks are so thick
+ * that there are at most ENOUGH_CHUNKS of them; but they are not thicker than THICK_CHUNK. If there would
+ * then be more than NEAR_CHUNKS chunks, or FAR_CHUNKS for a parallel light, chunks become thicker, up to
+ * THICKEST_CHUNK. Still thicker chunks are not allowed: the chunks next to a receiver cast shadows without
+ * penumbrae, which is visible where objects touch. With 64 chunks, balls under parallel lights 60 to 90
+ * degrees wide showed rings. With some greater numbers of chunks below 200, balls under lights 90 to 120
+ * degrees wide showed rings. */
 static const double ENOUGH_CHUNKS = 32, NEAR_CHUNKS = 64, FAR_CHUNKS = 88, GREATEST_CHUNKS = 200;
 static const double LEAST_CHUNK = 0.15, THICK_CHUNK = 1.3, THICKEST_CHUNK = 2;
 
 /* Divides omega from start to end into chunks of one length. The magnitude of a near light's omega grows
  * without bound towards the light, so there may be more such chunks than allowed. Then the length of a chunk
- * is a fixed fraction of -omega at its start. Derived: at a distance z from the light a penumbra of width w
- * in omega has the width w z in space, and -omega is L / z, so the penumbrae of all chunks have one width in
- * space. For a lamp within the content the last chunks would be a small part of a pixel long, so its chunks
- * are not shorter than `thick`. Returns how many chunks there are. */
+ * is a fixed fraction of -omega at its start. Derived: at a distance z from the light, a penumbra whose width
+ * in omega is w has the width w z in space, and -omega is L / z. So the penumbrae of all chunks have the same
+ * width in space. For a lamp within the content, the last chunks would be a small part of a pixel long; so
+ * its chunks are not shorter than `thick`. Returns the number of chunks. */
 static double divide(soft_cascade *cascade, double start, double end, bool within) {
   double length = end - start, few = cascade->parallel ? FAR_CHUNKS : NEAR_CHUNKS;
   double thick = fmin(fmax(length / ENOUGH_CHUNKS, LEAST_CHUNK), THICK_CHUNK);
@@ -26,8 +27,8 @@ static double divide(soft_cascade *cascade, double start, double end, bool withi
   cascade->chunk_start = start;
   cascade->chunk = cascade->shortest_chunk = fmax(thick, length / most);
   cascade->shrink = 0;
-  bool even = cascade->emission == NULL; /* lights with an emission image keep equal chunks: this gives errors
-                                          * of 0.024, not 0.026, over an edge */
+  bool even = cascade->emission == NULL; /* for lights with an emission image all chunks have the same length:
+                                          * the errors over an edge are then 0.024, and not 0.026 */
   if (cascade->parallel || !even || cascade->chunk <= thick) return length / cascade->chunk;
   cascade->shrink = 1 - pow(end / start, 1 / most);
   cascade->chunk = cascade->shrink * -start;
@@ -38,14 +39,14 @@ static double divide(soft_cascade *cascade, double start, double end, bool withi
   return log(cascade->evened / start) / log(1 - cascade->shrink) + (end - cascade->evened) / thick;
 }
 
-/* The least number of chunks between a receiver and a level's groups. It follows from the number of groups
- * that levels keep: three on level 0, two on level 1, five on every other level. */
+/* The least number of chunks between a receiver and a level's groups. The number follows from how many groups
+ * the levels keep: three on level 0, two on level 1, five on every other level. */
 static double chunks_before(int level) { return level < 2 ? 3 * level : 4 * (pow(2, level - 1) - 1); }
 
 /* The scale of a level: the edge of its pixels, in pixels of the buffer. It is chosen so that the narrowest
- * penumbra on the level is at least one and a half of the level's pixels wide. Resampling blurs, too; its
- * blur is subtracted from the penumbra (resampled_by). With an emission image the blur cannot be subtracted,
- * and the narrowest penumbra is at least four pixels wide. */
+ * penumbra on the level is at least one and a half of the level's pixels wide. Resampling blurs, too, and its
+ * blur is subtracted from the penumbra's own blur (resampled_by). With an emission image the blur cannot be
+ * subtracted; so the narrowest penumbra is at least four of the level's pixels wide. */
 static int level_scale(const soft_cascade *cascade, int level) {
   double penumbra = cascade->shortest_chunk * chunks_before(level) * cascade->least_fraction,
          own = cascade->emission == NULL ? 1.5 : 4;
@@ -61,12 +62,12 @@ static cascade_field field_of_plane(const cascade_level *level, size_t plane) {
   return (cascade_field){level->memory + plane * level->plane + level->origin, level->flags + plane * tiles};
 }
 
-/* Hands out the next plane of a level's memory. */
+/* Hands out the next plane of a level's memory. *used counts the planes that were handed out. */
 static cascade_field next_field(const cascade_level *level, size_t *used) {
   return field_of_plane(level, (*used)++);
 }
 
-/* Sets the light's squared width as seen from each column or row of tiles. */
+/* Sets, for each column or row of tiles, the light's squared width as seen from there. */
 static void set_parts(const soft_cascade *cascade, const sheet_light *light, int axis, int count, int scale,
                       cascade_box *boxes) {
   for (int tile = 0; tile < count; tile++) {
@@ -110,7 +111,7 @@ static void sum_up_parts(cascade_level *level) {
   }
 }
 
-/* A level's planes in the order of its memory. */
+/* Assigns a level's planes to its fields, in the order of the level's memory. */
 static void place_fields(soft_cascade *cascade, int index) {
   cascade_level *level = &cascade->level[index];
   size_t channels = (size_t)cascade->channels, used = 0;
@@ -142,8 +143,8 @@ static void begin_level(soft_cascade *cascade, int index, const sheet_light *lig
   place_fields(cascade, index);
 }
 
-/* A bilinear look-up weighs two pixels by their distances p and 1 - p: a variance of p (1 - p), 1/6 on
- * average. Cubic convolution has none. */
+/* The variance of look-ups. A bilinear look-up weighs two pixels by p and 1 - p, according to their
+ * distances: this has a variance of p (1 - p), which is 1/6 on average. Cubic convolution has no variance. */
 static double lookup_variance(bool cubic) { return cubic ? 0 : 1.0 / 6; }
 
 /* Plans the chunks and levels of a buffer whose view is planned. */
@@ -169,13 +170,13 @@ static void plan_levels(soft_cascade *cascade, const light_shadow *shadow) {
     cascade->slope_step[axis] = vec3_dot(axis == 0 ? view->du : view->dv, along[axis]);
   }
   double start = hl_cascade_omega(cascade, first), end = hl_cascade_omega(cascade, last);
-  /* near a light -omega grows without bound, and wider penumbrae than twice the buffer make no difference.
-   * This does not hold for parallel light: there even the first slabs may be receivers, and would get shadows
-   * without penumbrae */
+  /* near a light -omega grows without bound, but penumbrae wider than twice the buffer need no more chunks.
+   * For parallel light this limit is not used: there even the first slabs may be receivers, which would get
+   * shadows without penumbrae */
   if (!cascade->parallel) start = fmax(start, end - 2 * TILE * fmax(tiles_x, tiles_y));
   double chunks = divide(cascade, start, end, shadow->setup.source->sectors != NULL);
-  /* level j > 1 is first used after 5 * 2^(j-1) - 4 chunks (derived: five groups are kept, on this level or
-   * on levels 0 and 1 together) */
+  /* level j > 1 is first used after 5 * 2^(j-1) - 4 chunks (derived: five groups are kept on this level;
+   * levels 0 and 1 together keep five groups, too) */
   int levels = 2 + (int)floor(log2(fmax(chunks + 7, 5) / 5));
   cascade->level_count = levels < CASCADE_LEVELS ? levels : CASCADE_LEVELS;
   for (int i = 0; i < cascade->level_count; i++) plan_level(cascade, i, tiles_x, tiles_y);
@@ -187,8 +188,9 @@ static bool is_read_cubic(const shadow_setup *setup) {
   return lookup == HL_LOOKUP_AUTO ? setup->emission == NULL : lookup == HL_LOOKUP_CUBIC;
 }
 
-/* The greatest tangent of a view's rays against the sheets' normal (the rays of a quadrangle meet a sheet
- * in a quadrangle, whose corners are farthest away). Infinite where some rays run along the sheets. */
+/* The greatest tangent of the angle between a view's rays and the sheets' normal. Infinite where some rays
+ * run along the sheets. (The rays of a rectangle of pixels meet a sheet in a quadrangle, whose corners are
+ * farthest away.) */
 static double steepest_tangent(const view *view, vec3 normal) {
   double greatest = 0, first = 0;
   for (int corner = 0; corner < 4; corner++) {
@@ -202,11 +204,11 @@ static double steepest_tangent(const view *view, vec3 normal) {
   return greatest;
 }
 
-/* The width, in pixels, of the margin around the bricks' projections in which the cascade keeps its buffer up
- * to date. A brick's sample may be looked up in the middle of the slab, half a slab away from the brick along
- * the eye's ray. In a buffer parallel to the sheets, this moves the look-up by at most half the sheets'
- * distance times the sum of the tangents of the eye's ray and the light's ray (derived). The margin is
- * limited to a tile, for lights within the content. */
+/* The width, in pixels, of a margin around the bricks' projections; the cascade keeps its buffer up to date
+ * within this margin. For a sample of a brick, the buffer may be looked up in the middle of the slab, half a
+ * slab away from the brick along the eye's ray. In a buffer parallel to the sheets, this moves the look-up by
+ * at most half the sheets' distance times the sum of the tangents of the eye's ray and the light's ray
+ * (derived). For lights within the content, the margin is limited to a tile. */
 static double look_up_spare(const shadow_setup *setup, const shadow_plan *plan) {
   const sheet_stack *sheets = setup->sheets;
   const view *view = &plan->view;
@@ -271,7 +273,7 @@ hl_status hl_cascade_begin(light_shadow *shadow, hl_error *error) {
   return HL_OK;
 }
 
-/* Clears one plane of a level, and its flags if it has any: the moments' planes have none. */
+/* Clears one plane of a level, and the plane's flags if it has any. The planes of moments have no flags. */
 static void clear_plane(void *data, size_t index, int worker) {
   (void)worker;
   const cascade_level *level = data;
@@ -280,9 +282,9 @@ static void clear_plane(void *data, size_t index, int worker) {
     for (int x = 0; x < level->tiles_x; x++) hl_cascade_clear_tile(level, &field, x, y);
 }
 
-/* Clears the moments and the light at the start of the last, unfinished chunk. All tiles are cleared, also
- * tiles that the chunk has not touched: in dark pixels, rounding and matter behind surfaces' marks leave
- * moments that no chunk's end clears. */
+/* Clears the moments and the light at the start of the last, unfinished chunk. All tiles are cleared, even
+ * those that the chunk has not touched. The reason: in dark pixels, rounding and matter behind surfaces'
+ * marks leave moments that are not cleared at the end of a chunk. */
 static void clear_moments(const soft_cascade *cascade, hl_pool *pool) {
   const cascade_level *level = &cascade->level[0];
   size_t bytes = (size_t)level->tiles_y * TILE * level->stride * sizeof(float);
@@ -292,7 +294,7 @@ static void clear_moments(const soft_cascade *cascade, hl_pool *pool) {
   }
 }
 
-/* Gives the memory back filled with zeros, as the next frame expects it. */
+/* Returns the memory filled with zeros, because the next frame expects zeros. */
 void hl_cascade_end(light_shadow *shadow) {
   soft_cascade *cascade = shadow->state;
   hl_pool *pool = shadow->means.pool;

@@ -1,28 +1,28 @@
-/* shadow_cascade/cascade_method.c - the groups of a cascade, their blurred sum, and the shadow buffer made of
- * it. */
+/* shadow_cascade/cascade_method.c - keeps the groups of a cascade, blurs and sums them, and fills the shadow
+ * buffer from the sum. */
 #include <string.h>
 
 #include "shadow_cascade/cascade_passes.h"
 
-/* Chunks after which a level's sums are made again. */
+/* The number of chunks after which a level's sums are made anew. */
 static uint64_t period_of(int level) { return level < 2 ? 1 : (uint64_t)1 << (level - 2); }
 
-/* The difference of the variances of two boxes whose widths are given, in squared pixels of the buffer. The
- * widths are those where the light is widest. */
+/* The difference of the variances of two boxes, in squared pixels of the buffer. wide, narrow: the boxes'
+ * widths where the light is widest. */
 static double variance_between(double wide, double narrow) {
   return fmax(wide * wide - narrow * narrow, 0) / 12;
 }
 
 /* The variance, in squared pixels of the buffer, by which a level's coarser pixels blur its sums on the way
- * to the buffer. Derived: halving takes the mean of two pixels, which has the variance 1/4; doubling weighs
- * pixels by 3/4 and 1/4, which has the variance 3/4. Going from the scale s to 2 s and back adds s^2; over
- * all scales this is a geometric sum. */
+ * to the buffer. Derived: halving takes the mean of two pixels, which has the variance 1/4. Doubling weighs
+ * pixels by 3/4 and 1/4, which has the variance 3/4. So going from the scale s to 2 s and back adds the
+ * variance s^2. The sum over all scales is a geometric series. */
 static double resampled_by(const cascade_level *level) {
   return ((double)level->scale * level->scale - 1) / 3;
 }
 
 /* The blur that brings a level's sum to `omega`, on a level that is as fine or finer. If resampling alone
- * blurs by more than this, the excess is subtracted from the next blur (owed). */
+ * blurs by more than this, the excess is remembered (owed) and subtracted from the next blur. */
 static cascade_blur blur_towards(const cascade_level *from, double receiver, double omega,
                                  cascade_level *to) {
   double variance = variance_between(receiver - from->sum_omega, receiver - omega),
@@ -36,7 +36,7 @@ static cascade_blur blur_towards(const cascade_level *from, double receiver, dou
   return blur;
 }
 
-/* Removes a level's `gone` oldest groups; their fields are used by the next groups. */
+/* Removes the `gone` oldest groups of a level. The next groups use the fields of the removed groups. */
 static void forget_oldest(cascade_level *level, int gone) {
   cascade_group free[2] = {level->group[0], level->group[1]};
   for (int g = gone; g < level->capacity; g++) level->group[g - gone] = level->group[g];
@@ -53,7 +53,7 @@ static void copy_field(const cascade_crew *crew, const cascade_level *level, con
   hl_cascade_add(crew, &sum);
 }
 
-/* Moves the oldest group of level 0 to level 1, on the pixels of that level. */
+/* Moves the oldest group of level 0 to level 1, and converts it to that level's pixels. */
 static void hand_over(soft_cascade *cascade, const cascade_crew *crew) {
   cascade_level *level = &cascade->level[0], *next = &cascade->level[1];
   const cascade_group *from = &level->group[0];
@@ -68,10 +68,10 @@ static void hand_over(soft_cascade *cascade, const cascade_crew *crew) {
   forget_oldest(level, 1);
 }
 
-/* Moves the two oldest groups of a level, a and b, to the next level. The next level has a group at a's omega
- * already, and gets a new group at the omega of this level's third group. b lies between these two, and its
- * matter is split between them by b's distances from them (derived: kernels are then linear between groups,
- * which keeps a penumbra's middle). */
+/* Moves the two oldest groups of a level, a and b, to the next level. The next level already has a group at
+ * a's omega, to which a is added. It gets a new group at the omega of this level's third group. b lies
+ * between these two groups, and its matter is split between them by its distances from them (derived: kernels
+ * are then linear between groups, which keeps a penumbra's middle). */
 static void merge_up(soft_cascade *cascade, int index, const cascade_crew *crew) {
   cascade_level *level = &cascade->level[index], *next = &cascade->level[index + 1];
   cascade_group a = level->group[0], b = level->group[1];
@@ -135,8 +135,8 @@ static void absorb_tile(const absorb_task *task, size_t tile_x, size_t tile_y, b
   }
 }
 
-/* Adds the light that the chunk's slabs have absorbed to the groups at the chunk's two ends. The marks
- * `touched` of the tiles stay until the buffer is refilled. */
+/* Adds the light that the chunk's slabs have absorbed to the two groups at the chunk's ends. The tiles keep
+ * their marks in `touched` until the buffer is refilled. */
 static void absorb_piece(void *data, size_t index, int worker) {
   (void)worker;
   const absorb_task *task = data;
@@ -153,9 +153,9 @@ static void absorb_piece(void *data, size_t index, int worker) {
  * it. Derived: where two edges lie one behind the other, a chunk apart, as at the rim of a ball, the sum of
  * the light that both absorb is about right. For a receiver that lies w behind the second edge, the sum
  * before this edge has a penumbra of the width sqrt((c + w)^2 - w^2), where c is the chunk's length. In the
- * penumbra's dark half the second edge must not hide the light that is left. A strip half as wide as this
- * half is enough. A wider one would leave light where two pieces of one surface meet that lie in two
- * chunks. */
+ * penumbra's dark half, the second edge must not hide the light that is left. A strip that is half as wide as
+ * this dark half is enough. A wider strip would leave light where two pieces of one surface meet that lie in
+ * different chunks. */
 static int edge_of(double length, double behind) {
   return (int)fmin(round(sqrt(length * (length + 2 * behind)) / 4), GREATEST_EDGE);
 }
@@ -189,21 +189,21 @@ static void push_chunk(soft_cascade *cascade, const light_shadow *shadow, double
     merge_up(cascade, i, crew);
 }
 
-/* omega in the middle of the slab before the sheet. */
+/* The omega of the middle of the slab before a sheet. */
 static double slab_omega(const soft_cascade *cascade, const sheet_stack *sheets, int sheet) {
   return hl_cascade_omega(cascade, (hl_sheet_height(sheets, sheet - 1) + hl_sheet_height(sheets, sheet)) / 2);
 }
 
-/* The reach of a pass whose result, at the scale `scale`, will be doubled until it has the scale of the sum:
- * the pixels around the tiles that are read in which it must compute. */
+/* The reach of a pass whose result, at the scale `scale`, will be doubled until it has the scale of the sum.
+ * The pass must compute the pixels within this reach around the tiles that are read. */
 static int reach_at(const cascade_sum *sum, int scale) {
   int doubling = hl_cascade_doubling_reach(scale, sum->level->scale);
   return sum->reach == READ_EVERYWHERE ? sum->reach : sum->reach + doubling;
 }
 
-/* Makes the sum of a and of b blurred; b is one channel of the light that the groups up to a level have
- * absorbed. b may lie on a much farther level than a. It is blurred there, where blurs are cheap, and then
- * doubled level by level until it is as fine as a. */
+/* Adds two sums: a, and b after a blur. b is one channel of the light that the groups up to a level have
+ * absorbed. b may lie on a much farther level than a. Then b is blurred on that level, where blurs are cheap,
+ * and afterwards doubled level by level until it is as fine as a. */
 static void bring(cascade_sum sum, cascade_blur blur, const cascade_crew *crew) {
   const cascade_level *from = sum.level_b;
   if (from->scale == sum.level->scale) {
@@ -238,8 +238,8 @@ static void bring(cascade_sum sum, cascade_blur blur, const cascade_crew *crew) 
   hl_cascade_add(crew, &sum);
 }
 
-/* Adds a group to the sum of the groups before it. First this sum is blurred from the group before to the new
- * group. */
+/* Adds a group to the sum of the groups before it. Before that, blurs this sum from the omega of the group
+ * before to the omega of the new group. */
 static void pass_group(int channels, cascade_level *from, cascade_level *level, const cascade_group *group,
                        double receiver, int reach, const cascade_crew *crew) {
   cascade_blur blur = blur_towards(from, receiver, group->omega, level);
@@ -251,7 +251,7 @@ static void pass_group(int channels, cascade_level *from, cascade_level *level, 
           blur, crew);
 }
 
-/* Starts the sum with the farthest group. Look-ups blur, too: their blur is subtracted from the group's own
+/* Starts the sum with the farthest group. Look-ups also blur; so their blur is subtracted from the group's
  * blur. */
 static void pass_first(const soft_cascade *cascade, cascade_level *level, const cascade_group *group,
                        const cascade_crew *crew) {
@@ -262,7 +262,7 @@ static void pass_first(const soft_cascade *cascade, cascade_level *level, const 
 
 /* ---- where the next slabs read ---- */
 
-/* Finds the tiles that sheets up to the end of the next chunk can touch. */
+/* Finds the tiles that the sheets up to the end of the next chunk can touch. */
 static void find_reads(soft_cascade *cascade, const occupancy *occupancy, const light_shadow *shadow,
                        int sheet) {
   const sheet_stack *sheets = shadow->setup.sheets;
@@ -273,15 +273,15 @@ static void find_reads(soft_cascade *cascade, const occupancy *occupancy, const 
   hl_cascade_reads_find(&cascade->reads, occupancy, shadow->needed_until, sheet, last);
 }
 
-/* How far the blur and the resampling reach that bring one group's sum to the level of the next group, in
- * pixels of the buffer. */
+/* The reach, in pixels of the buffer, of the blur and the resampling that bring one group's sum to the level
+ * of the next group. */
 static int reach_of(const cascade_level *level, double variance, const cascade_level *next) {
   double own = variance * level->greatest_fraction / ((double)level->scale * level->scale);
   return (hl_blur_box_of_variance(own).reach + 1) * level->scale +
          hl_cascade_doubling_reach(level->scale, next->scale);
 }
 
-/* The reach of all blurs together on the way from group g of a level to the buffer; in pixels of the
+/* The reach, in pixels of the buffer, of all blurs together on the way from group g of a level to the
  * buffer. */
 static int reach_behind(const soft_cascade *cascade, int index, int g, double receiver) {
   const cascade_level *from = &cascade->level[index];
@@ -301,8 +301,8 @@ static int reach_behind(const soft_cascade *cascade, int index, int g, double re
 }
 
 /* Sums the groups from the farthest to the nearest. Levels with thicker groups are summed less often. Empty
- * groups are left out, which saves blurs and keeps kernels close to boxes. Returns the nearest level with
- * anything in its sum; null if nothing is in the way. */
+ * groups are left out; this saves blurs and keeps kernels close to boxes. Returns the nearest level whose sum
+ * is not empty; null if nothing is in the light's way. */
 static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cascade_crew *crew) {
   cascade_level *sum = NULL;
   bool due = false;
@@ -311,8 +311,8 @@ static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cas
     uint64_t period = period_of(i);
     due = due || level->renewed || cascade->chunks % period == 0;
     if (due) level->filled = false;
-    /* until this level is renewed, the receivers move on by one chunk less than the period; the sum is made
-     * for the receiver in the middle of this way */
+    /* until this level is renewed, the receivers move on by `period` - 1 chunks; the sum is made for a
+     * receiver in the middle of this way */
     double served = hl_cascade_chunks_on(cascade, receiver, (double)(period - 1) / 2);
     for (int g = 0; g < level->count && due; g++) {
       const cascade_group *group = &level->group[g];
@@ -377,11 +377,12 @@ static void refill_piece(void *data, size_t index, int worker) {
   }
 }
 
-/* The least variance that is worth a blur, pixels squared: a third of the variance of a bilinear look-up. */
+/* The least variance of a blur that is carried out, in squared pixels: a third of the variance of a bilinear
+ * look-up. */
 static const double LEAST_VARIANCE = 0.05;
 
-/* Finds the absorbed light (cascade->absorbed) for receivers around omega = receiver, in the tiles that are
- * read. False: nothing is in the light's way. */
+/* Finds the absorbed light for receivers around omega = receiver, and stores it in cascade->absorbed, in the
+ * tiles that are read. Returns false if nothing is in the light's way. */
 static bool find_shade(soft_cascade *cascade, double receiver, const cascade_crew *crew) {
   if (cascade->emission != NULL) return hl_cascade_pass_emission(cascade, receiver, crew);
   cascade_level *level = pass_all(cascade, receiver, crew);
@@ -400,7 +401,8 @@ static bool find_shade(soft_cascade *cascade, double receiver, const cascade_cre
   return true;
 }
 
-/* Refills the buffer that sheets look up. any: whether find_shade() found anything. */
+/* Refills the buffer in which samples look up light. any: whether find_shade() found anything in the light's
+ * way. */
 static void refill_buffer(soft_cascade *cascade, shadow_buffer *buffer, bool any, const cascade_crew *crew) {
   refill_task task = {cascade, buffer, crew->functions, any};
   hl_pool_run(crew->pool, hl_cascade_row_pieces(&cascade->level[0]), refill_piece, &task);
@@ -434,7 +436,7 @@ static void advance_cascade(light_shadow *shadow, const occupancy *occupancy, in
   if (cascade->shrink > 0) cascade->chunk = end - omega;
   cascade->chunk_start = omega;
   find_reads(cascade, occupancy, shadow, sheet);
-  /* this sum is made from the chunks before the one that ends here */
+  /* the sum for this refill was made from the chunks before the chunk that ends here */
   bool any = find_shade(cascade, end, &crew);
   push_chunk(cascade, shadow, omega, any, &crew);
   refill_buffer(cascade, shadow->buffer, any, &crew);
@@ -443,8 +445,8 @@ static void advance_cascade(light_shadow *shadow, const occupancy *occupancy, in
 
 /* ---- the method ---- */
 
-/* Sets the part of a slab's light that its samples read from the buffer; they read the rest from the buffer's
- * second planes. The part is 0 at the beginning of a chunk, and 1 once the chunk has its whole length. */
+/* Sets how much of a slab's light the samples read from the buffer's first planes; they read the rest from
+ * its second planes. The part is 0 at the beginning of a chunk, and 1 once the chunk has its whole length. */
 static void before_shading(light_shadow *shadow, int sheet, shadow_lookup *lookup) {
   const soft_cascade *cascade = shadow->state;
   double middle = slab_omega(cascade, shadow->setup.sheets, sheet);
@@ -460,7 +462,7 @@ static void before_slab(light_shadow *shadow, int sheet, attenuate_job *job) {
   job->marks = true;
 }
 
-/* The slab is composited into the second planes too, and counted in the moments. */
+/* The slab is also composited into the second planes, and counted in the moments. */
 static void before_tile(const light_shadow *shadow, size_t tile, attenuate_job *job) {
   const soft_cascade *cascade = shadow->state;
   const shadow_buffer *buffer = shadow->buffer;

@@ -8,7 +8,7 @@ void hl_cascade_clear_pixels(const cascade_level *level, const cascade_field *fi
   for (size_t row = 0; row < TILE; row++) memset(pixels + row * level->stride, 0, TILE * sizeof(field_pixel));
 }
 
-/* From this many tiles on, memchr() is faster than a loop. */
+/* From this number of tiles on, memchr() is faster than a loop. */
 enum { MANY_TILES = 4 };
 
 bool hl_cascade_all_zeros(const cascade_level *level, const cascade_field *field, int x0, int x1, int y0,
@@ -33,8 +33,8 @@ int hl_cascade_doubling_reach(int from, int to) {
   return reach;
 }
 
-/* Marks whether a tile is all zeros after some of its rows were computed. The tile's other rows are not read;
- * so if the computed rows are zeros, the whole tile is cleared. */
+/* Marks whether a tile is all zeros, after some of its rows were computed. The tile's other rows are not read
+ * by anything. So if the computed rows are zeros, the whole tile is cleared. */
 static void note_zeros(const cascade_level *level, const cascade_field *field, int x, int y, tile_rows rows,
                        int above_zero) {
   unsigned char *zeros = &field->zeros[y * level->tiles_x + x];
@@ -48,10 +48,10 @@ typedef struct add_task {
   cascade_sum sum;
   field_job job;
   field_tile_function *function;
-  bool doubled; /* b is coarser than the output; only then may an `a` that is zeros be left out */
+  bool doubled; /* whether b is coarser than the output; only then may an `a` that is all zeros be left out */
 } add_task;
 
-/* Whether a sum is all zeros in a row of tiles, from x0 to x1, both included. */
+/* Whether a sum is all zeros in the tiles from x0 to x1, both included, of a row of tiles. */
 static bool sum_is_zeros(const add_task *task, int x0, int x1, int y) {
   const cascade_sum *sum = &task->sum;
   const cascade_level *levels[2] = {sum->level_a, sum->level_b};
@@ -74,7 +74,8 @@ static bool row_is_zeros(const cascade_level *level, const cascade_field *field,
   return hl_cascade_all_zeros(level, field, piece.first, piece.end - 1, piece.y, piece.y);
 }
 
-/* Adds a row of tiles. Most rows are zeros and were zeros before; for these it returns at once. */
+/* Adds a row of tiles. Most rows are zeros and were zeros before; for such a row the function returns at
+ * once. */
 static void add_tiles(const add_task *task, row_piece piece) {
   const cascade_level *level = task->sum.level;
   const cascade_field *a = task->sum.a, *to = task->sum.to;
@@ -171,8 +172,8 @@ static void blur_piece(void *data, size_t index, int worker) {
   }
 }
 
-/* Finds the width of the blur's box for each column or row of tiles. Returns how many tiles the widest box
- * reaches to one side. */
+/* Finds the width of the blur's box for each column or row of tiles. Returns the number of tiles by which the
+ * widest box reaches to one side. */
 static int fill_boxes(cascade_box *boxes, int count, double variance, double resampled) {
   int reach = 0;
   for (int i = 0; i < count; i++) {
@@ -199,7 +200,7 @@ void hl_cascade_blur_add(const cascade_crew *crew, const cascade_blurred_sum *su
 
 typedef struct split_task {
   const cascade_level *level;
-  const cascade_field *fields[4]; /* absorbed and thin of the first, then of the second */
+  const cascade_field *fields[4]; /* absorbed and thin of the first output, then of the second */
   split_job job;
   split_tile_function *function;
 } split_task;
@@ -255,7 +256,7 @@ void hl_cascade_merge(const cascade_crew *crew, const cascade_merger *merger) {
                       *of_spare[2] = {spare->absorbed, spare->thin};
   const cascade_field *to[2] = {second->absorbed, second->thin}, *old[2] = {first->absorbed, first->thin};
   for (int i = 0; i < 2; i++) {
-    /* the matter that goes to `first` passes through the fields of `second`, which are overwritten at last */
+    /* the matter for `first` passes through the fields of `second`, which are overwritten in the last step */
     const cascade_sum sums[3] = {
         {level, of_b[i], of_b[1], level, of_a[i], next, to[i], READ_EVERYWHERE},
         {next, to[i], to[1], next, old[i], next, old[i], READ_EVERYWHERE},

@@ -1,5 +1,5 @@
 /* shadow_cascade/cascade_passes.h - passes over whole fields of a cascade. A task works on a piece of a row
- * of tiles; tiles that are all zeros are skipped. */
+ * of tiles, and skips tiles that are all zeros. */
 #ifndef HL_SHADOW_CASCADE_CASCADE_PASSES_H
 #define HL_SHADOW_CASCADE_CASCADE_PASSES_H
 
@@ -24,26 +24,27 @@ static inline row_piece hl_cascade_row_piece(const cascade_level *level, size_t 
 typedef struct cascade_blur {
   double variance;     /* the variance of the blur where the light is widest, in squared pixels of the level;
                         * columns and rows have fractions of it */
-  double resampled[2]; /* along rows and columns: the variance that resampling adds by itself, which is
+  double resampled[2]; /* along rows and along columns: the variance of the blur that resampling causes; it is
                         * subtracted */
 } cascade_blur;
 
-/* The sum to = a + (1 - thin) b. Either a and b are both on levels twice as fine as the level of `to`, or b
- * alone is on a level twice as coarse. */
+/* A sum: to = a + (1 - thin) b. There are two kinds: a and b are both on levels twice as fine as the level of
+ * `to`; or b alone is on a level twice as coarse. */
 typedef struct cascade_sum {
   const cascade_level *level_a;  /* level of a and thin */
-  const cascade_field *a, *thin; /* a: null stands for zeros, allowed only where b is coarser than `to`.
+  const cascade_field *a, *thin; /* a: null stands for zeros; it is allowed only where b is coarser than `to`.
                                   * thin: null stands for zeros */
   const cascade_level *level_b;  /* level of b; null where b is null */
-  const cascade_field *b;        /* null: zeros; only where a is not coarser than `to` */
+  const cascade_field *b;        /* null stands for zeros; it is allowed only where a is not coarser than
+                                  * `to` */
   const cascade_level *level;    /* level of `to` */
   const cascade_field *to;
-  int reach; /* `to` is computed in the tiles that are read, and up to this many pixels of the buffer around
-              * these tiles; READ_EVERYWHERE: in all tiles */
+  int reach; /* `to` is computed in the tiles that are read, and within this many pixels of the buffer around
+              * these tiles. READ_EVERYWHERE: `to` is computed in all tiles */
 } cascade_sum;
 void hl_cascade_add(const cascade_crew *crew, const cascade_sum *sum);
 
-/* The sum to = a + (1 - thin) * (from, blurred), all on one level. */
+/* A sum: to = a + (1 - thin) * (from, blurred). All fields are on one level. */
 typedef struct cascade_blurred_sum {
   const cascade_level *level;
   const cascade_field *from, *a, *thin, *to; /* a and thin: null for zeros */
@@ -57,31 +58,32 @@ typedef struct cascade_matter {
   const cascade_field *absorbed, *thin;
 } cascade_matter;
 
-/* Moves the matter of two groups, a and b, to the next level, which may be twice as coarse. There the matter
- * of a and b is added to `first`, except for the fraction `late` of b's matter, which becomes `second`. */
+/* Moves the matter of two groups, a and b, to the next level, which may be twice as coarse. On the next
+ * level, the fraction `late` of b's matter becomes the group `second`; the rest of b's matter and the matter
+ * of a are added to the group `first`. */
 typedef struct cascade_merger {
   const cascade_level *level;
   cascade_matter a, b;  /* on level; b is changed */
   cascade_matter spare; /* on level; overwritten */
-  double late;          /* the fraction of b's matter that the second gets */
+  double late;          /* the fraction of b's matter that goes to `second` */
   const cascade_level *next;
   cascade_matter first, second; /* on next */
 } cascade_merger;
-/* Merges two groups. Each row of tiles goes through all steps before the next row does. */
+/* Merges two groups. Each row of tiles goes through all steps before the next row begins. */
 void hl_cascade_merge(const cascade_crew *crew, const cascade_merger *merger);
 
-/* How far beyond its output repeated doubling reads, from the scale `from` down to the scale `to`; in pixels
- * of the buffer. */
+/* How far repeated doubling reads beyond its output; in pixels of the buffer. from: the scale of the first
+ * input; to: the scale of the last output. */
 int hl_cascade_doubling_reach(int from, int to);
 
-/* True if all tiles of a rectangle are zeros; tiles outside the level count as zeros. */
+/* Whether all tiles of a rectangle are zeros. Tiles outside the level count as zeros. */
 bool hl_cascade_all_zeros(const cascade_level *level, const cascade_field *field, int x0, int x1, int y0,
                           int y1);
 
 /* Makes a tile's pixels zeros. */
 void hl_cascade_clear_pixels(const cascade_level *level, const cascade_field *field, int x, int y);
 
-/* Clears a tile and marks it as zeros, unless it is already. */
+/* Clears a tile and marks it as zeros, unless it is marked already. */
 static inline void hl_cascade_clear_tile(const cascade_level *level, const cascade_field *field, int x,
                                          int y) {
   unsigned char *zeros = &field->zeros[y * level->tiles_x + x];

@@ -1,10 +1,10 @@
-/* shadow_cascade/cascade_reads.c - finds the tiles that the next sheets read. */
+/* shadow_cascade/cascade_reads.c - finds the tiles of a cascade's buffer that the next sheets read. */
 #include "shadow_cascade/cascade_reads.h"
 
 #include <string.h>
 
-/* Writes 1 for each tile that is read, in the entry that lies one row and one column after the tile's own, as
- * the summed-area table needs it. */
+/* Writes 1 for each tile that is read. Entries are shifted by one row and one column, as the summed-area
+ * table needs them: a tile's entry is the one at its row + 1 and column + 1. */
 static void mark_tiles(cascade_reads *reads, const occupancy *occupancy, const int32_t *needed_until,
                        int first_sheet, int last_sheet) {
   size_t width = (size_t)reads->tiles_x, words = (size_t)occupancy->tile_words;
@@ -35,8 +35,7 @@ void hl_cascade_reads_find(cascade_reads *reads, const occupancy *occupancy, con
   }
 }
 
-/* The band of all tiles that have some of the buffer's rows of pixels from `top` to `bottom`, both
- * included. */
+/* The band of the tiles that contain any row of the buffer's pixels from `top` to `bottom`, both included. */
 static read_band band_of(const cascade_reads *reads, int top, int bottom) {
   int y0 = top < 0 ? 0 : top / TILE, y1 = bottom < reads->tiles_y * TILE ? bottom / TILE + 1 : reads->tiles_y;
   if (y0 > y1) y0 = y1;

@@ -1,45 +1,46 @@
-/* shadow_cascade/cascade_reads.h - where a cascade's buffer is read before it is refilled, and so which tiles
- * its passes must compute. */
+/* shadow_cascade/cascade_reads.h - where a cascade's buffer is read before it is refilled. This decides which
+ * tiles the cascade's passes must compute. */
 #ifndef HL_SHADOW_CASCADE_CASCADE_READS_H
 #define HL_SHADOW_CASCADE_CASCADE_READS_H
 
 #include "shadow_cascade/cascade_field.h"
 #include "view/occupancy.h"
 
-/* A summed-area table of the tiles that are read: the sum over a rectangle takes four of its entries. */
+/* A summed-area table of the tiles that are read. The sum over a rectangle takes four entries of the
+ * table. */
 typedef struct cascade_reads {
   int tiles_x, tiles_y;
-  uint32_t *before; /* owned; [tiles_y + 1][tiles_x + 1]; the number of tiles above and to the left that
-                     * are read */
+  uint32_t *before; /* owned; [tiles_y + 1][tiles_x + 1]; for each entry, the number of read tiles above it
+                     * and to its left */
 } cascade_reads;
 
-/* The reach of a pass that must compute all tiles, because its results are kept. */
+/* READ_EVERYWHERE: the reach of a pass that must compute all tiles, because its results are kept. */
 enum { READ_EVERYWHERE = -1 };
 
-/* Marks the tiles that the next sheets touch in the light's view, since the picture's slabs look up the
- * buffer there. needed_until: [tiles]; of a shared picture, only tiles that this part needs at the slab of
- * the first sheet are marked; null: all tiles may be marked. */
+/* Marks the tiles that the next sheets touch in the light's view, because the picture's slabs look up the
+ * buffer there. needed_until: [tiles]; if the picture is shared, only tiles are marked that this part needs
+ * at the slab of the first sheet; null: all tiles may be marked. */
 void hl_cascade_reads_find(cascade_reads *reads, const occupancy *occupancy, const int32_t *needed_until,
                            int first_sheet, int last_sheet);
 
-/* The rows of the summed-area table above and below a band of rows of tiles. */
+/* The two rows of the summed-area table that lie above and below a band of rows of tiles. */
 typedef struct read_band {
   const uint32_t *upper, *lower;
 } read_band;
 
-/* The tiles that are read within `reach` pixels of the buffer around a row of tiles of a level. scale: width
+/* The tiles that are read around a row of tiles of a level: within `reach` pixels of the buffer. scale: edge
  * of the level's pixels. */
 typedef struct read_row {
   int scale, reach, tiles_x;
   int around;                     /* reach in tiles */
-  bool any;                       /* anything is read; if not, `blocks` is not set */
+  bool any;                       /* whether anything is read; if not, `blocks` is not set */
   read_band all;                  /* around the whole row */
-  read_band blocks[TILE / BLOCK]; /* around each four rows of the tile row's pixels */
+  read_band blocks[TILE / BLOCK]; /* one band around each four rows of pixels of the row of tiles */
 } read_row;
 
 read_row hl_cascade_read_row(const cascade_reads *reads, int scale, int y, int reach);
 
-/* Whether anything is read within reach of tile x; sideways the reach is rounded up to whole tiles. */
+/* Whether anything is read within the reach of tile x. Along rows the reach is rounded up to whole tiles. */
 static inline bool hl_cascade_is_read(const read_row *row, const read_band *band, int x) {
   if (row->reach == READ_EVERYWHERE) return true;
   int x0 = x * row->scale - row->around, x1 = (x + 1) * row->scale + row->around;

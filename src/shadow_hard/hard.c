@@ -1,5 +1,5 @@
-/* shadow_hard/hard.c - hard shadows (section 3): one buffer perpendicular to the light, attenuated by each
- * slab as seen from the light's centre. */
+/* shadow_hard/hard.c - hard shadows (section 3): there is one buffer, perpendicular to the light. Each slab
+ * attenuates it as seen from the light's centre. */
 #include "shadow/shadow_method.h"
 
 static bool is_read_cubic(const shadow_setup *setup) {

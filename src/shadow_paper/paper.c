@@ -2,11 +2,11 @@
  *
  * One buffer is convolved again and again with a box, or with the light's emission image. The width of the
  * box or image is given by eq. (5) for the step from the last convolved sheet to the next one. Convolution
- * adds variances, not widths, so penumbrae grow with the square root of the distance: this is the error that
- * the other methods avoid.
+ * adds variances and not widths, so the widths of penumbrae grow with the square root of the distance. This
+ * is the error that the other methods avoid.
  *
- * A part of a shared picture works through the pixels that it reads, and through the pixels that the
- * convolutions read for them. */
+ * A part of a shared picture computes the pixels that it reads, and the pixels that the convolutions read to
+ * make these. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -18,19 +18,20 @@ typedef struct soft_paper {
   const light_emission *emission; /* null: boxes */
   bool parallel;
   double size;         /* the width L of the virtual light; for parallel light L / Z */
-  double light_height; /* position of a near light along the sheets' normal */
-  double pixel;        /* edge of a buffer pixel: frame units; for near light, its size at distance 1 */
+  double light_height; /* height of a near light along the sheets' normal */
+  double pixel;        /* edge of a buffer's pixel: in frame units; for near light, the edge at distance 1 */
   double last;         /* height of the last convolved sheet */
-  double remainder;    /* accumulated width that was not convolved yet, in pixels */
-  int reach;           /* pixels beyond a tile that blurs may read, and the width of the buffer's margin */
+  double remainder;    /* width, in pixels, that was accumulated but not convolved yet */
+  int reach;           /* number of pixels beyond a tile that blurs may read; also the width of the buffer's
+                        * margin */
   int32_t *reached;    /* [slabs]; used by widen_needs() */
   int32_t *far;        /* [tiles of the buffer]; used by widen_needs() */
 } soft_paper;
 
-/* The virtual light is the orthogonal projection of the real one onto a plane parallel to the sheets
- * (section 5.2, (1)), of average size (section 5.2, (3)): a disk of diameter L tilted by t becomes an ellipse
- * with axes L and L cos t. Z is measured along the sheets' normal; for parallel light L / Z then is (L / D) /
- * cos t with L / D = 2 tan(angle / 2) along the ray (derived). */
+/* The virtual light is the orthogonal projection of the real one onto a plane parallel to the sheets (section
+ * 5.2, (1)), of average size (section 5.2, (3)): a disk of diameter L that is tilted by t becomes an ellipse
+ * with the axes L and L cos t. Z is measured along the sheets' normal. So for parallel light L / Z is (L / D)
+ * / cos t, where L / D = 2 tan(angle / 2) is measured along the ray (derived). */
 static void see_light(soft_paper *soft, const shadow_setup *setup, const view *view) {
   const light_source *source = setup->source;
   vec3 normal = setup->sheets->normal;
@@ -55,8 +56,8 @@ static double width_between(const soft_paper *soft, double from, double to) {
   return soft->size * (1 / near - 1 / far) / soft->pixel;
 }
 
-/* A bound of the reach, in pixels, of the convolutions that a sweep can need. The first convolution covers
- * the distance of two sheets. */
+/* An upper bound of the reach, in pixels, of the convolutions in a sweep. The first convolution covers the
+ * distance of two sheets. */
 static int widest_reach(const soft_paper *soft, const sheet_stack *sheets) {
   double first = sheets->first, spacing = sheets->spacing;
   double widest = width_between(soft, first, first + 2 * spacing);
@@ -65,24 +66,24 @@ static int widest_reach(const soft_paper *soft, const sheet_stack *sheets) {
   return (int)fmin(soft->emission != NULL ? soft->emission->reach * (widest + 2) + 3 : widest / 2 + 3, 1024);
 }
 
-/* One convolution: from the buffer to its second planes and back, tile by tile, all channels of a tile at
- * once. */
+/* One convolution, from the buffer to its second planes and back. It works tile by tile, on all channels of a
+ * tile at once. */
 typedef struct convolution {
   shadow_buffer *buffer;
   const int32_t *needed_until; /* light_shadow's */
   int sheet, reach;            /* reach: the number of pixels around a tile that the convolution reads */
   unsigned char *wanted;       /* [tiles]; 1 for tiles that can change */
   shadow_plane kind;           /* the planes that are convolved now */
-  bool last;                   /* these planes are the last ones of this convolution */
+  bool last;                   /* whether these planes are the last ones that are convolved at this sheet */
   const blur_functions *blur;
   blur_box box;
-  /* with an emission image, instead of the box: */
+  /* the next members are used in place of `box` if there is an emission image: */
   int count;
   const ptrdiff_t *offset; /* [count] */
   const emission_taps *taps;
 } convolution;
 
-/* The planes that are convolved: all channels of the transmittance, and of the light at the outside. */
+/* The planes of a kind: all channels of the transmittance, or of the light at the outside of surfaces. */
 static float *const *planes_of(const shadow_buffer *buffer, shadow_plane kind) {
   return kind == SHADOW_OUTSIDE ? buffer->outside : buffer->transmittance;
 }
@@ -147,8 +148,8 @@ static void copy_back(void *data, size_t index, int worker) {
   }
 }
 
-/* Convolves the planes of one kind; planes of other kinds stay as they are. last: no other planes of the
- * sheet are convolved after these, so the lit blocks of tiles are found again. */
+/* Convolves the planes of one kind; planes of other kinds stay as they are. last: whether these are the last
+ * planes that are convolved at the sheet; if so, the lit blocks of tiles are found again. */
 static void convolve_planes(const soft_paper *soft, convolution *task, shadow_plane kind, bool last,
                             hl_pool *pool) {
   size_t rows = (size_t)task->buffer->tiles_y;
@@ -180,7 +181,7 @@ static void convolve_with_emission(const soft_paper *soft, convolution *task, in
 
 /* ---- which tiles ---- */
 
-/* Whether any tile at most `around` tiles away has absorbed light. */
+/* Whether any tile that is at most `around` tiles away has absorbed light. */
 static bool any_touched(const shadow_buffer *buffer, int x, int y, int around) {
   int x0 = x < around ? 0 : x - around, y0 = y < around ? 0 : y - around;
   for (int j = y0; j <= y + around && j < buffer->tiles_y; j++)
@@ -189,7 +190,7 @@ static bool any_touched(const shadow_buffer *buffer, int x, int y, int around) {
   return false;
 }
 
-/* Whether any pixel of a tile, or within reach of it, is below 1. */
+/* Whether any pixel in a tile, or within `reach` pixels around it, is below 1. */
 static bool any_below_one(const shadow_buffer *buffer, int x, int y, int reach) {
   const ptrdiff_t stride = (ptrdiff_t)buffer->stride;
   for (int c = 0; c < buffer->channels; c++) {
@@ -204,9 +205,9 @@ static bool any_below_one(const shadow_buffer *buffer, int x, int y, int reach) 
   return false;
 }
 
-/* Marks the tiles of a row that can change. The marks depend only on pixels within reach. So the parts of a
- * shared picture, which know only such pixels, set the same marks. Different marks would change bytes,
- * because the sum of an emission image's weights is not exactly 1. */
+/* Marks the tiles of a row that can change. The marks depend only on pixels within reach, because the parts
+ * of a shared picture know only such pixels. So all parts set the same marks. Different marks would change
+ * bytes, because the sum of an emission image's weights is not exactly 1. */
 static void find_wanted(void *data, size_t index, int worker) {
   (void)worker;
   const convolution *task = data;
@@ -220,15 +221,16 @@ static void find_wanted(void *data, size_t index, int worker) {
   }
 }
 
-/* How many pixels to each side of a pixel a convolution reads. width: of the box or image, in pixels. */
+/* The number of pixels to each side of a pixel that a convolution reads. width: of the box or the image, in
+ * pixels. */
 static int reach_of(const soft_paper *soft, int width) {
   if (soft->emission != NULL) return (int)(soft->emission->reach * width) + 2;
   blur_box box = hl_blur_box((float)width);
   return box.reach + (box.edge > 0);
 }
 
-/* Convolves the tiles that can change. All other tiles hold 1 in the buffer and in its second planes, or
- * are not needed. */
+/* Convolves the tiles that can change. Each other tile holds 1 in the buffer and in its second planes, or is
+ * not needed. */
 static void convolve(const soft_paper *soft, const light_shadow *shadow, int sheet, int width) {
   shadow_buffer *buffer = shadow->buffer;
   hl_pool *pool = shadow->means.pool;
@@ -250,9 +252,9 @@ static void convolve(const soft_paper *soft, const light_shadow *shadow, int she
 }
 
 /* Section 5.2, (2): accumulates dx until it exceeds two pixels, convolves by the integer part of the sum and
- * carries the rest. An emission image has one tap per pixel, and at most as many taps along an axis as it has
- * cells; so greater widths take several convolutions. shadow: where it is null, only the reach is found, and
- * nothing is convolved. Returns the sum of the reaches of the convolutions at this sheet, in pixels. */
+ * carries the rest. An emission image has one tap per pixel, and along an axis at most as many taps as it has
+ * cells; so greater widths take several convolutions. shadow: null: nothing is convolved, only the reach is
+ * found. Returns the sum of the reaches of the convolutions at this sheet, in pixels. */
 static int pass_sheet(soft_paper *soft, const sheet_stack *sheets, int sheet, const light_shadow *shadow) {
   double next = hl_sheet_height(sheets, sheet + 1);
   double width = soft->remainder + width_between(soft, soft->last, next);
@@ -278,8 +280,8 @@ static void advance_paper(light_shadow *shadow, const occupancy *occupancy, int 
 
 /* ---- what a part needs ---- */
 
-/* Raises a tile's value to the greatest value of four neighbours, less the edge of a tile. sign: 1 for the
- * neighbours before the tile in the order of rows, -1 for the neighbours after it. */
+/* Raises a tile's value to the greatest value of four neighbours, each reduced by the edge of a tile. sign: 1
+ * for the neighbours before the tile in the order of rows, -1 for the neighbours after it. */
 static void raise_tile(const shadow_buffer *buffer, int32_t *far, int x, int y, int sign) {
   static const int beside[4][2] = {{-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
   int32_t *tile = &far[(ptrdiff_t)y * buffer->tiles_x + x];
@@ -315,10 +317,10 @@ static int32_t last_slab(const int32_t *reached, int slabs, int32_t far) {
 
 /* Raises needed_until in tiles whose pixels affect, by convolutions, pixels that the picture reads. Derived:
  * let reached(k) be the sum of the reaches of all convolutions before slab k. A pixel of slab k affects a
- * pixel that is d pixels away and is read in slab s, if d <= reached(s) - reached(k). So its tile is needed
- * until the last k with reached(k) <= reached(s) - d. For a tile that is n tiles away, d is at least 16 (n -
- * 1) + 1. The greatest reached(s) - 16 n is found in two passes over the tiles, each of which hands values on
- * from neighbour to neighbour. */
+ * pixel that is d pixels away and is read in slab s, if d <= reached(s) - reached(k). So the tile of this
+ * pixel is needed until the last k with reached(k) <= reached(s) - d. For a tile that is n tiles away, d is
+ * at least 16 (n - 1) + 1. The greatest value of reached(s) - 16 n is found in two passes over the tiles.
+ * Each pass hands values on from neighbour to neighbour. */
 static void widen_needs(light_shadow *shadow, int32_t *needed_until) {
   const shadow_buffer *buffer = shadow->buffer;
   const sheet_stack *sheets = shadow->setup.sheets;

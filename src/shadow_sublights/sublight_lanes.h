@@ -1,11 +1,11 @@
-/* shadow_sublights/sublight_lanes.h - one tile of one sub-light's buffer times the slab, scaled and shifted,
- * a row of sixteen pixels at a time.
+/* shadow_sublights/sublight_lanes.h - multiplies one tile of one sub-light's buffer by the scaled and shifted
+ * slab, a row of sixteen pixels at a time.
  *
- * A sub-light's pixel is multiplied by the slab's transmittance at the nearest half pixel. Values between
+ * A sub-light's pixel is multiplied by the slab's transmittance at the nearest half pixel. Values at half
  * pixels come from cubic convolution with a = -1 (Keys, "Cubic convolution interpolation for digital image
- * processing", 1981), with weights -1/8, 5/8, 5/8, -1/8. They sharpen the slab by about as much as the
- * bilinear look-up of the buffer blurs it: their variance is -1/4 at half pixels and 0 at whole ones; the
- * look-up's is 1/6 on average. */
+ * processing", 1981), with weights -1/8, 5/8, 5/8, -1/8. These weights sharpen the slab by about as much as
+ * the bilinear look-up of the buffer blurs it: the weights have the variance -1/4 at half pixels and 0 at
+ * whole pixels, and the look-up has the variance 1/6 on average. */
 #ifndef HL_SHADOW_SUBLIGHTS_SUBLIGHT_LANES_H
 #define HL_SHADOW_SUBLIGHTS_SUBLIGHT_LANES_H
 
@@ -15,7 +15,7 @@
 
 enum { EVERY_ROW = (1 << TILE) - 1 };
 
-/* The value in the middle between b and c, clamped to [0, 1]. */
+/* The value in the middle between b and c, clamped to [0, 1]. a and d are the values before b and after c. */
 LANES_INLINE lanes middle_of_four(lanes a, lanes b, lanes c, lanes d) {
   return lanes_clamp(lanes_add_scaled((a + d) * -0.125f, b + c, 0.625f), 0, 1);
 }
@@ -27,9 +27,9 @@ LANES_INLINE lanes middle_along(const float *at, ptrdiff_t step) {
 
 LANES_INLINE slab_rows any_below_one(lanes x) { return lanes_bits(x < 1.0f) != 0; }
 
-/* Finds which rows have a pixel below 1, among a tile's rows and the first row below the tile. The pixel to
- * the right of each row counts, too. Values between pixels depend on pixels farther away only by negative
- * weights, so these pixels cannot bring such a value below 1. */
+/* Finds which rows have a pixel below 1: of a tile's rows and the first row below the tile. For each row, the
+ * first pixel to the right of the tile counts, too. Pixels farther away have negative weights for values
+ * between the pixels of the tile, so they cannot bring such a value below 1. */
 LANES_INLINE uint32_t rows_below_one(const float *corner, ptrdiff_t stride) {
   uint32_t rows = 0;
   for (int row = 0; row <= TILE; row++) {
@@ -71,8 +71,8 @@ enum { SUBLIGHT_TAPS = 8 };
 
 /* How sixteen pixels in a row of a sub-light read a row of the slab's copies. If the slab's pixels had the
  * same size as the sub-light's, pixel i would read 2 i half pixels after pixel 0. The slab's pixels are a
- * little larger or smaller. So the place that pixel i reads differs from 2 i by `first` to first + count - 1
- * half pixels. weight[k] is 1 for pixels with the difference first + k, else 0. */
+ * little larger or smaller. So the half pixel that pixel i reads differs from 2 i by `first` to first + count
+ * - 1. weight[k] is 1 for pixels with the difference first + k, else 0. */
 typedef struct row_taps {
   int first, count; /* count 0: too many */
   lanes_int half;   /* for each pixel, the half pixel that it reads, limited to the slab and its margin */
@@ -110,7 +110,7 @@ LANES_INLINE lanes slab_row(const row_taps *taps, const float *const copies[2]) 
   return sum;
 }
 
-/* The tiles of the slab that lie under a row of a sub-light's pixels. */
+/* Finds the tiles of the slab that lie under a row of a sub-light's pixels. */
 LANES_INLINE void tiles_of_row(const sublight_job *job, const row_taps *taps, int *first, int *last) {
   *first = taps->half[0] >> 5;
   *last = taps->half[LANES - 1] >> 5;
@@ -118,15 +118,16 @@ LANES_INLINE void tiles_of_row(const sublight_job *job, const row_taps *taps, in
   if (*last >= job->slab_tiles_x) *last = job->slab_tiles_x - 1;
 }
 
-/* The rows that have a pixel below 1 in one of two copies of the slab: the copies that are shifted along v
- * (between: 1), or the copies that are not (between: 0). */
+/* The rows that have a pixel below 1 in one of two copies of the slab. between: 1 for the two copies that are
+ * shifted along v, 0 for the two copies that are not. */
 LANES_INLINE uint32_t rows_of_either(slab_rows rows, int between) {
   rows >>= 2 * TILE * between;
   return (uint32_t)(rows | rows >> TILE) & EVERY_ROW;
 }
 
-/* The rows of a sub-light's tile, one bit each, that read pixels of the slab below 1. half: each row's
- * position in the slab, in half pixels. first, last: the slab's columns of tiles that the rows read. */
+/* The rows of a sub-light's tile, one bit each, that read some pixel of the slab below 1. half: the position
+ * of each row in the slab, in half pixels. first, last: the first and the last column of the slab's tiles
+ * that the rows read. */
 LANES_INLINE uint32_t present_rows(const sublight_job *job, const int32_t half[TILE], int first, int last) {
   int y0 = half[0] < 0 ? 0 : half[0] / (2 * TILE), y1 = half[TILE - 1] < 0 ? -1 : half[TILE - 1] / (2 * TILE);
   uint32_t present = 0;
@@ -146,7 +147,7 @@ LANES_INLINE uint32_t present_rows(const sublight_job *job, const int32_t half[T
 
 static const float DARK_SUBLIGHT = DARK * SUBLIGHT_ONE;
 
-/* Which blocks of a row of four blocks hold any of the given columns of pixels. */
+/* The blocks, in a row of four blocks, that contain any of the given columns of pixels. */
 LANES_INLINE uint32_t blocks_of_columns(uint32_t columns) {
   uint32_t any = columns | columns >> 1;
   any |= any >> 2;
@@ -174,7 +175,8 @@ static uint32_t sublight_lit(const sublight_job *job, int tile_x, int tile_y, ui
   return lit & left;
 }
 
-/* Multiplies sixteen of a sub-light's pixels, `offset` pixels after its first one, by the slab's pixels. */
+/* Multiplies sixteen pixels of a sub-light by the slab's pixels. offset: distance from the sub-light's first
+ * pixel to the sixteen pixels. */
 LANES_INLINE lanes composite_sublight(const sublight_job *job, int channel, ptrdiff_t offset,
                                       lanes slab_transmittance) {
   sublight_pixel *at = job->transmittance[channel] + offset;
@@ -183,13 +185,13 @@ LANES_INLINE lanes composite_sublight(const sublight_job *job, int channel, ptrd
   return light;
 }
 
-/* Where a slab absorbs a smaller fraction of the light than this, rounding makes it impossible to tell which
+/* The least fraction of light absorbed by a slab from which k can be found: below it, rounding hides which
  * part of this light surfaces keep. */
 static const float LEAST_TAKEN = 1e-5f;
 
-/* Composites the slab into the light at the outside. light: the sub-light's transmittance before the slab.
- * Derived: with k = k' (attenuate.h), Y becomes T t + k (Y - T t). Where full light comes to the slab, this
- * is t + k (1 - t), which is slab_outside; so k follows. */
+/* Composites the slab into the light at the outside of surfaces. light: the sub-light's transmittance before
+ * the slab. Derived: with k = k' (attenuate.h), Y becomes T t + k (Y - T t). Where full light comes to the
+ * slab, Y becomes t + k (1 - t). This number is slab_outside, so k follows from it. */
 LANES_INLINE void composite_outside(const sublight_job *job, int channel, ptrdiff_t offset, lanes light,
                                     lanes slab_transmittance, lanes slab_outside) {
   sublight_pixel *at = job->outside[channel] + offset;
@@ -221,7 +223,7 @@ static int sublight_tile(const sublight_job *job, int tile_x, int tile_y) {
       ptrdiff_t at = (ptrdiff_t)(corner + (size_t)row * job->stride);
       lanes slab_transmittance = slab_row(&taps, rows);
       if (lanes_bits(slab_transmittance < 1.0f) == 0)
-        continue; /* the sub-light's pixels in this row need not be loaded from memory */
+        continue; /* so the sub-light's pixels in this row need not be loaded from memory */
       lanes light = composite_sublight(job, c, at, slab_transmittance);
       touched = 1;
       if (job->outside[c] == NULL) continue;
@@ -240,7 +242,7 @@ static int sublight_tile(const sublight_job *job, int tile_x, int tile_y) {
  * tiles, for which the rows with pixels below 1 are known. Each such row multiplies sixteen of the
  * sub-light's pixels, wherever these begin. */
 
-/* The number of the slab's tiles whose pixels are prefetched before the first tile is used. */
+/* The number of the slab's tiles that are prefetched ahead of the tile in use. */
 enum { SHIFTED_TILES = 16 };
 
 /* The index of the copy of the slab that is read. */
@@ -248,8 +250,8 @@ LANES_INLINE int copy_of_shift(const sublight_job *job) {
   return (job->half[0] & 1) + 2 * (job->half[1] & 1);
 }
 
-/* Finds which of the slab's sixteen rows from `top` on have a pixel below 1 in the columns of tile tile_x:
- * one bit each. copy: the copy of the slab that is read. */
+/* Finds which of sixteen rows of the slab have a pixel below 1 in the columns of tile tile_x: one bit each.
+ * top: the first of the rows. copy: the copy of the slab that is read. */
 LANES_INLINE uint32_t rows_from(const sublight_job *job, int tile_x, int top, int copy) {
   const slab_rows *tile = job->rows + tile_x;
   int y = top >> 4, down = top & (TILE - 1);
@@ -264,14 +266,14 @@ LANES_INLINE int is_dark_tile(const sublight_job *job, const uint16_t *lit, int 
   return tile_x < 0 || tile_x >= job->tiles_x || lit[tile_x] == 0;
 }
 
-/* The offset, from the sub-light's first pixel, of the pixel that lies under the first column of the slab's
- * tile tile_x, in the first row of the sub-light's row of tiles tile_y. */
+/* The offset, from the sub-light's first pixel, of the pixel in the first row of the sub-light's row of tiles
+ * tile_y that lies under the first column of the slab's tile tile_x. */
 LANES_INLINE ptrdiff_t pixels_under(const sublight_job *job, int tile_x, int tile_y) {
   return (ptrdiff_t)(tile_y * TILE) * (ptrdiff_t)job->stride + tile_x * TILE - (job->half[0] >> 1);
 }
 
-/* Finds the sub-light's rows that a tile of the slab darkens, marks the sub-light's tiles as touched and
- * prefetches their pixels, many at a time. */
+/* Finds the sub-light's rows that a tile of the slab darkens. Marks the sub-light's tiles as touched, and
+ * prefetches the pixels of all these rows. */
 LANES_INLINE uint32_t begin_shifted(const sublight_job *job, int tile_x, int tile_y, const uint16_t *lit,
                                     unsigned char *touched) {
   int top = tile_y * TILE + (job->half[1] >> 1), column = tile_x * TILE - (job->half[0] >> 1);

@@ -7,13 +7,12 @@
 #include "light/light_extent.h"
 #include "shadow/shadow_method.h"
 
-/* The greatest number of bytes of the sub-lights' buffers; a frame that needs more is refused. */
+/* The greatest number of bytes of the sub-lights' buffers. A frame that needs more bytes is refused. */
 static const double GREATEST_BYTES = 4294967296.0;
 
 enum { MOVED_COPIES = SLAB_COPIES - 1 };
 
-/* The view of sub-light i; raises *tiles_x and *tiles_y to the view's numbers of tiles, where they are
- * smaller. */
+/* The view of sub-light i. Raises *tiles_x and *tiles_y to at least the view's numbers of tiles. */
 static void view_of_sublight(const light_shadow *shadow, int i, view *view, int *tiles_x, int *tiles_y) {
   const shadow_setup *setup = &shadow->setup;
   const light_source *source = setup->source;
@@ -31,7 +30,7 @@ static void view_of_sublight(const light_shadow *shadow, int i, view *view, int 
 }
 
 /* Buffers have a margin of a tile on the left and on the right, because the slab's tiles reach across their
- * edges. After their last row there are ROWS_BEYOND further rows that look-ups may read. */
+ * edges. After the last row of a buffer there are ROWS_BEYOND further rows, which look-ups may read. */
 enum { ROWS_BEYOND = 7 };
 static void lay_out_planes(sublights *sublights) {
   /* rows of pixels fill whole lines of the cache */
@@ -39,7 +38,7 @@ static void lay_out_planes(sublights *sublights) {
   sublights->plane = ((size_t)sublights->tiles_y * TILE + ROWS_BEYOND) * sublights->stride;
 }
 
-/* The number of planes of one sub-light: all channels of each kind of plane. */
+/* The number of planes of one sub-light: all channels of all kinds of planes. */
 static size_t planes_of_sublight(const sublights *all) { return (size_t)all->channels * (size_t)all->kinds; }
 
 static void lay_out_sublights(light_shadow *shadow, shadow_layouts *layouts) {
@@ -74,7 +73,7 @@ static void fill_sublights(const light_shadow *shadow, sublights *all) {
   memset(all->found, 0, slab_tiles * sizeof *all->found);
 }
 
-/* Weighs the sub-lights by the light's emission image. */
+/* Sets the sub-lights' weights from the light's emission image. */
 static hl_status weigh_sublights(hl_context *context, sublights *sublights, const light_source *source,
                                  int side, hl_error *error) {
   size_t count = (size_t)sublights->count;
@@ -87,7 +86,7 @@ static hl_status weigh_sublights(hl_context *context, sublights *sublights, cons
   return HL_OK;
 }
 
-/* Pixel (0,0) of a channel of the transmittance, or of the light at the outside. */
+/* Pixel (0,0) of a channel: of the transmittance, or of the light at the outside of surfaces. */
 static sublight_pixel *sublight_plane(const sublights *all, const sublight *one, shadow_plane kind,
                                       int channel) {
   size_t number = (size_t)(kind == SHADOW_OUTSIDE ? all->channels : 0) + (size_t)channel;
@@ -122,7 +121,7 @@ static hl_status begin_sublights(light_shadow *shadow, hl_error *error) {
 
 /* ---- compositing ---- */
 
-/* Pixel (0,0) of the slab itself, copy 0, or of one of its shifted copies. */
+/* Pixel (0,0) of a copy of the slab; copy 0 is the slab itself. */
 static float *slab_copy(const sublights *sublights, const shadow_buffer *slab, shadow_plane kind, int channel,
                         int copy) {
   size_t number = (size_t)(kind == SHADOW_OUTSIDE ? sublights->channels : 0) + (size_t)channel;
@@ -131,7 +130,7 @@ static float *slab_copy(const sublights *sublights, const shadow_buffer *slab, s
 }
 
 /* Finds, in the slab's pixels, the point at which the sub-light's ray through its pixel (at, at) reaches a
- * height. False if this point lies behind the sub-light or behind the light's centre. */
+ * height. Returns false if this point lies behind the sub-light or behind the light's centre. */
 static bool slab_position(const sublight *sublight, const view *slab, vec3 normal, double height, double at,
                           double uv[2]) {
   vec3 start, way;
@@ -142,21 +141,21 @@ static bool slab_position(const sublight *sublight, const view *slab, vec3 norma
 }
 
 /* The carry for the current slab (sublight_field.h): the fractional part of a multiple of the golden ratio.
- * Such numbers are spread evenly, however many slabs there are. */
+ * The numbers of successive slabs are spread evenly between 0 and 1, however many slabs there are. */
 static float carry_of_slab(const sublights *sublights, const sublight *sublight) {
   double turn = sublights->slabs * 0.6180339887498949 +
                 (double)(sublight - sublights->sublight) / sublights->count;
-  return (float)(1.0 / 128 + (turn - floor(turn)) * 63 / 64); /* it stays so far from 0 and 1 that a whole
-                                                               * number plus the carry is truncated to the
-                                                               * same whole number */
+  return (float)(1.0 / 128 + (turn - floor(turn)) * 63 / 64); /* the carry stays so far from 0 and 1 that a
+                                                               * whole number plus the carry is always
+                                                               * truncated to this whole number */
 }
 
-/* The greatest shift, in pixels, for which the functions are used that shift the slab without scaling it.
- * Grazing light may shift the slab farther; then the general functions are used, which clamp positions. */
+/* The greatest shift of the slab, in pixels, for which the functions are used that only shift it. Grazing
+ * light may shift the slab farther. Then the general functions are used, which clamp positions. */
 static const double FARTHEST_SHIFT = 1 << 20;
 
-/* Prepares a sub-light's job for a slab. Both views are parallel to the sheets and have the same axes, so
- * pixels are only scaled and shifted. */
+/* Prepares a sub-light's job for a slab. Both views are parallel to the sheets and have the same axes, so the
+ * slab's pixels are only scaled and shifted. */
 static void map_sublight(const sublights *sublights, sublight *sublight, const shadow_buffer *slab,
                          vec3 normal, double height) {
   const double far = 1024;
@@ -198,14 +197,15 @@ typedef struct sublight_task {
   sublights *sublights;
   shadow_buffer *slab;
   const sublight_functions *functions;
-  int x0, x1, y0, y1;          /* bounds of the slab's tiles with any pixel below 1 */
-  bool ends_run;               /* the slab is the last of its run: the lit blocks are found after it */
+  int x0, x1, y0, y1;          /* bounds of those tiles of the slab in which any pixel is below 1 */
+  bool ends_run;               /* whether the slab is the last one of its run; if so, the lit blocks are found
+                                * after it */
   const int32_t *needed_until; /* light_shadow's sublights_until */
-  int slab_after;              /* the next slab's number, as needed_until counts them */
+  int slab_after;              /* number of the next slab, in the numbering of needed_until */
 } sublight_task;
 
-/* Finds, along one axis, the first and the last tile that hold the pixels x to x + TILE after scaling and
- * shifting, or one pixel more on either side. */
+/* Finds, along one axis, the first and the last tile that hold pixels x to x + TILE after these have been
+ * scaled and shifted. One more pixel on either side counts, too. */
 static void tiles_under(double x, double scale, double shift, int tiles, int *first, int *last) {
   double low = (scale * x + shift - 1) / TILE, high = (scale * (x + TILE) + shift + 1) / TILE;
   *first = low < 0 ? 0 : low > tiles ? tiles : (int)low;
@@ -219,7 +219,7 @@ static bool any_touched(const shadow_buffer *slab, int x0, int x1, int y0, int y
   return false;
 }
 
-/* Whether the slab has a pixel below 1 in these tiles. */
+/* Whether the slab has a pixel below 1 in some tiles. */
 static bool any_present(const sublight_job *job, int x0, int x1, int y0, int y1) {
   for (int y = y0; y <= y1; y++)
     for (int x = x0; x <= x1; x++)
@@ -227,7 +227,7 @@ static bool any_present(const sublight_job *job, int x0, int x1, int y0, int y1)
   return false;
 }
 
-/* Bounds the slab's tiles with any pixel below 1; x1 < 0: there are none. */
+/* Finds bounds of those tiles of the slab in which any pixel is below 1. x1 < 0: there are no such tiles. */
 static void bound_present(sublight_task *task) {
   const shadow_buffer *slab = task->slab;
   task->x0 = slab->tiles_x;
@@ -245,8 +245,8 @@ static void bound_present(sublight_task *task) {
   }
 }
 
-/* Finds, along one axis, the first and the last tile of a sub-light that lie under the slab's tiles low to
- * high. */
+/* Finds, along one axis, the first and the last tile of a sub-light that lie under tiles `low` to `high` of
+ * the slab. */
 static void sublight_tiles(const sublight *sublight, int axis, int low, int high, int tiles, int *first,
                            int *last) {
   double scale = 1 / (double)sublight->job.scale[axis], shift = -(double)sublight->job.shift[axis] * scale;
@@ -255,7 +255,8 @@ static void sublight_tiles(const sublight *sublight, int axis, int low, int high
   tiles_under((double)high * TILE, scale, shift, tiles, &unused, last);
 }
 
-/* Limits a range of the slab's tiles to the tiles that lie over lit tiles in a row of a sub-light's tiles. */
+/* Limits a range of the slab's tiles to those tiles that lie over lit tiles of a sub-light. y: the
+ * sub-light's row of tiles. */
 static void lit_range(const sublight_task *task, const sublight *sublight, int y, int *x0, int *x1) {
   const int tiles = task->sublights->tiles_x;
   const uint16_t *lit = sublight->lit + (size_t)y * (size_t)tiles;
@@ -299,8 +300,8 @@ static void composite_row(const sublight_task *task, sublight *sublight, int y) 
   }
 }
 
-/* Treats tiles that this part of a shared picture no longer needs as dark tiles. Work skips them, and so it
- * skips blocks of the slab that no sub-light's tile reads any more. */
+/* Marks tiles as dark that this part of a shared picture no longer needs. Dark tiles are skipped; so blocks
+ * of the slab are skipped, too, if no sub-light's tile reads them any more. */
 static void forget_tiles(const sublight_task *task, sublight *sublight, int y) {
   const sublights *all = task->sublights;
   const size_t tiles_x = (size_t)all->tiles_x, row = (size_t)y * tiles_x;
@@ -310,7 +311,7 @@ static void forget_tiles(const sublight_task *task, sublight *sublight, int y) {
     if (until[x] < task->slab_after) sublight->lit[row + x] = 0;
 }
 
-/* Finds the lit blocks again, in the tiles of a row where light was absorbed. */
+/* Finds the lit blocks again in those tiles of a row in which light was absorbed. */
 static void find_sublight_lit(const sublight_task *task, sublight *sublight, int y) {
   int tiles_x = task->sublights->tiles_x;
   size_t row = (size_t)y * (size_t)tiles_x;
@@ -327,9 +328,9 @@ static void advance_row(void *data, size_t index, int worker) {
   const sublight_task *task = data;
   const sublights *all = task->sublights;
   sublight *sublight =
-      &all->sublight[index % (size_t)all->count]; /* tasks go through all sub-lights for one row of tiles,
-                                                   * then for the next row, so that the slab's pixels for a
-                                                   * row stay in the cache */
+      &all->sublight[index % (size_t)all->count]; /* consecutive tasks are all sub-lights for one row of
+                                                   * tiles, then all sub-lights for the next row; so the
+                                                   * slab's pixels for a row stay in the cache */
   int y = (int)(index / (size_t)all->count);
   if (task->ends_run && task->needed_until != NULL) forget_tiles(task, sublight, y);
   if (!sublight->reaches) return;
@@ -339,14 +340,14 @@ static void advance_row(void *data, size_t index, int worker) {
 
 /* ---- the slab ---- */
 
-/* Fills some rows of a tile with ones. rows: one bit for each of the tile's sixteen rows. */
+/* Fills some rows of a tile with ones. rows: one bit for each of the tile's sixteen rows that is filled. */
 static void fill_ones(float *pixels, size_t stride, slab_rows of_copies) {
   for (uint32_t rows = of_copies & ((1u << TILE) - 1); rows != 0; rows &= rows - 1)
     for (size_t i = 0, row = (size_t)__builtin_ctz(rows); i < TILE; i++) pixels[row * stride + i] = 1;
 }
 
-/* Fills the shifted copies of one row of tiles. A tile of a copy depends on pixels of the neighbouring
- * tiles, too. */
+/* Fills one row of tiles of the shifted copies. A tile of a copy also depends on pixels of the neighbouring
+ * tiles. */
 static void move_row(void *data, size_t index, int worker) {
   (void)worker;
   const sublight_task *task = data;
@@ -366,7 +367,7 @@ static void move_row(void *data, size_t index, int worker) {
   }
 }
 
-/* Fills a row of the slab's tiles with ones again. */
+/* Fills a row of the slab's tiles with ones again, for the next slab. */
 static void clear_row(void *data, size_t index, int worker) {
   (void)worker;
   const sublight_task *task = data;
@@ -396,7 +397,7 @@ static sublight_map map_of_job(const sublight_job *job) {
                         {(double)job->shift[0], (double)job->shift[1]}};
 }
 
-/* Sets the sub-lights' maps for the first and the last slab of the next run, which begins at a height. */
+/* Sets the sub-lights' maps for the first and the last slab of the next run. height: where the run begins. */
 static void map_run(sublights *sublights, const shadow_buffer *slab, vec3 normal, double height,
                     double spacing) {
   for (int i = 0; i < sublights->count; i++) {
@@ -436,17 +437,18 @@ static void advance_sublights(light_shadow *shadow, const occupancy *occupancy, 
 
 /* ---- lit blocks of the slab ---- */
 
-/* The number of pixels around a block of the slab by which values in the block still affect a sub-light: a
- * value at a half pixel depends on two pixels on either side. */
+/* The number of pixels around a block of the slab that count as part of it: a value at a half pixel depends
+ * on two pixels on either side, so values in the block affect a sub-light's pixels up to this distance. */
 enum { BLOCK_SPARE = 2 };
 
-/* The rows (or columns) of a sub-light's blocks that lie under each of the four rows (or columns) of blocks
- * of a slab's tile. */
+/* The sub-light's blocks that lie under a tile of the slab: for each of the tile's four rows (or columns) of
+ * blocks, the first and the last row (or column) of the sub-light's blocks. */
 typedef struct blocks_under {
   int first[TILE / BLOCK], last[TILE / BLOCK];
 } blocks_under;
 
-/* The number of the segment, `length` pixels long, that a position lies in; -1 or count beyond the ends. */
+/* The number of the segment that holds a position, where each segment is `length` pixels long; -1 before the
+ * first segment, `count` after the last one. */
 static int segment_of(double position, int length, int count) {
   return position < 0 ? -1 : position >= (double)length * count ? count : (int)position / length;
 }
@@ -469,8 +471,8 @@ static blocks_under find_under(const sublight *sublight, int axis, int tile, int
   return under;
 }
 
-/* The lit blocks of a sub-light in a row of blocks, from block `first` to block `last`: one bit each, block
- * `first` in bit 0. There may be at most 64. */
+/* The lit blocks of a sub-light in a row of blocks, from block `first` to block `last`: one bit each, with
+ * block `first` in bit 0. There may be at most 64 blocks. */
 static uint64_t lit_in_row(const sublights *all, const sublight *sublight, int row, int first, int last) {
   const uint16_t *tiles = sublight->lit + (size_t)(row / 4) * (size_t)all->tiles_x;
   uint64_t bits = 0;
@@ -499,8 +501,8 @@ static uint32_t lit_by_blocks(const sublights *all, const sublight *sublight, co
   return lit;
 }
 
-/* The blocks of a slab's tile that one sub-light reaches. Most tiles are lit everywhere or nowhere, which is
- * tested first. */
+/* The blocks of a slab's tile that light of one sub-light reaches. Most tiles are lit everywhere or nowhere,
+ * so these cases are tested first. */
 static uint32_t lit_by_sublight(const sublights *all, const sublight *sublight, int tile_x, int tile_y) {
   blocks_under columns = find_under(sublight, 0, tile_x, all->tiles_x),
                rows = find_under(sublight, 1, tile_y, all->tiles_y);

@@ -2,18 +2,19 @@
  *
  * M x M sub-lights stand for the light; each is a point (or a direction) with a buffer of its own, parallel
  * to the sheets. A slab is classified once, in the view of the light's centre. Seen from a sub-light, the
- * slab's picture is only scaled and shifted. So only the compositing is repeated: the buffer of each
- * sub-light, whose pixels have 16 bits, is multiplied by the slab's transmittance at the nearest half pixel.
- * The buffers are never resampled. A sample takes the mean over all buffers, each through its own map. */
+ * slab's image is the same image, scaled and shifted. So only the compositing is repeated for each sub-light:
+ * its buffer is multiplied by the slab's transmittance at the nearest half pixel. A buffer's pixels have 16
+ * bits. The buffers are never resampled. A sample takes the mean over all buffers, each through its own
+ * map. */
 #ifndef HL_SHADOW_SUBLIGHTS_SUBLIGHTS_H
 #define HL_SHADOW_SUBLIGHTS_SUBLIGHTS_H
 
 #include "shadow/shadow_buffer.h"
 #include "shadow_sublights/sublight_field.h"
 
-enum { SUBLIGHT_REACH = 31 /* number of pixels beyond a tile of the slab's buffer that are read */ };
+enum { SUBLIGHT_REACH = 31 /* number of pixels beyond a tile of the slab's buffer that may be read */ };
 
-/* Maps pixels of the slab to those of a sub-light, along u and v: scale * (pixel - shift). */
+/* Maps pixels of the slab to pixels of a sub-light, along u and v: scale * (pixel - shift). */
 typedef struct sublight_map {
   double scale[2], shift[2];
 } sublight_map;
@@ -22,22 +23,24 @@ typedef struct sublight_map {
 typedef struct sublight {
   view view;
   sublight_pixel *pixels; /* pixel (0,0) of the first channel of the transmittance; a part of `memory`. The
-                           * other channels follow, each a plane apart, and then the channels of the light
-                           * at the outside */
+                           * other channels follow, each a plane apart; the channels of the light at the
+                           * outside of surfaces come after them */
   uint16_t *lit; /* [tiles]; blocks with light at the end of the last run of slabs; a part of `flags` */
   unsigned char *touched; /* [tiles]; 1 where slabs have absorbed light since the lit blocks were found; a
                            * part of `marks` */
   sublight_job job;       /* the current slab's */
-  bool reaches;           /* the slab lies beyond the sub-light, so that the sub-light's rays reach it */
+  bool reaches;           /* whether the slab lies beyond the sub-light, so that the sub-light's rays reach
+                           * the slab */
   bool shifted;           /* the job's scale is 1 */
-  sublight_map near, far; /* the sub-light's maps for the first and for the last slab of the next run */
-  bool comes; /* the sub-light lies within the next run: its rays reach the run's last slab, but not the first
-               * one */
+  sublight_map near, far; /* near: the sub-light's map for the first slab of the next run; far: its map for
+                           * the last slab of this run */
+  bool comes; /* whether the sub-light lies within the next run: its rays reach the last slab of the run, but
+               * not the first slab */
 } sublight;
 
 typedef struct sublights {
   int count, channels, tiles_x, tiles_y;
-  int kinds; /* kinds of planes: 1, or 2 with the light at the outside of surfaces */
+  int kinds; /* number of kinds of planes: 1, or 2 if there is light at the outside of surfaces */
   size_t stride, plane;
   int slabs; /* composited so far */
   /* in one block, see lay_out_sublights() */
@@ -49,12 +52,12 @@ typedef struct sublights {
   float *moved; /* [kinds][channels][SLAB_COPIES - 1] planes: the slab's copies shifted by half a pixel */
   size_t moved_floats;
   slab_rows *rows; /* [tiles of the slab] */
-  uint32_t
-      *found; /* [tiles of the slab]; the run of slabs for which the tile's lit blocks were found; 0: none */
+  uint32_t *found; /* [tiles of the slab]; the run of slabs for which the tile's lit blocks were found last;
+                    * 0: they were never found */
 } sublights;
 
-/* Sets slab->tile_lit of a tile: the blocks of the next slab that some sub-light still reaches. Only one
- * task works on a tile. */
+/* Sets slab->tile_lit of a tile: the blocks of the next slab that light of some sub-light still reaches. Only
+ * one task works on a tile. */
 void hl_sublights_find_lit(const sublights *sublights, shadow_buffer *slab, size_t tile);
 
 #endif

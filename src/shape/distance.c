@@ -1,8 +1,9 @@
-/* shape/distance.c - signed distances of shapes, of their groups, and bounds of them over a ball.
+/* shape/distance.c - signed distances of shapes and groups, and bounds of these distances over a ball.
  *
- * The distances of single shapes are exact (after I. Quilez, "Distance functions"), so within a ball of
- * radius r the distance differs by at most r from the distance at its centre. Joints are monotone in both
- * distances: the bounds of a joint are the joint of the lower bounds and the joint of the upper bounds. */
+ * The distances of single shapes are exact (after I. Quilez, "Distance functions"), so that within a ball of
+ * radius r the distance differs by at most r from the distance at the ball's centre. Joints are monotone in
+ * both distances. So the bounds of a joint are the joint of the two lower bounds and the joint of the two
+ * upper bounds. */
 #include <math.h>
 
 #include "shape/shape.h"
@@ -18,8 +19,8 @@ static double box_distance(vec3 p, const double half[3], double rounding) {
   return length3(above(x), above(y), above(z)) + fmin(fmax(x, fmax(y, z)), 0) - rounding;
 }
 
-/* A point relative to an axis: its coordinate along the axis from the middle, and its distance from the
- * axis. */
+/* A point relative to an axis: its coordinate along the axis, from the axis's middle, and its distance from
+ * the axis. */
 typedef struct axial {
   double along, away, half;
 } axial;
@@ -42,7 +43,7 @@ static double capsule_distance(const hl_shape *shape, axial q) {
   return length2(above(fabs(q.along) - q.half), q.away) - shape->radius;
 }
 
-/* The distance of a point from a cone: to the nearest of the two flat ends and the slanted side. */
+/* The distance of a point from a cone: that from the nearest of the two flat ends and the slanted side. */
 static double cone_distance(const hl_shape *shape, axial q) {
   double r1 = shape->radius, r2 = shape->end_radius;
   double end_x = q.away - fmin(q.away, q.along < 0 ? r1 : r2), end_y = fabs(q.along) - q.half;
@@ -71,7 +72,7 @@ static double solid_distance(const hl_shape *shape, vec3 p) {
   return INFINITY;
 }
 
-/* The smaller of two distances, rounded where they differ by less than k (Quilez, "Smooth minimum",
+/* The smaller of two distances. It is rounded where the two differ by less than k (Quilez, "Smooth minimum",
  * quadratic). */
 static double smooth_minimum(double a, double b, double k) {
   double h = k > 0 ? above(k - fabs(a - b)) / k : 0;
@@ -90,7 +91,8 @@ static double join(const hl_shape *shape, double before, double distance) {
 
 static double shape_distance(const hl_shape_list *list, size_t index, const unsigned char *live, vec3 parent);
 
-/* All shapes in [first, end) of one list, joined one after the other. p: the list's frame. */
+/* The distance of all shapes in [first, end) of one list, which are joined one after the other. p: a point in
+ * the list's frame. */
 static double list_distance(const hl_shape_list *list, size_t first, size_t end, const unsigned char *live,
                             vec3 p) {
   double distance = INFINITY;
@@ -106,8 +108,8 @@ static double bare_distance(const hl_shape_list *list, size_t index, const unsig
                                        : solid_distance(shape, p);
 }
 
-/* The point of the surface that is nearest to a point. It is found by one step from the point, opposite to
- * the gradient of the distance and as long as the distance. */
+/* The point of the surface that is nearest to a point. It lies at the end of one step from the given point:
+ * opposite to the gradient of the distance, and as long as the distance. */
 static vec3 foot_point(const hl_shape_list *list, size_t index, const unsigned char *live, vec3 p,
                        double distance) {
   double h = list->shapes[index].edge / 64;
@@ -142,7 +144,7 @@ static void mark(size_t first, size_t end, unsigned char *live, unsigned char va
   for (size_t index = first; index < end; index++) live[index] = value;
 }
 
-/* Whether a shape with these bounds can change the distance of the shapes before it. */
+/* Whether a shape with the distances `own` can change the distances `before` of the shapes before it. */
 static bool has_say(const hl_shape *shape, hl_interval before, hl_interval own) {
   switch (shape->operation) {
     case HL_SHAPE_ADD: return own.low < before.high + shape->blend;
@@ -167,7 +169,7 @@ static hl_interval list_bounds(const hl_shape_list *list, size_t first, size_t e
     }
     live[index] = 1;
     if (shape->operation == HL_SHAPE_ADD && all.low >= own.high + shape->blend)
-      mark(first, index, live, 0); /* the earlier shapes are farther away than this one */
+      mark(first, index, live, 0); /* the shapes before this one are all farther away */
     bool turned = shape->operation == HL_SHAPE_SUBTRACT;
     all = (hl_interval){join(shape, all.low, turned ? own.high : own.low),
                         join(shape, all.high, turned ? own.low : own.high)};

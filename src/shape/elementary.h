@@ -1,7 +1,7 @@
 /* shape/elementary.h - exp, log, sine and cosine from plain arithmetic.
  *
- * The C library's functions differ in their last bits from machine to machine, but shapes promise the same
- * bytes everywhere. The functions here are accurate to a few units in the last place. */
+ * The C library's functions differ between machines in their last bits, but shapes must have the same bytes
+ * everywhere. The functions here are accurate to a few units in the last place. */
 #ifndef HL_SHAPE_ELEMENTARY_H
 #define HL_SHAPE_ELEMENTARY_H
 
@@ -40,8 +40,8 @@ static inline double hl_log(double x) {
   return k * HL_LN2 + 2 * s * sum;
 }
 
-/* Sine and cosine of an angle in degrees; exact at multiples of 90. Derived: a turn by the nearest multiple
- * of 90 degrees, and Taylor series of the remaining angle, at most 45 degrees. abs(angle_deg) <= 1e6. */
+/* Sine and cosine of an angle in degrees; exact at multiples of 90. Derived: the angle is a multiple of 90
+ * degrees plus a rest of at most 45 degrees, whose Taylor series are used. abs(angle_deg) <= 1e6. */
 static inline void hl_sine_cosine(double angle_deg, double *sine, double *cosine) {
   int64_t quarter = (int64_t)(angle_deg / 90 + (angle_deg < 0 ? -0.5 : 0.5));
   double x = (angle_deg - 90.0 * (double)quarter) * (3.14159265358979323846 / 180), square = x * x;

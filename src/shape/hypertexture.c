@@ -1,12 +1,11 @@
-/* shape/hypertexture.c - hypertexture: noise that eats into the soft region of a shape.
+/* shape/hypertexture.c - hypertexture: noise that moves the surface of a shape and makes it soft.
  *
- * Derived from Perlin and Hoffert's (1989) D(x (1 + hl_turbulence(x))): the distance of the surface grows by
- * amplitude times the pattern's value, and the density then falls from 1 to 0 over the length `soft` about
- * the new surface. The density is expressed as a distance: the one at which the edge of a solid has the same
- * density.
+ * Derived from Perlin and Hoffert's (1989) D(x (1 + hl_turbulence(x))): the distance from the surface grows
+ * by amplitude times the pattern's value, and the density then falls from 1 to 0 over the length `soft` about
+ * the new surface. A density is expressed by the distance at which the edge of a solid has this density.
  *
- * Noise, turbulence, bias and gain are arithmetic that is the same on every machine (elementary.h).
- * */
+ * Noise, turbulence, bias and gain use only arithmetic that gives the same bits on every machine
+ * (elementary.h). */
 #include "shape/elementary.h"
 #include "shape/shape.h"
 
@@ -35,7 +34,8 @@ void hl_noise_begin(hl_noise *noise, uint64_t seed) {
 static double fade(double t) { return t * t * t * (t * (t * 6 - 15) + 10); }
 static double mix(double t, double a, double b) { return a + t * (b - a); }
 
-/* The dot product of an offset and the hash's gradient; four of the sixteen codes repeat an edge. */
+/* The dot product of an offset and the gradient that the hash chooses. Four of the sixteen codes repeat an
+ * edge. */
 static double slope(int hash, double x, double y, double z) {
   static const double gradient[16][3] = {
       {1, 1, 0}, {-1, 1, 0}, {1, -1, 0}, {-1, -1, 0}, {1, 0, 1}, {-1, 0, 1}, {1, 0, -1}, {-1, 0, -1},
@@ -50,7 +50,7 @@ static int64_t cell(double x) {
 }
 
 double hl_noise_at(const hl_noise *noise, vec3 p) {
-  /* all doubles that are so great are whole numbers, at which noise is 0 */
+  /* doubles as great as this are whole numbers, at which noise is 0 */
   if (!(fabs(p.x) + fabs(p.y) + fabs(p.z) < 0x1p50)) return 0;
   int64_t cx = cell(p.x), cy = cell(p.y), cz = cell(p.z);
   double x = p.x - (double)cx, y = p.y - (double)cy, z = p.z - (double)cz;
@@ -95,8 +95,8 @@ static double softness(const hl_shape *shape) {
   return shape->texture.soft > 0 ? shape->texture.soft : shape->edge;
 }
 
-/* The distance from a solid's surface at which the solid has the same density as a soft shape at the given
- * distance. */
+/* Converts a distance in a soft shape to the distance from a solid's surface at which the solid has the same
+ * density. */
 static double as_edge(const hl_shape *shape, double distance) {
   double at = distance / softness(shape);
   return shape->edge * (at < -0.5 ? -0.5 : at > 0.5 ? 0.5 : at);

@@ -6,7 +6,7 @@
 
 #include "core/vector.h"
 
-/* A permutation of 0 .. 255, written twice. */
+/* A permutation of 0 .. 255, stored twice in succession. */
 typedef struct hl_noise {
   uint8_t permutation[512];
 } hl_noise;
@@ -24,8 +24,9 @@ double hl_noise_sum(const hl_noise *noise, vec3 p, int octaves);
 /* Perlin and Hoffert (1989): sum over octaves i of abs(noise(2^i p)) / 2^i. */
 double hl_turbulence(const hl_noise *noise, vec3 p, int octaves);
 
-/* Perlin and Hoffert (1989): bias_b(t) = t^(ln b / ln 0.5) takes 0.5 to b; gain_g pulls t in 0 to 1 towards
- * 0.5 (g < 0.5) or away from it. Both take 0 to 0 and 1 to 1, and 0.5 changes nothing. */
+/* Perlin and Hoffert (1989): bias_b(t) = t^(ln b / ln 0.5) maps 0.5 to b. gain_g moves t, from 0 to 1,
+ * towards 0.5 (g < 0.5) or away from it. Both leave 0 and 1 unchanged, and change nothing if b or g is
+ * 0.5. */
 double hl_bias(double bias, double t);
 double hl_gain(double gain, double t);
 

@@ -15,7 +15,7 @@ void hl_shape_defaults(hl_shape *shape) {
                       .texture = {.frequency = 1, .octaves = 1, .bias = 0.5, .gain = 0.5, .amplitude = 1}};
 }
 
-/* The rotation of a shape's frame, as mat3_rotation() gives it, but with a sine and cosine that are the
+/* The rotation of a shape's frame. It is that of mat3_rotation(), but with a sine and a cosine that are the
  * same on every machine. */
 static mat3 rotation(const hl_shape *shape) {
   vec3 a = vec3_normalise(vec3_of(shape->rotate_axis));
@@ -29,7 +29,8 @@ static mat3 rotation(const hl_shape *shape) {
 
 static mat3 transpose(mat3 m) { return mat3_from_columns(m.row[0], m.row[1], m.row[2]); }
 
-/* Finds the frames of [first, end); the parent frame's unit is parent_scale units of the volume. */
+/* Finds the frames of the shapes [first, end). parent_scale: the length of a unit of the parent's frame, in
+ * units of the volume. */
 static void place(hl_shape_list *list, size_t first, size_t end, double parent_scale, double voxel_size) {
   for (size_t index = first; index < end; index = list->shapes[index].end) {
     hl_shape *shape = &list->shapes[index];
@@ -44,7 +45,7 @@ static void place(hl_shape_list *list, size_t first, size_t end, double parent_s
 
 void hl_shapes_place(hl_shape_list *list, double voxel_size) { place(list, 0, list->count, 1, voxel_size); }
 
-/* How far a disk of this radius about the unit axis reaches in direction u. */
+/* How far a disk of this radius, perpendicular to the unit axis, reaches in the direction u. */
 static double disk_reach(double radius, vec3 axis, vec3 u) {
   double along = vec3_dot(axis, u), square = vec3_dot(u, u) - along * along;
   return radius * sqrt(square > 0 ? square : 0);
@@ -72,8 +73,8 @@ static double solid_reach(const hl_shape *shape, vec3 u) {
   return -INFINITY;
 }
 
-/* The support function of some shapes: the greatest u.x over all points x of the shapes [first, end). u: a
- * direction in the list's frame. */
+/* The support function of the shapes [first, end): the greatest u.x over all their points x. u: a direction
+ * in the list's frame. */
 static double reach(const hl_shape_list *list, size_t first, size_t end, vec3 u) {
   double farthest = -INFINITY;
   for (size_t index = first; index < end; index = list->shapes[index].end) {
@@ -83,8 +84,8 @@ static double reach(const hl_shape_list *list, size_t first, size_t end, vec3 u)
     vec3 local = vec3_scale(mat3_apply(shape->to_local.linear, u), shape->scale * shape->scale);
     double own = shape->type == HL_SHAPE_GROUP ? reach(list, index + 1, shape->end, local)
                                                : solid_reach(shape, local);
-    double growth = shape->blend / (4 * shape->scale); /* a rounded joint and a texture may extend the shape
-                                                        * by this length */
+    double growth = shape->blend / (4 * shape->scale); /* by this length, a rounded joint and a texture may
+                                                        * extend the shape */
     if (shape->texture.pattern != HL_PATTERN_NONE)
       growth += shape->texture.soft / 2 + fmax(-shape->texture.amplitude, 0);
     own += growth * vec3_length(local) + vec3_dot(u, vec3_of(shape->position));

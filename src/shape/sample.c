@@ -1,8 +1,8 @@
 /* shape/sample.c - from a list of shapes to voxels.
  *
- * Blocks of 8x8x8 voxels are sampled in parallel. Most blocks are far from every surface: bounds of the
- * distance over the block tell so before any voxel is sampled. Densities are kept as 16 bit, orbitals as
- * float. */
+ * Blocks of 8x8x8 voxels are sampled in parallel. Most blocks are far from every surface. Bounds of the
+ * distance over a block tell this before any of its voxels is sampled. Densities are stored in 16 bits,
+ * orbitals as floats. */
 #include <math.h>
 
 #include "core/context.h"
@@ -113,7 +113,7 @@ static void scale_to_one(float *wave, size_t count) {
     for (size_t n = 0; n < count; n++) wave[n] /= greatest;
 }
 
-/* Works layer by layer, so that it can report progress and be cancelled in between. */
+/* Samples layer by layer, so that it can report progress and be cancelled between layers. */
 static hl_status sample(hl_context *context, sampling *s, int threads, const char *subject, hl_error *error) {
   hl_pool *pool = NULL;
   hl_status status = hl_pool_create(context, threads, &pool, error);

@@ -1,10 +1,9 @@
 /* shape/shape.h - solids from signed distances, hypertexture and orbitals, sampled into a volume.
  *
  * A list of shapes is a tree in one array: a group is followed by its members. Each shape has its own frame:
- * scaled, then turned, then moved into the frame of its group, or of the volume. Solids have a density, 1
- * inside, 0 outside, 0.5 on the surface and linear in the distance over HL_SHAPE_EDGE voxels across it, so
- * that kernels which reproduce linear functions reconstruct the surface of a plane exactly.
- */
+ * scaled, then turned, then moved into the frame of its group, or of the volume. Solids have a density: 1
+ * inside, 0 outside and 0.5 on the surface. Across the surface the density is linear in the distance, over
+ * HL_SHAPE_EDGE voxels. So kernels that reproduce linear functions reconstruct a flat surface exactly. */
 #ifndef HL_SHAPE_SHAPE_H
 #define HL_SHAPE_SHAPE_H
 
@@ -17,7 +16,7 @@
 #define HL_SHAPE_MARGIN 2                 /* empty voxels around the shapes on each side of the grid */
 #define HL_SHAPE_VOXELS ((size_t)1 << 30) /* most voxels of a grid */
 #define HL_SHAPE_COUNT \
-  4096 /* greatest number of shapes of a list; members of a group count once for each use of the group */
+  4096 /* greatest number of shapes in a list; the members of a group count each time the group is used */
 
 typedef enum hl_shape_type {
   HL_SHAPE_BOX = 0,
@@ -31,7 +30,7 @@ typedef enum hl_shape_type {
   HL_SHAPE_GROUP = 8
 } hl_shape_type;
 
-/* How a shape joins the shapes before it in its list. */
+/* How a shape is joined to the shapes before it in its list. */
 typedef enum hl_shape_operation {
   HL_SHAPE_ADD = 0,
   HL_SHAPE_SUBTRACT = 1,
@@ -44,7 +43,7 @@ typedef enum hl_shape_pattern {
   HL_PATTERN_TURBULENCE = 2
 } hl_shape_pattern;
 
-/* Perlin and Hoffert (1989): noise that changes the density near a shape's surface. Lengths are in the
+/* Noise that changes the density near a shape's surface (Perlin and Hoffert, 1989). Lengths are in the
  * shape's own frame. */
 typedef struct hl_hypertexture {
   hl_shape_pattern pattern;
@@ -54,31 +53,31 @@ typedef struct hl_hypertexture {
   double
       amplitude; /* depth by which the surface recedes where the pattern's value is 1; negative: it grows */
   double soft;   /* length over which the density falls from 1 to 0; 0: HL_SHAPE_EDGE voxels */
-  int strands;   /* for fur: the pattern's value along a normal is everywhere the value where the normal meets
-                  * the surface */
+  int strands;   /* for fur: along a normal, the pattern has everywhere the value that it has where the normal
+                  * meets the surface */
   hl_noise noise;
 } hl_hypertexture;
 
 typedef struct hl_shape {
   hl_shape_type type;
   hl_shape_operation operation;
-  double blend; /* length over which the joint with the shapes before is rounded; 0: sharp */
+  double blend; /* length over which the joint with the earlier shapes is rounded; 0: the joint is sharp */
   double position[3];
   double rotate_axis[3];
   double rotate_angle_deg;
   double scale;
   double size[3];        /* box: full edges; plane: x, y and thickness */
   double from[3], to[3]; /* cylinder, capsule, cone: ends of the axis */
-  double radius;         /* radius of a sphere, of a torus (to the tube's middle), of an orbital (where it is
-                          * cut off), or of a cone at `from` */
+  double radius;         /* radius of a sphere; of a torus, to the tube's middle; of an orbital, where it is
+                          * cut off; of a cone, at `from` */
   double end_radius;     /* cone: radius at `to` */
   double tube_radius;    /* torus */
-  double rounding;       /* box, plane, cylinder: radius of the edges, inside the given size */
+  double rounding;       /* box, plane, cylinder: radius of the rounded edges; the size stays as given */
   int quantum[3];        /* orbital: quantum numbers n, l, m */
   hl_hypertexture texture;
-  size_t end;       /* index of the first shape that is neither this one nor one of its members */
-  affine3 to_local; /* the map from the parent's frame to the shape's own; like `edge`, hl_shapes_place() sets
-                     * it */
+  size_t end;       /* index of the first shape after this one and its members */
+  affine3 to_local; /* the map from the parent's frame to the shape's own frame; hl_shapes_place() sets it,
+                     * and sets `edge` */
   double edge;      /* length of HL_SHAPE_EDGE voxels in the shape's own frame */
 } hl_shape;
 
@@ -89,7 +88,8 @@ typedef struct hl_shape_list {
 
 void hl_shape_defaults(hl_shape *shape);
 
-/* The grid that holds all shapes, with an empty margin: voxel centres at whole multiples of voxel_size. */
+/* The grid that holds all shapes and an empty margin. The centres of its voxels lie at whole multiples of
+ * voxel_size. */
 typedef struct hl_shape_grid {
   double voxel_size;
   int64_t first[3]; /* the first voxel's centre, in voxels */
@@ -115,24 +115,23 @@ typedef struct hl_interval {
  * of `edge` both ways. live: [count], from hl_shapes_bounds(); null: all shapes. */
 double hl_shapes_distance(const hl_shape_list *list, const unsigned char *live, vec3 p);
 
-/* Bounds of hl_shapes_distance() for all points within `radius` of p. live: set for the shapes that can
- * affect the distance there. */
+/* Finds bounds of hl_shapes_distance() for all points within `radius` of p. live: set to whether each shape
+ * can affect the distance there. */
 hl_interval hl_shapes_bounds(const hl_shape_list *list, vec3 p, double radius, unsigned char *live);
 
 /* The distance from the surface of a shape with its texture. distance: the distance without the texture. p: a
- * point of the shape's own frame. foot: the surface's nearest point. */
+ * point of the shape's own frame. foot: the point of the surface that is nearest to p. */
 double hl_hypertexture_distance(const hl_shape *shape, double distance, vec3 p, vec3 foot);
 hl_interval hl_hypertexture_bounds(const hl_shape *shape, hl_interval distance);
-/* Whether a texture matters at a distance from its surface: false where the distance is too large or too
- * small for the texture to change the density. */
+/* Whether a texture can change the density at this distance from the surface of its shape. */
 bool hl_hypertexture_matters(const hl_shape *shape, double distance);
 
-/* The real hydrogen-like wave function, not normalised. p: own frame. */
+/* The real hydrogen-like wave function, not normalised. p: a point of the shape's own frame. */
 double hl_orbital_at(const hl_shape *shape, vec3 p);
 
 /* Makes a volume of a list of shapes, which hl_shapes_place() has placed for the grid's voxels. Orbitals are
- * scaled so that their greatest magnitude is 1. threads: 0 for one per processor. subject: starts the error
- * lines. */
+ * scaled so that their greatest magnitude is 1. threads: 0 for one per processor. subject: the beginning of
+ * error lines. */
 hl_status hl_shapes_sample(hl_context *context, const hl_shape_list *list, const hl_shape_grid *grid,
                            int threads, const char *subject, hl_volume **volume, hl_error *error);
 

@@ -1,7 +1,7 @@
 /* simd/gathers.h - sixteen lanes of numbers from sixteen positions in a table.
  *
- * Words, floats, rows, pairs and squares are gathered by as few loads as an instruction set allows. The
- * values are the same with all instruction sets. */
+ * The functions gather words, floats, rows, pairs and squares, by as few loads as an instruction set allows.
+ * The results are the same with all instruction sets. */
 #ifndef HL_SIMD_GATHERS_H
 #define HL_SIMD_GATHERS_H
 
@@ -25,9 +25,9 @@ LANES_INLINE void lanes_store_offsets(lanes_offsets *offsets, lanes_int value) {
   __asm__ volatile("" : : "r"(offsets) : "memory"); /* keeps the compiler from using the register instead */
 }
 
-/* Sixteen 4-byte loads at base + offset (bytes). Plain loads: gather instructions were measured four times
- * slower on processors with the mitigations against data sampling. (clang 19 nevertheless generates some for
- * AVX-512.) */
+/* Sixteen 4-byte loads at base + offset (bytes). These are plain loads, because gather instructions were four
+ * times slower on processors with the mitigations against data sampling (measured). clang 19 nevertheless
+ * generates some gather instructions for AVX-512. */
 LANES_CALL lanes_int lanes_load_words(const unsigned char *base, const lanes_offsets *offsets) {
 #define LANES_WORD(lane) lanes_word(base + offsets->at[lane])
   return (lanes_int){LANES_WORD(0),  LANES_WORD(1),  LANES_WORD(2),  LANES_WORD(3),
@@ -91,7 +91,7 @@ LANES_INLINE void columns_of_quads(const __m512 rows[4], __m512 columns[4]) {
 }
 #endif
 
-/* table[index] to table[index + 3]: one load a lane. */
+/* Gathers table[index] to table[index + 3] as quad[0] to quad[3], by one load for each lane. */
 LANES_CALL void lanes_gather_quads(const float *table, lanes_int index, lanes quad[4]) {
 #if defined(__AVX512F__)
   lanes_offsets offsets;
@@ -127,15 +127,16 @@ LANES_CALL void lanes_gather_quads(const float *table, lanes_int index, lanes qu
 #endif
 }
 
-/* Gathers table[4 index + c] as first[c] and table[4 (index + 1) + c] as second[c], for c from 0 to columns
- * - 1. It takes one or two loads for each lane, and not two for each column. */
+/* Gathers table[4 index + c] as first[c] and table[4 (index + 1) + c] as second[c], for c from 0 to columns -
+ * 1. It takes one or two loads for each lane, where separate columns would take two loads each. */
 LANES_INLINE void gather_rows_of_four(const float *table, lanes_int index, int columns, lanes *first,
                                       lanes *second) {
 #if defined(__AVX512F__)
   lanes_offsets offsets;
   lanes_store_offsets(&offsets, index * 4);
-  __m512 of_half[2][4]; /* of_half[h][c]: column c for eight lanes of half h, in quarters of the register:
-                         * four lanes' first rows, then their second rows, and so for the next four lanes */
+  __m512 of_half[2][4]; /* of_half[h][c]: column c for the eight lanes of half h, in quarters of the register:
+                         * the first rows of four lanes, the second rows of these lanes, then the same for the
+                         * next four lanes */
   for (int half = 0; half < 2; half++) {
     const int32_t *at = offsets.at + 8 * half;
     __m512 pairs[4];
@@ -170,8 +171,8 @@ LANES_CALL void lanes_gather_quad_pairs(const float *table, lanes_int index, lan
 }
 
 #if defined(__AVX2__)
-/* Two pairs of floats from any addresses: by memcpy, as loading a double would require alignment to eight
- * bytes. */
+/* Two pairs of floats from any addresses. They are loaded by memcpy(), because loading a double would require
+ * alignment to eight bytes. */
 LANES_INLINE __m128 two_pairs(const float *table, int32_t first, int32_t second) {
   double pair[2];
   memcpy(&pair[0], table + first, sizeof(double));
@@ -225,14 +226,14 @@ LANES_INLINE void lanes_gather_short_pairs(const uint16_t *table, lanes_int inde
   *second = pair >> 16 & 0xffff;
 }
 
-/* The first column and row, in a table, of sixteen squares of two by two numbers. */
+/* Sixteen squares of two by two numbers in a table: the column and the row where each square begins. */
 typedef struct lanes_squares {
   lanes_int column, row;
 } lanes_squares;
 
 #if defined(__AVX512BW__)
-/* The least column and the least row of the active lanes, 16 bits each, in every lane of the result. Columns
- * and rows must be below 65535. */
+/* The least column and the least row of the active lanes, in 16 bits each. Every lane of the result holds
+ * both. Columns and rows must be below 65535. */
 LANES_INLINE __m512i least_corner(__m512i corners, __mmask16 active) {
   __m512i held = _mm512_mask_mov_epi32(_mm512_set1_epi32(-1), active, corners);
   __m256i of_eight = _mm256_min_epu16(_mm512_castsi512_si256(held), _mm512_extracti64x4_epi64(held, 1));
@@ -249,8 +250,8 @@ LANES_INLINE __m512i four_rows(const uint16_t *from, size_t stride) {
   return _mm512_inserti32x4(rows, _mm_loadu_si128((const __m128i *)(const void *)(from + 3 * stride)), 3);
 }
 
-/* Takes the squares of all active lanes from one window of eight rows of eight numbers. False where the
- * squares are too far apart for this. At least one lane must be active. */
+/* Takes the squares of all active lanes from one window of eight rows of eight numbers. Returns false where
+ * the squares are too far apart for one window. At least one lane must be active. */
 LANES_INLINE int squares_in_window(const uint16_t *table, size_t stride, lanes_squares squares,
                                    uint32_t active, __m512i pair[2]) {
   __m512i corners = _mm512_or_si512((__m512i)squares.column, _mm512_slli_epi32((__m512i)squares.row, 16));
@@ -270,8 +271,8 @@ LANES_INLINE int squares_in_window(const uint16_t *table, size_t stride, lanes_s
 #endif
 
 /* Gathers a square of numbers for each active lane: table[stride * row + column] as square[0], the next
- * number in the row as square[1], and the two numbers below them in the next row as square[2] and
- * square[3]. Columns and rows are below 65535; up to six further ones may be read. */
+ * number in the row as square[1], and the two numbers below them in the next row as square[2] and square[3].
+ * Columns and rows must be below 65535; up to six further columns and rows may be read. */
 LANES_CALL void lanes_gather_short_squares(const uint16_t *table, size_t stride, lanes_squares squares,
                                            uint32_t active, lanes_int square[4]) {
 #if defined(__AVX512BW__)

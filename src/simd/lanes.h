@@ -1,9 +1,10 @@
 /* simd/lanes.h - sixteen floats at a time, in one source for every instruction set.
  *
- * The compiler's vector extensions give one 512-bit, two 256-bit or four 128-bit operations for each
- * line below, always the same IEEE operations in the same order: the bytes of a picture do not depend
- * on the processor. Only what the extensions lack (minimum, gather, fused multiply-add) uses intrinsics.
- * Products and sums are fused where lanes_fma() says so and nowhere else (-ffp-contract=off). */
+ * The compiler's vector extensions turn each line below into one 512-bit, two 256-bit or four 128-bit
+ * operations. These are always the same IEEE operations in the same order, so the bytes of a picture do not
+ * depend on the processor. Intrinsics are used only for operations that the extensions lack (minimum, gather,
+ * fused multiply-add). Products and sums are fused where lanes_fma() says so and nowhere else
+ * (-ffp-contract=off). */
 #ifndef HL_SIMD_LANES_H
 #define HL_SIMD_LANES_H
 
@@ -27,9 +28,9 @@ typedef int32_t lanes_int __attribute__((vector_size(64)));
 
 #define LANES_INLINE static inline __attribute__((always_inline, unused))
 
-/* LANES_CALL is for functions that take a few instructions with AVX2 and many without. Without AVX2 these
- * functions are called and not inlined, so that the baseline's code stays small and is quick to compile
- * under sanitizers. */
+/* LANES_CALL marks functions that take few instructions with AVX2 and many without it. Without AVX2 these
+ * functions are not inlined, so that the baseline's code stays small, and compiles quickly under
+ * sanitizers. */
 #if defined(__AVX2__)
 #define LANES_CALL LANES_INLINE
 #else
@@ -58,7 +59,8 @@ LANES_INLINE lanes lanes_load_short(const uint16_t *p) {
   return __builtin_convertvector(lanes_load_short_int(p), lanes);
 }
 
-/* A 4x4 block of pixels: lane 4*row + column; rows are stride floats apart. */
+/* Loads a 4x4 block of pixels: pixel (row, column) goes to lane 4*row + column. Rows are `stride` floats
+ * apart. */
 LANES_INLINE lanes lanes_load_block(const float *p, size_t stride) {
   lanes v;
   memcpy((char *)&v, p, 16);
@@ -74,8 +76,8 @@ LANES_INLINE void lanes_store_block(float *p, size_t stride, lanes v) {
   memcpy(p + 3 * stride, (char *)&v + 48, 16);
 }
 
-/* Chooses a or b in each lane. mask: in each lane all bits are set (a) or all are clear (b), as comparisons
- * give them. */
+/* Chooses a or b in each lane. mask: as comparisons give it: all bits of a lane are set (choose a), or all
+ * bits are clear (choose b). */
 LANES_INLINE lanes lanes_select(lanes_int mask, lanes a, lanes b) {
   return (lanes)(((lanes_int)a & mask) | ((lanes_int)b & ~mask));
 }
@@ -103,8 +105,8 @@ LANES_CALL lanes_int lanes_from_bits(uint32_t bits) {
   return (lanes_set_int((int32_t)bits) & one_bit) != 0;
 }
 
-/* The lesser and the greater number: a < b ? a : b, and a > b ? a : b. Where either is NaN, the result is
- * b, as with the processor's instructions. */
+/* The lesser number, a < b ? a : b, and the greater number, a > b ? a : b. Where either number is NaN, the
+ * result is b, as with the processor's instructions. */
 LANES_CALL lanes lanes_min(lanes a, lanes b) {
 #if defined(__AVX512F__)
   return (lanes)_mm512_min_ps((__m512)a, (__m512)b);
@@ -155,12 +157,12 @@ LANES_INLINE lanes_int lower_words(lanes_double x) {
   return __builtin_shufflevector(words, words, 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
 }
 
-/* a b + c, rounded once, computed in doubles. In doubles a product of floats is exact, but a sum is not.
- * Rounding the sum to a float is wrong only where the sum is not exact and lies in the middle between two
- * floats; among subnormal floats it may be wrong wherever the sum is not exact. There the sum is first
- * rounded to odd: of the two doubles around the exact sum, the double with an odd last bit is taken, which
- * then rounds to the right float (Boldo and Melquiond, "Emulation of a FMA and correctly rounded sums",
- * 2008). */
+/* a b + c, rounded once, computed in doubles. In doubles, the product of two floats is exact, but the sum may
+ * be rounded. Rounding the sum to a float is wrong only where the sum is not exact and lies in the middle
+ * between two floats; among subnormal floats it may be wrong wherever the sum is not exact. In these cases
+ * the sum is first rounded to odd: of the two doubles around the exact sum, the double with an odd last bit
+ * is taken, which then rounds to the right float (Boldo and Melquiond, "Emulation of a FMA and correctly
+ * rounded sums", 2008). */
 LANES_CALL lanes fma_in_doubles(lanes a, lanes b, lanes c) {
   lanes_double product = __builtin_convertvector(a, lanes_double) * __builtin_convertvector(b, lanes_double);
   lanes_double addend = __builtin_convertvector(c, lanes_double), sum = product + addend;
@@ -225,8 +227,8 @@ LANES_INLINE lanes lanes_clamp(lanes x, float low, float high) {
 }
 LANES_INLINE lanes lanes_abs(lanes x) { return (lanes)((lanes_int)x & lanes_set_int(0x7fffffff)); }
 
-/* Multiplies two vectors, each lane of which holds two signed 16-bit numbers. A lane of the result is the sum
- * of the lane's two products. */
+/* Multiplies two vectors of 16-bit numbers. A lane holds two signed 16-bit numbers. A lane of the result is
+ * the sum of the lane's two products. */
 LANES_INLINE lanes_int lanes_multiply_shorts(lanes_int a, lanes_int b) {
 #if defined(__AVX512BW__)
   return (lanes_int)_mm512_madd_epi16((__m512i)a, (__m512i)b);
@@ -250,8 +252,8 @@ LANES_INLINE lanes_int lanes_multiply_shorts(lanes_int a, lanes_int b) {
 #endif
 }
 
-/* Joins the 16-bit numbers of two vectors to pairs: a number from of[0], and the number at the same place in
- * of[1]. Of each eight pairs the first four go to pairs[0], the last four to pairs[1]. */
+/* Joins the 16-bit numbers of two vectors to pairs. A pair is a number from of[0] and the number at the same
+ * place in of[1]. Of every eight pairs, the first four go to pairs[0] and the last four to pairs[1]. */
 LANES_INLINE void lanes_unpack_shorts(const lanes_int of[2], lanes_int pairs[2]) {
 #if defined(__AVX512BW__)
   pairs[0] = (lanes_int)_mm512_unpacklo_epi16((__m512i)of[0], (__m512i)of[1]);
@@ -316,7 +318,7 @@ LANES_INLINE void lanes_store_short_int(uint16_t *p, lanes_int v) {
 LANES_INLINE void lanes_store_short(uint16_t *p, lanes v) {
   lanes_store_short_int(p, lanes_truncate(lanes_min(v, lanes_set(65535.0f)) + 0.5f));
 }
-/* Greatest integer not above x; |x| < 2^31. */
+/* The greatest integer not above x; |x| must be below 2^31. */
 LANES_CALL lanes_int lanes_floor(lanes x) {
 #if defined(__AVX512F__)
   return (lanes_int)_mm512_cvt_roundps_epi32((__m512)x, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
@@ -332,9 +334,9 @@ LANES_CALL lanes_int lanes_floor(lanes x) {
 #endif
 }
 
-/* 2^x for |x| < 126, with a relative error below 2e-7: x = n + f, f in [-1/2, 1/2], 2^f by the polynomial
- * of degree 5 with 2^0 = 1 whose greatest relative error there is least (derived: 9.2e-8 by Remez'
- * exchange, 1.7e-7 in floats), 2^n by the exponent bits. */
+/* 2^x for |x| < 126, with a relative error below 2e-7. x is divided into n + f, with f in [-1/2, 1/2]. 2^n is
+ * made by the exponent bits. 2^f is a polynomial of degree 5 with the value 1 at 0; of these, it has the
+ * least greatest relative error (derived: 9.2e-8 by Remez' exchange, 1.7e-7 in floats). */
 LANES_CALL lanes lanes_exp2(lanes x) {
   lanes_int n = lanes_floor(x + 0.5f);
   lanes f = x - lanes_from_int(n);
@@ -349,8 +351,8 @@ LANES_CALL lanes lanes_exp2(lanes x) {
 LANES_CALL lanes lanes_exp_negative(lanes x) {
   return lanes_exp2(lanes_max(x * -1.44269504089f, lanes_set(-123.0f)));
 }
-/* log2(x) for normal x > 0, absolute error below 1e-6: x = 2^n m, m in [sqrt(1/2), sqrt(2)), and
- * ln m = 2 atanh((m-1)/(m+1)) by its odd series to degree 9 (derived). */
+/* log2(x) for normal x > 0, with an absolute error below 1e-6. x is 2^n m, with m in [sqrt(1/2), sqrt(2)). ln
+ * m = 2 atanh((m-1)/(m+1)) is computed by its odd series to degree 9 (derived). */
 LANES_CALL lanes lanes_log2(lanes x) {
   lanes_int bits = (lanes_int)x - 0x3f3504f3;
   lanes_int n = bits >> 23;

@@ -18,14 +18,14 @@ LANES_INLINE __m128i narrow_bytes(lanes_int x) {
   return _mm_packs_epi16(_mm256_castsi256_si128(shorts), _mm256_extracti128_si256(shorts, 1));
 }
 
-/* Whether any number, taken as unsigned, is above a limit. */
+/* Whether any number, as an unsigned number, is above a limit. */
 LANES_INLINE int any_short_above(__m256i x, int limit) {
   __m256i above = _mm256_subs_epu16(x, _mm256_set1_epi16((short)limit));
   return !_mm256_testz_si256(above, above);
 }
 
-/* Narrow numbers in memory. narrow_pair() points at the number of lane k of a half of the lanes; the number
- * of lane k + 4 of this half follows NARROW_SECOND numbers later. */
+/* Narrow numbers in memory. narrow_pair() points at the number of lane k in a half of the lanes. The number
+ * of lane k + 4 of this half lies NARROW_SECOND numbers after it. */
 typedef struct narrow_offsets {
   _Alignas(32) uint16_t at[LANES];
 } narrow_offsets;

@@ -1,4 +1,4 @@
-/* simd/packing.h - packing: chosen lanes of a vector moved side by side, and back. */
+/* simd/packing.h - packing: moves chosen lanes of a vector side by side, and back. */
 #ifndef HL_SIMD_PACKING_H
 #define HL_SIMD_PACKING_H
 
@@ -16,7 +16,7 @@ LANES_INLINE lanes_int lanes_from_nibbles(uint64_t nibbles) {
   return (lanes_int)(both >> shifts & 15);
 }
 
-/* Each of sixteen bits in a nibble of its own. */
+/* Spreads sixteen bits: each gets a nibble of its own. */
 LANES_INLINE uint64_t spread_bits(uint64_t bits) {
   bits = (bits | bits << 24) & 0x000000ff000000ffu;
   bits = (bits | bits << 12) & 0x000f000f000f000fu;
@@ -24,9 +24,10 @@ LANES_INLINE uint64_t spread_bits(uint64_t bits) {
   return (bits | bits << 3) & NIBBLE_ONES;
 }
 
-/* The numbers of the chosen nibbles, moved together. Each number moves down by the number of nibbles below it
- * that are not chosen, in steps of one, two, four and eight nibbles (Warren, "Hacker's Delight", compress).
- * chosen: 1 in each chosen nibble. before: for each nibble, how many chosen nibbles lie below it. */
+/* The numbers of the chosen nibbles, in consecutive nibbles. Each number moves down by as many nibbles as
+ * there are nibbles below it that are not chosen, in steps of one, two, four and eight nibbles (Warren,
+ * "Hacker's Delight", compress). chosen: 1 in each chosen nibble. before: for each nibble, the number of
+ * chosen nibbles below it. */
 LANES_INLINE uint64_t chosen_numbers(uint64_t chosen, uint64_t before) {
   uint64_t all = chosen * 15, numbers = NIBBLE_NUMBERS & all, ways = (NIBBLE_NUMBERS - before) & all;
   for (int step = 0; step < 4; step++) {
@@ -38,7 +39,7 @@ LANES_INLINE uint64_t chosen_numbers(uint64_t chosen, uint64_t before) {
 }
 #endif
 
-/* How some of sixteen lanes, the chosen ones, are moved to the lanes from `at` on, in their order. */
+/* How the chosen ones of sixteen lanes are moved, in their order, to the lanes from `at` on. */
 typedef struct lanes_packing {
 #if defined(__AVX512F__)
   __m512i from; /* for each packed lane, the lane from which it comes */
@@ -70,7 +71,7 @@ LANES_CALL lanes_packing lanes_packing_of(uint32_t bits, int at) {
   return packing;
 }
 
-/* Returns `into`, in which the chosen lanes of x have replaced lanes from `at` on. */
+/* Packs: returns `into`, in which lanes from `at` on have been replaced by the chosen lanes of x. */
 LANES_CALL lanes lanes_pack(const lanes_packing *packing, lanes into, lanes x) {
 #if defined(__AVX512F__)
   return (lanes)_mm512_mask_permutexvar_ps((__m512)into, packing->packed, packing->from, (__m512)x);
@@ -79,7 +80,7 @@ LANES_CALL lanes lanes_pack(const lanes_packing *packing, lanes into, lanes x) {
 #endif
 }
 
-/* Moves packed lanes back to where they came from; all other lanes are 0. */
+/* Unpacks: moves packed lanes back to the lanes from which they came; all other lanes are 0. */
 LANES_CALL lanes lanes_unpack(const lanes_packing *packing, lanes x) {
 #if defined(__AVX512F__)
   return (lanes)_mm512_maskz_permutexvar_ps(packing->bits, packing->to, (__m512)x);

@@ -4,14 +4,14 @@
 
 #include <halflight/compose.h>
 
-/* What a page has chosen by name for its scene. A null text: no choice. */
+/* Choices that a page makes by name for its scene. A text is null where the page has made no choice. */
 typedef struct composed_choices {
-  const char *look; /* as the option "look" of hl_scene_compose() */
-  const char *rig;  /* as the option "light-rig" */
+  const char *look; /* a value of the option "look" of hl_scene_compose() */
+  const char *rig;  /* a value of the option "light-rig" */
 } composed_choices;
 
-/* Replaces the scene by the scene with the choices. context: a context that opens no file. After an error
- * *scene is unchanged. */
+/* Replaces *scene by a copy in which the choices are applied. context: a context that opens no file. After an
+ * error *scene is unchanged. */
 hl_status compose_choices(hl_context *context, const composed_choices *choices, hl_scene **scene,
                           hl_error *error);
 

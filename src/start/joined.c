@@ -13,7 +13,7 @@ hl_status frame_anew(hl_scene_description *description, hl_error *error) {
   return status == HL_OK ? hl_camera_frame_view(description, &view, 1, &description->camera, error) : status;
 }
 
-/* Makes a scene of the scene and more meshes. replaced: the scene's own meshes are left out. */
+/* Replaces *scene by a copy with more meshes. replaced: whether the scene's own meshes are left out. */
 static hl_status add_meshes(hl_context *context, const hl_scene_mesh *added, size_t count, bool bare,
                             bool replaced, hl_scene **scene, hl_error *error) {
   hl_scene_description description = *hl_scene_describe(*scene);
@@ -37,8 +37,8 @@ static hl_status add_meshes(hl_context *context, const hl_scene_mesh *added, siz
   return HL_OK;
 }
 
-/* Makes a scene to which meshes are added where there is no volume. It has the default camera and light, and
- * one triangle, which the meshes replace. */
+/* Makes a scene for meshes without a volume. It has the default camera and light, and one triangle as a
+ * placeholder, which the meshes will replace. */
 static hl_status begin_scene(hl_context *context, hl_scene **scene, hl_error *error) {
   static const char text[] =
       "{\"halflight\": 1, \"meshes\": [{\"vertices\": [[0, 0, 0], [1, 0, 0], [0, 1, 1]], "
@@ -67,7 +67,8 @@ hl_status join_meshes(hl_context *context, const hl_scene_mesh *added, size_t co
 
 /* ---- scenes ---- */
 
-/* Adds meshes. A mesh that has the first of the colours for meshes gets the next colour. */
+/* Adds meshes to a scene. A mesh with the first standard colour gets the one that belongs to its place in the
+ * list instead. */
 static hl_status join_colored(hl_context *context, const hl_scene_mesh *meshes, size_t count,
                               hl_scene **scene, hl_error *error) {
   const size_t before = hl_scene_describe(*scene)->mesh_count;

@@ -1,4 +1,4 @@
-/* start/joined.h - files that are added to a scene: meshes, and all that another scene holds. */
+/* start/joined.h - adds meshes, or the content of another scene, to a scene. */
 #ifndef HL_START_JOINED_H
 #define HL_START_JOINED_H
 
@@ -6,23 +6,24 @@
 
 #include <halflight/scene.h>
 
-/* Loads a mesh. It has the colour that hl_surface_color() gives for `index`, or white if it has colours of
- * its own. The caller releases mesh->mesh. */
+/* Loads a mesh. Its colour is hl_surface_color(index), or white if the file states colours. The caller
+ * releases mesh->mesh. */
 hl_status load_mesh(hl_context *context, const char *path, size_t index, hl_scene_mesh *mesh,
                     hl_error *error);
 
-/* Adds meshes to a scene; where *scene is null, makes a scene for them. bare: whether the camera is to frame
- * the meshes, too. */
+/* Adds meshes to a scene. If *scene is null, makes a scene for the meshes. bare: whether the camera is moved
+ * so that it frames the meshes, too. */
 hl_status join_meshes(hl_context *context, const hl_scene_mesh *added, size_t count, bool bare,
                       hl_scene **scene, hl_error *error);
 
-/* Moves the camera along its direction and zooms so that everything in the scene now fits into the picture.
+/* Moves the camera along its viewing direction, and changes its zoom, so that the picture shows everything in
+ * the scene.
  */
 hl_status frame_anew(hl_scene_description *description, hl_error *error);
 
-/* Makes one scene of two: the volumes and meshes of the first scene, and after them the volumes and meshes
- * of the second. Light, background and settings come from the first scene, whose camera keeps its direction
- * and frames everything. */
+/* Makes one scene of two: the volumes and meshes of the first scene, and after them the volumes and meshes of
+ * the second. Light, background and settings are those of the first scene. Its camera keeps its direction,
+ * and is moved so that it frames everything. */
 hl_status join_scenes(hl_context *context, hl_scene *base, hl_scene *added, hl_scene **scene,
                       hl_error *error);
 

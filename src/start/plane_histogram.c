@@ -1,8 +1,9 @@
 /* start/plane_histogram.c - counts voxels by value and gradient. The page's editor of transfer functions of
  * two numbers shows the counts under its boxes.
  *
- * Gradients are differences of neighbours, per unit of the file's world. Steps between voxels are taken to be
- * at right angles, even where they are not. Large volumes are counted in equal steps. */
+ * Gradients are differences of neighbouring voxels per unit of length in the file. The grid's axes are
+ * treated as perpendicular, even if they are not. In large volumes only every n-th voxel along each axis is
+ * counted. */
 #include "plane_histogram.h"
 
 #include <math.h>
@@ -10,16 +11,16 @@
 
 enum { VALUES = 64, GRADIENTS = 48, FINE = 4096 };
 
-/* Approximate number of voxels that are looked at. */
+/* The number of voxels that are counted, approximately. */
 static const double SAMPLES = 200000;
-/* The fraction of voxels whose gradients are within the drawing. */
+/* The histogram ends at the gradient that this fraction of the voxels does not exceed. */
 static const double WITHIN = 0.9995;
 
 typedef struct sample {
   float value, gradient;
 } sample;
 
-/* How a large volume is sampled: on a coarser grid, whose points are `step` voxels apart. */
+/* The samples of a volume: every `step`-th voxel along each axis. */
 typedef struct sampling {
   const hl_volume *volume;
   const hl_volume_info *info;
@@ -59,7 +60,7 @@ static int bin_of(double x, double most, int bins) {
   return bin < 0 ? 0 : bin < bins ? bin : bins - 1;
 }
 
-/* The gradient below which the fraction WITHIN of the sampled gradients lies. */
+/* The gradient that a fraction WITHIN of the sampled gradients does not exceed. */
 static double greatest_drawn(const sampling *of) {
   size_t counts[FINE] = {0}, within = 0;
   double most = 0;

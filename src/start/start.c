@@ -28,8 +28,8 @@ static void put_numbers(FILE *out, const double *numbers, size_t count) {
   fputc(']', out);
 }
 
-/* The grid of voxels: `axes` are the world steps of one voxel, so that the page can find the box of the
- * voxels. */
+/* Writes the grid of voxels. `axes` are the steps from a voxel to its neighbours, in the world, from which
+ * the page finds the box of the voxels. */
 static void put_grid(FILE *out, const hl_volume_info *info) {
   fprintf(out, "\"dimensions\":[%zu,%zu,%zu],\"origin\":", info->dimensions[0], info->dimensions[1],
           info->dimensions[2]);
@@ -44,7 +44,7 @@ static void put_grid(FILE *out, const hl_volume_info *info) {
   fputc(']', out);
 }
 
-/* The grid of the label map that masks a volume; null: there is none. */
+/* Writes the grid of the label map that masks a volume, or null if there is none. */
 static void put_mask(FILE *out, const hl_volume *mask) {
   hl_volume_info info = {.struct_size = sizeof info};
   if (mask == NULL || hl_volume_get_info(mask, &info) != HL_OK) {
@@ -56,7 +56,7 @@ static void put_mask(FILE *out, const hl_volume *mask) {
   fputc('}', out);
 }
 
-/* Whether the volume has the automatic cuts that remove its holder. */
+/* Whether the volume's cuts are the automatic ones, which remove the table or another holder. */
 static bool has_chosen_cuts(hl_context *context, const hl_scene_volume *volume) {
   hl_scene *chosen = NULL;
   if (volume->cut_count == 0 ||
@@ -110,7 +110,8 @@ static void put_volume(FILE *out, hl_context *context, const hl_scene_volume *vo
   fputs("}", out);
 }
 
-/* The choices of an option that scenes are composed by; none where there is no such option. */
+/* Writes the names of the choices of one of the options by which scenes are composed. Writes an empty list if
+ * there is no such option. */
 static void put_choices(FILE *out, const char *name, const char *option) {
   const hl_setting_choice *choices = hl_option_choices(option);
   fprintf(out, ",\"%s\":[", name);

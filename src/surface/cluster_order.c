@@ -31,7 +31,7 @@ static uint32_t spread(uint32_t bits) {
 static uint32_t code_of(const ordering *ordering, const float *place) {
   uint32_t code = 0;
   for (int axis = 0; axis < 3; axis++) {
-    /* a coordinate that is not a number counts as 0 */
+    /* a coordinate that is NaN counts as 0 */
     float at = (place[axis] - ordering->low[axis]) * ordering->scale;
     uint32_t cell = at > 0 ? at < DIGIT - 1 ? (uint32_t)at : DIGIT - 1 : 0;
     code |= spread(cell) << axis;

@@ -18,12 +18,12 @@ static uint16_t filled_up(uint32_t vertices) { return (uint16_t)((vertices + 15)
 
 /* ---- memory ---- */
 
-/* The numbers of clusters that a scene's meshes have. */
+/* Numbers of the clusters and primitives of a scene's meshes. */
 typedef struct cluster_counts {
-  size_t all, with_corners; /* number of all clusters, and number of clusters of primitives that have
-                             * corners */
+  size_t all, with_corners; /* all: number of all clusters; with_corners: number of the clusters whose
+                             * primitives have corners */
   size_t primitives;
-  uint64_t most; /* the greatest number of primitives of one kind in a mesh */
+  uint64_t most; /* the greatest number of primitives of one kind in one mesh */
 } cluster_counts;
 
 /* Counts the primitives of kind number k that a mesh has. */
@@ -81,8 +81,8 @@ static void find_box(const surfaces *all, surface_cluster *cluster) {
 /* ---- cones ---- */
 
 /* Finds the cone of a cluster's normals: the mean of the normals, and the greatest angle between a normal and
- * the mean. Triangles without an area have no normal; as they are never seen, they do not count. Primitives
- * without corners have normals in all directions. */
+ * the mean. Triangles without an area have no normal. They do not count, because they are never seen.
+ * Primitives without corners have normals in all directions. */
 static void find_cone(const surfaces *all, surface_cluster *cluster) {
   vec3 normals[CLUSTER_SIZE], sum = {0, 0, 0};
   double least = 1;
@@ -102,7 +102,7 @@ static void find_cone(const surfaces *all, surface_cluster *cluster) {
 
 /* ---- vertices ---- */
 
-/* The vertices of a cluster, found by hashing. */
+/* A set of the vertices of a cluster, as a hash table. */
 enum { SLOTS = 512 };
 typedef struct vertex_set {
   uint32_t slot[SLOTS]; /* the vertex's index in `vertex`, plus 1; 0: the slot is free */
@@ -118,7 +118,7 @@ static uint8_t number_of(vertex_set *set, uint32_t vertex) {
   return (uint8_t)(set->count - 1);
 }
 
-/* Numbers the vertices of cluster number c, which consists of triangles. */
+/* Gives numbers to the vertices of cluster number c, which must consist of triangles. */
 static void number_vertices(surfaces *all, size_t c, vertex_set *set) {
   surface_cluster *cluster = &all->clusters[c];
   memset(set->slot, 0, sizeof set->slot);
@@ -177,7 +177,7 @@ static void copy_task(void *data, size_t task, int worker) {
   }
 }
 
-/* Cuts primitives of a mesh into clusters; returns how many there are. */
+/* Divides the primitives of a mesh into clusters; returns the number of clusters. */
 static size_t cut(surface_cluster *clusters, size_t mesh, uint32_t first, uint32_t count) {
   size_t made = 0;
   for (uint32_t at = 0; at < count; at += CLUSTER_SIZE) {
@@ -198,8 +198,8 @@ static void cut_all(hl_pool *pool, surfaces *all, uint32_t *spare) {
     }
 }
 
-/* Gives each cluster of triangles the place of its own copy of the vertices; returns the number of these
- * vertices. */
+/* Gives each cluster of triangles a place for its own copy of the vertices. Returns the number of vertices in
+ * all these copies. */
 static size_t place_vertices(surfaces *all, size_t triangles) {
   size_t vertices = 0;
   for (size_t c = 0; c < triangles; c++) {
@@ -236,14 +236,14 @@ void hl_clusters_release(hl_context *context, surfaces *all) {
   hl_release(context, all->cluster_positions);
 }
 
-/* The sine of the least angle by which a triangle must be turned away from the view to count as turned
- * away. */
+/* The sine of an angle: a triangle counts as turned away from the view only if it is turned away by more than
+ * this angle. */
 static const double AWAY = 0.02;
 
 /* Whether all triangles of a cluster surely turn their backs to a view. Derived: let v be the vector from the
- * eye to the middle of the box, t the angle between v and the cone's axis n, and m a normal within the angle
- * a of n. Then m.v >= |v| cos(t + a). For another point of the box, v + w with |w| < r, m.(v + w) >= |v|
- * cos(t + a) - r. */
+ * eye to the middle of the box, t the angle between v and the cone's axis n, and m a normal that differs from
+ * n by at most the angle a. Then m.v >= |v| cos(t + a). For another point of the box, v + w with |w| < r,
+ * m.(v + w) >= |v| cos(t + a) - r. */
 bool hl_cluster_faces_away(const surface_cluster *cluster, const view *view) {
   vec3 low = hl_surface_vector(cluster->low), high = hl_surface_vector(cluster->high), way = view->direction;
   double reach = 0, a = cluster->cosine;

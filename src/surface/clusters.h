@@ -1,8 +1,8 @@
-/* surface/clusters.h - clusters: up to 64 triangles, or spheres, of a mesh that lie beside each other, with a
- * box around them and a cone that holds their normals.
+/* surface/clusters.h - clusters of a mesh. A cluster is up to 64 triangles, or up to 64 spheres, that lie
+ * close together. It has a box around its primitives, and a cone that holds their normals.
  *
- * Where possible, a test of what a view sees is made once for a whole cluster. A cluster of triangles has
- * its own copy of the triangles' vertices, so that they lie beside each other in memory. */
+ * Where possible, tests of what a view sees are made once for a whole cluster. A cluster of triangles has its
+ * own copy of the triangles' vertices, so that these vertices lie side by side in memory. */
 #ifndef HL_SURFACE_CLUSTERS_H
 #define HL_SURFACE_CLUSTERS_H
 
@@ -19,15 +19,14 @@ struct surface_cluster {
   float cosine;          /* the cosine of the greatest angle between the axis and a normal; below 0: the
                           * normals may have any direction */
   uint32_t first; /* the index, in all->order, of the cluster's first primitive. All primitives of a cluster
-                   * have the kind of the first one, because the order keeps primitives of one kind
-                   * together */
+                   * are of the same kind, because the order keeps primitives of one kind together */
   uint16_t count, mesh;
   uint16_t vertices;   /* of triangles: as in cluster_shape */
   size_t first_vertex; /* in all->cluster_positions */
 };
 
-/* Counts the most memory that hl_clusters_create() can take. It takes that much where triangles share their
- * vertices with few others. */
+/* Counts the greatest amount of memory that hl_clusters_create() can take. It takes this amount if triangles
+ * share hardly any vertices. */
 void hl_clusters_count(const hl_scene_description *scene, hl_layout *layout);
 
 /* Makes the clusters of all meshes, in the order of the meshes. Clusters of triangles come before clusters
@@ -42,10 +41,10 @@ static inline cluster_shape hl_cluster_shape(const surfaces *all, const surface_
                          all->cluster_corners[number], all->cluster_normals[number]};
 }
 
-/* The least height of a cluster's box above the first sheet. */
+/* The least height of a cluster's box above the first sheet of a view. */
 double hl_lowest_height(const sheet_stack *sheets, const surface_cluster *cluster);
 
-/* Whether every triangle of a cluster surely turns its back to the view, by at least some degrees. */
+/* Whether every triangle of a cluster surely turns its back to the view, by at least a small angle. */
 bool hl_cluster_faces_away(const surface_cluster *cluster, const view *view);
 
 #endif

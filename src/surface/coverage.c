@@ -1,5 +1,5 @@
-/* surface/coverage.c - see coverage.h. Polygons are cut into fans of triangles; a triangle covers a sample
- * where all three edge functions (Pineda 1988) are at least 0. */
+/* surface/coverage.c - see coverage.h. A polygon is divided into a fan of triangles. A triangle covers a
+ * sample where its three edge functions (Pineda 1988) are all at least 0. */
 #include "surface/coverage.h"
 
 #include <string.h>
@@ -8,18 +8,19 @@
 
 enum { SAMPLES = 16 };
 
-/* An edge of a polygon, as a function that is at least 0 inside: value + x * across + y * down, where x and
- * y are pixels from the tile's corner. */
+/* An edge of a polygon, as an edge function, which is at least 0 on the polygon's side of the edge: value + x
+ * * across + y * down, where x and y are pixels from the tile's corner. */
 typedef struct edge {
   int64_t value, across, down;
-  int64_t offset[SAMPLES]; /* the edge function at each sample of a pixel, from the pixel's corner */
+  int64_t offset[SAMPLES]; /* for each sample of a pixel, the difference of the edge function from its value
+                            * at the pixel's corner */
   int64_t least, greatest; /* the least and the greatest offset */
 } edge;
 
 /* Sets the edge from a to b. Which side of the edge is the inside depends on the order of the corners, which
- * the caller chooses. A sample on an edge belongs to the triangle on one of the edge's sides only. So the
- * function is less by 1 for edges in one half of all directions, and an edge has opposite directions in its
- * two triangles. */
+ * the caller chooses. A sample that lies on an edge must belong to only one of the two triangles of the edge.
+ * The edge has opposite directions in these triangles. So the function is reduced by 1 for edges in one half
+ * of all directions. */
 static void set_edge(edge *e, int64_t ax, int64_t ay, int64_t bx, int64_t by) {
   int64_t dx = bx - ax, dy = by - ay;
   bool owns = dy > 0 || (dy == 0 && dx < 0);
@@ -61,7 +62,7 @@ static int clamp_pixel(int64_t subpixels) {
 
 /* ---- triangles and polygons ---- */
 
-/* Covers the samples of a triangle. x, y: its corners, in 1/256 pixels from the tile's corner. */
+/* Finds the samples that a triangle covers. x, y: its corners, in 1/256 pixels from the tile's corner. */
 static bool cover_triangle(const int64_t x[3], const int64_t y[3], const pixel_span *span,
                            uint16_t covered[TILE_PIXELS]) {
   int64_t area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
@@ -81,7 +82,7 @@ static bool cover_triangle(const int64_t x[3], const int64_t y[3], const pixel_s
   return any != 0;
 }
 
-/* Finds the tile's pixels within a polygon's bounds; false: there are none. */
+/* Finds the pixels of the tile that lie within a polygon's bounds. Returns false if there are none. */
 static bool find_span(const seen_polygon *polygon, int64_t left, int64_t top, pixel_span *span) {
   int64_t x0 = INT64_MAX, y0 = INT64_MAX, x1 = INT64_MIN, y1 = INT64_MIN;
   for (int i = 0; i < polygon->count; i++) {

@@ -6,16 +6,16 @@
 #include "surface/sample_rows.h"
 #include "surface/shown_surface.h"
 
-/* The fragments of a pixel that has more than this are not parted, because nobody sees the order of so many
- * surfaces in one pixel. */
+/* The greatest number of fragments in a pixel whose fragments are cut into parts. With more fragments, nobody
+ * sees the order of the surfaces in the pixel. */
 enum { MOST_FRAGMENTS = 32 };
 
-/* The fragments of a pixel, and the surfaces of the fragments that may cross others. */
+/* The fragments of a pixel, with the surfaces of those fragments that may cross others. */
 typedef struct pixel_fragments {
   const crossing_tile *tile;
-  fragment list[2 * MOST_FRAGMENTS]; /* [count]; first the given fragments, then those of their parts that
-                                      * come before other fragments */
-  uint8_t part_of[MOST_FRAGMENTS];   /* for each part, the fragment from which it was parted */
+  fragment list[2 * MOST_FRAGMENTS]; /* [count]; first the given fragments, then parts of them that come
+                                      * before other fragments */
+  uint8_t part_of[MOST_FRAGMENTS];   /* for each part, the fragment of which it is a part */
   size_t given, count;
   shown_surface surfaces[MOST_FRAGMENTS];
   uint32_t has_surface, changed; /* one bit for each given fragment */
@@ -45,7 +45,7 @@ static const shown_surface *surface_of(pixel_fragments *pixel, size_t i) {
   return surface;
 }
 
-/* Those of the given samples at which fragment i lies before fragment j. */
+/* Of the given samples, those at which fragment i lies before fragment j. */
 static uint32_t samples_before(pixel_fragments *pixel, size_t i, size_t j, uint32_t samples) {
   const shown_surface *own = surface_of(pixel, i), *other = surface_of(pixel, j);
   uint32_t before = 0;
@@ -58,8 +58,8 @@ static uint32_t samples_before(pixel_fragments *pixel, size_t i, size_t j, uint3
   return before;
 }
 
-/* Whether two fragments may cross in samples that they share. first: the fragment that comes before the other
- * one. */
+/* Whether two fragments may cross within samples that both of them cover. first: the fragment that comes
+ * before the other one. */
 static bool may_cross(const pixel_fragments *pixel, const fragment *first, const fragment *second) {
   double apart = depth_of(pixel, (double)second->height) - depth_of(pixel, (double)first->height);
   return (first->samples & second->samples) != 0 &&
@@ -73,8 +73,8 @@ static void set_height(const pixel_fragments *pixel, const shown_surface *surfac
   f->height = (float)fmin(fmax(height_at(pixel, surface, u, v), surface->lowest), surface->highest);
 }
 
-/* Parts some samples of fragment i, which lets light through, into a fragment of their own that comes
- * before fragment j. There are at most as many parts as fragments. */
+/* Makes a part of fragment i, which lets light through: some samples of it become a fragment of their own,
+ * which comes before fragment j. There are at most as many parts as fragments. */
 static void add_part(pixel_fragments *pixel, size_t i, size_t j, uint32_t samples) {
   fragment part = pixel->list[i], *other = &pixel->list[j];
   size_t number = pixel->count - pixel->given;
@@ -88,7 +88,7 @@ static void add_part(pixel_fragments *pixel, size_t i, size_t j, uint32_t sample
   pixel->list[pixel->count++] = part;
 }
 
-/* Parts fragment i, which lets light through, where it crosses fragments that come before it. */
+/* Cuts fragment i, which lets light through, into parts where it crosses fragments that come before it. */
 static void part_translucent(pixel_fragments *pixel, size_t i) {
   for (size_t j = 0; j < i; j++) {
     const fragment *own = &pixel->list[i], *other = &pixel->list[j];
@@ -98,8 +98,8 @@ static void part_translucent(pixel_fragments *pixel, size_t i) {
   }
 }
 
-/* Parts fragment i, which is opaque, where it crosses fragments that come before it. Of two fragments that
- * cross, each loses the samples at which the other one hides it. */
+/* Cuts fragment i, which is opaque, where it crosses fragments that come before it. If two fragments cross,
+ * each of them loses the samples at which the other one hides it. */
 static void part_opaque(pixel_fragments *pixel, size_t i) {
   const float *least = pixel->tile->order->least;
   fragment *own = &pixel->list[i];
@@ -115,7 +115,7 @@ static void part_opaque(pixel_fragments *pixel, size_t i) {
   }
 }
 
-/* Writes a pixel's fragments in the order of their depths; a part comes before a fragment of the same
+/* Writes a pixel's fragments in the order of their depths; a part comes before a fragment that has the same
  * depth. */
 static size_t write_pixel(pixel_fragments *pixel, fragment *to) {
   size_t kept = 0, parts = pixel->count - pixel->given;
@@ -133,7 +133,7 @@ static size_t write_pixel(pixel_fragments *pixel, fragment *to) {
   return kept;
 }
 
-/* Whether any fragments of a pixel share samples and may cross. */
+/* Whether any two fragments of a pixel share samples and may cross. */
 static bool any_may_cross(const pixel_fragments *pixel, const fragment *list, size_t count) {
   uint32_t seen = 0;
   for (size_t i = 0; i < count; seen |= list[i++].samples)
@@ -142,7 +142,7 @@ static bool any_may_cross(const pixel_fragments *pixel, const fragment *list, si
   return false;
 }
 
-/* Parts a pixel's fragments. *parted is set if any fragment was parted. */
+/* Cuts a pixel's fragments into parts where they cross. *parted is set if any fragment was cut. */
 static size_t part_pixel(const crossing_tile *tile, const fragment *list, size_t count, fragment *to,
                          bool *parted) {
   pixel_fragments pixel;

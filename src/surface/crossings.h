@@ -1,7 +1,7 @@
-/* surface/crossings.h - fragments of a pixel whose surfaces cut into each other there.
+/* surface/crossings.h - treats fragments of a pixel whose surfaces cross within the pixel.
  *
  * Each fragment is composited at one height. But where two surfaces cross within a pixel, their order differs
- * from sample to sample. There the fragments are cut into parts, so that the line between the surfaces is as
+ * from sample to sample. So such fragments are cut into parts. Then the line where the surfaces cross is as
  * smooth as edges of surfaces are. */
 #ifndef HL_SURFACE_CROSSINGS_H
 #define HL_SURFACE_CROSSINGS_H
@@ -10,7 +10,7 @@
 #include "surface/seen.h"
 #include "surface/surface_plane.h"
 
-/* A tile of the eye's view. All is borrowed. */
+/* A tile of the eye's view. All of it is borrowed. */
 typedef struct crossing_tile {
   const seen_surfaces *seen;
   const sheet_stack *sheets;
@@ -18,11 +18,11 @@ typedef struct crossing_tile {
   int x, y; /* its first pixel */
 } crossing_tile;
 
-/* Parts the fragments of a tile where their surfaces cross. The fragments are sorted by pixels and in the
- * view's order. If three surfaces cross in one pixel, and two or more of them let light through, the order of
- * their parts may be wrong. A pixel of more than 32 fragments is left as it is. to: room for 2 count
- * fragments; gets the result, sorted likewise. *parted: set if any fragment changed; a changed fragment may
- * lie in another slab than before. Returns the number of fragments in `to`. */
+/* Cuts the fragments of a tile into parts where their surfaces cross. The fragments must be sorted by pixels,
+ * and within a pixel in the view's order. If three surfaces cross in one pixel, and two or more of them let
+ * light through, the order of their parts may be wrong. A pixel of more than 32 fragments is left as it is.
+ * to: room for 2 count fragments; gets the result, sorted likewise. *parted: set if any fragment changed; a
+ * changed fragment may lie in another slab than before. Returns the number of fragments in `to`. */
 size_t hl_part_crossings(const crossing_tile *tile, const fragment *list, size_t count, fragment *to,
                          bool *parted);
 

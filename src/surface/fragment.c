@@ -3,7 +3,7 @@
 
 #include "surface/sample_rows.h"
 
-/* The number of set bits in each of four 16-bit words. */
+/* Counts the set bits in each of four 16-bit words. */
 static uint64_t count_bits(uint64_t words) {
   const uint64_t pairs = 0x5555555555555555u, fours = 0x3333333333333333u, eights = 0x0f0f0f0f0f0f0f0fu;
   words -= words >> 1 & pairs;
@@ -12,8 +12,8 @@ static uint64_t count_bits(uint64_t words) {
   return (words + (words >> 8)) & 0x00ff00ff00ff00ffu;
 }
 
-/* The sum of the column numbers, or of the row numbers, of some samples. Word b of `set` holds the samples
- * whose number has bit b set. */
+/* The sum of the column numbers, or of the row numbers, of some samples. Word b of `set` holds the samples in
+ * whose column or row number bit b is set. */
 static int sum_places(uint16_t samples, uint64_t set) {
   uint64_t count = count_bits(samples * 0x0001000100010001u & set);
   return (int)((count & 255) + 2 * (count >> 16 & 255) + 4 * (count >> 32 & 255) + 8 * (count >> 48));

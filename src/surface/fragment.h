@@ -1,16 +1,16 @@
-/* surface/fragment.h - the part of one pixel that a surface covers.
+/* surface/fragment.h - fragments: parts of single pixels that surfaces cover.
  *
  * A fragment is the part of one pixel that one triangle, or one side of a sphere, covers. Each pixel has
  * sixteen sample positions. A fragment has a set of covered samples, and one height for all of them. Heights
- * grow along every ray of a light, and grow or fall along every ray of the eye: fragments sorted by height
- * are sorted by depth.
+ * grow along every ray of a light. Along the rays of the eye, they either grow on all rays or fall on all
+ * rays. So fragments that are sorted by height are also sorted by depth.
  *
  * Opacity. Fragments of one pixel may cover the same samples or different samples. They are composited one
- * after the other. So the opacity of a fragment is a fraction of the light which the fragments before it let
- * pass: the part that it absorbs, averaged over the pixel's samples. (Derived: let t[i] be the transmittance
- * of sample i before the fragment, and a the fragment's own opacity. The fraction is the sum of t[i] a over
- * the fragment's samples, divided by the sum of t[i] over all samples.) With such opacities triangles that
- * share an edge leave no seam. */
+ * after the other. So the opacity of a fragment is relative to the light that the fragments before it let
+ * pass: it is the fraction of this light that the fragment absorbs, averaged over the pixel's samples.
+ * (Derived: let t[i] be the transmittance of sample i before the fragment, and a the fragment's own opacity.
+ * The fraction is the sum of t[i] a over the fragment's samples, divided by the sum of t[i] over all
+ * samples.) With such opacities triangles that share an edge leave no seam. */
 #ifndef HL_SURFACE_FRAGMENT_H
 #define HL_SURFACE_FRAGMENT_H
 
@@ -25,7 +25,7 @@ typedef struct fragment {
   uint32_t primitive;
   int32_t slab;     /* number k of the slab between sheets k-1 and k */
   uint16_t samples; /* covered samples, one bit each */
-  uint16_t seen; /* in the eye's view: the covered samples that no opaque fragment before this one covers */
+  uint16_t seen; /* in the eye's view: those covered samples that no opaque fragment before this one covers */
   uint16_t mesh; /* the mesh of the primitive */
   uint8_t pixel; /* the pixel's number in its tile, block after block: 16 * block + lane */
   uint8_t reach; /* of the eye's view: see REACH_PARTS */
@@ -34,19 +34,19 @@ typedef struct fragment {
 /* The mean position of the covered samples in their pixel, 0 to 1. */
 void hl_fragment_middle(uint16_t samples, double *u, double *v);
 
-/* The reach of a fragment is the greatest distance of its surface above or below the fragment's height,
- * within its samples. It is stored in units of 1 / REACH_PARTS of the distance of sheets, rounded up.
- * FARTHEST stands for a reach of any length. */
+/* The reach of a fragment: how far its surface lies above or below the fragment's height, at most, within the
+ * fragment's samples. It is stored in units of 1 / REACH_PARTS of the distance of sheets, rounded up.
+ * FARTHEST stands for an unlimited reach. */
 enum { REACH_PARTS = 16, FARTHEST = UINT8_MAX };
 
-/* The number that stands for a reach. The reach is in distances of sheets. */
+/* The stored number for a reach. reach: in units of the distance of sheets. */
 static inline uint8_t hl_told_reach(double reach) {
   double parts = reach * REACH_PARTS;
-  /* A reach that is not a number counts as the farthest. */
+  /* a reach that is NaN counts as unlimited */
   return parts < FARTHEST - 1 ? (uint8_t)(parts + 1) : FARTHEST;
 }
 
-/* The reach for which a number stands, in frame units. spacing: distance of the sheets. */
+/* The reach, in frame units, for which a stored number stands. spacing: distance of the sheets. */
 static inline double hl_reach_of(uint8_t told, double spacing) {
   return told == FARTHEST ? INFINITY : told * (spacing / REACH_PARTS);
 }

@@ -23,7 +23,7 @@ static void merge(const order_key *from, size_t middle, size_t count, order_key 
   }
 }
 
-/* Runs of this many keys are sorted by insertion. */
+/* Runs of this number of keys are sorted by insertion. */
 enum { SHORT_RUN = 16 };
 
 static void sort_short_run(order_key *list, size_t count) {
@@ -52,20 +52,20 @@ void hl_sort_keys(order_key *list, order_key *spare, size_t count) {
   if (from != list) memcpy(list, from, count * sizeof *list);
 }
 
-/* Whether two surfaces may cross within their reaches. apart: the distance of their heights. */
+/* Whether two surfaces may cross, given their reaches. apart: the difference of their heights. */
 static bool may_meet(const fragment_order *order, float apart, uint8_t reach, uint8_t other) {
   return fabs((double)apart) <= hl_reach_of(reach, order->spacing) + hl_reach_of(other, order->spacing);
 }
 
-/* Copies a pixel's fragments in the order of their keys. Leaves out a fragment if opaque fragments before it
- * certainly cover all its samples, whatever the slopes of the surfaces are. most: the greatest reach of any
- * fragment. Returns the number of fragments that are left. */
+/* Copies a pixel's fragments in the order of their keys. Leaves out each fragment whose samples are surely
+ * covered by opaque fragments before it, whatever the slopes of the surfaces. most: the greatest reach of any
+ * fragment. Returns the number of copied fragments. */
 static size_t copy_uncovered(const fragment *list, const order_key *keys, size_t count, uint8_t most,
                              const fragment_order *order, fragment *to) {
   size_t kept = 0;
   uint32_t covered = 0;
   float last = 0;    /* the height of the last opaque fragment */
-  uint8_t reach = 0; /* the greatest reach of the opaque fragments */
+  uint8_t reach = 0; /* the greatest reach of the opaque fragments so far */
   for (size_t i = 0; i < count; i++) {
     const fragment *f = &list[keys[i].index];
     if (covered == 0xffff && !may_meet(order, f->height - last, most, reach)) break;
@@ -93,7 +93,7 @@ size_t hl_sort_by_pixel(const fragment *list, size_t count, const fragment_order
   for (size_t i = 0; i < count; i++)
     keys[places[list[i].pixel]++] = (order_key){
         (uint64_t)hl_ordered_bits(list[i].height, order->falling) << 32 | list[i].primitive, (uint32_t)i};
-  /* places[p] now is the end of pixel p's fragments. */
+  /* places[p] is now the index where pixel p's fragments end */
   for (size_t p = 0, first = 0; p < TILE_PIXELS; first = places[p++]) {
     size_t own = places[p] - first;
     hl_sort_keys(keys + first, keys + count, own);
@@ -136,9 +136,10 @@ static int count_samples(uint32_t samples) {
   return count;
 }
 
-/* A pixel's fragments begin with opaque ones, or with none. This function finds the opacities of these first
- * opaque fragments, and returns their number. Such an opacity is the fraction that a fragment covers of the
- * samples which the fragments before it leave open. *open: the samples that they all leave open. */
+/* Finds the opacities of the opaque fragments with which a pixel's fragments begin, and returns the number of
+ * these fragments, which may be 0. The opacity of such a fragment is the fraction that it covers of the
+ * samples which the fragments before it leave open. *open: receives the samples that all of them leave
+ * open. */
 static size_t resolve_opaque(fragment *list, size_t count, const float *least, uint32_t *open) {
   size_t i = 0;
   *open = 0xffff;
@@ -151,8 +152,8 @@ static size_t resolve_opaque(fragment *list, size_t count, const float *least, u
   return i;
 }
 
-/* Finds the opacities of one pixel's fragments, which are in the order in which the light or the eye meets
- * them. Fragments that take no light get opacity 0. */
+/* Finds the opacities of one pixel's fragments. The fragments must be in the order in which the light or the
+ * eye meets them. Fragments that absorb no light get the opacity 0. */
 static void resolve_pixel(fragment *list, size_t count, const float *least) {
   uint32_t open;
   size_t first = resolve_opaque(list, count, least, &open);
@@ -175,23 +176,24 @@ static void resolve_pixel(fragment *list, size_t count, const float *least) {
   }
 }
 
-/* Does the work of resolve_pixel() for a light's view whose buffer is also used for rays of other
- * directions. A pixel that opaque surfaces cover in a slab, or in a slab and the slab before it, is opaque
- * there. This holds even where surfaces before it have taken all light of the view's own ray, because the
- * other rays pass beside these surfaces. Otherwise light would come through a surface where two of its
- * triangles share a pixel and lie in neighbouring slabs: each triangle would take its part of the light,
- * one after the other, and some light would be left. The fragments of one slab become one fragment. Returns
- * the number of fragments that are left. */
+/* Does the work of resolve_pixel() for a light's view whose buffer is also used for rays of other directions.
+ * A pixel that opaque surfaces cover in a slab, or in a slab and the slab before it, is opaque there. This
+ * holds even where surfaces before this slab have absorbed all light of the view's own ray, because other
+ * rays pass beside these surfaces. The slab before counts for the following reason. Two triangles of a
+ * surface may share a pixel and lie in neighbouring slabs. If each of them absorbed its part of the light,
+ * one after the other, some light would be left and come through the surface. The fragments of one slab
+ * become one fragment. Returns the number of fragments that are left. */
 static size_t resolve_slabs(fragment *list, size_t count, const float *least) {
   size_t kept = 0;
-  uint32_t before = 0, covered = 0; /* samples covered in the slab before, and samples covered in this slab */
+  uint32_t before = 0, covered = 0; /* before: samples covered in the slab before; covered: samples covered in
+                                     * this slab */
   for (size_t i = 0; i < count; i++) {
     if (i == 0 || list[i].slab != list[i - 1].slab) {
       before = i > 0 && list[i].slab == list[i - 1].slab + 1 ? covered : 0;
       covered = 0;
     }
     if (hl_is_opaque(&list[i], least)) covered |= list[i].samples;
-    /* the number of the primitive is no longer needed in a light's fragment */
+    /* in a light's view, the number of the primitive is not needed any more */
     list[i].primitive = covered != 0 && (before | covered) == 0xffff;
   }
   resolve_pixel(list, count, least);
@@ -204,9 +206,9 @@ static size_t resolve_slabs(fragment *list, size_t count, const float *least) {
   return kept;
 }
 
-/* Joins fragments of one pixel that belong to neighbouring triangles of a coloured pane, and cover different
- * samples, to one fragment. So each colour loses the same light to the pane, however the triangles share the
- * pixel. Returns the number of fragments that are left. */
+/* Joins fragments of one pixel to one fragment if they belong to neighbouring triangles of a coloured pane
+ * and cover different samples. So the pane absorbs the same fraction of each colour, however its triangles
+ * share the pixel. Returns the number of fragments that are left. */
 static size_t join_panes(fragment *list, size_t count, const float *least) {
   size_t kept = 0;
   for (size_t i = 0; i < count; i++) {
@@ -224,8 +226,8 @@ static size_t join_panes(fragment *list, size_t count, const float *least) {
 }
 
 /* Finds opacities as if no fragment hid another: each fragment absorbs the light of the part of the pixel
- * that it covers. Fragments of neighbouring triangles of a mesh that cover different samples are joined to
- * one fragment. Returns the number of fragments that are left. */
+ * that it covers. Fragments are joined to one fragment if they belong to neighbouring triangles of a mesh and
+ * cover different samples. Returns the number of fragments that are left. */
 static size_t resolve_apart(fragment *list, size_t count) {
   size_t kept = 0;
   for (size_t i = 0; i < count; i++) {

@@ -1,5 +1,5 @@
-/* surface/fragment_work.h - data that the tiles of a view share while their fragments are made, and data of
- * one thread. */
+/* surface/fragment_work.h - the data that the tiles of a view share while their fragments are made, and the
+ * data of each thread. */
 #ifndef HL_SURFACE_FRAGMENT_WORK_H
 #define HL_SURFACE_FRAGMENT_WORK_H
 
@@ -19,7 +19,8 @@ typedef struct fragment_block {
 typedef struct tile_list {
   const fragment *list; /* [count]; in a block */
   uint32_t count;
-  uint32_t reached; /* number of the tile's fragments in slabs that the sweep has asked for already */
+  uint32_t reached; /* number of the tile's fragments that lie in slabs for which the sweep has already
+                     * asked */
 } tile_list;
 
 /* The input of hl_fragments_create(); borrowed. */
@@ -31,50 +32,54 @@ typedef struct fragments_source {
   const view *view;
   const sheet_stack *sheets;
   bool falling;  /* the view meets great heights first */
-  bool of_light; /* a light's view sees the meshes that cast shadows; other views see the visible meshes */
-  bool unseen;   /* the eye's view sees only meshes that are not visible but cast shadows. Then no fragment
-                  * hides another, and an opacity is a fraction of the pixel's light */
-  double delay;  /* delay of fragments, in pixels of the view: a fragment absorbs light only from the height
-                  * on that its surface's plane has this many pixels away. So a surface does not darken itself
-                  * where look-ups interpolate */
+  bool of_light; /* if set, the view is a light's, and sees the meshes that cast shadows; other views see the
+                  * visible meshes */
+  bool unseen;   /* if set, the view is the eye's, and sees only meshes that cast shadows and are not visible.
+                  * Then no fragment hides another one, and opacities are fractions of the pixel's light */
+  double delay;  /* the delay of fragments, in pixels of the view. A fragment absorbs light only from a
+                  * delayed height on: the height that its surface's plane has at this distance. So a surface
+                  * does not darken itself where look-ups interpolate */
   /* A distance in pixels. In a light's view, a fragment fills all slabs that its surface's plane crosses
-   * within this distance of the fragment. So rays of other directions than the view's find no gap between the
-   * pixels of a slanted surface. 0: a fragment fills one slab. */
+   * within this distance from the fragment. So rays of other directions than the view's find no gap between
+   * the pixels of a slanted surface. 0: each fragment fills one slab. */
   double rise;
-  uint64_t *marks; /* [sheets][tile_words], bit = tile; may be null. A bit is set if the slab that ends at the
-                    * sheet has a visible or shadow-casting surface in the tile or beside it */
+  uint64_t *marks; /* [sheets][tile_words], bit = tile; may be null. A bit is set if a surface that is visible
+                    * or casts shadows lies in the tile, or beside it, in the slab that ends at the sheet */
   int tile_words;
   const int32_t *needed; /* [tiles]; 0: nobody needs the tile's fragments; null: all tiles are needed */
 } fragments_source;
 
-/* The opaque fragments that were added last to a pixel of a tile in a light's view; each lies in a slab of
- * its own. */
+/* The opaque fragments that were added last to a pixel of a tile in a light's view: one fragment for each of
+ * several slabs. */
 typedef struct latest_fragments {
-  uint32_t end; /* index, in the worker's scratch, of the first of these fragments, plus 1; 0: there are
-                 * none */
+  uint32_t end; /* index, in the worker's scratch, of the first of these fragments, plus 1; 0: there are no
+                 * such fragments */
   int32_t last; /* the slab of the last of them */
 } latest_fragments;
 
 /* The samples of a pixel that opaque fragments of a light's view cover. */
 typedef struct covered_so_far {
-  float height; /* the greatest height of the fragments that were added until all samples were covered */
+  float height; /* the greatest height among the fragments that were added until all samples were covered */
   uint32_t samples;
 } covered_so_far;
 
 /* One thread's memory; all arrays are owned. */
 typedef struct fragment_worker {
-  _Alignas(64) fragment *scratch; /* [2][room]; a tile's fragments, then the same fragments sorted */
+  _Alignas(64) fragment *scratch; /* [2][room]; first a tile's fragments, then the same fragments after
+                                   * sorting */
   order_key *keys;                /* [2][room]; for sorting */
   size_t count, room;
   latest_fragments latest[TILE_PIXELS];
   covered_so_far covered[TILE_PIXELS];
-  order_key *runs; /* [2][run_room]; in a light's view: a tile's runs, the lowest first */
+  order_key *runs; /* [2][run_room]; in a light's view: the runs of a tile, in the order of their least
+                    * heights */
   size_t run_room;
   uint32_t *places; /* [sheets + 2]; for sorting */
-  uint16_t *near;   /* [sheets]; for each slab, the tiles to be marked around the current tile: bit 3 (1 +
+  uint16_t *near;   /* [sheets]; for each slab, which tiles around the current tile must be marked: bit 3 (1 +
                      * down) + 1 + across */
-  int32_t nearest, farthest; /* the first and the last slab in which near is not 0 */
-  fragment_block *out;       /* fragments of the tiles that the thread has made; null: none yet */
+  int32_t nearest, farthest; /* the first and the last slab for which `near` is not 0 */
+  fragment_block *out;       /* the fragments of the tiles that the thread has finished; null: there are none
+                              * yet */
   bool failed;
 } fragment_worker;
 
@@ -83,12 +88,13 @@ typedef struct fragment_work {
   const fragments_source *source;
   const seen_surfaces *seen;
   const primitive_bins *bins;
-  binned *wanted;           /* [mesh_count]; the primitives of each mesh that are seen */
-  small_view small;         /* a pattern for tiles and meshes: the members that depend on a mesh are not
+  binned *wanted;           /* [mesh_count]; which primitives of each mesh are made into fragments */
+  small_view small;         /* a template for all tiles and meshes: the members that depend on a mesh are not
                              * set */
   fragment_worker *workers; /* [threads] */
   float *least;             /* [mesh_count]; as in fragment_order */
-  bool *dark_backs; /* [mesh_count]; in a light's view: whether the light leaves the mesh's backs dark */
+  bool *dark_backs; /* [mesh_count]; in a light's view: whether the mesh's back sides get no light of this
+                     * light */
   tile_list *tiles; /* [tiles] */
   int tiles_x, tiles_y;
   uint16_t near[TILE_PIXELS]; /* for each pixel of a tile, block after block: the tiles that look-ups

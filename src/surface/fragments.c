@@ -50,26 +50,27 @@ static hl_status rasterise(fragment_work *work, fragments *made, hl_error *error
   return status;
 }
 
-/* Whether a view's rays come from outside of a mesh. Where they begin at a point, this point must lie outside
- * of the mesh's box. */
+/* Whether the origin of a view's rays lies outside of a mesh. If the rays begin at a point, this point must
+ * lie outside of the mesh's box. */
 static bool is_outside(const view *view, const surface_mesh *mesh) {
   return !view->perspective || hl_surface_is_outside(mesh, view->origin, 0);
 }
 
-/* Whether the eye sees none of a mesh's backs: the mesh is closed and opaque, and the eye is outside. */
+/* Whether the eye sees no back side of a mesh: the mesh is closed and opaque, and the eye is outside of
+ * it. */
 static bool has_hidden_backs(const fragments_source *source, const surface_mesh *mesh) {
   return !source->of_light && !source->unseen && hl_surface_is_closed(mesh) && mesh->colors == NULL &&
          mesh->face_colors == NULL && is_outside(source->view, mesh);
 }
 
-/* Whether a light lights none of a mesh's backs: the mesh is closed and lets no light through, and the light
- * is outside. */
+/* Whether a light lights no back side of a mesh: the mesh is closed and lets no light through, and the light
+ * is outside of it. */
 static bool has_dark_backs(const fragments_source *source, const surface_mesh *mesh) {
   return source->of_light && hl_surface_is_closed(mesh) && hl_surface_is_opaque(mesh) &&
          is_outside(source->view, mesh);
 }
 
-/* Finds from which primitives of a mesh a view's fragments are made. */
+/* Decides which primitives of a mesh are made into fragments in a view. */
 static binned wanted_of(const fragments_source *source, const surface_mesh *mesh) {
   bool shades = mesh->look.casts_shadow, seen_here = source->unseen
                                                          ? shades && !mesh->look.visible

@@ -11,13 +11,13 @@
 
 /* The fragments of one view. */
 typedef struct fragments {
-  tile_list *of;          /* owned; [tiles]; null: there are no surfaces */
+  tile_list *of;          /* owned; [tiles]; the fragments of each tile; null: there are no surfaces */
   fragment_block *blocks; /* owned; hold the tiles' fragments */
   size_t tiles;
 } fragments;
 
 /* Counts approximately the memory that hl_fragments_create() takes. The number of fragments is known only
- * when they are made. It is estimated as one for each primitive and two for each pixel. */
+ * when they are made. It is estimated as one fragment for each primitive plus two for each pixel. */
 void hl_fragments_count(const surfaces *all, const view *view, int threads, hl_layout *layout);
 
 hl_status hl_fragments_create(const fragments_source *source, fragments *made, hl_error *error);
@@ -32,7 +32,7 @@ typedef struct fragment_range {
 /* The fragments of a tile in one slab. The tile's owner asks for slabs in rising order. */
 fragment_range hl_fragments_reach(const fragments *all, size_t tile, int slab);
 
-/* The fragments of a tile in the slabs from `first` to the slab that was last asked for. */
+/* The fragments of a tile from slab `first` to the slab that was asked for last. */
 fragment_range hl_fragments_reached(const fragments *all, size_t tile, int first);
 
 #endif

@@ -25,8 +25,8 @@ static surface_mesh describe(const hl_scene_mesh *mesh, size_t first_vertex, siz
                         .first_edge_normal = first_edge_normal};
 }
 
-/* Numbers the primitives kind by kind. If the array of meshes is allocated already, the numbers of each
- * mesh's primitives are stored in it. */
+/* Gives numbers to the primitives, kind by kind. If the array of meshes is allocated already, stores the
+ * numbers of each mesh's primitives in it. */
 static uint64_t number_primitives(const hl_scene_description *scene, surfaces *made) {
   uint64_t primitives = 0;
   for (int k = 0; k < PRIMITIVE_KINDS; k++) {
@@ -42,8 +42,8 @@ static uint64_t number_primitives(const hl_scene_description *scene, surfaces *m
   return primitives;
 }
 
-/* Counts vertices and primitives. If the array of meshes is allocated already, the meshes are described,
- * too. */
+/* Counts vertices and primitives. If the array of meshes is allocated already, also describes the meshes in
+ * it. */
 static hl_status count_primitives(const hl_scene_description *scene, surfaces *made, hl_error *error) {
   made->vertex_count = made->edge_normal_count = 0;
   for (size_t m = 0; m < scene->mesh_count; m++) {
@@ -114,7 +114,7 @@ bool hl_surfaces_current(const surfaces *kept, const hl_scene_description *scene
   return true;
 }
 
-/* Finds the scene's cuts, and the meshes of which they may remove parts. */
+/* Finds the scene's cuts, and the meshes that the cuts may cut. */
 static hl_status update_cuts(hl_context *context, const hl_scene_description *scene, surfaces *kept,
                              hl_error *error) {
   hl_release(context, kept->cuts);

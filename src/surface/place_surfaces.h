@@ -7,18 +7,18 @@
 #include "core/pool.h"
 #include "surface/surfaces.h"
 
-/* Brings surfaces up to date. At first they are all zero; later they are the surfaces of an earlier frame.
+/* Brings surfaces up to date. kept: at first a struct of zeros, later the surfaces of an earlier frame.
  * scene: in frame space; the descriptions of its meshes are borrowed for the frame. */
 hl_status hl_surfaces_update(hl_context *context, hl_pool *pool, const hl_scene_description *scene,
                              surfaces *kept, hl_error *error);
 void hl_surfaces_release(hl_context *context, surfaces *kept);
 
-/* Counts the memory that hl_surfaces_update() takes where nothing is kept. Fails where 32 bits cannot
- * number all primitives. */
+/* Counts the memory that hl_surfaces_update() takes if nothing can be kept. Fails where 32 bits cannot number
+ * all primitives. */
 hl_status hl_surfaces_count_memory(const hl_scene_description *scene, hl_layout *layout, hl_error *error);
 
-/* Whether the same meshes stand in the same places as in the earlier frame. The update then allocates only a
- * few cuts. */
+/* Whether the meshes are the same as in the earlier frame, and stand in the same places. If so, an update
+ * allocates only a few cuts. */
 bool hl_surfaces_current(const surfaces *kept, const hl_scene_description *scene);
 
 #endif

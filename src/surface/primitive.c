@@ -1,4 +1,4 @@
-/* surface/primitive.c - see primitive.h: which mesh a primitive belongs to, its opacity. */
+/* surface/primitive.c - see primitive.h: finds the mesh of a primitive, and a primitive's opacity. */
 #include "surface/primitive.h"
 
 size_t hl_surface_mesh_of(const surfaces *all, uint32_t primitive) {

@@ -1,9 +1,9 @@
 /* surface/primitive.h - the interface of a kind of primitive: triangles or spheres. (Tubes are triangles
  * and spheres: mesh/tubes.c.) primitive_kinds.h lists the kinds.
  *
- * A kind is a table in a file of its own. Other code asks the table and names no kind. The functions for
- * sixteen primitives at a time (small_triangles.h, small_spheres_lanes.h) are made for one kind each: the
- * kind's raster, primitive_raster.h, calls them. */
+ * Each kind has a table in a file of its own. Other code calls the functions of the table, and does not name
+ * kinds. There are functions for sixteen primitives at a time (small_triangles.h, small_spheres_lanes.h),
+ * each for one kind; the kind's raster (primitive_raster.h) calls them. */
 #ifndef HL_SURFACE_PRIMITIVE_H
 #define HL_SURFACE_PRIMITIVE_H
 
@@ -13,7 +13,7 @@
 typedef struct primitive_lattice primitive_lattice; /* primitive_lattice.h */
 typedef struct primitive_raster primitive_raster;   /* primitive_raster.h */
 
-/* The points origin + s way with first < s < last, which may be infinite. */
+/* A ray: the points origin + s way with first < s < last. The bounds of s may be infinite. */
 typedef struct surface_ray {
   vec3 origin, way;
   double first, last;
@@ -27,42 +27,44 @@ typedef struct hull_ball {
 
 typedef struct primitive_kind {
   const char *noun; /* the kind's name in messages, in the plural */
-  /* Whether primitives are flat between three corners, which all->triangles lists: such a primitive has one
-   * normal and one plane, and its cluster keeps a copy of its vertices. */
+  /* Whether primitives of the kind are flat, and lie between three corners, which all->triangles lists. Such
+   * a primitive has one normal and one plane, and its cluster keeps a copy of its vertices. */
   bool has_corners;
   const primitive_raster *raster;   /* what views see of the kind's primitives */
-  const primitive_lattice *lattice; /* where lines through a lattice meet the kind's primitives */
-  /* How many primitives of the kind a mesh has. */
+  const primitive_lattice *lattice; /* finds where lines through a lattice meet primitives of the kind */
+  /* The number of primitives of the kind in a mesh. */
   size_t (*count)(const hl_mesh_description *mesh);
-  /* Takes the arrays of the primitives of all meshes. */
+  /* Takes the memory of the arrays for the primitives of all meshes from a layout. */
   void (*lay_out)(surfaces *made, hl_layout *layout);
   /* Brings the primitives of a mesh to frame space. */
   void (*place)(hl_pool *pool, surfaces *made, const surface_mesh *mesh);
   /* A point of a primitive; [3]. */
   const float *(*point)(const surfaces *all, uint32_t primitive);
-  /* Finds a box around a primitive, which is so wide that rounding takes no part of the primitive out of
-   * it. */
+  /* Finds a box around a primitive. The box is so large that the primitive lies within it despite
+   * rounding. */
   void (*bound)(const surfaces *all, uint32_t primitive, float low[3], float high[3]);
-  /* The fraction of light that a primitive stops, at its middle. */
+  /* The fraction of light that a primitive absorbs, at its middle. */
   double (*opacity)(const surfaces *all, const surface_mesh *mesh, uint32_t primitive);
-  /* The unit normal of a primitive at `met`, where a ray has met it. *from: the distance of `point` from the
-   * plane that touches the primitive there, above 0 on the normal's side. */
+  /* The unit normal of a primitive at `met`, where a ray has met the primitive. *from: receives the distance
+   * of `point` from the plane that touches the primitive at `met`, above 0 on the normal's side. */
   vec3 (*normal)(const surfaces *all, uint32_t primitive, vec3 met, vec3 point, double *from);
-  /* The plane of a primitive, or the plane that touches it where a ray met it, as a view sees the plane. */
+  /* Describes a plane as a view sees it: the plane of a primitive, or the plane that touches the primitive
+   * where a ray has met it. */
   void (*plane)(const view *view, const sheet_stack *sheets, const surfaces *all, uint32_t primitive,
                 vec3 met, surface_plane *plane);
-  /* Finds the interpolated unit normal and the linear RGB colour at a point of a primitive; returns the
-   * unit normal of the primitive itself, on the side of *normal. */
+  /* Finds the interpolated unit normal and the linear RGB colour at a point of a primitive. Returns the
+   * primitive's own unit normal, on the side of *normal. */
   vec3 (*look)(const surfaces *all, const surface_mesh *mesh, uint32_t primitive, vec3 at, vec3 *normal,
                double color[3]);
-  /* How much the surface is bent towards a light: how far the normal on the eye's side turns per length of
-   * the way `along`, a unit vector on the surface. It is above 0 in a hollow, and 0 where the surface is flat
+  /* How much the surface is bent in a direction: how far the normal on the eye's side turns, per length,
+   * along `along`, a unit vector on the surface. It is above 0 in a hollow, and 0 where the surface is flat
    * or rough or lets light pass. */
   double (*bend)(const surfaces *all, const surface_mesh *mesh, uint32_t primitive, vec3 at, vec3 normal,
                  vec3 along);
-  /* Finds where a ray meets a primitive, in lengths of the ray's way. Returns how many places were stored. */
+  /* Finds where a ray meets a primitive, as values of s on the ray. Returns the number of places that were
+   * stored. */
   int (*intersect)(const surfaces *all, uint32_t primitive, const surface_ray *ray, double distance[2]);
-  /* Whether the convex hull of some balls has points on both sides of a primitive. Points beyond the
+  /* Whether the convex hull of some balls has points on both sides of a primitive. Points that lie beyond the
    * primitive by less than `least` count as lying on it. */
   bool (*parts)(const surfaces *all, uint32_t primitive, const hull_ball *balls, int count, double least);
 } primitive_kind;
@@ -74,7 +76,7 @@ HL_PRIMITIVES
 static const primitive_kind *const hl_primitive_kinds[PRIMITIVE_KINDS] = {HL_PRIMITIVES};
 #undef HL_PRIMITIVE
 
-/* The number of a primitive's kind in the list. */
+/* The number, in the list of kinds, of the kind of a primitive. */
 static inline int hl_primitive_number(const surfaces *all, uint32_t primitive) {
   int kind = 0;
   while (kind + 1 < PRIMITIVE_KINDS && primitive >= all->first[kind + 1]) kind++;
@@ -90,18 +92,18 @@ static inline bool hl_has_corners(const surfaces *all, uint32_t primitive) {
   return hl_primitive_kind(all, primitive)->has_corners;
 }
 
-/* The centre and the radius of a primitive that is a sphere. */
+/* The centre and the radius of a primitive, which must be a sphere. */
 static inline const float *hl_sphere_of(const surfaces *all, uint32_t primitive) {
   return all->spheres[primitive - all->first[PRIMITIVE_sphere]];
 }
 
-/* The index of the mesh that a primitive belongs to. This is slow; a fragment knows its mesh. */
+/* The index of the mesh to which a primitive belongs. This function is slow; a fragment knows its mesh. */
 size_t hl_surface_mesh_of(const surfaces *all, uint32_t primitive);
 
-/* The fraction of light that a primitive stops, at its middle. */
+/* The fraction of light that a primitive absorbs, at its middle. */
 float hl_primitive_opacity(const surfaces *all, const surface_mesh *mesh, uint32_t primitive);
 
-/* Multiplies the colour of a mesh's material by a row of the mesh's colours, linear RGB. row: null stands
+/* Multiplies the colour of a mesh's material by a row of the mesh's own colours, linear RGB. row: null stands
  * for white. */
 static inline void hl_primitive_color(const surface_mesh *mesh, const float *own, double color[3]) {
   for (int c = 0; c < 3; c++) color[c] = mesh->look.color[c] * (own != NULL ? (double)own[c] : 1);

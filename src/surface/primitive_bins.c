@@ -9,12 +9,13 @@
 enum { LEAST_A_TASK = 1 << 8, MOST_TASKS = 32 };
 
 /* A cluster of primitives with corners is put into tiles as a whole if it touches at most this many tiles;
- * its vertices are then projected together. A cluster of primitives without corners stays whole only in a
- * single tile. The primitives of all other clusters are listed one by one. */
+ * its vertices are then projected together. A cluster of primitives without corners is put into tiles as a
+ * whole only if it touches a single tile. The primitives of all other clusters are put into tiles one by
+ * one. */
 enum { MOST_TILES_TOGETHER = 9 };
 
-/* The tiles that a primitive touches, from x0 and y0 to x1 and y1, both included; no tiles where x0 is
- * greater than x1. */
+/* The tiles that a primitive touches: from x0 and y0 to x1 and y1, both included. If x0 is greater than x1,
+ * it touches no tiles. */
 typedef struct tile_span {
   uint16_t x0, y0, x1, y1;
 } tile_span;
@@ -23,10 +24,10 @@ typedef struct bin_work {
   const seen_surfaces *seen;
   const binned *wanted;
   primitive_bins *bins;
-  tile_span *spans; /* [primitives]; for each primitive that is put into tiles by itself, the tiles that it
-                     * touches */
-  uint32_t *places; /* [tasks][tiles]; first the number of runs that a task has for a tile, later the index of
-                     * the task's next run for it */
+  tile_span *spans; /* [primitives]; the tiles that a primitive touches, for primitives that are put into
+                     * tiles one by one */
+  uint32_t *places; /* [tasks][tiles]; in the first pass the number of runs that a task has for a tile, in the
+                     * second pass the index of the task's next run for this tile */
   size_t tiles, tasks;
   size_t a_task; /* clusters of a task */
   int tiles_x, tiles_y;
@@ -58,8 +59,8 @@ static int tiles_of(const tile_span *span) {
   return span->x0 > span->x1 ? 0 : (span->x1 - span->x0 + 1) * (span->y1 - span->y0 + 1);
 }
 
-/* Finds the tiles that a cluster touches. *whole: the cluster's primitives may be put into each of these
- * tiles together. */
+/* Finds the tiles that a cluster touches. *whole: receives whether the cluster's primitives may be put into
+ * each of these tiles together. */
 static void find_cluster_span(const bin_work *work, const surface_cluster *cluster, tile_span *span,
                               bool *whole) {
   const view *view = work->seen->view;
@@ -82,7 +83,7 @@ static void task_range(const bin_work *work, size_t index, size_t *first, size_t
   *end = *first + work->a_task < count ? *first + work->a_task : count;
 }
 
-/* Counts a run in the tiles of a span, or places it. */
+/* Counts a run in each tile of a span, or stores it there. */
 static void add_run(const bin_work *work, uint32_t *places, const tile_span *span, primitive_run run) {
   for (int y = span->y0; y <= span->y1; y++)
     for (int x = span->x0; x <= span->x1; x++) {
@@ -99,8 +100,8 @@ static void add_one_by_one(const bin_work *work, uint32_t *places, const surface
   }
 }
 
-/* Counts how many of a task's runs touch each tile. When there is memory for the runs, a second call stores
- * them. */
+/* Counts, for each tile, how many of a task's runs touch it. Once there is memory for the runs, a second call
+ * stores the runs. */
 static void bin_task(void *data, size_t index, int worker) {
   (void)worker;
   const bin_work *work = data;
@@ -118,8 +119,8 @@ static void bin_task(void *data, size_t index, int worker) {
   }
 }
 
-/* Turns the numbers of runs into the index of each bin's first run. False where there are more than 2^32
- * runs. */
+/* Turns the numbers of runs into the index of the first run in each tile. Returns false if there are more
+ * than 2^32 runs. */
 static bool find_places(bin_work *work) {
   uint64_t sum = 0;
   for (size_t tile = 0; tile < work->tiles; tile++) {

@@ -1,5 +1,5 @@
-/* surface/primitive_bins.h - triangles and spheres sorted by the tiles of a view that they touch. Clusters
- * that touch few tiles are sorted whole, the primitives of other clusters one by one. */
+/* surface/primitive_bins.h - sorts triangles and spheres into the tiles of a view that they touch. A cluster
+ * that touches few tiles is sorted as a whole; the primitives of other clusters are sorted one by one. */
 #ifndef HL_SURFACE_PRIMITIVE_BINS_H
 #define HL_SURFACE_PRIMITIVE_BINS_H
 
@@ -7,7 +7,7 @@
 #include "surface/clusters.h"
 #include "surface/seen.h"
 
-/* One primitive, or all primitives of a cluster. Some of a cluster's primitives may lie beside the tile, or
+/* One primitive, or all primitives of a cluster. Some primitives of a cluster may lie outside of the tile, or
  * turn their backs to the view. */
 typedef struct primitive_run {
   uint32_t primitive; /* of a cluster the first */
@@ -18,14 +18,14 @@ typedef struct primitive_run {
 
 typedef struct primitive_bins {
   uint32_t *first;     /* owned; [tiles + 1] */
-  primitive_run *runs; /* owned; by tile, then in the order of primitives */
+  primitive_run *runs; /* owned; the runs of tile after tile; within a tile, in the order of primitives */
 } primitive_bins;
 
 /* What of a mesh is binned. */
 typedef enum binned { BINNED_NOTHING, BINNED_FRONTS, BINNED_ALL } binned;
 
 /* Sorts primitives into tiles. wanted: [mesh_count]; which primitives of each mesh are sorted. BINNED_FRONTS:
- * all but triangles that turn their backs to the view. */
+ * all primitives except triangles that turn their backs to the view. */
 hl_status hl_primitive_bins_create(hl_context *context, hl_pool *pool, const seen_surfaces *seen,
                                    const binned *wanted, primitive_bins *bins, hl_error *error);
 /* Counts the memory that hl_primitive_bins_create() takes if each primitive lies in one tile. */

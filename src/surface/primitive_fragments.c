@@ -19,9 +19,9 @@ bool hl_tile_make_room(hl_context *context, fragment_worker *worker, size_t more
   return true;
 }
 
-/* Joins an opaque fragment to the fragments that its pixel got last, if they belong to the same mesh and fill
- * the same slabs. Together they then absorb the light that one surface absorbs. Returns whether they were
- * joined. */
+/* Joins an opaque fragment to the fragments that were added last to its pixel, if they belong to the same
+ * mesh and fill the same slabs. Joined, they absorb as much light as one surface does. Returns whether they
+ * were joined. */
 static bool join_latest(fragment_worker *worker, const fragment *f, int32_t first, int32_t last) {
   latest_fragments *latest = &worker->latest[f->pixel];
   fragment *own = worker->scratch + latest->end - 1;
@@ -33,7 +33,7 @@ static bool join_latest(fragment_worker *worker, const fragment *f, int32_t firs
   return false;
 }
 
-/* Notes that an opaque fragment covers its samples from a height on. */
+/* Records that an opaque fragment covers its samples from a height on. */
 static void cover_pixel(fragment_worker *worker, const fragment *f, double height) {
   covered_so_far *covered = &worker->covered[f->pixel];
   if (covered->samples == 0xffff) return;
@@ -41,8 +41,8 @@ static void cover_pixel(fragment_worker *worker, const fragment *f, double heigh
   covered->samples |= f->samples;
 }
 
-/* Divides a fragment's opacity among slabs. Derived: n slabs of opacity 1 - (1 - a)^(1/n) have the opacity a
- * together. */
+/* Divides a fragment's opacity among slabs. Derived: n slabs that each have the opacity 1 - (1 - a)^(1/n)
+ * have the opacity a together. */
 void hl_add_to_slabs(const fragment_work *work, fragment_worker *worker, fragment f, double start,
                      int32_t first, int32_t last) {
   if (work->least[f.mesh] < 1)
@@ -62,9 +62,9 @@ void hl_add_to_slabs(const fragment_work *work, fragment_worker *worker, fragmen
   }
 }
 
-/* Adds a fragment of a light's view to slabs. The first slab is the one at the fragment's delayed height. The
- * last one is the last slab that the plane crosses within the pixel, or near a corner the slab in which the
- * corner's other triangle begins. There is no delay at backs that the light leaves dark. */
+/* Adds a fragment of a light's view to slabs. The first slab is the slab at the fragment's delayed height.
+ * The last slab is the last one that the plane crosses within the pixel; or, near a corner, the slab in which
+ * the corner's other triangle begins. Fragments of back sides that get no light have no delay. */
 static void add_of_light(const fragment_work *work, fragment_worker *worker, const surface_plane *plane,
                          fragment f, double slope, const covered_pixel *at, const seen_seams *seams) {
   const fragments_source *source = work->source;

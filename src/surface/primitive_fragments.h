@@ -1,8 +1,8 @@
-/* surface/primitive_fragments.h - the fragments of one triangle or sphere in a tile.
+/* surface/primitive_fragments.h - makes the fragments of one triangle or sphere in a tile.
  *
- * In: what a view shares (fragment_work.h), a primitive and a tile. Out: fragments at the end of the
- * worker's scratch, in the order of the tile's pixels, and marks about them. tile_fragments.c adds small
- * primitives, sixteen at a time; this file adds all others. */
+ * In: the data that the tiles of a view share (fragment_work.h), a primitive and a tile. Out: fragments at
+ * the end of the worker's scratch, in the order of the tile's pixels, and marks of slabs that have surfaces.
+ * tile_fragments.c adds small primitives, sixteen at a time; this file adds all others. */
 #ifndef HL_SURFACE_PRIMITIVE_FRAGMENTS_H
 #define HL_SURFACE_PRIMITIVE_FRAGMENTS_H
 
@@ -12,7 +12,7 @@
 #include "surface/surface_cuts.h"
 #include "surface/surface_plane.h"
 
-/* The part of a primitive in a tile: the samples that it covers, without those that cuts remove. */
+/* The part of a primitive in a tile: the covered samples, without those that cuts remove. */
 typedef struct tile_part {
   int tile_x, tile_y;
   bool is_cut; /* cuts remove some of the primitive */
@@ -24,7 +24,7 @@ typedef struct tile_part {
  * marked as failed. */
 bool hl_tile_make_room(hl_context *context, fragment_worker *worker, size_t more);
 
-/* Marks that a slab has a surface in the tiles around a pixel. pixel: the pixel's number in the tile, block
+/* Marks that a slab has a surface in the tiles around a pixel. pixel: number of the pixel in the tile, block
  * after block. */
 static inline void hl_mark_slab(const fragment_work *work, fragment_worker *worker, int pixel, int32_t slab) {
   worker->near[slab] |= work->near[pixel];
@@ -32,12 +32,12 @@ static inline void hl_mark_slab(const fragment_work *work, fragment_worker *work
   worker->farthest = slab > worker->farthest ? slab : worker->farthest;
 }
 
-/* A fragment of a primitive, whose pixel, height and slab are not set yet. Its opacity is 0 where it only
- * marks slabs. */
+/* Makes a fragment of a primitive; its pixel, height and slab are not set yet. Its opacity is 0 if the
+ * fragment only serves to mark slabs. */
 fragment hl_fragment_of(const fragment_work *work, size_t mesh_index, uint32_t primitive);
 
-/* Adds a fragment to the slabs from `first` to `last` of a light's view, from its delayed height `start`
- * on. There must be room for MOST_SLABS. */
+/* Adds a fragment to slabs `first` to `last` of a light's view. The fragment begins at its delayed height
+ * `start`. There must be room for MOST_SLABS fragments. */
 void hl_add_to_slabs(const fragment_work *work, fragment_worker *worker, fragment f, double start,
                      int32_t first, int32_t last);
 
@@ -47,17 +47,17 @@ typedef struct covered_pixel {
   double u, v;
 } covered_pixel;
 
-/* Finds the next pixel that has covered samples, from the tile's column at[0] and row at[1] on. False: there
- * is no such pixel. */
+/* Finds the next pixel with covered samples, from the tile's column at[0] and row at[1] on. Returns false if
+ * there is no such pixel. */
 bool hl_next_pixel(const view *view, const tile_part *part, const seen_part *seen, int at[2], fragment *f,
                    covered_pixel *pixel);
 
-/* Adds a fragment that lies at a pixel of a plane, and marks its slab. seams: the corners of the triangle
- * in a light's view; null: none. */
+/* Adds the fragment of a plane at a pixel, and marks its slab. seams: in a light's view, the corners of the
+ * triangle; null: none. */
 void hl_add_pixel(const fragment_work *work, fragment_worker *worker, const surface_plane *plane, fragment f,
                   const covered_pixel *at, const seen_seams *seams);
 
-/* Adds a primitive's fragments in a tile, and makes room for them. */
+/* Makes room for a primitive's fragments in a tile, and adds them. */
 void hl_add_primitive(const fragment_work *work, fragment_worker *worker, tile_part *part, size_t mesh_index,
                       uint32_t primitive);
 

@@ -1,4 +1,5 @@
-/* surface/primitive_kinds.h - the list of the kinds of primitives, in the order of their primitives' numbers.
+/* surface/primitive_kinds.h - the list of the kinds of primitives. The numbers of primitives follow the order
+ * of this list.
  *
  * A kind "sphere" has the table hl_primitive_sphere (primitive.h) in sphere.c, and the table hl_raster_sphere
  * (primitive_raster.h) in sphere_raster.c. The kinds that have corners come first. */
@@ -18,7 +19,7 @@
 enum primitive_number { HL_PRIMITIVES PRIMITIVE_KINDS };
 #undef HL_PRIMITIVE
 
-/* The primitives of one kind that a mesh has; their numbers follow each other. */
+/* The primitives of one kind in a mesh, as a range of numbers. */
 typedef struct primitive_range {
   uint32_t first, count;
 } primitive_range;

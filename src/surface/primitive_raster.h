@@ -1,9 +1,9 @@
-/* surface/primitive_raster.h - what a view sees of a kind of primitive, and how it becomes fragments.
+/* surface/primitive_raster.h - finds what a view sees of primitives of a kind, and makes fragments of them.
  *
  * Each kind of primitive (primitive.h) has one such table. The files of this room that sort primitives into
- * tiles, rasterise them and part fragments call it. A kind is rasterised in two ways: a small primitive
- * together with up to fifteen others of its mesh (collect, cover_small), any other primitive by itself
- * (cover). */
+ * tiles, rasterise them and cut crossing fragments call the functions of the table. A kind is rasterised in
+ * two ways: a small primitive together with up to fifteen others of its mesh (collect, cover_small), any
+ * other primitive by itself (cover). */
 #ifndef HL_SURFACE_PRIMITIVE_RASTER_H
 #define HL_SURFACE_PRIMITIVE_RASTER_H
 
@@ -19,28 +19,28 @@ typedef struct small_batch small_batch;         /* small_batch.h */
 typedef struct shown_surface shown_surface;     /* shown_surface.h */
 
 struct primitive_raster {
-  /* Finds a rectangle around the part of a primitive that the view sees. False: the view sees nothing of the
-   * primitive. fronts: sides that face away from the view do not count. */
+  /* Finds a rectangle around the part of a primitive that the view sees. Returns false if the view sees
+   * nothing of the primitive. fronts: whether sides that face away from the view are left out. */
   bool (*see)(const seen_surfaces *seen, uint32_t primitive, bool fronts, seen_bounds *bounds);
   /* A lower bound of a primitive's height above the first sheet. */
   float (*lowest)(const surfaces *all, const sheet_stack *sheets, uint32_t primitive);
-  /* Adds a primitive to a batch of small ones; false where it must be rasterised by itself. */
+  /* Adds a primitive to a batch of small primitives. Returns false if it must be rasterised by itself. */
   bool (*collect)(const fragment_work *work, const tile_part *part, small_batch *batch, uint32_t primitive);
-  /* Finds the samples that the small primitives of a batch cover; returns which primitives are small, one
-   * bit each. */
+  /* Finds the samples that the small primitives of a batch cover. Returns which primitives of the batch are
+   * small, one bit each. */
   uint32_t (*cover_small)(const surface_functions *functions, small_batch *batch);
-  /* Adds one primitive's fragments in a tile. f: a fragment with the members that all of them share. The
-   * worker has room for them. */
+  /* Adds one primitive's fragments in a tile. f: a fragment in which the members are set that all these
+   * fragments share. The worker must have room for them. */
   void (*cover)(const fragment_work *work, fragment_worker *worker, tile_part *part, const fragment *f);
-  /* Finds the surface that a fragment shows. The fragment's samples have their mean position at the
-   * continuous pixel (u, v). */
+  /* Finds the surface that a fragment shows. (u, v): the mean position of the fragment's samples, as a
+   * continuous pixel. */
   void (*show)(const seen_surfaces *seen, const sheet_stack *sheets, const fragment *f, double u, double v,
                shown_surface *shown);
   /* The height of a shown surface above the first sheet at a continuous pixel. */
   double (*height)(const sheet_stack *sheets, const shown_surface *shown, double u, double v);
 };
 
-/* The tables, one a file (primitive_kinds.h). */
+/* The tables of the kinds; each is in a file of its own (primitive_kinds.h). */
 #define HL_PRIMITIVE(name) extern const primitive_raster hl_raster_##name;
 HL_PRIMITIVES
 #undef HL_PRIMITIVE

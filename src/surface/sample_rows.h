@@ -6,7 +6,7 @@
 
 static const unsigned char SAMPLE_ROWS[16] = {3, 10, 1, 8, 15, 6, 13, 4, 11, 2, 9, 0, 7, 14, 5, 12};
 
-/* Word b of 16 bits holds the samples in whose row number bit b is set. */
+/* Word b, of 16 bits, holds the samples whose row number has bit b set. */
 #define SAMPLE_ROW_BITS 0xa55af0f033335555u
 
 #endif

@@ -1,10 +1,10 @@
 /* surface/seen.c - see seen.h. */
 #include "surface/seen.h"
 
-/* The width, in pixels, of the frame around the view within which triangles are not cut. */
+/* The width of a frame around the view, in pixels. A triangle that stays within this frame is not cut. */
 static const double FRAME_AROUND = 4096;
-/* The least distance from a perspective view's eye at which points are seen, in units of the distance at
- * which rays have the length 1. */
+/* In a perspective view, the least distance from the eye at which points are seen. The unit is the distance
+ * at which rays have the length 1. */
 static const double NEAREST = 1e-4;
 
 /* A corner as (w, w u, w v). */
@@ -17,8 +17,8 @@ static corner corner_in_view(const view *view, vec3 point) {
   return (corner){view->perspective ? p.x : 1, p.y, p.z};
 }
 
-/* The distance of a corner from a side of the frame, above 0 inside. Side 0 is the plane of the eye; sides
- * 1 and 2 are left and right, 3 and 4 above and below. */
+/* The distance of a corner from a side of the frame, above 0 inside. Side 0 is the plane of the eye. Sides 1
+ * and 2 are the left and the right side, sides 3 and 4 the upper and the lower one. */
 static double inside(const view *view, int side, corner c) {
   switch (side) {
     case 0: return c.w - NEAREST;
@@ -42,7 +42,7 @@ bool hl_see_vertex(const seen_surfaces *seen, uint32_t vertex, int32_t at[2]) {
   return true;
 }
 
-/* Cuts a polygon by one side. Returns the number of corners that are left. */
+/* Cuts a polygon at one side of the frame. Returns the number of corners that are left. */
 static int clip(const view *view, int side, const corner *from, int count, corner *to) {
   int kept = 0;
   for (int i = 0; i < count; i++) {
@@ -98,9 +98,10 @@ bool hl_faces_view(const seen_surfaces *seen, uint32_t triangle) {
 
 /* ---- spheres ---- */
 
-/* Finds the least and greatest u of points of a sphere. w u and w > 0 are linear functions of the point, with
- * the gradients ga and gw and the values a and w at the sphere's centre. Derived: the plane a - w u = 0
- * touches the sphere where (a - w u)^2 = r^2 |ga - u gw|^2, a quadratic equation for u. */
+/* Finds the least and greatest u of the points of a sphere. w u and w are linear functions of the point. At
+ * the sphere's centre they have the values a and w; their gradients are ga and gw. w must be above 0 on the
+ * sphere. Derived: the plane a - w u = 0 touches the sphere where (a - w u)^2 = r^2 |ga - u gw|^2, a
+ * quadratic equation for u. */
 static void find_extent(double a, double w, vec3 ga, vec3 gw, double radius, double *least,
                         double *greatest) {
   double rr = radius * radius, p = w * w - rr * vec3_dot(gw, gw), q = a * w - rr * vec3_dot(ga, gw),

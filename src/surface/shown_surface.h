@@ -7,13 +7,14 @@
 #include "surface/sphere_coverage.h"
 
 struct shown_surface {
-  const primitive_raster *raster; /* the table of the primitive's kind. Of the members below, those for other
+  const primitive_raster *raster; /* the table of the primitive's kind. The members below that belong to other
                                    * kinds are not set */
   double lowest, highest;         /* the least and the greatest height of the primitive above the first
                                    * sheet */
   /* Of a triangle. */
   surface_plane plane;
-  bool by_corners;         /* none of the triangle's corners was cut by the view: the height is rise / part */
+  bool by_corners;         /* whether no corner of the triangle was cut by the view; then the height is rise /
+                            * part */
   double rise[3], part[3]; /* linear functions of the pixel, like those of surface_plane */
   /* Of a sphere. */
   sphere_rays rays;

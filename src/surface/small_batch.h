@@ -1,4 +1,5 @@
-/* surface/small_batch.h - up to sixteen primitives of one kind and one mesh that are rasterised together. */
+/* surface/small_batch.h - a batch: up to sixteen primitives of one kind and one mesh that are rasterised
+ * together. */
 #ifndef HL_SURFACE_SMALL_BATCH_H
 #define HL_SURFACE_SMALL_BATCH_H
 
@@ -14,7 +15,7 @@ struct small_batch {
   int count;
   const primitive_kind *kind; /* of the primitives */
   size_t mesh;
-  bool may_be_covered; /* in a light's view: clusters may lie behind fragments that cover all of their
+  bool may_be_covered; /* in a light's view: whether clusters may lie behind fragments that cover all of their
                         * pixels */
 };
 

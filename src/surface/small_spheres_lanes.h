@@ -1,6 +1,6 @@
-/* surface/small_spheres_lanes.h - opaque spheres of few pixels, seen from outside, eight at a time. Numbers
- * are computed in doubles, with the operations of seen.c, sphere_coverage.c, surface_plane.c and
- * tile_fragments.c in the same order, so that the bytes are the same as theirs. */
+/* surface/small_spheres_lanes.h - finds the fragments of small opaque spheres that are seen from outside,
+ * eight at a time. Numbers are computed in doubles. The operations are those of seen.c, sphere_coverage.c,
+ * surface_plane.c and tile_fragments.c, in the same order, so that all results have the same bytes. */
 #ifndef HL_SURFACE_SMALL_SPHERES_LANES_H
 #define HL_SURFACE_SMALL_SPHERES_LANES_H
 
@@ -23,8 +23,8 @@ LANES_INLINE doubles3 less(doubles3 a, doubles3 b) { return (doubles3){a.x - b.x
 LANES_INLINE eight_doubles choose(eight_longs mask, eight_doubles a, eight_doubles b) {
   return (eight_doubles)(((eight_longs)a & mask) | ((eight_longs)b & ~mask));
 }
-/* The greater and the lesser number, as fmax() and fmin() give them: where one argument is not a number,
- * the result is the other one. */
+/* The greater and the lesser number, as fmax() and fmin() give them: where one argument is NaN, the result is
+ * the other argument. */
 LANES_INLINE eight_doubles at_least(eight_doubles a, double least) {
   return choose(a > least, a, (eight_doubles){0} + least);
 }
@@ -52,7 +52,7 @@ LANES_INLINE uint32_t bits_of(eight_longs mask) {
   return bits;
 }
 
-/* The whole number at or below a number that fits into 32 bits. */
+/* The greatest whole number that is not above a number. It must fit into 32 bits. */
 LANES_INLINE eight_doubles floors(eight_doubles x) {
   eight_doubles whole = __builtin_convertvector(__builtin_convertvector(x, eight_ints), eight_doubles);
   return choose(whole > x, whole - 1.0, whole);
@@ -87,7 +87,7 @@ LANES_INLINE eight_doubles discriminants(const eight_rays *rays, eight_doubles u
   return along * along - dots(b, b) * (dots(a, a) - rays->radius * rays->radius);
 }
 
-/* The pixels of the tile that spheres touch; and which spheres are small and seen from outside. */
+/* The pixels of the tile that each sphere touches; and which spheres are small and seen from outside. */
 typedef struct eight_boxes {
   eight_doubles x0, y0, x1, y1;
   eight_longs small, seen;
@@ -144,8 +144,8 @@ LANES_INLINE eight_longs cover_pixels(const eight_doubles c[6], eight_doubles u,
   return bits;
 }
 
-/* Planes that touch the spheres where rays enter them. The members that depend on the pixel are linear
- * functions of it. */
+/* Planes that touch the spheres at the points where rays enter them. Members that depend on the pixel are
+ * linear functions of it. */
 typedef struct eight_planes {
   eight_doubles rise[3], way[3];
   vec3 above, climb; /* the same for all spheres */

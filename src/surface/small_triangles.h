@@ -1,9 +1,9 @@
-/* surface/small_triangles.h - sixteen triangles of few pixels at a time: the samples that they cover, and
- * their heights there.
+/* surface/small_triangles.h - finds the samples that small triangles cover, and their heights there, for
+ * sixteen triangles at a time.
  *
  * A triangle is small where its box touches at most four by four pixels of a view and its height changes by
- * at most four distances of sheets. The height between its corners is then nearly linear in the pixel, in
- * perspective views too. coverage.h and surface_plane.h serve other triangles. */
+ * at most four distances of sheets. The height between its corners is then nearly linear in the pixel, even
+ * in perspective views. For other triangles coverage.h and surface_plane.h are used. */
 #ifndef HL_SURFACE_SMALL_TRIANGLES_H
 #define HL_SURFACE_SMALL_TRIANGLES_H
 
@@ -15,29 +15,31 @@
 
 enum { SMALL_TRIANGLES = 16, SMALL_SIDE = 4, SMALL_PIXELS = SMALL_SIDE * SMALL_SIDE };
 
-/* A view, and how fragments of one mesh are placed in it. Vectors are in frame space. */
+/* A view, and the data by which fragments of one mesh are placed in it. Vectors are in frame space. */
 typedef struct small_view {
   float normal[3], first; /* the sheets' normal; a point's height is normal.X - first */
   float spacing, last_slab;
   int32_t columns, rows; /* size of the tile, within the view */
   int of_light;          /* a light's view; in other views the members from `perspective` to `rise` are not
                           * used */
-  int perspective;       /* the rays come from the point `from`; else they run along the vector `from` */
+  int perspective;       /* if set, the rays come from the point `from`; else they run along the vector
+                          * `from` */
   float from[3], du[3], dv[3];
-  float depth[3];    /* in a perspective view: the distance of a point X, in lengths of its ray, is
-                      * depth.(X - from) */
+  float depth[3];    /* in a perspective view: the distance of a point X from the eye is depth.(X - from); the
+                      * unit is the length of the ray's direction vector */
   float delay, rise; /* as in fragments_source */
-  double inverse[3][3], origin[3]; /* for clusters: the rows of `inverse` times (point - origin) are w, w u
-                                    * and w v; in a parallel view w is 1 instead */
+  double inverse[3][3], origin[3]; /* for clusters: the rows of `inverse`, multiplied by (point - origin),
+                                    * give w, w u and w v; in a parallel view w is 1 instead */
   int32_t left, top;               /* for clusters: the tile's corner; 1/256 pixels */
   const view *view;                /* for spheres; borrowed */
   const sheet_stack *sheets;       /* for spheres; borrowed */
-  int fronts;                      /* only triangles that face the view are covered */
-  int dark_backs; /* as in fragment_work: there is no delay where the light's rays leave the mesh */
+  int fronts;                      /* whether only triangles that face the view are covered */
+  int dark_backs; /* as in fragment_work: whether fragments at which the light's rays leave the mesh have no
+                   * delay */
 } small_view;
 
 typedef struct small_triangles {
-  /* corners; 1/256 pixels from the tile's corner. */
+  /* the corners, in 1/256 pixels from the tile's corner */
   _Alignas(64) int32_t x[3][SMALL_TRIANGLES], y[3][SMALL_TRIANGLES];
   float height[3][SMALL_TRIANGLES]; /* heights of the corners: normal.X -
                                      * first */
@@ -59,11 +61,11 @@ static inline void hl_corner_product(const float *const corner[3], float normal[
   }
 }
 
-/* Numbers of a cluster of triangles; each triangle has a column. */
+/* The triangles of a cluster, as arrays in which each triangle has a column. */
 enum { CLUSTER_TRIANGLES = 64, CLUSTER_VERTICES = 3 * CLUSTER_TRIANGLES };
 typedef struct cluster_shape {
   const float *positions; /* [3][vertices]; axis by axis; frame space */
-  size_t vertices;        /* number of vertices, a multiple of 16; the last ones may repeat others */
+  size_t vertices;        /* number of vertices, a multiple of 16; the last vertices may repeat others */
   const uint8_t (*corners)[CLUSTER_TRIANGLES]; /* [3]; numbers of vertices */
   const float (*normals)[CLUSTER_TRIANGLES];   /* [3]; hl_corner_product() */
 } cluster_shape;
@@ -76,49 +78,48 @@ typedef struct seen_cluster {
 
 /* Pixel k of a triangle is k % SMALL_SIDE columns and k / SMALL_SIDE rows from the first pixel of its box. */
 typedef struct small_cover {
-  uint32_t large; /* the triangles that touch the tile and are too large for this function, one bit each */
+  uint32_t large; /* the triangles that touch the tile but are too large for this function, one bit each */
   uint32_t covered[SMALL_PIXELS]; /* for each pixel, the triangles that cover some of its samples, one bit
-                                   * each; the members below are set only for pixels and triangles with a
-                                   * bit */
+                                   * each; the members below are set only where a pixel and a triangle have
+                                   * such a bit */
   /* the pixel's number in the tile, block after block */
   _Alignas(64) int32_t pixel[SMALL_PIXELS][SMALL_TRIANGLES];
   uint16_t samples[SMALL_PIXELS][SMALL_TRIANGLES]; /* covered samples, one bit each */
-  int32_t reach[SMALL_PIXELS][SMALL_TRIANGLES];    /* for the eye's view: reaches of the
-                                                    * fragments */
-  float height[SMALL_PIXELS][SMALL_TRIANGLES]; /* height in the middle of the covered samples, above the first
-                                                * sheet */
-  float start[SMALL_PIXELS][SMALL_TRIANGLES];  /* for a light's view: the delayed height */
-  int32_t slab[SMALL_PIXELS][SMALL_TRIANGLES]; /* slab of the height */
+  int32_t reach[SMALL_PIXELS][SMALL_TRIANGLES];    /* for the eye's view: the reaches of the fragments */
+  float height[SMALL_PIXELS][SMALL_TRIANGLES];     /* the height above the first sheet, in the middle of the
+                                                    * covered samples */
+  float start[SMALL_PIXELS][SMALL_TRIANGLES];      /* for a light's view: the delayed height */
+  int32_t slab[SMALL_PIXELS][SMALL_TRIANGLES];     /* slab of the height */
   int32_t first_slab[SMALL_PIXELS][SMALL_TRIANGLES],
       last_slab[SMALL_PIXELS][SMALL_TRIANGLES]; /* for a light's view: the last slab that the fragment
                                                  * fills */
 } small_cover;
 
-/* Finds which samples small triangles cover. Returns the small triangles, one bit each; other triangles are
- * not covered. */
+/* Finds the samples that small triangles cover. Returns which triangles are small, one bit each; other
+ * triangles are left out. */
 typedef uint32_t cover_small_function(const small_view *view, const small_triangles *triangles,
                                       small_cover *cover);
 
 typedef void see_cluster_function(const small_view *view, const cluster_shape *shape, seen_cluster *seen);
 
-/* Does the work of cover_small_function for the triangles `first` to first + 15 of a cluster. wanted: the
- * triangles that count, one bit each. */
+/* Does the work of cover_small_function for sixteen triangles of a cluster, `first` to first + 15. wanted:
+ * those of the triangles that are looked at, one bit each. */
 typedef uint32_t cover_cluster_function(const small_view *view, const cluster_shape *shape,
                                         const seen_cluster *seen, int first, uint32_t wanted,
                                         small_cover *cover);
 
-/* Spheres that no cut touches and no light passes. */
+/* Spheres that no cut touches and that let no light pass. */
 typedef struct small_spheres {
   _Alignas(64) float centre[3][SMALL_TRIANGLES], radius[SMALL_TRIANGLES]; /* frame space */
 } small_spheres;
 
 /* Does the work of cover_small_function for sixteen spheres. A sphere is small if its box touches at most
- * four by four pixels of the tile and the view sees it from outside. The function does not serve lights'
- * views whose fragments fill several slabs. */
+ * four by four pixels of the tile and the view sees it from outside. The function must not be used for
+ * lights' views whose fragments fill several slabs. */
 typedef uint32_t cover_spheres_function(const small_view *view, const small_spheres *spheres,
                                         small_cover *cover);
 
-/* The room's functions that are compiled for each instruction set. */
+/* The functions of this room that are compiled for each instruction set. */
 typedef struct surface_functions {
   cover_small_function *cover_small;
   see_cluster_function *see_cluster;

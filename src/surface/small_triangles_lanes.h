@@ -11,21 +11,23 @@
 #include "surface/sample_rows.h"
 #include "surface/small_triangles.h"
 
-/* SMALL_STEP: the distance between columns or rows of samples, in 1/256 pixels. */
+/* SMALL_STEP: the distance, in 1/256 pixels, between neighbouring columns, or rows, of samples. */
 enum { SMALL_SUBPIXELS = 256, SMALL_STEP = SMALL_SUBPIXELS / 16, SMALL_TILE = 16 };
 /* As in seen.c. */
 static const double SMALL_NEAREST = 1e-4;
-/* The most by which a small triangle's height changes, in distances of sheets. */
+/* The greatest difference of heights within a small triangle, in distances of sheets. */
 static const float SMALL_RISE = 4;
 
-/* Corners in 1/256 pixels from the first pixel. An edge's value + x down - y across is above 0 inside. */
+/* Corners in 1/256 pixels from the first pixel. For each edge, value + x down - y across is above 0 inside
+ * the triangle. */
 typedef struct small_shape {
   lanes x[3], y[3];
   lanes across[3], down[3], value[3];
   lanes area; /* twice the area, with its sign */
 } small_shape;
 
-/* Heights of points of a triangle: the height at its first corner, and its change per 1/256 pixels. */
+/* The height as a function of the position in a triangle: the height at the first corner, and its change per
+ * 1/256 pixels. */
 typedef struct small_heights {
   lanes corner, by_x, by_y, lowest, highest;
 } small_heights;
@@ -37,8 +39,8 @@ LANES_INLINE lanes_int load_ints(const int32_t *p) {
 }
 LANES_INLINE void store_ints(int32_t *p, lanes_int v) { memcpy(p, &v, sizeof v); }
 
-/* Finds, along one axis, the first pixel that a triangle's box touches, and the number of further pixels that
- * it touches (*more). Returns whether these are fewer than SMALL_SIDE. */
+/* Finds, along one axis, the first pixel that a triangle's box touches. *more: receives the number of further
+ * pixels that the box touches. Returns whether this number is below SMALL_SIDE. */
 LANES_INLINE lanes_int find_first_pixel(const int32_t at[3][SMALL_TRIANGLES], lanes_int *first,
                                         lanes_int *more) {
   lanes_int a = load_ints(at[0]), b = load_ints(at[1]), c = load_ints(at[2]);
@@ -50,9 +52,9 @@ LANES_INLINE lanes_int find_first_pixel(const int32_t at[3][SMALL_TRIANGLES], la
   return *more < SMALL_SIDE;
 }
 
-/* Sets the edges as in coverage.c. A sample on an edge belongs to the triangle on one side of it. A half is
- * added to the function or subtracted from it to tell the two sides apart, so that the function is never 0 at
- * a sample. */
+/* Sets the edges as in coverage.c. A sample on an edge belongs to the triangle on one side of this edge. So a
+ * half is added to the edge function on one side, and subtracted on the other. The function is then never 0
+ * at a sample. */
 LANES_INLINE void set_shape(const small_triangles *t, lanes_int column, lanes_int row, small_shape *shape) {
   for (int i = 0; i < 3; i++) {
     shape->x[i] = lanes_from_int(load_ints(t->x[i]) - (column << 8));
@@ -88,10 +90,10 @@ LANES_INLINE void find_heights(const small_triangles *t, const small_shape *shap
   heights->highest = lanes_max(lanes_max(height[0], height[1]), height[2]);
 }
 
-/* How much the height of the triangle's plane changes from pixel to pixel. *leaving: whether the rays leave
- * the mesh at the triangle. Derived: let the ray A + s B meet the plane with the normal n. The ray of the
- * next pixel, whose vector differs by D, meets the plane s D - B s (n.D) / (n.B) farther. The height there
- * differs by s (h.D - (h.B) (n.D) / (n.B)). */
+/* How much the height of the triangle's plane changes from pixel to pixel. *leaving: receives whether the
+ * rays leave the mesh at the triangle. Derived: let the ray A + s B meet the plane with the normal n. The ray
+ * of the next pixel, whose vector differs by D, meets the plane s D - B s (n.D) / (n.B) farther. The height
+ * there differs by s (h.D - (h.B) (n.D) / (n.B)). */
 LANES_INLINE lanes find_slope(const small_view *view, const small_triangles *t, lanes_int *leaving) {
   lanes normal[3], way[3], depth = lanes_set(1.0f);
   for (int axis = 0; axis < 3; axis++) {
@@ -110,8 +112,7 @@ LANES_INLINE lanes find_slope(const small_view *view, const small_triangles *t, 
     slope = slope + lanes_abs((rise - product3(d, normal) * ratio) * depth);
   }
   *leaving = facing > 0.0f;
-  return lanes_min(slope, lanes_set(STEEPEST_SLOPE)); /* a slope that is not a number counts as the
-                                                       * steepest */
+  return lanes_min(slope, lanes_set(STEEPEST_SLOPE)); /* a slope that is NaN counts as the steepest slope */
 }
 
 /* The slab that ends at or above a height. */
@@ -120,8 +121,8 @@ LANES_INLINE lanes_int slab_at(const small_view *view, lanes height) {
   return lanes_floor(sheet * -1.0f) * -1;
 }
 
-/* The covered samples of a pixel that begins at (x, y): their bits, their number, and the sums of their
- * columns and rows. */
+/* The covered samples of a pixel that begins at (x, y): one bit for each sample, the number of samples, and
+ * the sums of their columns and of their rows. */
 typedef struct small_samples {
   lanes_int bits, count, columns, rows;
 } small_samples;
@@ -149,9 +150,9 @@ LANES_INLINE void cover_samples(const small_shape *shape, int x, int y, small_sa
 }
 
 /* Finds the number of samples in each lane's bits, and the sums of their columns and rows. Derived: fields of
- * neighbouring samples are joined in pairs, until one field is left. For each field the number of its samples
- * is known, and the sum of their columns counted from the field's first column. Column c has the row 3 - c +
- * 8 (c odd) + 16 (c in SECOND_TURN), which is (3 + 7 c) modulo 16. */
+ * neighbouring samples are joined in pairs, until one field is left. For each field two numbers are kept: the
+ * number of its samples, and the sum of their columns, counted from the field's first column. Column c has
+ * the row 3 - c + 8 (c odd) + 16 (c in SECOND_TURN), which is (3 + 7 c) modulo 16. */
 LANES_INLINE void count_samples(lanes_int bits, small_samples *samples) {
   enum { PAIRS = 0x5555, FOURS = 0x3333, EIGHTS = 0x0f0f, SECOND_TURN = 0xf550 };
   lanes_int odd = (bits >> 1) & PAIRS, turn = bits & SECOND_TURN;
@@ -170,8 +171,9 @@ LANES_INLINE void count_samples(lanes_int bits, small_samples *samples) {
   *samples = (small_samples){bits, count, sum, 3 * count - sum + 8 * ((rows + (rows >> 8)) & 255)};
 }
 
-/* Finds the first column (or row) of samples whose middle lies at or after the least of three coordinates.
- * *count: the number of columns from there up to the greatest coordinate. Coordinates are in 1/256 pixels. */
+/* Finds the first column (or row) of samples that does not lie before the least of three coordinates; a
+ * column lies at its middle. *count: receives the number of columns from there up to the greatest coordinate.
+ * Coordinates are in 1/256 pixels. */
 LANES_INLINE lanes_int sample_range(const lanes at[3], lanes_int *count) {
   lanes least = lanes_min(lanes_min(at[0], at[1]), at[2]),
         greatest = lanes_max(lanes_max(at[0], at[1]), at[2]);
@@ -189,10 +191,10 @@ LANES_INLINE int greatest_of(lanes_int x, lanes_int of) {
 
 typedef uint32_t small_words __attribute__((vector_size(64)));
 
-/* Finds the samples that triangles cover, for triangles at most a pixel high and two pixels wide. In each
- * column of samples only one sample can lie within such a triangle's rows, and only this sample is tested.
- * bits: for each of two rows of pixels, the samples of two pixels, 16 bits each. Returns whether the
- * triangles in `of` are so small. */
+/* Finds the samples that very small triangles cover: triangles that are at most a pixel high and two pixels
+ * wide. In each column of samples, only one sample can lie within the rows of such a triangle, and only this
+ * sample is tested. bits: for each of two rows of pixels, the samples of two pixels, 16 bits each. Returns
+ * whether the triangles in `of` are so small. */
 LANES_INLINE int cover_columns(const small_shape *shape, lanes_int of, lanes_int bits[2]) {
   lanes_int columns, rows, column = sample_range(shape->x, &columns), row = sample_range(shape->y, &rows);
   if (lanes_bits(of & ((rows > 16) | (column + columns > 32) | (row + rows > 32))) != 0) return 0;
@@ -202,7 +204,8 @@ LANES_INLINE int cover_columns(const small_shape *shape, lanes_int of, lanes_int
     at[i] = shape->value[i] + shape->down[i] * x;
     step[i] = shape->down[i] * (float)SMALL_STEP;
   }
-  lanes_int ahead = column * 7 + 3 - row; /* the sample's row, counted from the first one, modulo 16 */
+  lanes_int ahead = column * 7 + 3 - row; /* the row of the column's sample, counted from the first row,
+                                           * modulo 16 */
   small_words bit = (small_words)(1 << (column & 31)); /* 0 for columns after the last one */
   bits[0] = bits[1] = lanes_set_int(0);
   for (int n = greatest_of(columns, of); n > 0; n--) {
@@ -246,7 +249,7 @@ LANES_INLINE lanes_int number_in_tile(lanes_int column, lanes_int row) {
   return ((row & 12) << 4) | ((column & 12) << 2) | ((row & 3) << 2) | (column & 3);
 }
 
-/* Covers the triangles of the lanes in `wanted`. */
+/* Finds the samples that the triangles of the lanes in `wanted` cover. */
 LANES_INLINE uint32_t cover_wanted(const small_view *view, const small_triangles *t, lanes_int wanted,
                                    small_cover *cover) {
   small_shape shape;
@@ -332,7 +335,8 @@ LANES_INLINE void store_subpixels(int32_t *to, eight_doubles pixels) {
   memcpy(to, &whole, sizeof whole);
 }
 
-/* Projects the vertices `at` to at + 7 of a cluster into the view, with sums in the order of seen.c. */
+/* Projects eight vertices of a cluster, `at` to at + 7, into the view. Sums have the same order as in
+ * seen.c. */
 LANES_INLINE void see_eight(const small_view *view, const cluster_shape *shape, size_t at,
                             seen_cluster *seen) {
   eight_doubles p[3], c[3];

@@ -1,4 +1,4 @@
-/* surface/sphere.c - the kind of primitive that a sphere is. */
+/* surface/sphere.c - the table of the kind of primitives: spheres. */
 #include "mesh/mesh.h"
 #include "surface/primitive_lattice.h"
 #include "surface/primitive_raster.h"
@@ -64,8 +64,8 @@ static vec3 look(const surfaces *all, const surface_mesh *mesh, uint32_t primiti
   return *normal;
 }
 
-/* How much a sphere is bent: 1 / radius everywhere where it is seen as a hollow, and -1 / radius where it
- * bulges. */
+/* How much a sphere is bent: 1 / radius where it is seen from within, as a hollow, and -1 / radius where it
+ * is seen from outside. */
 static double bend(const surfaces *all, const surface_mesh *mesh, uint32_t primitive, vec3 at, vec3 normal,
                    vec3 along) {
   (void)along;
@@ -75,7 +75,7 @@ static double bend(const surfaces *all, const surface_mesh *mesh, uint32_t primi
   return (vec3_dot(inwards, normal) > 0 ? 1 : -1) / (double)sphere[3];
 }
 
-/* Finds where a ray meets a sphere: at the two solutions s of |origin + s way - centre| = r. */
+/* Finds where a ray meets a sphere: the two solutions s of |origin + s way - centre| = r. */
 static int intersect(const surfaces *all, uint32_t primitive, const surface_ray *ray, double distance[2]) {
   const float *sphere = hl_sphere_of(all, primitive);
   vec3 away = vec3_subtract(ray->origin, hl_surface_vector(sphere));
@@ -90,9 +90,9 @@ static int intersect(const surfaces *all, uint32_t primitive, const surface_ray 
   return count;
 }
 
-/* Whether a hull may have points on both sides of a sphere's surface: it may, unless the hull lies
- * completely within the sphere, or completely beyond the plane that touches the sphere nearest to the first
- * ball (derived: both sides of the plane are convex, and so is the inside of the sphere). */
+/* Whether a hull may have points on both sides of a sphere's surface. It may, unless the hull lies completely
+ * within the sphere, or completely beyond a plane: the plane that touches the sphere at the point nearest to
+ * the first ball (derived: both sides of the plane are convex, and so is the inside of the sphere). */
 static bool parts(const surfaces *all, uint32_t primitive, const hull_ball *balls, int count, double least) {
   const float *sphere = hl_sphere_of(all, primitive);
   const vec3 centre = hl_surface_vector(sphere), up = vec3_normalise(vec3_subtract(balls[0].at, centre));

@@ -38,8 +38,8 @@ static double discriminant(const sphere_rays *rays, double u, double v) {
 static int clamp_pixel(double pixel) { return pixel < 0 ? 0 : pixel > TILE - 1 ? TILE - 1 : (int)pixel; }
 
 /* The discriminant as a quadratic function of the pixel: c0 + c1 u + c2 v + c3 uu + c4 uv + c5 vv. It is
- * found from the discriminant's values about a point, and is exact for both kinds of views (derived: A is
- * constant in a perspective view, and B in a parallel one, so that the discriminant has degree 2). */
+ * found from the discriminant's values around a point, and is exact for both kinds of views (derived: A is
+ * constant in a perspective view, and B in a parallel view, so that the discriminant has degree 2). */
 typedef struct quadratic {
   double c[6];
 } quadratic;
@@ -51,12 +51,12 @@ static quadratic quadratic_of(const sphere_rays *rays, double u, double v) {
   return (quadratic){{m, (e - w) / 2, (s - n) / 2, (e + w) / 2 - m, se - e - s + m, (s + n) / 2 - m}};
 }
 
-/* A rectangle that holds all covered samples, in pixels from the corner of the current pixel. */
+/* A rectangle that holds all covered samples; in pixels, counted from the corner of the current pixel. */
 typedef struct sample_bounds {
   double x0, y0, x1, y1;
 } sample_bounds;
 
-/* The number of the first column of samples whose middle lies at or after x; 16 if there is none. x: in
+/* The first column of samples whose middle does not lie before x; 16 if there is no such column. x: in
  * pixels. */
 static int first_column(double x) {
   double column = x * SAMPLES - 0.5;
@@ -75,7 +75,7 @@ static uint32_t cover_pixel(const quadratic *q, double u, double v, const sample
   return bits;
 }
 
-/* The number of pixels by which bounds are widened; the rounding of bounds is far less. */
+/* The number of pixels by which bounds are widened. The errors of rounding are far smaller. */
 static const double AROUND = 1e-3;
 
 bool hl_cover_sphere(const view *view, const float sphere[4], const seen_bounds *bounds, int tile_x,

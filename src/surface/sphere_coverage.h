@@ -4,12 +4,13 @@
 
 #include "surface/coverage.h"
 
-/* Finds the samples of a tile that a sphere covers, as hl_cover_tile() does for polygons. The view sees the
- * sphere within the given bounds. */
+/* Finds the samples of a tile that a sphere covers, as hl_cover_tile() does for polygons. bounds: a rectangle
+ * that holds all that the view sees of the sphere. */
 bool hl_cover_sphere(const view *view, const float sphere[4], const seen_bounds *bounds, int tile_x,
                      int tile_y, pixel_span *span, uint16_t covered[TILE_PIXELS]);
 
-/* The ray A + s B of a pixel, counted from the sphere's centre. Both vectors are linear in the pixel. */
+/* The ray A + s B of a pixel, relative to the sphere's centre. Both vectors are linear functions of the
+ * pixel. */
 typedef struct sphere_rays {
   vec3 start, start_u, start_v, way, way_u, way_v, centre;
   double radius;
@@ -18,9 +19,9 @@ typedef struct sphere_rays {
 
 sphere_rays hl_sphere_rays(const view *view, const float sphere[4]);
 
-/* Finds where the ray of the continuous pixel (u, v) enters and leaves a sphere. For a ray that misses the
- * sphere, both places are the sphere's point nearest to the ray. False where the point lies behind a
- * perspective view's eye. */
+/* Finds where the ray of the continuous pixel (u, v) enters a sphere, or (leaving) where it leaves the
+ * sphere. If the ray misses the sphere, both places are the point of the sphere nearest to the ray. Returns
+ * false if the point lies behind a perspective view's eye. */
 bool hl_meet_sphere(const sphere_rays *rays, double u, double v, bool leaving, vec3 *point);
 
 #endif

@@ -1,8 +1,8 @@
-/* surface/sphere_lattice.c - see primitive_lattice.h: spheres. */
+/* surface/sphere_lattice.c - see primitive_lattice.h: the table of spheres. */
 #include "surface/primitive_lattice.h"
 
-/* Finds where lines meet a sphere; a line within the sphere's reach meets it twice. Derived: if a and b are
- * the slopes of the line (x, y), its point at height h is (x - a h, y - b h, h). The heights at which the
+/* Finds where lines meet a sphere. A line that meets the sphere meets it twice. Derived: let a and b be the
+ * slopes of the line (x, y). Its point at the height h is (x - a h, y - b h, h). The heights at which the
  * line meets the sphere solve a quadratic equation. */
 static void meet(const surfaces *all, const surface_mesh *mesh, uint32_t primitive,
                  const lattice_lines *lines, lines_meet_function *met, const void *data) {

@@ -6,13 +6,13 @@
 
 /* ---- where it is seen ---- */
 
-/* A sphere has a front wherever it is seen. */
+/* a sphere that is seen has a front side, so `fronts` makes no difference */
 static bool see(const seen_surfaces *seen, uint32_t primitive, bool fronts, seen_bounds *bounds) {
   (void)fronts;
   return hl_see_sphere(seen->view, hl_sphere_of(seen->all, primitive), bounds);
 }
 
-/* A sphere's least height is not used: spheres are rasterised before triangles. */
+/* The least height is not needed for spheres, because they are rasterised before triangles. */
 static float lowest(const surfaces *all, const sheet_stack *sheets, uint32_t primitive) {
   (void)all, (void)sheets, (void)primitive;
   return (float)-INFINITY;
@@ -20,7 +20,7 @@ static float lowest(const surfaces *all, const sheet_stack *sheets, uint32_t pri
 
 /* ---- sixteen at a time ---- */
 
-/* Adds a sphere to a batch; false where the scene's cuts may cut it, where light passes it, or where its
+/* Adds a sphere to a batch. Returns false if the scene's cuts may cut it, if it lets light pass, or if its
  * fragments may fill several slabs. */
 static bool collect(const fragment_work *work, const tile_part *part, small_batch *batch,
                     uint32_t primitive) {
@@ -41,7 +41,7 @@ static uint32_t cover_small(const surface_functions *functions, small_batch *bat
 
 /* ---- one at a time ---- */
 
-/* Whether a light lights no part of a sphere from within: no light passes the sphere's surface, and the light
+/* Whether a light does not light a sphere from within: the sphere's surface lets no light pass, and the light
  * is outside. */
 static bool has_dark_inside(const fragment_work *work, const float sphere[4], const fragment *f) {
   const view *view = work->source->view;
@@ -63,7 +63,8 @@ static vec3 point_of(const void *shape, double u, double v) {
   return point;
 }
 
-/* Adds the side of a sphere that rays enter or leave by. */
+/* Adds one side of a sphere: the side at which rays leave it (leaving), or the side at which they enter
+ * it. */
 static void add_side(const fragment_work *work, fragment_worker *worker, const tile_part *part, fragment f,
                      bool leaving) {
   const fragments_source *source = work->source;
@@ -85,7 +86,7 @@ static void add_side(const fragment_work *work, fragment_worker *worker, const t
   }
 }
 
-/* A view sees the far side of an opaque sphere only from within. */
+/* Whether a sphere's far side is needed. A view sees the far side of an opaque sphere only from within. */
 static bool has_far_side(const fragment_work *work, const float sphere[4], float opacity) {
   const view *view = work->source->view;
   if (work->source->rise > 0 || opacity < 1) return true;
@@ -112,7 +113,7 @@ static double height(const sheet_stack *sheets, const shown_surface *shown, doub
   return vec3_dot(sheets->normal, point) - sheets->first;
 }
 
-/* Of the sphere's two sides, shows the one that is nearer to the fragment's height. */
+/* Shows one of the sphere's two sides: the side that is nearer to the fragment's height. */
 static void show(const seen_surfaces *seen, const sheet_stack *sheets, const fragment *f, double u, double v,
                  shown_surface *shown) {
   double away[2];

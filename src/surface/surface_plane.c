@@ -17,7 +17,7 @@ void hl_plane_begin(const view *view, const sheet_stack *sheets, surface_plane *
   plane->above[0] -= sheets->first;
 }
 
-/* Sets the plane through a point, after hl_plane_begin(). */
+/* Sets the plane through a point, after hl_plane_begin(). n: the plane's normal. */
 static void set_plane(const view *view, vec3 n, vec3 point, surface_plane *plane) {
   vec3 zero = {0, 0, 0};
   bool eye = view->perspective;
@@ -68,6 +68,6 @@ double hl_plane_slope(const surface_plane *plane, double u, double v) {
   double height = hl_plane_height(plane, u, v);
   double slope = fabs(hl_plane_height(plane, u + 1, v) - height) +
                  fabs(hl_plane_height(plane, u, v + 1) - height);
-  return slope < STEEPEST_SLOPE ? slope : STEEPEST_SLOPE; /* a slope that is not a number counts as the
-                                                           * steepest */
+  return slope < STEEPEST_SLOPE ? slope : STEEPEST_SLOPE; /* a slope that is NaN counts as the steepest
+                                                           * slope */
 }

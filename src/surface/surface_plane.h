@@ -1,19 +1,21 @@
-/* surface/surface_plane.h - the height at which a view's rays meet the plane of a triangle, or the plane that
- * touches a sphere. */
+/* surface/surface_plane.h - finds the height at which a view's rays meet a plane: the plane of a triangle, or
+ * a plane that touches a sphere. */
 #ifndef HL_SURFACE_SURFACE_PLANE_H
 #define HL_SURFACE_SURFACE_PLANE_H
 
 #include "surface/surfaces.h"
 #include "view/view.h"
 
-/* Linear functions of the pixel: the value at pixel (0, 0), and the changes by u and by v. Derived: the ray A
- * + s B meets the plane n.X = d at s = (d - n.A) / (n.B), at the height h.A + s h.B. In a perspective view A
- * is the eye and B depends on the pixel; in a parallel view A depends on the pixel and B is constant. */
+/* A plane as linear functions of the pixel. Each function is given by its value at pixel (0, 0) and its
+ * changes by u and by v. Derived: the ray A + s B meets the plane n.X = d at s = (d - n.A) / (n.B), at the
+ * height h.A + s h.B. In a perspective view A is the eye and B depends on the pixel; in a parallel view A
+ * depends on the pixel and B is constant. */
 typedef struct surface_plane {
   double rise[3], way[3], above[3], climb[3]; /* d - n.A, n.B, h.A, h.B */
   double lowest, highest;                     /* the least and greatest height of the surface, above the first
                                                * sheet */
-  bool leaving; /* the light's rays leave the mesh here, and they do not light the mesh's inside */
+  bool leaving; /* whether the light's rays leave the mesh here, and the inside of the mesh is not lit by
+                 * them */
 } surface_plane;
 
 /* A function of surface_plane at a pixel. */
@@ -24,7 +26,8 @@ static inline double hl_plane_linear(const double f[3], double u, double v) {
 void hl_plane_of_triangle(const view *view, const sheet_stack *sheets, const surfaces *all, uint32_t triangle,
                           surface_plane *plane);
 
-/* The slab in which a height above the first sheet lies, as the number k of the sheet at its end. */
+/* The slab that holds a height above the first sheet. The slab is given by the number k of the sheet at its
+ * end. */
 static inline int32_t hl_slab_of(const sheet_stack *sheets, double height) {
   return (int32_t)fmin(fmax(ceil(height / sheets->spacing), 1), sheets->count - 1);
 }
@@ -33,7 +36,8 @@ static inline int32_t hl_slab_of(const sheet_stack *sheets, double height) {
 void hl_plane_of_sphere(const view *view, const sheet_stack *sheets, const float sphere[4], vec3 point,
                         surface_plane *plane);
 
-/* Makes a plane in two steps: first the part that depends only on the view, then the rest. */
+/* The two steps of making a plane: hl_plane_begin() sets what depends only on the view,
+ * hl_plane_touch_sphere() the rest. */
 void hl_plane_begin(const view *view, const sheet_stack *sheets, surface_plane *plane);
 void hl_plane_touch_sphere(const view *view, const sheet_stack *sheets, const float sphere[4], vec3 point,
                            surface_plane *plane);
@@ -41,7 +45,7 @@ void hl_plane_touch_sphere(const view *view, const sheet_stack *sheets, const fl
 /* The plane's height above the first sheet. */
 double hl_plane_height(const surface_plane *plane, double u, double v);
 
-/* How much the height changes from pixel to pixel. */
+/* How much the plane's height changes from pixel to pixel. */
 double hl_plane_slope(const surface_plane *plane, double u, double v);
 
 #endif

@@ -1,4 +1,4 @@
-/* surface/surface_tree.c - makes the tree of boxes, and follows rays through it. */
+/* surface/surface_tree.c - makes the tree of boxes, and finds where rays meet its primitives. */
 #include "surface/surface_tree.h"
 
 #include "core/memory.h"
@@ -7,8 +7,9 @@
 #include "surface/surface_cuts.h"
 #include "surface/triangle.h"
 
-/* How the tree is made: a range of primitives is halved at the mean of the primitives' middles, or by
- * number from depth DEEP on, so that the tree does not become too deep. */
+/* How the tree is made: a range of primitives is divided at the mean of the primitives' middles. From depth
+ * DEEP on, it is divided into halves with equal numbers of primitives, so that the tree does not become too
+ * deep. */
 enum { LEAF_PRIMITIVES = 4, DEEP = 32, DEEPEST = DEEP + 40 };
 
 static float lower(float a, float b) { return a < b ? a : b; }
@@ -19,7 +20,7 @@ static double greater(double a, double b) { return a > b ? a : b; }
 
 static size_t most_boxes(size_t primitives) { return 2 * primitives; }
 
-/* A primitive with its box, while the tree is made. */
+/* A primitive with its box; used while the tree is made. */
 typedef struct boxed_primitive {
   float low[3], high[3];
   uint32_t primitive;
@@ -31,7 +32,7 @@ static float middle_of(const boxed_primitive *p, int axis) {
 
 /* ---- the tree ---- */
 
-/* Moves the primitives whose middle lies below `at` to the front; returns how many. */
+/* Moves the primitives whose middle lies below `at` to the front of the list; returns their number. */
 static uint32_t part(boxed_primitive *list, uint32_t count, int axis, float at) {
   uint32_t below = 0;
   for (uint32_t i = 0; i < count; i++) {
@@ -43,8 +44,8 @@ static uint32_t part(boxed_primitive *list, uint32_t count, int axis, float at) 
   return below;
 }
 
-/* Makes the tree of a range of primitives, and sorts the range. list: all primitives; the range begins at
- * `first`. */
+/* Makes the tree of a range of primitives, and sorts the range. list: the list of all primitives. first:
+ * where the range begins. */
 static void make(surface_tree *tree, boxed_primitive *list, uint32_t first, uint32_t count, int depth) {
   surface_box *made = &tree->boxes[tree->box_count++];
   float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -68,7 +69,7 @@ static void make(surface_tree *tree, boxed_primitive *list, uint32_t first, uint
   make(tree, list, first + below, count - below, depth + 1);
 }
 
-/* What a tree for a distance may hold of a mesh. */
+/* What a tree for a distance holds of a mesh. */
 static mesh_held held_of(const surface_mesh *mesh, double distance) {
   if (!hl_mesh_takes_light(mesh)) return HELD_NOT;
   if (mesh->is_cut) return HELD_CUT;
@@ -76,8 +77,8 @@ static mesh_held held_of(const surface_mesh *mesh, double distance) {
 }
 
 /* Whether a tree holds primitive number i of a kind, counted from the mesh's first primitive of this kind.
- * near: for each primitive with corners, whether the tree holds it; of other primitives it holds those that
- * are cut. Null: the tree holds all primitives. */
+ * near: for each primitive with corners, whether the tree holds it; of primitives without corners, the tree
+ * holds those that are cut. near may be null: then the tree holds all primitives. */
 static bool takes(const surfaces *all, const surface_mesh *mesh, int kind, uint32_t i, const bool *near) {
   if (near == NULL) return true;
   if (hl_primitive_kinds[kind]->has_corners) return near[i];
@@ -150,7 +151,7 @@ bool hl_surface_tree_count(const surfaces *all, double distance, hl_layout *layo
 
 /* ---- making it ---- */
 
-/* Remembers the cuts, because the tree's content depends on them. */
+/* Stores the scene's cuts in the tree, because the tree's content depends on them. */
 static void keep_cuts(surface_tree *tree) {
   const surfaces *all = tree->all;
   for (size_t i = 0; i < all->cut_count; i++) tree->cuts[i] = all->cuts[i];
@@ -242,7 +243,8 @@ static bool overlap(const float low[3], const float high[3], const double from[3
   return true;
 }
 
-/* balls: null: boxes that overlap are enough. */
+/* Whether a leaf has a primitive that reaches a box or the convex hull of balls. balls: null: it is enough
+ * that boxes overlap. */
 static bool leaf_reaches(const surface_tree *tree, const surface_box *leaf, const double low[3],
                          const double high[3], const hull_ball *balls, int count, double least) {
   for (uint32_t i = leaf->first; i < leaf->first + leaf->count; i++) {
@@ -286,12 +288,12 @@ bool hl_surface_tree_reaches(const surface_tree *tree, const hull_ball *balls, i
 
 /* ---- rays ---- */
 
-/* A ray, or a bundle of rays around it, in the form that is tested against boxes. */
+/* A ray, or a bundle of rays around a middle ray, in the form that is tested against boxes. */
 typedef struct box_ray {
   double origin[3], way[3], inverse[3];
   double first, last;
-  double aside[3]; /* for a bundle: the greatest distance of its rays from the middle ray along each axis;
-                    * else 0 */
+  double aside[3]; /* for a bundle: along each axis, the greatest distance of its rays from the middle ray;
+                    * for a single ray 0 */
 } box_ray;
 
 static box_ray ray_of_boxes(const surface_ray *ray) {
@@ -303,7 +305,7 @@ static box_ray ray_of_boxes(const surface_ray *ray) {
   return made;
 }
 
-/* Whether a ray meets a box (slab method). For a bundle: whether any of its rays may meet the box. */
+/* Whether a ray meets a box (slab method); for a bundle, whether any of its rays may meet the box. */
 static bool meets_box(const surface_box *box, const box_ray *ray) {
   double nearest = ray->first, farthest = ray->last;
   for (int a = 0; a < 3; a++) {
@@ -316,11 +318,11 @@ static bool meets_box(const surface_box *box, const box_ray *ray) {
     double from = low * ray->inverse[a], to = high * ray->inverse[a];
     nearest = greater(nearest, lesser(from, to)), farthest = lesser(farthest, greater(from, to));
   }
-  return nearest <= farthest + 1e-9 * fabs(farthest); /* a little is allowed for rounding, because the boxes
-                                                       * of flat triangles are flat */
+  return nearest <= farthest + 1e-9 * fabs(farthest); /* the sum allows for rounding, because the box of a
+                                                       * flat triangle is flat */
 }
 
-/* Finds where a ray meets the primitives of a leaf. number: the ray's number in its bundle. */
+/* Finds where a ray meets the primitives of a leaf. number: number of the ray in its bundle. */
 static void meet_leaf(const surface_tree *tree, const surface_box *leaf, const surface_ray *ray, int number,
                       surface_met *met, void *data) {
   const surfaces *all = tree->all;
@@ -360,8 +362,8 @@ void hl_surface_tree_cast(const surface_tree *tree, const surface_ray *ray, surf
 }
 
 /* Makes a bundle of rays from one point. The middle ray leads to the middle of the box around the rays' ends.
- * Along each axis no ray is anywhere farther from the middle ray than the ends are (derived: at the fraction
- * t of a ray its point is origin + t (end - origin)). */
+ * Along each axis, no ray is farther from the middle ray anywhere than the rays' ends are (derived: at the
+ * fraction t of a ray its point is origin + t (end - origin)). */
 static box_ray bundle_of_rays(const surface_ray *rays, int count) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, middle[3];
   for (int k = 0; k < count; k++) vec3_bound_ball(vec3_scale(rays[k].way, rays[k].last), 0, low, high);

@@ -1,7 +1,9 @@
-/* surface/surface_tree.h - a tree of boxes over triangles and spheres: where single rays meet them.
+/* surface/surface_tree.h - a tree of boxes around triangles and spheres. The tree finds where single rays
+ * meet triangles and spheres.
  *
- * It serves rays that belong to no view: rays between a light and the nodes of a coarse grid, the lines of
- * this grid, and short rays from points of surfaces towards a light. The tree holds what casts shadows. */
+ * The rays belong to no view. They are rays between a light and the nodes of a coarse grid, the lines of this
+ * grid, and short rays from points of surfaces towards a light. The tree holds primitives that cast
+ * shadows. */
 #ifndef HL_SURFACE_SURFACE_TREE_H
 #define HL_SURFACE_SURFACE_TREE_H
 
@@ -10,41 +12,43 @@
 
 typedef struct surface_box {
   float low[3], high[3];
-  uint32_t first, count; /* for a leaf: the range of its primitives among the tree's primitives. For another
-                          * node, count is 0, and `first` is the index of its second child; the first child
-                          * follows the node itself */
+  uint32_t first, count; /* for a leaf: the range of its primitives among the tree's primitives. For any other
+                          * node: count is 0, and `first` is the index of the node's second child; the first
+                          * child is the next node after this node */
 } surface_box;
 
-/* Whether a tree holds primitives of a mesh: none; some, and cuts leave the mesh whole; some, and cuts cut
- * the mesh. */
+/* What a tree holds of a mesh. HELD_NOT: nothing. HELD_WHOLE: primitives of a mesh that no cut cuts.
+ * HELD_CUT: primitives of a mesh that cuts cut. */
 typedef enum mesh_held { HELD_NOT, HELD_WHOLE, HELD_CUT } mesh_held;
 
 typedef struct surface_tree {
   const surfaces *all;  /* borrowed */
-  uint32_t *primitives; /* owned with the next two; [count]; sorted by leaves */
+  uint32_t *primitives; /* [count]; in the order of leaves; owned, as one block with the next two arrays */
   mesh_held *holds;     /* [mesh_count of all] */
-  cut_shape *cuts;      /* [cut_count]; the cuts of `all` when the tree was created */
+  cut_shape *cuts;      /* [cut_count]; the cuts that `all` had when the tree was created */
   size_t cut_count;
   double distance;    /* as it was created with */
-  surface_box *boxes; /* owned; [box_count]; the root is the first */
+  surface_box *boxes; /* owned; [box_count]; the nodes of the tree; the root is the first one */
   uint32_t count, box_count;
 } surface_tree;
 
-/* A distance tells which primitives a tree holds. ALL_SURFACES: all primitives of meshes that absorb light. A
- * finite distance, in frame units: only some primitives of meshes that are not closed, or that cuts cut.
- * These are the triangles within this distance of an open edge, a cut or a corner (late/surface_rims.h), and
- * the spheres that cuts cut. */
+/* A tree is created for a distance, which decides which primitives the tree holds. ALL_SURFACES: all
+ * primitives of meshes that absorb light. A finite distance, in frame units: only primitives of meshes that
+ * are not closed, or that cuts cut; of these, the triangles within this distance of an open edge, a cut or a
+ * corner (late/surface_rims.h), and the spheres that cuts cut. */
 #define ALL_SURFACES INFINITY
 
-/* Makes a tree. all: the surfaces; null: none. A tree of zeros, which was not created, may be released. */
+/* Creates a tree. all: the surfaces; null: there are none. A tree of zeros that was not created may be
+ * released, too. */
 hl_status hl_surface_tree_create(hl_context *context, const surfaces *all, double distance,
                                  surface_tree *tree, hl_error *error);
-/* Whether a kept tree is the same as the tree that would be created now. */
+/* Whether a tree that is kept equals the tree that would be created now. */
 bool hl_surface_tree_current(const surface_tree *tree, const surfaces *all, double distance);
 void hl_surface_tree_release(hl_context *context, surface_tree *tree);
 
-/* Counts the most memory that hl_surface_tree_create() can take. It takes that much if all triangles of
- * meshes that are not closed lie within the distance. False: the tree holds nothing. */
+/* Counts the greatest amount of memory that hl_surface_tree_create() can take. It takes this amount if all
+ * triangles of the meshes that are not closed lie within the distance. Returns false if the tree holds
+ * nothing. */
 bool hl_surface_tree_count(const surfaces *all, double distance, hl_layout *layout);
 
 /* Whether a mesh takes light away. */
@@ -62,22 +66,22 @@ typedef struct surface_hit {
   int ray;                  /* of a bundle; else 0 */
 } surface_hit;
 
-/* Called for each place where a ray meets a surface, in any order. */
+/* The function that is called for each place where a ray meets a surface, in any order. */
 typedef void surface_met(void *data, const surface_hit *hit);
 
-/* Whether some primitive's box meets a box. */
+/* Whether the box of some primitive meets a box. */
 bool hl_surface_tree_overlaps(const surface_tree *tree, const double low[3], const double high[3]);
 
 /* Whether some primitive may meet the convex hull of balls. A triangle does not meet the hull if the hull
  * lies on one side of the triangle's plane. A sphere does not meet the hull if the hull lies within the
- * sphere, or beyond a plane that touches the sphere. Points beyond a surface by less than `least` count as
- * lying on it. */
+ * sphere, or beyond a plane that touches the sphere. Points that lie beyond a surface by less than `least`
+ * count as lying on the surface. */
 bool hl_surface_tree_reaches(const surface_tree *tree, const hull_ball *balls, int count, double least);
 
 void hl_surface_tree_cast(const surface_tree *tree, const surface_ray *ray, surface_met *met, void *data);
 
 /* Does the work of hl_surface_tree_cast() for at most MOST_BUNDLED rays that come from one point and have
- * finite ends. Boxes that none of the rays can meet are passed over once for all rays. Each ray gets the same
+ * finite ends. A box that none of the rays can meet is skipped for all rays at once. Each ray gets the same
  * hits as from hl_surface_tree_cast(), in the same order. */
 enum { MOST_BUNDLED = 16 };
 void hl_surface_tree_cast_bundle(const surface_tree *tree, const surface_ray *rays, int count,

@@ -17,12 +17,12 @@
 /* How a mesh looks, and how much light it absorbs. */
 typedef struct surface_look {
   double color[3];             /* linear RGB */
-  double opacity;              /* multiplies the opacities of the mesh's vertices */
-  double attenuation_color[3]; /* R, G, B: factors on `opacity` that give the fractions of red, green and blue
-                                * light that the mesh absorbs */
+  double opacity;              /* a factor on the opacities of the mesh's vertices */
+  double attenuation_color[3]; /* R, G, B: factors on `opacity`; the products are the fractions of red, green
+                                * and blue light that the mesh absorbs */
   hl_material material;
-  bool smooth;    /* normals are interpolated between vertices */
-  bool two_sided; /* the side that faces away from the eye is lit like the front */
+  bool smooth;    /* whether normals are interpolated between vertices */
+  bool two_sided; /* whether the side that faces away from the eye is lit like the front */
   bool visible, casts_shadow, receives_shadow;
 } surface_look;
 
@@ -49,54 +49,59 @@ typedef struct surface_seam surface_seam;       /* late/surface_seams.h */
 /* The surfaces of a scene. Each primitive has a number. The numbers of the primitives of one kind follow the
  * numbers of the kind before. */
 typedef struct surfaces {
-  surface_mesh *meshes;      /* owned, in one block with the next five arrays; [mesh_count]; the primitives
-                              * of a mesh follow the primitives of the mesh before */
+  surface_mesh *meshes;      /* owned, in one block with the next five arrays; [mesh_count]. The primitives of
+                              * each kind of a mesh follow those of the mesh before */
   float (*positions)[3];     /* [vertex_count]; frame space */
   float (*normals)[3];       /* [vertex_count]; unit normals, or 0 where a vertex has none; frame space */
   float (*edge_normals)[3];  /* [edge_normal_count]; unit; frame space */
   uint32_t (*triangles)[3];  /* [triangles]; indices of positions */
   float (*spheres)[4];       /* [spheres]; centre and radius; frame space */
-  surface_cluster *clusters; /* owned with the next three; [cluster_count] */
-  uint32_t *order;           /* [primitives]; the primitives in the order of clusters */
-  uint8_t (*cluster_corners)[3][64]; /* [clusters of triangles]; numbers of the cluster's vertices */
+  surface_cluster *clusters; /* owned, in one block with the next three arrays; [cluster_count] */
+  uint32_t *order;           /* [primitives]; numbers of the primitives, in the order of clusters */
+  uint8_t (*cluster_corners)[3][64]; /* [clusters of triangles]; the corners of each triangle, as numbers of
+                                      * the cluster's vertices */
   float (*cluster_normals)[3][64];   /* [clusters of triangles]; hl_corner_product() of each triangle, axis by
                                       * axis; frame space */
-  float *cluster_positions;          /* owned; for each cluster of triangles [3][vertices]; frame space */
+  float *cluster_positions;          /* owned; for each cluster of triangles, the positions of its vertices:
+                                      * [3][vertices]; frame space */
   surface_seam *seams;               /* owned; [seam_count]; null: none */
   cut_shape *cuts;                   /* owned; [cut_count]; the scene's cuts, in frame space */
   size_t cut_count, cluster_count, seam_count;
   size_t mesh_count, vertex_count, edge_normal_count;
-  uint32_t first[PRIMITIVE_KINDS + 1]; /* the number of the first primitive of each kind; at last the number
-                                        * of primitives */
+  uint32_t first[PRIMITIVE_KINDS + 1]; /* first: the number of the first primitive of each kind; the last
+                                        * element is the number of all primitives */
 } surfaces;
 
-/* Adds to a key everything on which the light that surfaces take depends. all: null for no surfaces. */
+/* Adds to a key everything on which the light that surfaces absorb depends. all: null if there are no
+ * surfaces. */
 void hl_surfaces_key_add(hl_key *key, const surfaces *all);
 
 /* The number of primitives. */
 static inline uint32_t hl_surfaces_count(const surfaces *all) { return all->first[PRIMITIVE_KINDS]; }
 
-/* Whether no cut removes a mesh at a point; frame space. */
+/* Whether cuts leave a mesh at a point; frame space. */
 static inline bool hl_surface_left(const surfaces *all, const surface_mesh *mesh, vec3 point) {
   return !mesh->is_cut || hl_cuts_leave(all->cuts, all->cut_count, point);
 }
 
-/* The corners of a box around a mesh; frame space. A flat mesh gets a box with the thickness `least`. */
+/* Finds the corners of a box around a mesh; frame space. The box of a flat mesh gets the thickness
+ * `least`. */
 void hl_surface_corners(const surface_mesh *mesh, double least, vec3 corners[8]);
 
-/* Whether a mesh has an inside, and the opacity 1 apart from its own colours. */
+/* Whether a mesh has an inside, and its opacity is 1 if its own colours are left aside. */
 bool hl_surface_is_closed(const surface_mesh *mesh);
 
-/* Whether no light passes the part of a mesh that cuts leave. */
+/* Whether the part of a mesh that cuts leave lets no light pass. */
 bool hl_surface_takes_all(const surface_mesh *mesh);
 
-/* Whether no light passes a mesh of which no cut removes a part. */
+/* Whether no cut removes a part of a mesh, and the mesh lets no light pass. */
 bool hl_surface_is_opaque(const surface_mesh *mesh);
 
-/* Whether a ball lies outside of a mesh's box, by at least a hundredth of the box's edges; frame space. */
+/* Whether a ball lies outside of a mesh's box, at a distance of at least a hundredth of the box's edges;
+ * frame space. */
 bool hl_surface_is_outside(const surface_mesh *mesh, vec3 centre, double radius);
 
-/* A position from surfaces->positions, or a normal from surfaces->normals. */
+/* Reads a position from surfaces->positions, or a normal from surfaces->normals. */
 static inline vec3 hl_surface_vector(const float v[3]) { return (vec3){v[0], v[1], v[2]}; }
 
 /* A triangle's unit normal; 0 where it has no area. */

@@ -9,7 +9,8 @@
 #include "surface/small_batch.h"
 
 /* FIRST_BLOCK: the number of fragments for which a thread's first block has room. Each block is twice as
- * large as the block before, up to GREATEST_BLOCK (6 MiB); a tile with more fragments gets a larger block. */
+ * large as the block before, up to GREATEST_BLOCK fragments (6 MiB). A tile with more fragments gets a larger
+ * block. */
 enum { FIRST_BLOCK = 1 << 12, GREATEST_BLOCK = 1 << 18 };
 
 /* Makes room for a tile's fragments in the worker's latest block, or in a new block. */
@@ -44,7 +45,8 @@ static void mark_tile(const fragment_work *work, int x, int y, int32_t slab) {
   if ((__atomic_load_n(word, __ATOMIC_RELAXED) & bit) == 0) __atomic_fetch_or(word, bit, __ATOMIC_RELAXED);
 }
 
-/* Writes a worker's marks of the tiles around a tile to the view's marks, and clears them. */
+/* Adds a worker's marks, which are for the tiles around its current tile, to the view's marks, and clears
+ * them in the worker. */
 static void write_marks(const fragment_work *work, fragment_worker *worker, int tile_x, int tile_y) {
   for (int32_t slab = worker->nearest; slab <= worker->farthest; slab++) {
     uint32_t near = work->source->marks != NULL ? worker->near[slab] : 0;
@@ -63,7 +65,8 @@ static void write_marks(const fragment_work *work, fragment_worker *worker, int 
 static int least(int a, int b) { return a < b ? a : b; }
 static int greatest(int a, int b) { return a > b ? a : b; }
 
-/* Adds the fragment of primitive number `lane` of a batch at the primitive's pixel number k. */
+/* Adds one fragment of a primitive of a batch. lane: the primitive's number in the batch. k: the number of
+ * the pixel among the primitive's pixels. */
 static void add_small_pixel(const fragment_work *work, fragment_worker *worker, const small_batch *batch,
                             int lane, int k) {
   const small_cover *cover = &batch->cover;
@@ -85,7 +88,7 @@ static void add_small_pixel(const fragment_work *work, fragment_worker *worker, 
   worker->scratch[worker->count++] = f;
 }
 
-/* Finds the opacities of those primitives of a batch that have a bit in `lanes`. */
+/* Finds the opacities of some primitives of a batch. lanes: one bit for each of these primitives. */
 static void find_opacities(const fragment_work *work, small_batch *batch, uint32_t lanes) {
   for (; lanes != 0; lanes &= lanes - 1) {
     int lane = __builtin_ctz(lanes);
@@ -93,7 +96,7 @@ static void find_opacities(const fragment_work *work, small_batch *batch, uint32
   }
 }
 
-/* Adds the fragments of the batch's small primitives, which have one bit each in `small`. */
+/* Adds the fragments of a batch's small primitives. small: one bit for each of these primitives. */
 static void add_small(const fragment_work *work, fragment_worker *worker, small_batch *batch,
                       uint32_t small) {
   if (small == 0) return;
@@ -105,7 +108,7 @@ static void add_small(const fragment_work *work, fragment_worker *worker, small_
       add_small_pixel(work, worker, batch, __builtin_ctz(left), k);
 }
 
-/* Adds a batch's primitives: the small ones together, the others one by one. */
+/* Adds the fragments of a batch's primitives: of small primitives together, of the others one by one. */
 static void add_batch(const fragment_work *work, fragment_worker *worker, tile_part *part,
                       small_batch *batch) {
   if (batch->count == 0 ||
@@ -120,7 +123,7 @@ static void add_batch(const fragment_work *work, fragment_worker *worker, tile_p
 }
 
 /* Whether opaque fragments of a light's view, all of which lie before a cluster, cover all pixels that the
- * cluster touches in a tile. Each of the cluster's fragments would then be left out when fragments are
+ * cluster touches in a tile. If so, each of the cluster's fragments would be left out when fragments are
  * sorted. */
 static bool is_covered(const fragment_work *work, const fragment_worker *worker, const tile_part *part,
                        const cluster_shape *shape, const seen_cluster *seen) {
@@ -144,7 +147,7 @@ static bool is_covered(const fragment_work *work, const fragment_worker *worker,
   return true;
 }
 
-/* Adds the fragments of a whole cluster of triangles, none of which is cut. */
+/* Adds the fragments of a cluster of triangles, none of which is cut, all together. */
 static void add_cluster(const fragment_work *work, fragment_worker *worker, tile_part *part,
                         small_batch *batch, const surface_cluster *cluster) {
   const surfaces *all = work->source->surfaces;
@@ -172,7 +175,7 @@ static void add_cluster(const fragment_work *work, fragment_worker *worker, tile
 
 /* ---- all primitives of a tile ---- */
 
-/* Prepares a batch for the mesh of a primitive. own: the mesh's primitives of this kind. */
+/* Prepares a batch for the mesh of a primitive. own: receives the mesh's primitives of this kind. */
 static void begin_mesh(const fragment_work *work, small_batch *batch, uint32_t primitive,
                        primitive_range *own) {
   const surfaces *all = work->source->surfaces;
@@ -184,7 +187,7 @@ static void begin_mesh(const fragment_work *work, small_batch *batch, uint32_t p
   *own = all->meshes[batch->mesh].primitives[kind];
 }
 
-/* Adds the fragments of a cluster's primitives, parts of which cuts may remove. */
+/* Adds the fragments of a run of primitives, of which cuts may remove parts. */
 static void add_run(const fragment_work *work, fragment_worker *worker, tile_part *part, small_batch *batch,
                     primitive_run run) {
   const surfaces *all = work->source->surfaces;
@@ -231,8 +234,8 @@ static bool make_room_for_runs(hl_context *context, fragment_worker *worker, siz
   return true;
 }
 
-/* Adds the fragments of a tile's runs. If lower runs may cover higher ones completely, runs are added from
- * the lowest to the highest. */
+/* Adds the fragments of a tile's runs. If lower runs may cover higher runs completely, the runs are added
+ * from the lowest to the highest. */
 static void add_runs(const fragment_work *work, fragment_worker *worker, tile_part *part, size_t tile,
                      small_batch *batch) {
   const primitive_run *runs = work->bins->runs + work->bins->first[tile];
@@ -264,8 +267,8 @@ static void add_primitives(const fragment_work *work, fragment_worker *worker, t
   add_runs(work, worker, part, tile, &batch);
 }
 
-/* Sorts a tile's fragments, and in the eye's view parts those that cross. Returns the number of fragments
- * in *sorted, which the worker owns. */
+/* Sorts a tile's fragments; in the eye's view, also cuts the fragments that cross. Returns the number of
+ * fragments in *sorted, which the worker owns. */
 static size_t order_fragments(const fragment_work *work, fragment_worker *worker, const fragment_order *order,
                               const tile_part *part, fragment **sorted) {
   const fragments_source *source = work->source;
@@ -335,8 +338,8 @@ static void set_small_view(const fragments_source *source, small_view *small) {
   small->origin[0] = origin.x, small->origin[1] = origin.y, small->origin[2] = origin.z;
 }
 
-/* The tiles that look-ups around a pixel may read: the pixel's own tile, and tiles that are less than three
- * pixels away from the pixel. */
+/* The tiles that look-ups around a pixel may read: the pixel's own tile, and the tiles less than three pixels
+ * away. */
 static uint16_t tiles_near(int column, int row) {
   uint32_t across = 2u | (column < 3) | (uint32_t)(column >= TILE - 3) << 2;
   return (uint16_t)((row < 3 ? across : 0) | across << 3 | (row >= TILE - 3 ? across << 6 : 0));

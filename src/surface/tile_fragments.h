@@ -9,15 +9,15 @@
 
 void hl_fragment_blocks_release(hl_context *context, fragment_block *latest);
 
-/* Fills those members of the work that depend on the view alone: `small` and `near`. */
+/* Sets those members of the work that depend only on the view: `small` and `near`. */
 void hl_fragment_work_begin(fragment_work *work);
 
-/* Allocates those arrays of a worker that do not grow; false: there is no memory. */
+/* Allocates those arrays of a worker that do not grow. Returns false if there is no memory. */
 bool hl_fragment_worker_begin(hl_context *context, fragment_worker *worker, int sheets);
 /* Releases all memory of a worker except the blocks that hold the finished tiles' fragments. */
 void hl_fragment_worker_end(hl_context *context, fragment_worker *worker);
 
-/* Makes one tile's fragments: a task of the pool. data: fragment_work. */
+/* Makes one tile's fragments. It is a task of the pool. data: fragment_work. */
 void hl_make_tile_fragments(void *data, size_t tile, int worker_index);
 
 #endif

@@ -1,4 +1,4 @@
-/* surface/triangle.c - the kind of primitive that a triangle is. */
+/* surface/triangle.c - the table of the kind of primitives: triangles. */
 #include "surface/triangle.h"
 #include "surface/primitive_lattice.h"
 #include "surface/primitive_raster.h"

@@ -6,12 +6,12 @@
 #include "mesh/mesh.h"
 #include "surface/primitive.h"
 
-/* A triangle's unit normal. *from: the distance of `point` from the triangle's plane, above 0 on the normal's
- * side. */
+/* A triangle's unit normal. *from: receives the distance of `point` from the triangle's plane, above 0 on the
+ * normal's side. */
 vec3 hl_triangle_normal(const surfaces *all, uint32_t triangle, vec3 point, double *from);
 
-/* The functions of primitive.h for triangles that stand in files of their own: `count`, `lay_out` and `place`
- * (triangle_place.c), `look` (triangle_look.c) and `bend` (late/triangle_bend.c). */
+/* Functions of the table in primitive.h for triangles that are in files of their own: `count`, `lay_out` and
+ * `place` (triangle_place.c), `look` (triangle_look.c) and `bend` (late/triangle_bend.c). */
 size_t hl_triangle_count(const hl_mesh_description *mesh);
 void hl_triangle_lay_out(surfaces *made, hl_layout *layout);
 void hl_triangle_place(hl_pool *pool, surfaces *made, const surface_mesh *mesh);
@@ -20,8 +20,8 @@ vec3 hl_triangle_look(const surfaces *all, const surface_mesh *mesh, uint32_t tr
 double hl_triangle_bend(const surfaces *all, const surface_mesh *mesh, uint32_t triangle, vec3 at,
                         vec3 normal, vec3 along);
 
-/* The normal of a triangle's corner: the triangle's own normal where the corner is at a sharp edge, else
- * the vertex's normal. */
+/* The normal at a corner of a triangle: at a sharp edge the triangle's own normal, else the vertex's
+ * normal. */
 static inline vec3 hl_corner_normal(const surfaces *all, const surface_mesh *mesh, uint32_t triangle, int i) {
   uint32_t edge = mesh->edges != NULL ? mesh->edges[triangle - mesh->primitives[PRIMITIVE_triangle].first][i]
                                       : HL_NO_EDGE;
@@ -29,7 +29,7 @@ static inline vec3 hl_corner_normal(const surfaces *all, const surface_mesh *mes
                                               : all->normals[all->triangles[triangle][i]]);
 }
 
-/* The normal of corner i that is interpolated over the triangle. It lies on the same side as `flat`, the
+/* The normal at corner i that is interpolated over the triangle. It lies on the same side as `flat`, the
  * triangle's own normal. */
 static inline vec3 hl_rounded_normal(const surfaces *all, const surface_mesh *mesh, uint32_t triangle, int i,
                                      vec3 flat) {

@@ -1,8 +1,8 @@
-/* surface/triangle_lattice.c - see primitive_lattice.h: triangles.
+/* surface/triangle_lattice.c - see primitive_lattice.h: the table of triangles.
  *
- * The points of a triangle are moved aside, so that the lines become upright and stand at whole numbers.
- * Derived: a line that goes through column c at the height 0 goes through column c - slope h at the height h.
- * So the column plus slope h is c at every height. */
+ * The points of a triangle are sheared, so that the lines become upright and have whole numbers as columns
+ * and rows. Derived: a line that goes through column c at the height 0 goes through column c - slope h at the
+ * height h. So the column plus slope h is c at every height. */
 #include "surface/primitive_lattice.h"
 
 static double lesser(double a, double b) { return a < b ? a : b; }
@@ -19,8 +19,8 @@ typedef struct seen_triangle {
   whole_numbers columns, rows;
 } seen_triangle;
 
-/* Brings a triangle to the lines of the lattice. False: no line meets the triangle. For most small
- * triangles the test by rows alone tells this. */
+/* Transforms a triangle to the space in which the lines are upright. Returns false if no line meets the
+ * triangle. For most small triangles the test of rows alone shows this. */
 static bool see(const surfaces *all, uint32_t triangle, const lattice_lines *lines, seen_triangle *t) {
   const uint32_t *corner = all->triangles[triangle];
   for (int i = 0; i < 3; i++) {
@@ -40,9 +40,9 @@ static bool see(const surfaces *all, uint32_t triangle, const lattice_lines *lin
   return t->columns.first <= t->columns.last && fabs(t->area) > 0;
 }
 
-/* Whether a line meets the triangle. For each corner, twice the area between the opposite edge and the line
- * is compared with 0, with the triangle's sign. A line on an edge belongs to the triangle on one of the
- * edge's sides. */
+/* Whether a line meets the triangle. For each corner, twice the area of the triangle between the opposite
+ * edge and the line is compared with 0; the area has a sign. A line on an edge belongs to the triangle on one
+ * of the edge's sides. */
 static bool meets(const seen_triangle *t, double across, double down, double weight[3]) {
   for (int corner = 0; corner < 3; corner++) {
     int a = (corner + 1) % 3, b = (corner + 2) % 3;

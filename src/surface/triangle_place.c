@@ -14,8 +14,8 @@ void hl_triangle_lay_out(surfaces *made, hl_layout *layout) {
   made->triangles = hl_layout_take(layout, count, sizeof *made->triangles);
 }
 
-/* Adds to each corner's normal the triangle's cross product. Its length is twice the triangle's area, so
- * large faces count more. */
+/* Adds a triangle's cross product to the normals of its corners. The length of the cross product is twice the
+ * triangle's area, so large faces count more. */
 static void add_face_normals(surfaces *made, const surface_mesh *mesh) {
   for (uint32_t t = mesh->primitives[PRIMITIVE_triangle].first;
        t < mesh->primitives[PRIMITIVE_triangle].first + mesh->primitives[PRIMITIVE_triangle].count; t++) {
@@ -28,7 +28,7 @@ static void add_face_normals(surfaces *made, const surface_mesh *mesh) {
   }
 }
 
-/* A mesh that is being placed. A task places A_TASK vertices or triangles. */
+/* The data by which a mesh is placed. A task places A_TASK vertices or triangles. */
 enum { A_TASK = 1 << 15 };
 typedef struct placing {
   surfaces *made;
@@ -91,6 +91,7 @@ void hl_triangle_place(hl_pool *pool, surfaces *made, const surface_mesh *mesh) 
   hl_pool_run(pool, task_count(d->vertex_count), place_vertices, &placing);
   hl_pool_run(pool, task_count(d->triangle_count), place_triangles, &placing);
   if (d->normals == NULL)
-    add_face_normals(made, mesh); /* this runs in one thread, so that each vertex's sum has one order */
+    add_face_normals(made, mesh); /* this runs in one thread, so that the terms of each vertex's sum always
+                                   * have the same order */
   hl_pool_run(pool, task_count(d->vertex_count), make_units, &placing);
 }

@@ -33,7 +33,7 @@ static float lowest(const surfaces *all, const sheet_stack *sheets, uint32_t pri
 
 /* ---- sixteen at a time ---- */
 
-/* Adds a triangle to a batch; false where the view or the scene's cuts cut it. */
+/* Adds a triangle to a batch. Returns false if the view or the scene's cuts cut it. */
 static bool collect(const fragment_work *work, const tile_part *part, small_batch *batch,
                     uint32_t primitive) {
   const surfaces *all = work->source->surfaces;
@@ -115,11 +115,11 @@ static void set_linear(double f[3], const double x[3], const double y[3], double
   f[0] = value[0] - f[1] * x[0] - f[2] * y[0];
 }
 
-/* Finds the heights of a triangle as linear functions between its corners, which are rounded to the grid of
- * 1/256 pixels by which samples are covered. So even a triangle that is seen from its edge has, at all its
- * samples, heights between the heights of its corners, and meets its neighbours; the heights of its plane
- * would not. Derived: height divided by distance is linear in the picture, and so is 1 divided by
- * distance. */
+/* Finds the heights of a triangle as linear functions between its corners. The corners are rounded to the
+ * grid of 1/256 pixels on which coverage is found. So even a triangle that is seen from its edge has, at all
+ * its samples, heights between the heights of its corners, and it meets its neighbours. With the heights of
+ * its plane it would not. Derived: height divided by distance is linear in the picture, and so is 1 divided
+ * by distance. */
 static void set_corners(const seen_surfaces *seen, const sheet_stack *sheets, uint32_t triangle,
                         shown_surface *shown) {
   const view *view = seen->view;

@@ -57,7 +57,7 @@ const char *hl_nearest_candidate(const char *text, const char *(*candidate)(cons
                                  const void *data) {
   size_t length = strlen(text);
   const char *best = NULL, *name;
-  size_t best_distance = 2 + length / 4; /* a name that differs more would puzzle more than help */
+  size_t best_distance = 2 + length / 4; /* farther names are not suggested, as they would only confuse */
   if (length > HL_EDIT_LONGEST) return NULL;
   for (size_t i = 0; (name = candidate(data, i)) != NULL; i++) {
     bool part_of_it = length >= 3 && strstr(name, text) != NULL;

@@ -4,19 +4,20 @@
 
 #include <stddef.h>
 
-enum { HL_EDIT_LONGEST = 63 }; /* only the first characters of a name are compared, up to this number */
+enum { HL_EDIT_LONGEST = 63 }; /* names are compared only up to this number of characters */
 
-/* The number of edits that turn a into b: insert, delete or replace a character, or swap two neighbours. */
+/* The least number of edits that turn a into b. An edit inserts, deletes or replaces a character, or swaps
+ * two neighbouring ones. */
 int hl_edit_distance(const char *a, const char *b);
 
 /* ---- The known name that is spelled most like an unknown one, for errors ---- */
 
-/* The name, of a null-terminated list, that is nearest to a given name. Null if no name is near enough to be
- * meant. */
+/* The name in a null-terminated list that is nearest to `name`. Null if even this name differs too much. */
 const char *hl_nearest_name(const char *name, const char *const *names);
 
-/* Of candidate(data, 0), candidate(data, 1) and so on, up to the first null: the one that is nearest to the
- * text. A candidate that contains the text is near. Null if none is near. */
+/* Finds the candidate that is nearest to the text; null if none is near. The candidates are candidate(data,
+ * 0), candidate(data, 1) and so on, up to the first null. A candidate that contains the text counts as
+ * near. */
 const char *hl_nearest_candidate(const char *text, const char *(*candidate)(const void *data, size_t index),
                                  const void *data);
 

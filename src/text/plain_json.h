@@ -1,5 +1,5 @@
-/* text/plain_json.h - jansson's readers and writers in the locale "C": by itself, jansson uses the decimal
- * point of the host's locale, and only if the point is one byte long. */
+/* text/plain_json.h - jansson's readers and writers in the locale "C": jansson itself uses the decimal point
+ * of the host's locale, and cannot handle one that is longer than a byte. */
 #ifndef HL_TEXT_PLAIN_JSON_H
 #define HL_TEXT_PLAIN_JSON_H
 

@@ -1,5 +1,5 @@
-/* view/brick_ranges_lanes.h - the tiles and sheets that sixteen bricks touch: hl_brick_bounds() and
- * hl_footprint_bounds() in floats, rounded outwards. */
+/* view/brick_ranges_lanes.h - finds the tiles and sheets that sixteen bricks touch. It does the work of
+ * hl_brick_bounds() and hl_footprint_bounds() in floats, rounded outwards. */
 #ifndef HL_VIEW_BRICK_RANGES_LANES_H
 #define HL_VIEW_BRICK_RANGES_LANES_H
 
@@ -39,8 +39,8 @@ LANES_INLINE lanes_range range_of_row(const lanes_boxes *boxes, const float row[
   return (lanes_range){centre - reach, centre + reach};
 }
 
-/* Stores the first and last integer between `first` and `last`, within the view's limits; where there is no
- * integer, the first is greater than the last. */
+/* Stores the first and the last integer between `first` and `last`, limited to the view. If there is no such
+ * integer, the stored first one is greater than the last one. */
 LANES_INLINE void store_range(const brick_view *view, lanes first, lanes last, int axis,
                               brick_ranges *ranges) {
   float least = (float)view->first[axis], greatest = (float)view->last[axis];
@@ -67,8 +67,8 @@ static void brick_ranges_in_view(const brick_view *view, const grid *grid,
     high = lanes_select(anywhere, lanes_set(INFINITY), high + lanes_abs(high) * 1e-6f + view->spare);
     store_range(view, low, lanes_select(ahead, high, lanes_set(-INFINITY)), axis, ranges);
   }
-  /* heights are in units in which sheets lie at whole numbers, so the first sheet that a brick touches is the
-   * next whole number at or above the low end */
+  /* sheets lie at whole numbers of the unit of heights, so the first sheet that a brick touches is the first
+   * whole number that is not below the low end */
   store_range(view, -lanes_from_int(lanes_floor(lanes_clamp(-height.low, -1e9f, 1e9f))), height.high,
               RANGE_SHEETS, ranges);
 }

@@ -21,8 +21,8 @@ static int last_tile(double high, int tiles) {
   return high < 0 ? -1 : high >= (double)tiles * TILE ? tiles - 1 : (int)(high / TILE);
 }
 
-/* The rectangle of tiles that bounds, enlarged by a margin, touch. It is empty where the view does not see
- * the bounds. */
+/* The rectangle of the tiles that are touched by bounds enlarged by a margin. It is empty if the view does
+ * not see the bounds. */
 static tile_rectangle tiles_of(const footprint_bounds *bounds, const occupancy *o) {
   tile_rectangle r = {.x = first_tile(bounds->low[0] - o->spare), .y = first_tile(bounds->low[1] - o->spare)};
   int x1 = last_tile(bounds->high[0] + o->spare, o->tiles_x),
@@ -32,8 +32,8 @@ static tile_rectangle tiles_of(const footprint_bounds *bounds, const occupancy *
   return r;
 }
 
-/* The rectangle of tiles that a grid's relevant bricks touch. The bounds of the box around all relevant
- * bricks contain the bounds of each brick. */
+/* The rectangle of tiles that a grid's relevant bricks touch. It is found from the box around all relevant
+ * bricks, whose bounds contain the bounds of each brick. */
 static tile_rectangle find_rectangle(const grid *grid, const footprint_map *map, const occupancy *o) {
   double low[3], high[3], centre[3], half[3];
   footprint_bounds bounds;
@@ -66,8 +66,8 @@ static void number_patches(occupancy *o, int grid_count) {
   o->first_patch[(size_t)o->tiles_x * (size_t)o->tiles_y] = patch;
 }
 
-/* Rounds an affine function to floats. Returns a bound of the rounding error: the greatest sum of the
- * magnitudes of the function's terms over the grid, times a small multiple of 2^-24. */
+/* Rounds an affine function to floats. Returns a bound of the rounding error: a sum, times a small multiple
+ * of 2^-24. The sum is the greatest sum, within the grid, of the magnitudes of the function's terms. */
 static float set_row(const double row[4], const double middle[3], const double half[3], double scale,
                      float rounded[4]) {
   double offset = row[3], greatest = 0;
@@ -123,7 +123,8 @@ static void mark_brick(const occupancy_job *job, const brick_ranges *ranges, int
   }
 }
 
-/* Finds the coordinates of sixteen bricks. Indices rise, and the next brick is most often in the same row. */
+/* Finds the coordinates of sixteen bricks. Their indices rise, so the next brick is most often in the same
+ * row. */
 static void coordinates_of_bricks(const grid *grid, const uint32_t *bricks, int count,
                                   int32_t coordinates[3][BRICKS_AT_ONCE]) {
   uint32_t row_start = 0, row_end = 0;
@@ -155,7 +156,8 @@ static void mark_bricks(void *data, size_t index, int worker) {
   }
 }
 
-/* Transposes 64 tiles x 64 sheets at a time. index: number of the word in each sheet's row of by_sheet. */
+/* Transposes the bits, 64 tiles x 64 sheets at a time. index: number of the word in each sheet's row of
+ * by_sheet. */
 static void transpose_tiles(void *data, size_t index, int worker) {
   (void)worker;
   occupancy *o = data;
@@ -217,7 +219,7 @@ static footprint_map map_of_grid(const occupancy_source *source, int g) {
   return map;
 }
 
-/* Counts the patches, and sets the rectangles if they have memory. */
+/* Counts the patches. If the rectangles have memory, also sets them. */
 static void place_rectangles(const occupancy_source *source, occupancy *o) {
   o->patch_count = 0;
   for (int g = 0; g < source->grid_count; g++) {

@@ -1,5 +1,5 @@
-/* view/rays_lanes.h - where the rays of a 4x4 block of pixels meet a sheet, and where they enter and leave a
- * volume's box. */
+/* view/rays_lanes.h - finds where the rays of a 4x4 block of pixels meet a sheet, and where they enter and
+ * leave a volume's box. */
 #ifndef HL_VIEW_RAYS_LANES_H
 #define HL_VIEW_RAYS_LANES_H
 
@@ -21,7 +21,7 @@ LANES_INLINE lanes3 add_scaled3(lanes3 a, lanes3 b, lanes s) {
   return (lanes3){lanes_fma(b.x, s, a.x), lanes_fma(b.y, s, a.y), lanes_fma(b.z, s, a.z)};
 }
 
-/* A row of an affine map applied to vectors and to points. */
+/* Apply a row of an affine map: row_of_vector() to vectors, row_of_point() to points. */
 LANES_INLINE lanes row_of_vector(const float row[4], lanes3 v) {
   return lanes_add_scaled(lanes_add_scaled(v.z * row[2], v.y, row[1]), v.x, row[0]);
 }
@@ -49,12 +49,12 @@ LANES_INLINE lanes3 rays_linear(const float at[3], const float by_u[3], const fl
                   linear_in_view(at[2], by_u[2], by_v[2], u, v)};
 }
 
-/* H = h.W, the climb of a perspective view's rays. */
+/* H = h.W: how much a perspective view's rays rise along the sheets' normal. */
 LANES_INLINE lanes rays_climb(const sheet_rays *rays, lanes u, lanes v) {
   return linear_in_view(rays->h0, rays->hu, rays->hv, u, v);
 }
 
-/* W, the directions of a perspective view's rays, not normalised. */
+/* W: the direction vectors of a perspective view's rays; they are not normalised. */
 LANES_INLINE lanes3 rays_directions(const sheet_rays *rays, lanes u, lanes v) {
   return rays_linear(rays->w0, rays->wu, rays->wv, u, v);
 }
@@ -69,20 +69,21 @@ LANES_INLINE lanes3 rays_positions(const sheet_rays *rays, lanes u, lanes v) {
 
 /* ---- where rays enter and leave a box or a sphere ---- */
 
-/* The sections of sixteen rays from `first` to `last`, in units of each ray's own direction vector. */
+/* Sections of sixteen rays, from `first` to `last`. The unit is the length of each ray's own direction
+ * vector. */
 typedef struct ray_section {
   lanes first, last;
 } ray_section;
 
-/* Finds the section of rays within a box by the slab method. */
+/* Finds, by the slab method, the sections of rays within a box. */
 LANES_INLINE ray_section section_in_box(const box_rays *rays, lanes u, lanes v) {
   ray_section section = {lanes_set(rays->least), lanes_set(1e30f)};
   for (int axis = 0; axis < 3; axis++) {
     lanes start = linear_in_view(rays->start[axis], rays->start_u[axis], rays->start_v[axis], u, v);
     lanes direction = linear_in_view(rays->direction[axis], rays->direction_u[axis], rays->direction_v[axis],
                                      u, v);
-    /* a ray that is parallel to two faces gets a tiny direction instead, which moves its crossings far
-     * away, to the right sides */
+    /* a ray that is parallel to two faces gets a tiny direction across them, so that its crossings lie far
+     * away, on the right sides */
     direction = lanes_select(lanes_abs(direction) < 1e-12f, lanes_set(1e-12f), direction);
     lanes a = (rays->low[axis] - start) / direction, b = (rays->high[axis] - start) / direction;
     section.first = lanes_max(section.first, lanes_min(a, b));
@@ -91,8 +92,8 @@ LANES_INLINE ray_section section_in_box(const box_rays *rays, lanes u, lanes v) 
   return section;
 }
 
-/* The roots s of |start + s direction| = 1. With q = start and d = direction, roots exist where (q.d)^2 >=
- * d.d (q.q - 1). */
+/* The sections of rays within the unit sphere: the roots s of |start + s direction| = 1. With q = start and d
+ * = direction, roots exist where (q.d)^2 >= d.d (q.q - 1). */
 LANES_INLINE ray_section roots_of_sphere(lanes3 start, lanes3 direction) {
   lanes squared = dot3(direction, direction), along = dot3(start, direction);
   lanes rest = lanes_fma(along, along, squared * (1.0f - dot3(start, start)));
@@ -125,8 +126,8 @@ static __attribute__((unused)) void coverage_tile(const box_rays *rays, int tile
   }
 }
 
-/* The section of the slab [height - spacing, height] that lies in the box, given by its beginning and its
- * length as fractions of the slab. */
+/* The section of the slab [height - spacing, height] that lies in the box: its beginning and its length, as
+ * fractions of the slab. */
 typedef struct covered_span {
   lanes begin, length;
 } covered_span;

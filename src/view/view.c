@@ -40,15 +40,15 @@ void hl_view_homogeneous(const view *view, affine3 to_frame, double rows[3][4]) 
   }
 }
 
-/* The point where a ray meets the sheet: start + ((height - h.start) / (h.direction)) direction, linear in
- * the pixel. */
+/* The point where a ray meets the sheet: start + ((height - h.start) / (h.direction)) direction. It is a
+ * linear function of the pixel. */
 static vec3 on_sheet(vec3 start, vec3 direction, vec3 normal, double height) {
   return vec3_add(start,
                   vec3_scale(direction, (height - vec3_dot(normal, start)) / vec3_dot(normal, direction)));
 }
 
-/* The least climb of a view's middle ray, as a fraction of the ray's length, for which `base` is the point
- * where the ray meets the sheet. A flatter ray meets the sheet too far away; then `base` is the eye. */
+/* The least rise of a view's middle ray, as a fraction of the ray's length, for which `base` is the point
+ * where this ray meets the sheet. A flatter ray meets the sheet too far away. Then `base` is the eye. */
 static const double FLATTEST_MIDDLE = 0.01;
 
 static void perspective_rays(const view *view, vec3 normal, double height, affine3 from_frame,
@@ -91,7 +91,7 @@ void hl_view_sheet_rays(const view *view, vec3 normal, double height, affine3 fr
 /* ---- where rays enter and leave a box ---- */
 
 /* The parameter s of the point at which the middle ray is closest to the origin of frame space. Coordinates
- * counted from this point stay as small as the visible scene, however far away the eye is. */
+ * that are counted from this point are never larger than the visible scene, however far away the eye is. */
 static double way_to_middle(const view *view) {
   vec3 start, way;
   hl_view_ray(view, view->width / 2.0, view->height / 2.0, &start, &way);

@@ -1,11 +1,11 @@
 /* view/view.h - how the pixels of the eye or of a light see the sheets.
  *
- * A view is a bundle of rays, one a pixel: from one point (perspective camera, point light) or parallel
- * (orthographic camera, directional light). The picture plane may have any tilt: a shadow buffer is
- * perpendicular to the light for hard shadows and parallel to the sheets for soft shadows (fig. 17 of the
- * paper). Pixel (i, j) has its centre at (i + 1/2, j + 1/2). Positions are in frame space: the world moved so
- * that the scene's centre is the origin. Float arithmetic is then exact enough even for scenes far from the
- * world's origin. */
+ * A view is a bundle of rays, one for each pixel. The rays come from one point (perspective camera, point
+ * light) or are parallel (orthographic camera, directional light). The picture plane may have any tilt: a
+ * shadow buffer is perpendicular to the light for hard shadows and parallel to the sheets for soft shadows
+ * (fig. 17 of the paper). Pixel (i, j) has its centre at (i + 1/2, j + 1/2). Positions are in frame space:
+ * the world moved so that the scene's centre is the origin. Float arithmetic is then exact enough even for
+ * scenes far from the world's origin. */
 #ifndef HL_VIEW_VIEW_H
 #define HL_VIEW_VIEW_H
 
@@ -18,12 +18,12 @@
  * sixteen lanes. */
 enum { TILE = 16, BLOCK = 4, TILE_BLOCKS = 16, BLOCK_PIXELS = 16, TILE_PIXELS = 256, ALL_BLOCKS = 0xffff };
 
-/* The alpha from which a pixel counts as opaque. The matter behind such a pixel adds less than half a step of
- * 10 bits. */
+/* The alpha from which on a pixel counts as opaque. Matter behind such a pixel would change it by less than
+ * half a step of 10 bits. */
 #define PIXEL_OPAQUE (1.0f - 1.0f / 2048)
 
-/* Converts a pixel's column and row in its tile to the pixel's number, and back. Numbers go block by
- * block. */
+/* The functions convert a pixel's column and row in its tile to the pixel's number, and back. Pixels are
+ * numbered block by block. */
 static inline int hl_pixel_number(int column, int row) {
   return (row / BLOCK * 4 + column / BLOCK) * BLOCK_PIXELS + row % BLOCK * BLOCK + column % BLOCK;
 }
@@ -37,7 +37,7 @@ static inline int hl_pixel_row(int number) {
 /* The number of tiles that cover `pixels` pixels. */
 static inline int hl_tiles(int pixels) { return (pixels + TILE - 1) / TILE; }
 
-/* The place of a pixel's first value in an array [tiles][TILE_BLOCKS][values][BLOCK_PIXELS]. tiles_x: tiles
+/* The index of a pixel's first value in an array [tiles][TILE_BLOCKS][values][BLOCK_PIXELS]. tiles_x: tiles
  * in a row of the array. The pixel's next values follow at distances of BLOCK_PIXELS. */
 static inline size_t hl_place_in_tiles(size_t tiles_x, int values, int column, int row) {
   size_t tile = (size_t)(row / TILE) * tiles_x + (size_t)(column / TILE);
@@ -45,8 +45,8 @@ static inline size_t hl_place_in_tiles(size_t tiles_x, int values, int column, i
   return (tile * TILE_BLOCKS + number / BLOCK_PIXELS) * (size_t)values * BLOCK_PIXELS + number % BLOCK_PIXELS;
 }
 
-/* The number of pixels in a set of blocks. Bits are counted by sums of pairs, of fours and so on, since
- * baseline processors have no instruction that counts bits. */
+/* The number of pixels in a set of blocks. Bits are counted by adding them in pairs, in fours and so on,
+ * because baseline processors have no instruction that counts bits. */
 static inline uint64_t hl_pixels_of_blocks(uint32_t blocks) {
   blocks -= blocks >> 1 & 0x5555;
   blocks = (blocks & 0x3333) + (blocks >> 2 & 0x3333);
@@ -57,9 +57,9 @@ static inline uint64_t hl_pixels_of_blocks(uint32_t blocks) {
 typedef struct view {
   bool perspective;
   int width, height;   /* pixels */
-  vec3 origin;         /* perspective: the eye, where the rays meet; frame space */
-  vec3 corner, du, dv; /* perspective: the ray of continuous pixel (u, v) has the direction corner + u du + v
-                        * dv; parallel: corner + u du + v dv is the ray's start */
+  vec3 origin;         /* perspective: the eye, from which the rays come; frame space */
+  vec3 corner, du, dv; /* perspective: corner + u du + v dv is the direction of the ray of continuous pixel
+                        * (u, v); parallel: it is the start of this ray */
   vec3 direction;      /* parallel: unit direction of every ray */
   mat3 inverse;        /* (w, w u, w v) = inverse * (X - origin) for perspective,
                           (distance, u, v) = inverse * (X - corner) for parallel */
@@ -70,26 +70,28 @@ static inline size_t hl_view_tiles(const view *view) {
   return (size_t)hl_tiles(view->width) * (size_t)hl_tiles(view->height);
 }
 
-/* Sets `inverse` from the other members; false where the view is degenerate. */
+/* Sets `inverse` from the other members. Returns false if the view is degenerate. */
 bool hl_view_finish(view *view);
 
-/* Continuous pixel coordinates of a point; false where the point lies behind a perspective view's eye. */
+/* Finds the continuous pixel coordinates of a point. Returns false if the point lies behind a perspective
+ * view's eye. */
 bool hl_view_project(const view *view, vec3 point, double uv[2]);
 
-/* The ray through continuous pixel (u, v): start and (unnormalised) direction. */
+/* Finds the ray through continuous pixel (u, v): its start and its direction, which is not normalised. */
 void hl_view_ray(const view *view, double u, double v, vec3 *start, vec3 *direction);
 
-/* Finds (w, w u, w v) as affine functions of a point of another space, from which to_frame leads to frame
- * space. rows: the factors of the point's coordinates, and the constant. For a parallel view w is 1. */
+/* Finds (w, w u, w v) as affine functions of a point of another space. to_frame: maps this space to frame
+ * space. rows: for each function, the factors of the point's coordinates, and the constant. In a parallel
+ * view w is 1. */
 void hl_view_homogeneous(const view *view, affine3 to_frame, double rows[3][4]);
 
-/* The points where pixels see one sheet, in a space that the maker chooses. (u, v) are pixels, counted from
- * the first pixel's centre. Let P = p0 + u pu + v pv, W = w0 + u wu + v wv and H = h.W = h0 + u hu + v hv. In
- * a perspective view the position is base + P / H and the direction is W; in a parallel view the position is
- * P. Derived: the ray E + s W meets the sheet h.X = z at s = (z - h.E) / H. With any t and Wc, base = E + t
- * Wc gives P = (z - h.E) W - t H Wc, which is linear in u and v, as H is. Here Wc is the middle ray's
- * direction and base its point on the sheet. So P stays as small as the visible area, however far away the
- * eye is. */
+/* The points where the rays of pixels meet one sheet. The points are in a space that the caller of
+ * hl_view_sheet_rays() chooses. (u, v) are pixels, counted from the first pixel's centre. Let P = p0 + u pu +
+ * v pv, W = w0 + u wu + v wv and H = h.W = h0 + u hu + v hv. In a perspective view the position is base + P /
+ * H and the direction is W; in a parallel view the position is P. Derived: the ray E + s W meets the sheet
+ * h.X = z at s = (z - h.E) / H. With base = E + t Wc, for any t and Wc, P is (z - h.E) W - t H Wc. It is
+ * linear in u and v, because W and H are. Wc is chosen as the middle ray's direction, and base as this ray's
+ * point on the sheet. So P is never larger than the visible area, however far away the eye is. */
 typedef struct sheet_rays {
   int perspective;
   float base[3], p0[3], pu[3], pv[3];
@@ -119,16 +121,17 @@ static inline double hl_sheet_height(const sheet_stack *sheets, int sheet) {
  * which it enters and leaves the box, and the slab between two sheets counts only as far as it lies between
  * these heights (derived; exact for a homogeneous medium). */
 
-/* Rays of a view in one grid's index space: a ray is start + s * direction with s > least, where start and
- * direction are linear in the pixel. The ray's height above the first sheet is start_height + s * climb. */
+/* The rays of a view in one grid's index space. A ray is start + s * direction with s > least; start and
+ * direction are linear functions of the pixel. The ray's height above the first sheet is start_height + s *
+ * climb. */
 typedef struct box_rays {
   float start[3], start_u[3], start_v[3];
   float direction[3], direction_u[3], direction_v[3];
   float start_height, start_height_u, start_height_v;
   float climb, climb_u, climb_v;
   float low[3], high[3]; /* the box, in index space */
-  float least;           /* the least s that counts, which belongs to the eye of a perspective view */
-  int sphere;            /* if set, a sphere of radius 1 around the origin takes the place of the box */
+  float least;           /* the least s that counts; in a perspective view it is the s of the eye */
+  int sphere;            /* if set, a sphere of radius 1 around the origin is used in place of the box */
 } box_rays;
 
 /* Finds where the rays of one tile enter and leave the box. enter, leave: [256], block after block; heights
@@ -141,20 +144,21 @@ void hl_box_rays(const view *view, vec3 normal, double first_height, affine3 fra
 
 /* ---- bounds of boxes in a view ---- */
 
-/* Bounds of a box of index space in a view's picture and along the sheets' normal. */
+/* Bounds of a box of index space: in a view's picture, and along the sheets' normal. */
 typedef struct footprint_bounds {
   double low[2], high[2];         /* continuous pixels */
   double low_height, high_height; /* heights along the normal */
 } footprint_bounds;
 
-/* Maps of a grid's index space to a view's picture and to heights along the sheets' normal. */
+/* Maps from a grid's index space to a view's picture, and to heights along the sheets' normal. */
 typedef struct footprint_map {
   double view[3][4]; /* rows for (w, w u, w v) */
   double height[4];
 } footprint_map;
 
 void hl_footprint_map(const view *view, vec3 normal, affine3 index_to_frame, footprint_map *map);
-/* Bounds a box given by its centre and half edges. False where the complete box lies behind the view. */
+/* Finds the bounds of a box, which is given by its centre and half of its edges. Returns false if the whole
+ * box lies behind the view. */
 bool hl_footprint_bounds(const footprint_map *map, const double centre[3], const double half[3],
                          footprint_bounds *bounds);
 

@@ -1,6 +1,6 @@
 /* volume/brick_bounds.h - bounds of bricks: the least and greatest stored value of the voxels on which each
- * brick of a volume depends. For a volume larger than memory they are found while it is stored, because
- * finding them later would mean reading the volume once more. */
+ * brick of a volume depends. Bounds of a volume larger than memory are found while the volume is stored,
+ * because later the whole volume would have to be read once more. */
 #ifndef HL_VOLUME_BRICK_BOUNDS_H
 #define HL_VOLUME_BRICK_BOUNDS_H
 
@@ -14,7 +14,8 @@ enum { BRICK_SIDE = 4, BRICK_BEFORE = 3, BRICK_AFTER = 5 };
 typedef struct hl_brick_bounds {
   hl_context *context;
   hl_storage storage;
-  size_t dimension[3], count[3]; /* number of voxels; number of bricks: dimension / BRICK_SIDE + 1 */
+  size_t dimension[3], count[3]; /* number of voxels along each axis; number of bricks along each axis,
+                                  * dimension / BRICK_SIDE + 1 */
   void *bounds;                  /* owned; [count[2]][count[1]][count[0]][2]; least and greatest stored
                                   * value */
   size_t slices;                 /* number of slices of voxels added so far */
@@ -26,8 +27,9 @@ bool hl_brick_bounds_create(hl_context *context, const size_t dimension[3], hl_s
                             hl_brick_bounds **bounds);
 void hl_brick_bounds_release(hl_brick_bounds *bounds); /* null is allowed */
 
-/* Adds slices k0 to k1 - 1. Each slice is added at most once; several threads may add at once. values: [k1 -
- * k0][dimension[1]][dimension[0]]; stored. If memory is short, nothing is added. */
+/* Adds slices k0 to k1 - 1. Each slice may be added only once; several threads may add slices at the same
+ * time. values: stored values, [k1 - k0][dimension[1]][dimension[0]]. If memory is short, nothing is
+ * added. */
 void hl_brick_bounds_add(hl_brick_bounds *bounds, size_t k0, size_t k1, const void *values);
 
 /* Whether all slices were added. */

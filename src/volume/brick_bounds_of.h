@@ -15,8 +15,8 @@ static void BOUNDS_NAME(begin)(const hl_brick_bounds *b) {
   for (size_t n = 0; n < bricks_of(b); n++) bounds[2 * n] = BOUNDS_MOST, bounds[2 * n + 1] = BOUNDS_LEAST;
 }
 
-/* Finds bounds along x of the voxels on which each brick depends: first of two, four and eight neighbours,
- * then of nine. row: [padded]; overwritten. out: [bricks]. */
+/* Finds the least or the greatest value along x of the voxels on which each brick depends: first of two, four
+ * and eight neighbours, then of nine. row: [padded]; overwritten. out: [bricks]. */
 static void BOUNDS_NAME(reduce)(BOUNDS_TYPE *restrict row, size_t bricks, size_t padded, bool greatest,
                                 BOUNDS_TYPE *restrict out) {
   for (size_t shift = 1; shift <= 4; shift *= 2)
@@ -28,8 +28,8 @@ static void BOUNDS_NAME(reduce)(BOUNDS_TYPE *restrict row, size_t bricks, size_t
   }
 }
 
-/* Finds bounds of one slice along y and x. padded: scratch memory, [2][PADDED(width)]. low, high: [bricks
- * y][bricks x]. */
+/* Finds, in one slice, the bounds of the voxels on which each brick depends, along y and then along x.
+ * padded: scratch memory, [2][PADDED(width)]. low, high: [bricks y][bricks x]. */
 static void BOUNDS_NAME(bound_slice)(const hl_brick_bounds *b, const BOUNDS_TYPE *slice, BOUNDS_TYPE *padded,
                                      BOUNDS_TYPE *low, BOUNDS_TYPE *high) {
   const size_t width = b->dimension[0], room = PADDED(width);
@@ -50,7 +50,7 @@ static void BOUNDS_NAME(bound_slice)(const hl_brick_bounds *b, const BOUNDS_TYPE
   }
 }
 
-/* Widens the bounds of a layer of bricks by the bounds of a slice. */
+/* Widens the bounds of a layer of bricks so that they hold the bounds that were found in a slice. */
 static void BOUNDS_NAME(widen)(BOUNDS_TYPE *restrict bounds, const BOUNDS_TYPE *restrict low,
                                const BOUNDS_TYPE *restrict high, size_t bricks) {
   for (size_t n = 0; n < bricks; n++) {

@@ -1,4 +1,4 @@
-/* volume/coarser.c - see coarser.h. One pass over the rows of the volume, or over its bricks. */
+/* volume/coarser.c - see coarser.h. The rows of the volume, or its bricks, are read once. */
 #include "volume/coarser.h"
 
 #include <math.h>
@@ -9,13 +9,14 @@
 #include "core/memory.h"
 #include "volume/in_bricks.h"
 
-static const double ALIKE = 1.5; /* greatest step of an axis that is halved, in units of the shortest step */
+static const double ALIKE = 1.5; /* an axis is halved if its step is less than the shortest step times this
+                                  * number */
 
 enum {
   MOST_ROWS = 4,
   MOST_VALUES = 2 * MOST_ROWS
-}; /* MOST_ROWS: the most rows of the volume that make a row of the coarser one. MOST_VALUES: the most values
-    * that make one value */
+}; /* MOST_ROWS: the greatest number of rows that are merged in one row. MOST_VALUES: the greatest number of
+    * values that are merged in one value */
 
 typedef struct coarsening {
   const hl_volume *volume;
@@ -25,7 +26,7 @@ typedef struct coarsening {
   unsigned char *voxels; /* [dimension[2]][dimension[1]][dimension[0]]; stored values of the coarser volume */
   unsigned char *stored; /* owned; [threads][bytes of a row]; scratch memory for reading rows of a volume with
                           * pages */
-  float *numbers;        /* owned; [threads][MOST_ROWS][volume's row] */
+  float *numbers;        /* owned; [threads][MOST_ROWS][dimension[0] of the volume]; rows that are merged */
 } coarsening;
 
 static double step_length(const hl_volume *volume, int axis) {
@@ -41,7 +42,8 @@ static void choose_factors(coarsening *c) {
   }
 }
 
-/* Reads a row of stored values as floats, which hold all of them exactly. stored: room for a row. */
+/* Reads a row of stored values as floats, which hold all of them exactly. stored: scratch memory for a row of
+ * a volume with pages. */
 static void read_row(const hl_volume *volume, size_t j, size_t k, void *stored, float *numbers) {
   const void *row = hl_volume_row_in(volume, j, k, stored);
   const size_t count = volume->dimension[0];
@@ -56,14 +58,14 @@ static void read_row(const hl_volume *volume, size_t j, size_t k, void *stored, 
   }
 }
 
-/* The mean of the values that are finite; NAN where none is. */
+/* The mean of the values; NAN if there are none. */
 static double mean_of(const float *values, size_t count) {
   double sum = 0;
   for (size_t n = 0; n < count; n++) sum += (double)values[n];
   return count > 0 ? sum / (double)count : (double)NAN;
 }
 
-/* The most common of the values; the first one if several are equally common; NAN if there are none. */
+/* The most common value. If several are equally common, the first one of them; NAN if there are none. */
 static double commonest_of(const float *values, size_t count) {
   size_t best = 0, most = 0;
   for (size_t n = 0; n + most < count; n++) {
@@ -75,7 +77,8 @@ static double commonest_of(const float *values, size_t count) {
   return count > 0 ? (double)values[best] : (double)NAN;
 }
 
-/* Collects the finite values of the voxels that become voxel i of the coarser row. */
+/* Collects the finite values among the voxels that are merged in voxel i of the coarser row. Returns their
+ * number. */
 static size_t collect(const coarsening *c, const float *rows, size_t row_count, size_t i,
                       float values[MOST_VALUES]) {
   const size_t width = c->volume->dimension[0], first = i * c->factor[0];
@@ -113,8 +116,8 @@ static void make_slice(void *data, size_t k, int worker) {
   for (size_t j = 0; j < c->dimension[1]; j++) make_row(c, j, k, worker);
 }
 
-/* Places the coarser grid. Each of its voxels lies in the middle of the voxels that are merged in it. At the
- * volume's end some of these may be missing; the voxel is placed as if all of them were there. */
+/* Sets the place of the coarser grid. Each voxel lies in the middle of the voxels that are merged in it. At
+ * the volume's end some of them may be missing; the voxel lies where it would if all were there. */
 static void place(const coarsening *c, hl_volume_description *d) {
   static const hl_voxel_type types[] = {
       [HL_STORAGE_U8] = HL_VOXEL_U8, [HL_STORAGE_U16] = HL_VOXEL_U16, [HL_STORAGE_F32] = HL_VOXEL_F32};

@@ -4,15 +4,15 @@
 
 #include "volume/volume.h"
 
-/* How voxels are merged: HL_COARSER_MEANS: to the mean of their finite values, rounded where values are
- * whole numbers; HL_COARSER_LABELS: to the label that most of them have, the first of equally common
- * labels. */
+/* How voxels are merged. HL_COARSER_MEANS: the result is the mean of the finite values, rounded if values are
+ * whole numbers. HL_COARSER_LABELS: the result is the most common label; if several are equally common, the
+ * first one of them. */
 typedef enum hl_coarser_kind { HL_COARSER_MEANS, HL_COARSER_LABELS } hl_coarser_kind;
 
-/* Makes a volume by merging two voxels along each short axis: an axis along which voxels are at most 1.5
- * times as long as along the axis with the shortest ones. A field in bricks, which has no labels, is made
- * coarser along all axes: its finest level is left out (bricks/coarser.h). Volumes of colours and volumes
- * over ranks are not allowed, nor are maps of labels with numbers that floats round (volume/exact.h). */
+/* Makes a volume by merging two voxels along each axis whose voxels are less than 1.5 times as long as those
+ * of the axis with the shortest voxels. In a field in bricks, the finest level is left out, which halves all
+ * axes (bricks/coarser.h). Such a field cannot have labels. Refuses volumes of colours, volumes over ranks,
+ * and label maps whose numbers floats round (volume/exact.h). */
 hl_status hl_volume_make_coarser(const hl_volume *volume, hl_coarser_kind kind, hl_volume **coarser,
                                  hl_error *error);
 

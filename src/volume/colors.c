@@ -7,7 +7,8 @@
 #include "core/error.h"
 #include "core/memory.h"
 
-/* VOXELS_MOST: with more voxels, 32 bits could not number the bytes of the colours. */
+/* VOXELS_MOST: the greatest number of voxels with colours, as the bytes of the colours are numbered in 32
+ * bits. */
 enum { ALPHA = 3, VOXELS_MOST = 1 << 29 };
 
 bool hl_can_be_colors(hl_voxel_type type, size_t components) {
@@ -27,7 +28,7 @@ void hl_colors_store(hl_voxel_type type, const void *stored, size_t step, size_t
                                             : (unsigned char)((wide[n * step] * 255U + 32767U) / 65535U);
 }
 
-/* The luma of colour codes, in parts of 256. The weights are those of ITU-R BT.709: .2126, .7152 and
+/* The luma of a colour's codes. The weights, in units of 1/256, are those of ITU-R BT.709: .2126, .7152 and
  * .0722. */
 static unsigned char luminance_of(const unsigned char *color) {
   return (unsigned char)((54U * color[0] + 183U * color[1] + 19U * color[2] + 128U) >> 8);
@@ -46,9 +47,9 @@ static void divide_by_alpha(unsigned char *color) {
   }
 }
 
-/* Splits colours into the densities from which opacity is computed, and colours with weights. A weight falls
- * with its density, so that the colours of transparent voxels do not tint edges. It is at least 1, so that a
- * mean of weights is never 0. */
+/* Splits each colour into the density from which opacity is computed, and the colour with a weight. The
+ * weight is the density, so that the colours of transparent voxels do not tint edges. It is at least 1, so
+ * that a mean of weights is never 0. */
 static void split(const hl_color_source *source, bool use_alpha, size_t count, unsigned char *colors,
                   unsigned char *densities) {
   for (size_t n = 0; n < count; n++) {

@@ -10,19 +10,20 @@
 
 enum { HL_COLOR_BYTES = 4 };
 
-/* Whether 3 or 4 components of each voxel can be colours. The components must be unsigned, of 8 or 16
+/* Whether voxels of this type and number of components can be colours: 3 or 4 unsigned components of 8 or 16
  * bits. */
 bool hl_can_be_colors(hl_voxel_type type, size_t components);
 
 /* Whether a chosen component stands for all components: HL_COMPONENT_COLOR or HL_COMPONENT_LUMINANCE. */
 bool hl_component_is_colors(int component);
 
-/* Stores one component (0 to 3) of `count` voxels. stored: u8 or u16 values, of which every `step`-th is
- * taken. colors: the colours of the first voxel. Values of 16 bits are rounded to 8. */
+/* Stores component 0 to 3 of the colours of `count` voxels. stored: values of type u8 or u16; every `step`-th
+ * one is taken. colors: points to the first voxel's colour. Values of 16 bits are rounded to 8. */
 void hl_colors_store(hl_voxel_type type, const void *stored, size_t step, size_t count, size_t component,
                      unsigned char *colors);
 
-/* The collected data. An alpha that is the same everywhere tells nothing; then luminance takes its place. */
+/* The colours that a reader has collected. If alpha is the same for all voxels, opacity is computed from
+ * luminance instead. */
 typedef struct hl_color_source {
   const hl_volume_description *grid; /* the file's grid; its `type` is the type of one component */
   const char *path;
@@ -32,8 +33,9 @@ typedef struct hl_color_source {
   bool premultiplied; /* whether alpha is multiplied into the colours */
 } hl_color_source;
 
-/* Makes the volume; its component says from which value opacity is computed. colors:
- * [voxels][HL_COLOR_BYTES], in a block of hl_allocate() that the volume takes over, also on failure. */
+/* Makes the volume; its chosen component tells whether opacity is computed from alpha or from luminance.
+ * colors: [voxels][HL_COLOR_BYTES], in a block of hl_allocate() that the volume takes over, also on
+ * failure. */
 hl_status hl_volume_adopt_colors(hl_context *context, const hl_color_source *source, unsigned char *colors,
                                  hl_volume **volume, hl_error *error);
 

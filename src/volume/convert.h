@@ -1,7 +1,8 @@
 /* volume/convert.h - converts the types of files and callers to the three storage types.
  *
- * signed integers   sign bit flipped: stored = value + 2^(bits-1), undone by the volume's value_offset 32 and
- * 64 bit      nearest f32; doubles beyond its range become infinite (transparent) */
+ * Signed integers of 8 and 16 bits: the sign bit is flipped, so that stored = value + 2^(bits - 1). The
+ * volume's value_offset undoes this. Types of 32 and 64 bits: the value becomes the nearest f32. Doubles
+ * beyond the range of f32 become infinite, and are transparent. */
 #ifndef HL_VOLUME_CONVERT_H
 #define HL_VOLUME_CONVERT_H
 
@@ -12,11 +13,11 @@
 size_t hl_voxel_type_bytes(hl_voxel_type type); /* 0 for an unknown type */
 hl_storage hl_voxel_type_storage(hl_voxel_type type);
 
-/* The difference of a stored value and the value: 128 for i8, 32768 for i16, else 0. */
+/* What is added to a value of this type when it is stored: 128 for i8, 32768 for i16, else 0. */
 double hl_voxel_type_bias(hl_voxel_type type);
 
-/* Converts `count` packed voxels. swap: whether they are in the other byte order. source: needs no alignment,
- * and may be the destination itself if both types have the same size. */
+/* Converts `count` packed voxels to stored values. swap: whether the source has the other byte order. source:
+ * of any alignment; may be the destination if both types have the same size. */
 void hl_voxels_store(hl_voxel_type type, bool swap, const void *source, size_t count, void *destination);
 
 /* Gathers one row of `count` voxels of the given size that lie stride_bytes apart. */

@@ -53,8 +53,8 @@ static affine3 index_to_world(const hl_volume_description *description) {
 
 static hl_status check_size(const hl_volume_description *description, const char *subject, hl_error *error) {
   const size_t *dimension = description->dimensions;
-  size_t bytes = 8; /* begins with the bytes of the largest voxel type; so products of sizes and bytes do not
-                     * overflow later either */
+  size_t bytes = 8; /* 8 is the size of the largest voxel type, so that the number of bytes does not overflow
+                     * for any type */
   bool fits = true;
   for (int axis = 0; axis < 3; axis++) {
     if (dimension[axis] < 1)
@@ -69,10 +69,10 @@ static hl_status check_size(const hl_volume_description *description, const char
   return HL_OK;
 }
 
-/* The greatest accepted coordinate: its square does not overflow. */
+/* The greatest coordinate without its sign, for checks of lengths: unlike a length, it cannot overflow. */
 static double greatest_part(const double v[3]) { return fmax(fmax(fabs(v[0]), fabs(v[1])), fabs(v[2])); }
 
-/* Limits of lengths. Squares and cubes of lengths beyond them leave the range of doubles. */
+/* The limits of a step's length. For lengths beyond them, squares or cubes leave the range of doubles. */
 static const double SHORTEST_STEP = 1e-100, LONGEST_STEP = 1e100;
 
 static hl_status check_step(const double axis[3], int number, const char *subject, hl_error *error) {
@@ -231,8 +231,8 @@ size_t hl_volume_row_room(const hl_volume *volume) {
   return width * (in_file ? hl_voxel_type_bytes(volume->type) + stored : stored);
 }
 
-/* Reads, for a row of a volume with pages, the file's own numbers, which lie in a second scratch file. Null
- * if that file cannot be read. */
+/* Reads a row of the file's own numbers of a volume with pages. These numbers lie in a second scratch file.
+ * Null if the file cannot be read. */
 static const void *numbers_in(const hl_volume *volume, size_t j, size_t k, unsigned char *buffer) {
   size_t width = volume->dimension[0], first = (k * volume->dimension[1] + j) * width;
   float *stored = (float *)(void *)(buffer + width * hl_voxel_type_bytes(volume->type));
@@ -260,15 +260,15 @@ double hl_row_number(hl_number_row row, size_t i) {
   }
 }
 
-/* The least number that 64 bits with a sign do not hold. */
+/* The least number above 0 that int64_t cannot hold. */
 static const double TOO_GREAT = 0x1p63;
 
 bool hl_row_whole(const hl_volume *volume, hl_number_row row, size_t i, int64_t *whole) {
   bool is_64 = row.type == HL_VOXEL_I64 || row.type == HL_VOXEL_U64;
   if (is_64 && volume->value_scale == 1 && volume->value_offset == 0) {
     memcpy(whole, (const int64_t *)row.numbers + i, sizeof *whole);
-    return row.type == HL_VOXEL_I64 || *whole >= 0; /* an unsigned number that is too great for int64_t looks
-                                                     * negative */
+    return row.type == HL_VOXEL_I64 || *whole >= 0; /* an unsigned number beyond the range of int64_t has
+                                                     * become negative */
   }
   double value = volume->value_scale * hl_row_number(row, i) + volume->value_offset;
   if (!(value >= -TOO_GREAT && value < TOO_GREAT && value == floor(value))) return false;
@@ -305,12 +305,12 @@ static void choose_strides(const hl_volume_description *description, ptrdiff_t s
   memcpy(stride, is_packed ? packed : given, sizeof packed);
 }
 
-/* The greatest distance between slices, in bytes, of borrowed voxels. Sampling counts the bytes from one
- * slice to the next few in 32 bits. */
+/* The greatest number of bytes from slice to slice of borrowed voxels. Samplers hold the distance to the next
+ * few slices in 32 bits. */
 #define LARGEST_GAP ((ptrdiff_t)1 << 26)
 
-/* Whether the voxels can be borrowed: their type is stored unchanged, they are aligned for vector loads, rows
- * are packed, and neither rows nor slices overlap. */
+/* Whether the caller's voxels can be borrowed without a copy. Their type must be a storage type, they must be
+ * aligned for vector loads, the voxels of a row must be adjacent, and neither rows nor slices may overlap. */
 static bool can_borrow(const hl_volume_description *description, const ptrdiff_t stride[3]) {
   hl_voxel_type type = description->type;
   ptrdiff_t bytes = (ptrdiff_t)hl_voxel_type_bytes(type);
@@ -338,8 +338,8 @@ hl_status hl_volume_create(hl_context *context, const hl_volume_description *des
   hl_status status = hl_volume_check_grid(description, subject, error);
   if (status != HL_OK) {
     if (error != NULL)
-      error->code = HL_ERROR_ARGUMENT; /* the grid comes from the caller, not from a file; the status is
-                                        * therefore the one for arguments */
+      error->code = HL_ERROR_ARGUMENT; /* the grid comes from the caller, not from a file, so that the code is
+                                        * the one for arguments */
     return HL_ERROR_ARGUMENT;
   }
   ptrdiff_t stride[3];
@@ -416,7 +416,8 @@ double hl_volume_value(const hl_volume *volume, size_t i, size_t j, size_t k) {
   return hl_volume_value_within(volume, i, j, k);
 }
 
-/* The number of one voxel, as a row of this number alone. own: memory that the number may be stored in. */
+/* The number of one voxel, as a row of length 1. own: memory for the number, which is used if the number is
+ * not in memory elsewhere. */
 static hl_number_row number_of(const hl_volume *volume, size_t i, size_t j, size_t k, uint64_t *own) {
   const hl_pages *pages = volume->pages;
   if (volume->bricks != NULL) {
@@ -447,7 +448,8 @@ double hl_volume_value_within(const hl_volume *volume, size_t i, size_t j, size_
   if (volume == NULL || is_outside(volume, i, j, k)) return NAN;
   uint64_t own;
   double number = hl_row_number(number_of(volume, i, j, k, &own), 0);
-  /* a number that is infinite as a float counts as not finite, so that it stays transparent */
+  /* a number beyond the range of floats counts as not finite, as its stored value is infinite and
+   * transparent */
   return isfinite((float)number) ? volume->value_scale * number + volume->value_offset : NAN;
 }
 

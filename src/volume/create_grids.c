@@ -16,7 +16,7 @@ void hl_cells_description_defaults(hl_cells_description *description) {
   *description = (hl_cells_description){.struct_size = sizeof *description};
 }
 
-/* Numbers as the readers of files have them. */
+/* Numbers in the types that the readers of files have. */
 static double *doubles_of(hl_context *context, const int64_t *numbers, size_t count) {
   double *made = hl_allocate(context, count, sizeof *made);
   for (size_t n = 0; made != NULL && n < count; n++) made[n] = (double)numbers[n];

@@ -12,8 +12,8 @@
 #include "volume/convert.h"
 #include "volume/store/scratch_file.h"
 
-/* Floats hold all whole numbers up to this one, 2^24. Numbers nearer to 0 are taken to be held, even if they
- * have fractions. */
+/* The number 2^24. Floats hold all whole numbers up to it. Smaller numbers count as held even if they have
+ * fractions. */
 #define HELD_BELOW 0x1p24
 
 void hl_exact_begin(hl_context *context, hl_voxel_type type, size_t count, hl_exact_place place,
@@ -48,8 +48,8 @@ static bool rounds_double(double value) {
 /* The magnitude of a signed number. */
 static uint64_t magnitude_of(int64_t value) { return value < 0 ? 0 - (uint64_t)value : (uint64_t)value; }
 
-/* Whether a number may lie beyond 2^24 or -2^24. In most files none does. Compilers vectorise loops of this
- * kind. */
+/* Whether any number may lie beyond 2^24 or -2^24. In most files there is none, so that this quick test
+ * replaces slower ones. Compilers vectorise the loop. */
 static bool any_great_32(bool is_signed, bool swap, const unsigned char *from, size_t count) {
   uint32_t bits = 0;
   for (size_t n = 0; n < count; n++) {
@@ -99,7 +99,7 @@ static void copy_number(size_t bytes, bool swap, const unsigned char *from, unsi
   for (size_t n = 0; n < bytes; n++) to[n] = from[swap ? bytes - 1 - n : n];
 }
 
-/* The block of numbers, which is made by the first thread that needs it; null if memory is short. */
+/* The memory for the numbers. The first thread that needs it allocates it; null if memory is short. */
 static unsigned char *numbers_of(hl_exact *exact) {
   void *made = atomic_load(&exact->numbers), *none = NULL;
   if (made != NULL) return made;
@@ -109,7 +109,7 @@ static unsigned char *numbers_of(hl_exact *exact) {
   return none;
 }
 
-/* The file of numbers, which is made by the first thread that needs it; -1 if it cannot be made. */
+/* The file for the numbers. The first thread that needs it makes it; -1 if this fails. */
 static int file_of(hl_exact *exact) {
   int made = atomic_load(&exact->file), none = -1;
   if (made >= 0) return made;
@@ -119,8 +119,8 @@ static int file_of(hl_exact *exact) {
   return none;
 }
 
-/* Writes numbers to the file, piece by piece: all numbers of a piece if a float rounds one of them, else
- * none. */
+/* Writes numbers to the file, piece by piece. If a float rounds a number of a piece, the whole piece is
+ * written; all other pieces are left out. */
 static void note_in_file(hl_exact *exact, bool swap, const unsigned char *from, size_t first, size_t count) {
   enum { PIECE = 2048 };
   unsigned char piece[8 * PIECE];
@@ -168,8 +168,8 @@ void hl_exact_note(hl_exact *exact, bool swap, const void *source, size_t first,
   else note_in_memory(exact, swap, from, first, count);
 }
 
-/* Sets the whole number of voxel n to the value of its float `stored`. It is for voxels whose number was not
- * noted. */
+/* Sets the number of voxel n to the value of the voxel's float `stored`. It is for voxels whose number was
+ * not noted, because the float holds it exactly. */
 static void fill_number(hl_voxel_type type, double stored, size_t n, void *numbers) {
   switch (type) {
     case HL_VOXEL_U32:
@@ -188,8 +188,8 @@ static void fill_number(hl_voxel_type type, double stored, size_t n, void *numbe
   }
 }
 
-/* Numbers are zeros until they are noted. So a number was not noted if its float is not the voxel's stored
- * value. */
+/* Finds the numbers that were not noted: they are still zero, and their floats differ from the voxels' stored
+ * values. These numbers are set to the stored values. */
 void hl_exact_fill(hl_voxel_type type, const float *stored, size_t count, void *numbers) {
   for (size_t n = 0; n < count; n++)
     if (!((float)hl_exact_number(type, numbers, n) == stored[n]))
@@ -221,7 +221,7 @@ bool hl_exact_read(int file, hl_voxel_type type, size_t first, size_t count, con
     ssize_t got = pread(file, (unsigned char *)numbers + done, wanted - done, (off_t)(first * bytes + done));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return false;
-    if (got == 0) break; /* the file ends behind the last number that was noted; the others are zeros */
+    if (got == 0) break; /* the rest of the file was never written, which stands for zeros */
     done += (size_t)got;
   }
   memset((unsigned char *)numbers + done, 0, wanted - done);

@@ -3,11 +3,11 @@
  * Stored values of 32-bit and 64-bit integers and of doubles are floats, which hold whole numbers exactly up
  * to 2^24. Where a file has greater numbers that a float rounds (the ids of atlases), the numbers themselves
  * are kept too, in the file's type: for labels, masks, `info`, `convert` and percentiles. Pictures of values
- * use the floats. Beside voxels in pages they lie in a second scratch file. Over ranks each rank keeps those
- * of its own voxels.
+ * use the floats. If the voxels lie in pages, the numbers lie in a second scratch file. Over ranks each rank
+ * keeps the numbers of its own voxels.
  *
  * In: voxels as a file or a caller gives them, in pieces of any size and order, from several threads at once.
- * Out: all numbers, or null where floats hold them all. */
+ * Out: the numbers of all voxels, or null if floats hold all of them. */
 #ifndef HL_VOLUME_EXACT_H
 #define HL_VOLUME_EXACT_H
 
@@ -22,24 +22,24 @@ typedef enum hl_exact_place {
 typedef struct hl_exact {
   hl_context *context;
   hl_voxel_type type;
-  size_t first, count; /* the voxels whose numbers are kept: number of the first one, which is 0 except over
-                        * ranks; number of voxels */
+  size_t first, count; /* the voxels whose numbers are kept: the number of the first voxel, which is 0 except
+                        * over ranks, and the number of voxels */
   hl_exact_place place;
-  atomic_bool rounds;      /* whether a noted number is rounded by its float */
+  atomic_bool rounds;      /* whether floats round any of the noted numbers */
   atomic_int failure;      /* the system's error number if there was no room for the numbers, else 0 */
-  _Atomic(void *) numbers; /* owned; [count], of the file's type; zeros at first; null until a number comes
-                            * that a float rounds */
-  atomic_int file; /* owned; the file that holds the numbers, if memory does not; holes, which read as zeros,
-                    * stand for numbers that were not noted; -1: no file */
+  _Atomic(void *) numbers; /* owned; [count], of the file's type; a number is 0 until it is noted. Null until
+                            * the first number comes that a float rounds */
+  atomic_int file; /* owned; the file that holds the numbers, if they are not in memory; -1 if there is none.
+                    * Numbers that were not noted are holes of the file, which read as zeros */
 } hl_exact;
 
 void hl_exact_begin(hl_context *context, hl_voxel_type type, size_t count, hl_exact_place place,
                     hl_exact *exact);
 
-/* Records the numbers of `count` voxels; the first one is voxel number `first`. source: the numbers as they
- * stand in the file, one after the other, of any alignment. swap: whether the file has the other byte order.
- * Voxels of other ranks are passed over. If memory or the disk is short, hl_exact_take() fails later. exact:
- * may be null. */
+/* Records the numbers of `count` voxels, of which the first is voxel number `first`. source: the numbers as
+ * they stand in the file, adjacent, of any alignment. swap: whether the file has the other byte order. Voxels
+ * of other ranks are skipped. If memory or the disk is short, hl_exact_take() fails later. exact: may be
+ * null. */
 void hl_exact_note(hl_exact *exact, bool swap, const void *source, size_t first, size_t count);
 
 /* Hands the recorded numbers to the caller, who owns them. stored: the stored values of all voxels, [count].
@@ -54,8 +54,8 @@ bool hl_exact_read(int file, hl_voxel_type type, size_t first, size_t count, con
                    void *numbers);
 void hl_exact_release(hl_exact *exact);
 
-/* Gives the voxels whose numbers were not noted the numbers that their floats hold. stored: their stored
- * values. numbers: [count] of the type; zeros where nothing was noted. */
+/* Sets the numbers that were not noted to the values of their voxels' floats. stored: the floats of the
+ * voxels. numbers: [count] of the type; zeros where nothing was noted. */
 void hl_exact_fill(hl_voxel_type type, const float *stored, size_t count, void *numbers);
 
 /* The number at index i of a row. row: numbers of the type, in native byte order. */

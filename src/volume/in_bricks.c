@@ -48,7 +48,7 @@ hl_status hl_volume_check_bricks(const hl_bricks *bricks, const hl_volume_descri
 
 /* ---- voxels ---- */
 
-/* Whether voxels stand on points of the lattice. */
+/* Whether all voxels' centres are lattice points. */
 static bool stand_on_points(const hl_bricks *bricks) {
   bool whole = true;
   for (int axis = 0; axis < 3; axis++) whole = whole && bricks->origin[axis] == floor(bricks->origin[axis]);
@@ -90,8 +90,9 @@ typedef struct brick_tally {
   const hl_volume *volume;
   double low, high, sum;
   double counted;   /* cells of level 0 */
-  double nonfinite; /* voxels whose coefficient is not finite; counted as cells of level 0 */
-  bool binned;      /* if set, the range is known, and values are counted in the histogram */
+  double nonfinite; /* number of voxels whose coefficient is not finite; each is a cell of level 0 */
+  bool binned;      /* false in the first pass, which finds the range; true in the second, which counts the
+                     * values in the histogram */
 } brick_tally;
 
 static void add_value(brick_tally *tally, float value, uint64_t weight, uint64_t *histogram) {
@@ -118,7 +119,7 @@ static void points_in_box(const hl_volume *volume, int axis, int64_t range[2]) {
   range[1] = (int64_t)ceil(origin + (double)volume->dimension[axis] - 0.5);
 }
 
-/* The number of the box's lattice points, along an axis, that lie in a cell of a level. box: as from
+/* The number of lattice points along an axis that lie in a cell of a level and in the volume's box. box: from
  * points_in_box(). */
 static int64_t share_of(const int64_t box[2], int64_t cell, int level) {
   int64_t first = cell << level, end = (cell + 1) << level;
@@ -127,8 +128,8 @@ static int64_t share_of(const int64_t box[2], int64_t cell, int level) {
   return end > first ? end - first : 0;
 }
 
-/* Adds the values of a brick to the tally when it is called for the brick's first block, and nothing for its
- * other blocks. A block without a brick adds its constant. */
+/* Adds the values of the block's brick to the tally. A brick of several blocks is added only with its first
+ * block. A block without a brick adds its constant. */
 static void add_block(brick_tally *tally, const int64_t block[3], uint64_t *histogram) {
   const hl_bricks *bricks = tally->volume->bricks;
   const hl_brick_entry *entry = hl_bricks_entry(bricks, block);

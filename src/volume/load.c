@@ -1,4 +1,5 @@
-/* volume/load.c - hl_volume_load: recognises the format, by content first, then by name. */
+/* volume/load.c - hl_volume_load: recognises the format by a name that proves it, else by content, else by
+ * name. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -17,8 +18,8 @@ static bool begins(const unsigned char *bytes, size_t length, const char *mark, 
   return length >= mark_length && memcmp(bytes, mark, mark_length) == 0;
 }
 
-/* The format that claims a file by its first bytes. length: number of bytes that are known; formats look at
- * HL_FORMAT_SNIFFED_BYTES at most. */
+/* Finds the format that claims a file by its first bytes. length: the number of bytes given; formats look at
+ * no more than HL_FORMAT_SNIFFED_BYTES. */
 static const hl_format *by_content(const unsigned char *bytes, size_t length) {
   if (length > HL_FORMAT_SNIFFED_BYTES) length = HL_FORMAT_SNIFFED_BYTES;
   for (int n = 0; hl_formats[n] != NULL; n++)
@@ -135,8 +136,8 @@ static hl_status fail_unknown(const hl_stream *stream, const unsigned char *byte
 
 static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
 
-/* The only file in an archive; null if there are several, or none. Files that macOS adds to archives do not
- * count. */
+/* The file in an archive that has only one, apart from files that macOS adds; null if there are several, or
+ * none. */
 static const hl_bundle_entry *only_file(const hl_bundle *bundle) {
   const hl_bundle_entry *only = NULL;
   for (size_t n = 0; n < bundle->count; n++) {
@@ -195,8 +196,8 @@ static hl_status load_folder(const char *path, hl_load_request *request, hl_volu
   return status;
 }
 
-/* Reads a store on a server. If the caller names no level, the level that is read is fine enough for a
- * picture of the caller's size in pixels. */
+/* Reads a store on a server. If the caller names no level, a level is read that is fine enough for the
+ * caller's picture, or for a picture of PIXELS pixels if the caller gives no size. */
 static hl_status load_from_server(const char *url, hl_load_request *request, hl_volume **volume,
                                   hl_error *error) {
   enum { PIXELS = 512 };
@@ -284,8 +285,7 @@ static hl_status check_options(const hl_volume_load_options *options, hl_error *
   return HL_OK;
 }
 
-/* Turns a volume's world into another anatomical space by changing the signs of x, y or both, and logs
- * this. */
+/* Changes a volume's world to another anatomical space by changing the signs of x, y or both, and logs it. */
 static void turn_into(hl_context *context, const char *path, hl_space wanted, hl_volume *volume) {
   static const double signs[][2] = {
       [HL_SPACE_RAS] = {1, 1}, [HL_SPACE_LPS] = {-1, -1}, [HL_SPACE_LAS] = {-1, 1}};
@@ -312,7 +312,7 @@ static hl_status check_series(const hl_load_request *request, const char *path, 
                  path);
 }
 
-/* Gives the volume the list of arrays, and warns about default choices. */
+/* Gives the volume what the reader has found, such as the list of arrays, and warns about default choices. */
 static hl_status finish(hl_load_request *request, const char *path, hl_status status, hl_volume **volume,
                         hl_error *error) {
   if (status == HL_OK) {

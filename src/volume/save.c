@@ -1,8 +1,8 @@
 /* volume/save.c - writes a volume, or a box of it, to a file. Rows of data values are converted to a type,
  * packed, and written in a format (writer.h).
  *
- * The file appears complete or not at all, and the same volume gives the same bytes. One row is held at a
- * time. */
+ * The file appears complete or not at all, and the same volume gives the same bytes. Only one row is in
+ * memory at a time. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <math.h>
@@ -22,8 +22,8 @@
 enum { OUT_BYTES = 1 << 18, ZLIB_WINDOW = 15, GZIP = 16 };
 enum {
   MOST_SHRUNK_LABELS = 64
-}; /* greatest `shrink` of labels: all values that are merged in each voxel of a row are kept, at most two
-    * megabytes for each voxel */
+}; /* greatest `shrink` of label maps. All labels of the voxels that are merged in one voxel are kept in
+    * memory, which takes up to two megabytes for each voxel of a row */
 
 /* The state of writing voxels. */
 typedef struct saving {
@@ -31,23 +31,23 @@ typedef struct saving {
   const hl_volume *volume;
   const hl_writer *writer;
   size_t begin[3], end[3], shrink; /* the box in voxels; each written voxel is made of shrink^3 voxels */
-  bool labels;                /* whether a written voxel is the most common of these values, instead of their
+  bool labels;                /* whether merged voxels become the most common of their values, instead of the
                                * mean */
   hl_volume_description grid; /* the grid that is written */
   const char *unit;           /* unit of the grid's lengths, static; null if unknown */
   hl_output output;
   bool packs; /* whether bytes are packed now */
   struct {
-    double *sums;          /* [grid.dimensions[0]]; sums of data values */
+    double *sums;          /* [grid.dimensions[0]]; sums of the data values that are merged */
     uint32_t *counts;      /* [grid.dimensions[0]]; number of finite voxels in each sum */
-    uint64_t *boxes;       /* [grid.dimensions[0]][shrink^3]; where labels are shrunk: the bits of the finite
-                            * values, or of the file's own numbers (keeps_numbers()); else null */
+    uint64_t *boxes;       /* [grid.dimensions[0]][shrink^3]; for label maps that are shrunk: the bits of the
+                            * finite values, or of the file's own numbers (keeps_numbers()); else null */
     unsigned char *row;    /* [grid.dimensions[0]] voxels of the written type */
     void *source_row;      /* a row of the volume's stored values, for volumes with pages */
     unsigned char *packed; /* [OUT_BYTES] */
   } memory;                /* all of it is owned */
-  uint64_t clamped, holes; /* number of voxels beyond the type's range; number of voxels that are not finite,
-                            * if the type has no such numbers */
+  uint64_t clamped, holes; /* number of voxels that lay beyond the type's range; number of voxels that are not
+                            * finite and became 0 */
   z_stream stream;
 } saving;
 
@@ -70,15 +70,16 @@ static bool holds(hl_voxel_type type, double least, double greatest) {
   return whole_range(type, &low, &high) && least >= low && greatest <= high;
 }
 
-/* Whether all data values are finite whole numbers: they come from integers, scaled by whole numbers. */
+/* Whether all data values are finite whole numbers, because the file's are integers, and scale and offset are
+ * whole numbers. */
 static bool is_whole(const hl_volume *volume) {
   double low, high;
   return whole_range(volume->type, &low, &high) && volume->value_scale == floor(volume->value_scale) &&
          volume->value_offset == floor(volume->value_offset);
 }
 
-/* Chooses the first type that the format has and that holds all data values: the volume's own, else the next
- * larger integers, else floats, or doubles where floats round the values. */
+/* Chooses the type to write: the first type that the format can hold and that holds all data values. The
+ * candidates are the volume's own type, larger integers, floats, and doubles if floats round the values. */
 static hl_voxel_type choose_type(const hl_volume *volume, const hl_writer *writer) {
   const hl_voxel_type candidates[] = {volume->type, HL_VOXEL_I16, HL_VOXEL_U16, HL_VOXEL_I32, HL_VOXEL_U32};
   if (hl_volume_is_exact(volume) && volume->value_scale == 1 && volume->value_offset == 0 &&
@@ -129,8 +130,8 @@ static hl_status set_box(saving *s, const hl_volume_save_options *options, const
   return HL_OK;
 }
 
-/* Places the grid that is written. A written voxel lies in the middle of the voxels that are merged in it. At
- * the box's end some of these may be missing; the voxel is placed as if all of them were there. */
+/* Sets the place of the grid that is written. A voxel lies in the middle of the voxels that are merged in it.
+ * At the box's end some of them may be missing; the voxel lies where it would if all were there. */
 static void place_box(saving *s) {
   const hl_volume *volume = s->volume;
   vec3 origin = volume->index_to_world.offset;
@@ -152,14 +153,15 @@ static void place_box(saving *s) {
 
 /* ---- rows ---- */
 
-/* Whether the file's own numbers are written unchanged; numbers of 64 bits do not pass through doubles. */
+/* Whether the file's own numbers are written unchanged. Doubles would round numbers of 64 bits. */
 static bool keeps_numbers(const saving *s) {
   const hl_volume *volume = s->volume;
   return hl_volume_is_exact(volume) && (s->shrink == 1 || s->labels) && s->grid.type == volume->type &&
          volume->value_scale == 1 && volume->value_offset == 0;
 }
 
-/* The bits of a label: of its value, or of the file's own number. Equal labels have equal bits. */
+/* The bits that identify a label: those of the file's own number if it is kept, else those of the value.
+ * Equal labels have equal bits. */
 static uint64_t bits_of(const saving *s, hl_number_row row, size_t i, double value) {
   uint64_t bits = 0;
   const size_t bytes = hl_voxel_type_bytes(row.type);
@@ -169,7 +171,7 @@ static uint64_t bits_of(const saving *s, hl_number_row row, size_t i, double val
   return bits;
 }
 
-/* Adds the row (j, k) of the volume to the sums. The first row begins the sums. */
+/* Adds row (j, k) of the volume to the sums and to the lists of labels. */
 static void add_row(saving *s, size_t j, size_t k) {
   const hl_volume *volume = s->volume;
   const hl_number_row row = hl_volume_numbers(volume, j, k, s->memory.source_row);
@@ -185,8 +187,8 @@ static void add_row(saving *s, size_t j, size_t k) {
     }
 }
 
-/* The most common of some values; the first one if several are equally common. A value's occurrences are
- * counted where the value comes up first; this is fast because a box has few different values. */
+/* The most common value. If several are equally common, the first one of them. The occurrences of a value are
+ * counted at its first place; this is fast because a box has few different values. */
 static uint64_t commonest(const uint64_t *values, size_t count) {
   uint64_t best = values[0];
   size_t most = 0;
@@ -202,15 +204,17 @@ static uint64_t commonest(const uint64_t *values, size_t count) {
   return best;
 }
 
-/* Stores a label's bits among the values, or among the file's own numbers that are written. */
+/* Stores a label from its bits: in the row that is written if the file's own numbers are kept, else among the
+ * values. */
 static void put_label(saving *s, size_t n, uint64_t bits) {
   const size_t bytes = hl_voxel_type_bytes(s->grid.type);
   if (keeps_numbers(s)) memcpy(s->memory.row + n * bytes, &bits, bytes);
   else memcpy(&s->memory.sums[n], &bits, sizeof bits);
 }
 
-/* The data values of row (j, k) as written, which are stored in `sums`: the mean of the finite voxels, or
- * the commonest label; NAN where there is none. Labels that keep their own numbers are stored in `row`. */
+/* Computes the data values of row (j, k) of the written grid in `sums`: the mean of the finite voxels or the
+ * most common label, NAN if no voxel is finite. If the file's own numbers are kept, labels are stored in
+ * `row` instead. */
 static void make_row(saving *s, size_t j, size_t k) {
   const size_t count = s->grid.dimensions[0], box = s->shrink * s->shrink * s->shrink;
   memset(s->memory.sums, 0, count * sizeof *s->memory.sums);
@@ -223,7 +227,7 @@ static void make_row(saving *s, size_t j, size_t k) {
     if (s->memory.counts[n] == 0 && keeps_numbers(s))
       memcpy(s->memory.row + n * sizeof(double), &s->memory.sums[n], sizeof(double));
     if (s->memory.counts[n] == 0)
-      continue; /* no voxel is finite; of the types that keep numbers, only doubles can have this */
+      continue; /* no voxel is finite; where the file's own numbers are kept, this happens only for doubles */
     if (s->labels) put_label(s, n, commonest(s->memory.boxes + n * box, s->memory.counts[n]));
     else if (s->memory.counts[n] > 1) s->memory.sums[n] /= s->memory.counts[n];
   }
@@ -237,11 +241,12 @@ static uint16_t half_of(double value) {
   if (isnan(value)) return 0x7e00;
   if (size >= 65520) return (uint16_t)(sign | 0x7c00);
   int exponent;
-  frexp(size, &exponent); /* size = f 2^exponent with f from 0.5 to 1; so the lowest of the number's 11 bits
-                           * is worth 2^(exponent - 11) */
+  frexp(size, &exponent); /* frexp() splits size into f 2^exponent, with f from 0.5 to 1. The lowest of the 11
+                           * bits of a half is therefore worth 2^(exponent - 11) */
   int last = exponent - 11 > -24 ? exponent - 11 : -24;
   double units = nearbyint(ldexp(size, -last)); /* from 1024 to 2048, or less for subnormals */
-  /* The exponent field of a number that is no subnormal (1024 units or more), less 1. */
+  /* The exponent field of the half, less 1; it is used for numbers that are not subnormal, which have 1024
+   * units or more. */
   int biased = last + 24;
   return (uint16_t)(sign | (units < 1024 ? (unsigned)units
                                          : ((unsigned)(biased + 1) << 10) + (unsigned)(units - 1024)));
@@ -385,7 +390,7 @@ static hl_status save(saving *s, const char *path, hl_error *error) {
 
 /* ---- the whole ---- */
 
-/* Checks the file's name, which alone states the size and type of bare voxels. */
+/* Checks the name of a file of bare voxels. It must state the size and type, as the file itself does not. */
 static hl_status check_raw_name(const saving *s, const char *path, hl_error *error) {
   hl_payload payload;
   const size_t *n = s->grid.dimensions;
@@ -406,7 +411,8 @@ static bool has_place(const hl_volume_description *grid) {
          memcmp(grid->origin, plain.origin, sizeof plain.origin) != 0;
 }
 
-/* Tells, before a long evaluation, that a file gets more voxels than the field has. */
+/* Warns that the file gets more voxels than the field has coefficients. It is called before the evaluation,
+ * which takes long. */
 static void tell_evaluation(const saving *s, const char *path) {
   const size_t *n = s->grid.dimensions, size = hl_voxel_type_bytes(s->grid.type);
   if (s->volume->bricks == NULL) return;

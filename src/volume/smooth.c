@@ -7,8 +7,8 @@
 #include "core/context.h"
 #include "core/memory.h"
 
-/* Weights of a Gaussian at whole distances, which sum to 1: exp(-d^2 / (2 sigma^2)), to three standard
- * deviations. */
+/* The weights of a Gaussian, exp(-d^2 / (2 sigma^2)), at whole distances d up to three standard deviations.
+ * The weights of both sides add up to 1. */
 enum { LONGEST = 64 };
 typedef struct gaussian {
   int radius;
@@ -26,8 +26,9 @@ static gaussian make_gaussian(double sigma) {
   return made;
 }
 
-/* Convolves `count` lines that lie side by side. Each has `length` numbers, which are `step` apart. Beyond a
- * line's ends its first and its last number repeat. line: scratch memory, [length][count]. */
+/* Convolves `count` lines at once. A line has `length` numbers, and number n of all lines is a block of
+ * `count` adjacent numbers; these blocks are `step` apart. Beyond its ends, a line's first and last number
+ * repeat. line: scratch memory, [length][count]. */
 static void convolve_lines(const gaussian *kernel, float *numbers, size_t length, size_t step, size_t count,
                            float *line) {
   for (size_t n = 0; n < length; n++) memcpy(line + n * count, numbers + n * step, count * sizeof *line);
@@ -42,7 +43,7 @@ static void convolve_lines(const gaussian *kernel, float *numbers, size_t length
   }
 }
 
-/* Convolves a row. line: [length + 2 LONGEST] floats of scratch. */
+/* Convolves a row. line: [length + 2 LONGEST] floats of scratch memory. */
 static void convolve_row(const gaussian *kernel, float *numbers, size_t length, float *line) {
   float *middle = line + LONGEST;
   memcpy(middle, numbers, length * sizeof *line);
@@ -90,8 +91,8 @@ static void take_values(const hl_volume *volume, float *line, float *values, flo
     }
 }
 
-/* Divides each value by the weight of the finite voxels in it, and gives NAN to voxels that are not finite.
- * It is for volumes with such voxels. share: the weights. */
+/* Corrects smoothed values for voxels that are not finite: divides each value by the sum of the weights of
+ * the finite voxels in it. Voxels that are not finite become NAN. share: these sums of weights. */
 static void weigh(const hl_volume *volume, float *line, float *values, const float *share) {
   const size_t row = volume->dimension[0];
   for (size_t k = 0, n = 0; k < volume->dimension[2]; k++)
@@ -103,8 +104,8 @@ static void weigh(const hl_volume *volume, float *line, float *values, const flo
     }
 }
 
-/* Converts values in place to whole numbers of 16 bits, where value = scale * number + offset. The values
- * must not all be equal. Sets scale and offset in the description. */
+/* Converts values in place to whole numbers of 16 bits, and sets type, scale and offset in the description,
+ * so that value = scale * number + offset. If all values are equal, nothing is changed. */
 static void store_in_16_bits(float *values, size_t count, hl_volume_description *description) {
   float low = values[0], high = values[0];
   uint16_t *numbers = (uint16_t *)(void *)values;
@@ -123,8 +124,9 @@ static void store_in_16_bits(float *values, size_t count, hl_volume_description 
   description->value_offset = low;
 }
 
-/* Makes a volume of the smoothed values, with the grid and the place of the original volume. Where the
- * original voxels are whole numbers, 16 bits are enough: pictures of such voxels take less memory and time.
+/* Makes a volume of the smoothed values, with the grid and the place of the original volume. If the original
+ * voxels are stored as integers, the smoothed values are stored in 16 bits, which is exact enough and makes
+ * pictures take less memory and time.
  */
 static hl_status adopt(const hl_volume *volume, float *values, hl_volume **smoothed, hl_error *error) {
   const size_t count = hl_volume_voxel_count(volume);

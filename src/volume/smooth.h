@@ -5,8 +5,8 @@
 #include "volume/volume.h"
 
 /* Makes a volume of the values of another one, convolved with a Gaussian whose standard deviation is sigma
- * voxels along each axis, above 0 (equations: smoothing). Beyond the border, the voxels at the border
- * repeat. Voxels that are not finite stay so, and do not affect the others. The volume must be in memory.
+ * voxels along each axis, above 0 (equations: smoothing). Beyond the border, the voxels at the border repeat.
+ * Voxels that are not finite stay as they are, and do not affect other voxels. The volume must be in memory.
  * *smoothed is owned by the caller. */
 hl_status hl_volume_convolve(const hl_volume *volume, double sigma, hl_volume **smoothed, hl_error *error);
 

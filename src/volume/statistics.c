@@ -1,9 +1,10 @@
 /* volume/statistics.c - range, mean, histogram, non-finite count and percentiles of a volume.
  *
- * u8 and u16 voxels are counted per stored value; all statistics follow from the counts exactly. f32 voxels
- * take one pass for range, sum and finiteness, and one for the histogram. Percentiles are exact, too. The
- * value of a rank is found from counts of the upper and then of the lower half of the values' bits; for the
- * file's own numbers (exact.h), in four steps. */
+ * Of u8 and u16 voxels, the occurrences of each stored value are counted, from which all statistics follow
+ * exactly. f32 voxels take one pass for range, sum and finiteness, and one for the histogram. Percentiles are
+ * exact, too. They need the value at a given rank in ascending order. For floats it is found by counting
+ * first the upper halves of the values' bits and then the lower halves. For the file's own numbers (exact.h)
+ * there are four such steps of 16 bits. */
 #include "volume/statistics.h"
 
 #include <float.h>
@@ -18,18 +19,19 @@
 #include "volume/store/pages.h"
 
 enum { LANES = 8 };
-/* PIECE: number of voxels between two checks for cancellation; they take a few milliseconds. COPIED_PIECE:
- * number of voxels that are copied at a time if rows are not adjacent. Both are multiples of LANES. */
+/* PIECE: number of voxels between two checks for cancellation, which take a few milliseconds to process.
+ * COPIED_PIECE: number of voxels that are copied at a time if rows are not adjacent. Both numbers are
+ * multiples of LANES. */
 enum { PIECE = 1 << 22, COPIED_PIECE = 1 << 16 };
 
-/* The range of stored values; low > high if no voxel is finite. */
+/* Range, sum and number of the finite stored values. If there are none, low is greater than high. */
 typedef struct tally {
   double low, high, sum;
   uint64_t finite;
 } tally;
 
-/* Bins of equal width over the range of stored values, in the order of the data values: if value_scale is
- * negative, the first bin has the greatest stored values. */
+/* Maps stored values to bins of equal width over their range. Bins are in the order of the data values: if
+ * value_scale is negative, the first bin has the greatest stored values. */
 typedef struct binning {
   double anchor, factor;
 } binning;
@@ -48,8 +50,8 @@ static int bin_of(binning bins, double stored) {
   return !(place > 0) ? 0 : place < HL_HISTOGRAM_BINS - 1 ? (int)place : HL_HISTOGRAM_BINS - 1;
 }
 
-/* The voxels of this rank, for a volume over ranks; null for other volumes. Each rank counts the voxels of
- * its own block, and then the counts of all ranks are added up. */
+/* This rank's voxels of a volume over ranks; null for other volumes. Each rank counts its own voxels. Then
+ * the counts of all ranks are added up. */
 static const hl_own_voxels *own_voxels(const hl_volume *volume) {
   return volume->pages != NULL ? volume->pages->own : NULL;
 }
@@ -62,19 +64,19 @@ static size_t counted_voxels(const hl_volume *volume) {
   return own_voxels(volume) != NULL ? hl_own_voxels_count(own_voxels(volume)) : hl_volume_voxel_count(volume);
 }
 
-/* An iteration over the voxels, piece by piece. It begins with piece 0. */
+/* The state of a loop over all voxels, piece by piece. */
 typedef struct walk {
   const hl_volume *volume;
-  void *buffer; /* owned by hl_volume_measure(); room for the stored values of COPIED_PIECE voxels and of one
-                 * row; null if the volume is packed */
+  void *buffer; /* owned by hl_volume_measure(); room for COPIED_PIECE stored values and a row of them; null
+                 * if the volume is packed */
   size_t count, first, piece; /* number of all voxels; number of the current piece's first voxel; number of
-                               * voxels in the piece */
+                               * voxels in this piece */
   const void *voxels;         /* voxels of the current piece */
   bool cancelled;
 } walk;
 
-/* The stored values of `count` voxels from number `first` on ([k][j][i]). They are the volume's own if it is
- * packed. Otherwise they are copied into buffer, which has room for them and a row after them. */
+/* The stored values of `count` voxels from number `first` on ([k][j][i]). Of a packed volume they are its own
+ * memory. Otherwise they are copied into buffer, which has room for them and for one more row. */
 static const void *piece_of(const hl_volume *volume, size_t first, size_t count, unsigned char *buffer) {
   size_t bytes = hl_storage_bytes(volume->storage), width = volume->dimension[0];
   if (own_voxels(volume) != NULL) {
@@ -93,8 +95,7 @@ static const void *piece_of(const hl_volume *volume, size_t first, size_t count,
   return buffer;
 }
 
-/* The size of a walk's buffer in bytes. The buffer must also have room for a row of the file's own
- * numbers. */
+/* The size of a walk's buffer in bytes. It is also great enough for a row of the file's own numbers. */
 static size_t room_of(const hl_volume *volume) {
   size_t stored = (COPIED_PIECE + volume->dimension[0]) * hl_storage_bytes(volume->storage),
          row = hl_volume_row_room(volume);
@@ -112,7 +113,7 @@ static bool next_piece(walk *w) {
   return true;
 }
 
-/* Counts how often each stored value occurs. counts must be zeros before. False if cancelled. */
+/* Counts how often each stored value occurs. counts: must be zeros before the call. False if cancelled. */
 static bool count_values(const hl_volume *volume, void *buffer, uint64_t *counts) {
   walk w = {.volume = volume, .buffer = buffer, .count = counted_voxels(volume)};
   while (next_piece(&w)) hl_values_count(volume->storage, w.voxels, w.piece, counts);
@@ -137,8 +138,8 @@ static void bin_counts(const uint64_t *counts, int values, binning bins, uint64_
     if (counts[value] != 0) histogram[bin_of(bins, value)] += counts[value];
 }
 
-/* Partial results: lane n has those of the voxels whose index has the remainder n modulo LANES. So no sum
- * waits for another, and compilers vectorise the sums. */
+/* Partial results in lanes. Lane n has the results of voxels n, n + LANES, n + 2 LANES and so on. The sums of
+ * different lanes do not depend on each other, so that compilers vectorise them. */
 typedef struct lanes_f32 {
   float low[LANES], high[LANES];
   double sum[LANES];
@@ -225,7 +226,7 @@ static hl_status record(hl_volume *volume, tally total, const char *subject, hl_
   return HL_OK;
 }
 
-/* Whether one number of 64 bits is less than another. */
+/* Whether one number of 64 bits is less than another. type: I64 or U64. */
 static bool is_less(hl_voxel_type type, uint64_t a, uint64_t b) {
   return type == HL_VOXEL_I64 ? (int64_t)a < (int64_t)b : a < b;
 }
@@ -239,7 +240,8 @@ static void widen_whole(hl_number_row row, size_t count, uint64_t range[2]) {
   }
 }
 
-/* Finds range and sum of the file's own numbers whose floats are finite, where floats round the numbers. */
+/* Finds range and sum of the file's own numbers, if floats round any of them. Numbers that are infinite as
+ * floats do not count. */
 static void tally_exact(hl_volume *volume, void *buffer, tally *total) {
   if (!hl_volume_is_exact(volume) || total->finite == 0) return;
   total->low = INFINITY;
@@ -310,20 +312,19 @@ hl_status hl_volume_measure(hl_volume *volume, const char *subject, hl_error *er
 
 enum { HALVES = 65536 };
 
-/* The state of a search for voxels by their rank in ascending order. Each value has a key, and keys sort as
- * the values do. Keys are counted by 16 of their bits at a time. */
+/* The state of a search for the value at a rank, in ascending order. Each value has a key, an unsigned
+ * integer; keys have the same order as the values. Keys are counted by 16 of their bits at a time. */
 typedef struct ranking {
   const hl_volume *volume;
   void *buffer;                   /* the buffer of `walk` */
-  uint64_t upper[HALVES], finite; /* number of keys with each upper half; number of all keys, which are those
-                                   * of finite voxels */
-  uint64_t lower[HALVES];         /* number of keys with each lower half, among the keys whose upper half is
+  uint64_t upper[HALVES], finite; /* number of keys for each upper half; number of all keys, one for each
+                                   * finite voxel */
+  uint64_t lower[HALVES];         /* number of keys for each lower half, among those keys whose upper half is
                                    * `opened` */
   uint32_t opened;                /* HALVES if there is none yet */
 } ranking;
 
-/* An unsigned integer that sorts like the float. The bits of a negative float are inverted; in others the
- * highest bit is set. */
+/* The key of a float. If the float is negative, all of its bits are inverted, else its highest bit is set. */
 static uint32_t key_of_f32(float value) {
   uint32_t bits;
   memcpy(&bits, &value, sizeof bits);
@@ -366,14 +367,14 @@ static bool open_upper(ranking *r, uint32_t upper) {
   return !w.cancelled;
 }
 
-/* Finds the entry of `counts` in which a rank lies. *rank becomes the rank among the values of this entry. */
+/* Finds the entry of `counts` that holds the value at a rank. *rank becomes the rank within this entry. */
 static uint32_t place_of(const uint64_t *counts, uint64_t *rank) {
   uint32_t place = 0;
   while (place + 1 < HALVES && *rank >= counts[place]) *rank -= counts[place++];
   return place;
 }
 
-/* An unsigned integer that sorts like the double, for the file's own numbers. */
+/* The key of a double, which is used for the file's own numbers. */
 static uint64_t key_of_f64(double value) {
   const uint64_t highest = (uint64_t)1 << 63;
   uint64_t bits;
@@ -389,9 +390,8 @@ static double number_of_key(uint64_t key) {
   return value;
 }
 
-/* Counts the file's numbers by 16 bits of their keys. Only keys that begin with the bits of `prefix`, of
- * which there are `known`, are counted, by the 16 bits that follow. Numbers whose floats are not finite do
- * not count. */
+/* Counts the file's own numbers by 16 bits of their keys. Only keys whose first `known` bits equal `prefix`
+ * are counted, by the 16 bits that follow. Numbers that are infinite as floats do not count. */
 static bool count_digits(ranking *r, uint64_t prefix, int known) {
   const hl_volume *volume = r->volume;
   memset(r->lower, 0, sizeof r->lower);
@@ -410,7 +410,8 @@ static bool count_digits(ranking *r, uint64_t prefix, int known) {
   return true;
 }
 
-/* Finds the file's own number at a rank, as a double: `rank` finite voxels precede it in ascending order. */
+/* Finds the file's own number at a rank, as a double. The rank is the number of finite voxels before it in
+ * ascending order. */
 static bool number_at(ranking *r, uint64_t rank, double *number) {
   uint64_t key = 0;
   for (int known = 0; known < 64; known += 16) {
@@ -421,8 +422,8 @@ static bool number_at(ranking *r, uint64_t rank, double *number) {
   return true;
 }
 
-/* Finds the number at a rank: `rank` finite voxels precede it in ascending order. Gives the file's own number
- * if the volume keeps these, else the stored value. False if cancelled. */
+/* Finds the number at a rank, which is the number of finite voxels before it in ascending order. The result
+ * is the file's own number if the volume keeps these, else the stored value. False if cancelled. */
 static bool stored_at(ranking *r, uint64_t rank, double *stored) {
   if (hl_volume_is_exact(r->volume)) return number_at(r, rank, stored);
   uint32_t key = place_of(r->upper, &rank);
@@ -434,8 +435,8 @@ static bool stored_at(ranking *r, uint64_t rank, double *stored) {
   return true;
 }
 
-/* Finds the data value below which `percent` of the finite voxels lie, interpolated between the two nearest
- * in order. */
+/* Finds a percentile: the data value that `percent` of the finite voxels do not exceed, interpolated between
+ * the two voxels nearest in order. */
 static bool percentile(ranking *r, double percent, double *value) {
   const hl_volume *volume = r->volume;
   *value = 0;

@@ -1,7 +1,7 @@
-/* volume/volume.h - the inside of hl_volume.
+/* volume/volume.h - the members of hl_volume, and functions for the library's own use.
  *
- * Voxels are kept as u8, u16 or f32 in native byte order, and never widened further. Signed integers are
- * stored with their sign bit flipped, and an offset that undoes it. Other types become f32. */
+ * Voxels are kept as u8, u16 or f32 in native byte order, and never widened further. Signed integers of 8 and
+ * 16 bits are stored with their sign bit flipped, which an offset undoes. All other types become f32. */
 #ifndef HL_VOLUME_VOLUME_H
 #define HL_VOLUME_VOLUME_H
 
@@ -24,28 +24,27 @@ typedef struct hl_array_entry {
   bool of_cells;
 } hl_array_entry;
 
-/* The numbers of time steps, channels and resolutions of a file, each at least 1, and the ones that are
- * read. */
+/* How many time steps, channels and resolutions a file has, each at least 1, and which of them are read. */
 typedef struct hl_selection {
   size_t times, channels, levels;
   int time, channel, level;
 } hl_selection;
 
-/* A DICOM series of the input from which a volume was loaded. All its texts are printable. */
+/* One of the DICOM series in the input of a volume. All texts are printable. */
 typedef struct hl_series_entry {
   char uid[HL_SERIES_TEXT_BYTES], modality[HL_SERIES_TEXT_BYTES], description[HL_SERIES_TEXT_BYTES];
   double number; /* NAN if absent */
   size_t dimensions[3];
 } hl_series_entry;
 
-/* A file's description of one of its channels. */
+/* What a file states about one of its channels. */
 enum { HL_CHANNEL_NAME_BYTES = 128 };
 typedef struct hl_channel {
   char name[HL_CHANNEL_NAME_BYTES]; /* printable; "" if absent */
   bool has_color;
   double srgb[3];
-  double window[2]; /* data values between which the channel is to be shown; two equal values: the file
-                     * does not say it */
+  double window[2]; /* data values that are to be shown black and at full brightness; two equal values if the
+                     * file does not state them */
 } hl_channel;
 
 /* A named label of a segmentation. */
@@ -55,7 +54,7 @@ typedef struct hl_segment {
   int64_t value;
   double srgb[3];
   bool has_color;
-  int layer; /* the component in whose voxels the label is */
+  int layer; /* index of the component that holds the label's voxels */
 } hl_segment;
 
 struct hl_volume {
@@ -67,22 +66,23 @@ struct hl_volume {
                        * voxels of a row are adjacent; rows and slices of borrowed voxels may have gaps
                        * between them */
   size_t row_bytes, slice_bytes; /* bytes from row to row, and from slice to slice */
-  void *exact; /* owned; [k][j][i]; the file's numbers, of `type`, if the stored floats round any of them
-                * (exact.h); null if the stored values are the numbers */
+  void *exact; /* owned; [k][j][i]; the file's own numbers, of `type`, if the stored floats round any of them
+                * (exact.h); null if the stored values are these numbers */
   unsigned char *colors;      /* owned; [k][j][i][4] (colors.h); null if colours come from the transfer
                                * function */
   signed char *slopes;        /* owned; [k][j][i][4]; slopes of a mask's lattice (label/mask.h); null for
                                * other volumes */
   uint32_t (*mask_bricks)[2]; /* owned; bricks of a mask's lattice (label/mask.h); null for other volumes */
-  struct hl_pages *pages; /* owned (pages.h); the voxels are in a scratch file, or over ranks; null if they
-                           * are in memory */
-  struct hl_volume *gathered; /* owned (store/gathered.h); a copy of the whole map in memory, where this
-                               * volume is a label map over ranks. Null until the labels are asked for */
-  struct hl_bricks *bricks;   /* owned (bricks/bricks.h, in_bricks.h); the field itself; null if there are
-                               * voxels. Voxels are found in it when they are asked for */
-  hl_volume_field_error field_error; /* for a field in bricks: how much it differs from its source; `kind` is
-                                      * null if this is unknown */
-  void *owned_voxels;                /* the block to hl_release; null if borrowed */
+  struct hl_pages *pages; /* owned (pages.h); for voxels in a scratch file or over ranks; null if voxels are
+                           * in memory */
+  struct hl_volume *gathered; /* owned (store/gathered.h); for a label map over ranks: a copy of the whole map
+                               * in memory; null until labels are needed */
+  struct hl_bricks *bricks;   /* owned (bricks/bricks.h, in_bricks.h); the field, if it is in bricks; null if
+                               * there are voxels. Values of voxels are computed from the field when they are
+                               * needed */
+  hl_volume_field_error field_error; /* for a field in bricks: the greatest difference between the field and
+                                      * its source; `kind` is null if it is unknown */
+  void *owned_voxels;                /* the block that is released with the volume; null if borrowed */
   void (*release)(void *release_data, const void *voxels); /* gives borrowed voxels back; may be null */
   void *release_data;
   double value_scale; /* data value = value_scale * stored + value_offset */
@@ -93,11 +93,11 @@ struct hl_volume {
   const char *unit;   /* unit of lengths in the world, static; null if unknown */
   bool is_anatomical; /* whether the file states `space` on purpose, as DICOM and NIfTI do; other programs
                        * write left-posterior-superior for any data */
-  bool says_labels;   /* whether the file says that its values are names of regions */
-  double window[2]; /* data values between which the file asks to show greys; NAN: the file does not say it */
+  bool says_labels;   /* whether the file says that its values are labels */
+  double window[2];   /* data values that the file asks to show black and white; NAN if it does not */
   double minimum, maximum; /* data values over finite voxels */
-  uint64_t whole_range[2]; /* least and greatest of the file's numbers, as 64-bit integers of `type`; set if
-                            * doubles would round the numbers (hl_volume_is_exact()) */
+  uint64_t whole_range[2]; /* range of the file's numbers, as 64-bit integers of `type`; set if doubles would
+                            * round the numbers (hl_volume_is_exact()) */
   double mean;
   uint64_t nonfinite_count;
   uint64_t histogram[HL_HISTOGRAM_BINS];
@@ -112,17 +112,17 @@ struct hl_volume {
   size_t segment_count;
   char (*label_maps)[HL_LABEL_MAP_BYTES]; /* owned; [label_map_count]; printable paths within the file */
   size_t label_map_count;
-  bool has_surroundings; /* whether the data value around the content is known */
+  bool has_surroundings; /* whether it is known which data value surrounds the content */
   double surroundings;
-  bool is_log_density;          /* whether values are logarithms of the density of particles (particles.c) */
-  double smoothing;             /* standard deviation, in voxels, of the Gaussian that smoothed the voxels
-                                 * (guess/smoothing.c) */
-  atomic_bool smoothing_chosen; /* whether hl_volume_smooth() gave this volume, smoothed or not */
-  double surface_slope;         /* for an occupancy: the slope, per voxel, at the place where the occupancy
-                                 * passes 1/2 */
+  bool is_log_density;          /* whether values are logarithms of a density of particles (particles.c) */
+  double smoothing;             /* standard deviation, in voxels, of the Gaussian with which the voxels were
+                                 * smoothed (guess/smoothing.c) */
+  atomic_bool smoothing_chosen; /* whether the volume is a result of hl_volume_smooth(), even if that was no
+                                 * change */
+  double surface_slope;         /* if values are an occupancy: its slope, per voxel, where it passes 1/2 */
   _Atomic(struct hl_data_analysis *)
-      analysis; /* owned block; the findings of guess/analysis.h; null until they are asked for */
-  /* Data that other rooms keep with the volume; owned, and released with it. */
+      analysis; /* owned, in one block; what guess/analysis.h has found; null until it is needed */
+  /* Data of other parts of the library, kept with the volume, owned by it and released with it. */
   atomic_flag shelf_lock; /* held while the shelf is accessed */
   void *shelf;
   void (*release_shelf)(hl_context *context, void *shelf);
@@ -135,7 +135,7 @@ static inline size_t hl_volume_voxel_count(const hl_volume *volume) {
   return volume->dimension[0] * volume->dimension[1] * volume->dimension[2];
 }
 
-/* Whether rows and slices are adjacent, in memory. */
+/* Whether voxels are in memory without gaps between rows and slices. */
 static inline bool hl_volume_is_packed(const hl_volume *volume) {
   size_t row = volume->dimension[0] * hl_storage_bytes(volume->storage);
   return volume->voxels != NULL && volume->row_bytes == row &&
@@ -147,11 +147,11 @@ static inline const void *hl_volume_row(const hl_volume *volume, size_t j, size_
   return (const unsigned char *)volume->voxels + k * volume->slice_bytes + j * volume->row_bytes;
 }
 
-/* The first voxel of a row of any volume: the volume's own, or a copy in `buffer`, which has room for a row
- * and is needed if the voxels are not in memory. */
+/* The first voxel of a row of any volume. If the voxels are not in memory, the row is copied to `buffer`,
+ * which must have room for it. */
 const void *hl_volume_row_in(const hl_volume *volume, size_t j, size_t k, void *buffer);
 
-/* Does the work of hl_volume_value() for functions of the library that have passed a door already
+/* Does what hl_volume_value() does. It is for functions of the library that have passed a door already
  * (core/door.h). */
 double hl_volume_value_within(const hl_volume *volume, size_t i, size_t j, size_t k);
 
@@ -162,7 +162,8 @@ static inline double hl_stored_number(hl_storage storage, const void *row, size_
   return (double)((const float *)row)[i];
 }
 
-/* A row of numbers: the file's own if the stored values round them, else the stored values. */
+/* A row of numbers. They are the file's own numbers if the stored values round any of these, else the stored
+ * values. */
 typedef struct hl_number_row {
   hl_voxel_type type; /* U8, U16, F32, or a type of exact.h */
   const void *numbers;
@@ -171,10 +172,10 @@ typedef struct hl_number_row {
 /* The size in bytes of a buffer for rows of numbers. */
 size_t hl_volume_row_room(const hl_volume *volume);
 
-/* A row of numbers of any volume. Data value = value_scale * number + value_offset. buffer: has
- * hl_volume_row_room() bytes, aligned for doubles; needed if the voxels are not in memory. */
+/* Gives a row of numbers of any volume. Data value = value_scale * number + value_offset. buffer:
+ * hl_volume_row_room() bytes, aligned for doubles; used if the numbers are not in memory. */
 hl_number_row hl_volume_numbers(const hl_volume *volume, size_t j, size_t k, void *buffer);
-/* Whether the stored values round some of the file's numbers, which are kept, too. */
+/* Whether the stored values round some of the file's own numbers, so that these are kept, too. */
 bool hl_volume_is_exact(const hl_volume *volume);
 double hl_row_number(hl_number_row row, size_t i);
 
@@ -190,18 +191,18 @@ static inline bool hl_row_repeats(hl_number_row row, size_t a, size_t b) {
   }
 }
 
-/* Finds a data value of a row as a whole number (a label), not rounded by a double. Returns false if it is
- * not a whole number that int64_t holds. */
+/* Finds a data value of a row as a whole number, such as a label, without rounding it to a double. Returns
+ * false if it is not a whole number that int64_t holds. */
 bool hl_row_whole(const hl_volume *volume, hl_number_row row, size_t i, int64_t *whole);
 
-/* Whether a voxel's data value is a whole number that hl_row_whole() reads. */
+/* The result of hl_volume_whole(): whether the voxel's data value is a whole number. */
 typedef enum hl_whole {
   HL_WHOLE_ABSENT, /* the voxel is outside the grid, or its value is not finite */
   HL_WHOLE_FRACTION,
   HL_WHOLE_FOUND
 } hl_whole;
 
-/* Finds the data value of a voxel as a whole number, as hl_row_whole() does; for a volume of any kind. */
+/* Finds the data value of a voxel as a whole number, as hl_row_whole() does, in a volume of any kind. */
 hl_whole hl_volume_whole(const hl_volume *volume, size_t i, size_t j, size_t k, int64_t *whole);
 
 /* The description of a volume's grid: dimensions, axes, origin and space. Its other members have their
@@ -210,18 +211,17 @@ hl_volume_description hl_volume_own_grid(const hl_volume *volume);
 
 /* Makes a volume of packed voxels that are already in stored form (hl_voxels_store()), in a block of
  * hl_allocate() that the volume takes over, also on failure. description: the grid, the type in the file, and
- * value_scale and value_offset for values of the file's type. subject: starts the error lines. */
+ * value_scale and value_offset, which apply to values of this type. subject: starts the error lines. */
 hl_status hl_volume_adopt(hl_context *context, const hl_volume_description *description, const char *subject,
                           void *voxels, hl_volume **volume, hl_error *error);
 
-/* Makes a volume like hl_volume_adopt(), with the file's own numbers (hl_exact_take()), which the volume
- * takes over, too. */
+/* Makes a volume as hl_volume_adopt() does. It also takes over the file's own numbers, from
+ * hl_exact_take(). */
 hl_status hl_volume_adopt_exact(hl_context *context, const hl_volume_description *description,
                                 const char *subject, void *voxels, void *exact, hl_volume **volume,
                                 hl_error *error);
 
-/* Makes a volume like hl_volume_adopt(), of voxels that are in pages, which the volume takes over, also on
- * failure. */
+/* Makes a volume as hl_volume_adopt() does, of voxels in pages. It takes the pages over, also on failure. */
 hl_status hl_volume_adopt_pages(hl_context *context, const hl_volume_description *description,
                                 const char *subject, struct hl_pages *pages, hl_volume **volume,
                                 hl_error *error);
@@ -229,7 +229,7 @@ hl_status hl_volume_adopt_pages(hl_context *context, const hl_volume_description
 /* Releases a list of arrays. */
 void hl_arrays_release(hl_context *context, hl_array_entry *arrays, size_t count);
 
-/* Checks type, dimensions, their product in bytes, axes, scale and offset. Fails if any of them is
+/* Checks type, dimensions, the volume's size in bytes, axes, scale and offset. Fails if any of them is
  * impossible. */
 hl_status hl_volume_check_grid(const hl_volume_description *description, const char *subject,
                                hl_error *error);

@@ -143,8 +143,7 @@ static hl_status load_alone(const char *path, hl_scene **scene, hl_error *error)
   return status;
 }
 
-/* Loads a file. If memory is short, the renderers release what they hold, and the file is loaded once more.
- */
+/* Loads a file. If memory is short, lets the renderers release their memory, and loads the file once more. */
 static hl_status load(const char *path, hl_scene **scene, hl_error *error) {
   hl_status status = load_alone(path, scene, error);
   if (status != HL_ERROR_MEMORY) return status;
@@ -152,7 +151,7 @@ static hl_status load(const char *path, hl_scene **scene, hl_error *error) {
   return load_alone(path, scene, error);
 }
 
-/* Makes a scene the open one, in place of the scene that was open, and answers with its start.json. */
+/* Makes a scene the open one, in place of the previous one, and answers with its start.json. */
 static int show(hl_scene *scene, const char *title) {
   forget_renderers();
   hl_preview_destroy(web.preview);
@@ -247,7 +246,7 @@ static hl_status encode_file(const hl_scene *scene, const hl_image *image, const
   return status;
 }
 
-/* The scene that is rendered while something moves, which may be the scene itself. */
+/* Makes the scene that is rendered while something moves; it may be the scene itself. */
 static hl_status make_quick(hl_scene *scene, hl_scene **quick, hl_error *error) {
   if (web.preview == NULL && hl_preview_create(web.context, web.scene, &web.preview, NULL) != HL_OK)
     return HL_OK;
@@ -283,7 +282,8 @@ int web_frame(size_t length, const char *format, int depth, int metadata, int mo
   hl_renderer **renderer = coarser ? &web.quick : &web.renderer;
   const hl_scene *rendered = coarser ? quick : scene;
   if (status == HL_OK) status = render(renderer, rendered, format, depth, metadata != 0, &error);
-  /* The picture is tried once more, after the renderers have released what they hold of earlier frames. */
+  /* If memory is short, the renderers release their memory of earlier frames, and the picture is tried once
+   * more. */
   if (status == HL_ERROR_MEMORY) {
     forget_renderers();
     status = render(renderer, rendered, format, depth, metadata != 0, &error);
@@ -348,7 +348,8 @@ int web_depth(size_t length) {
   hl_status status = read_scene(length, &scene, &error);
   if (status != HL_OK) return answer_error(status, &error);
   status = find_depth(scene, &text, &error);
-  /* The depth is looked for once more, after the renderers have released what they hold of earlier frames. */
+  /* If memory is short, the renderers release their memory of earlier frames, and the depth is searched for
+   * once more. */
   if (status == HL_ERROR_MEMORY) {
     forget_renderers();
     status = find_depth(scene, &text, &error);

@@ -98,7 +98,7 @@ static const cli_option animate_options[ANIMATE_OPTION_COUNT] = {
          .help = "keep the pictures, in a folder beside the film, named\nlike it with \"-frames\""},
 };
 
-/* The options of `render` that say what is shown and how. */
+/* Whether this command has an option of `render`: those that say what is shown and how. */
 static bool has_render_option(size_t row) { return !render_is_of_picture((enum render_option)row); }
 
 /* One run. */
@@ -181,7 +181,7 @@ static void write_sweep(const animate_job *job, char text[80]) {
   snprintf(text, 80, "lights.0.azimuth=0:-75,%d:75,%d:-75", half, 2 * half);
 }
 
-/* The numbers that the options let move, and the texts to which the film's options point. */
+/* The film's options, and the texts to which they point: the keys of --key and of the light sweep. */
 typedef struct motion {
   const char *keys[MAXIMUM_REPEATS + 1];
   char sweep[80];
@@ -304,8 +304,8 @@ static int finish_series(const animate_job *job, const cli_value *values) {
   return exit_code;
 }
 
-/* Makes the pictures of a series of files, which are then joined to a film. A key's frames are the files'
- * numbers. */
+/* Makes the pictures of a series of files, which are then joined to a film. Each file is a frame, and the
+ * frames in the keys are numbers of files. */
 static int run_series(animate_job *job) {
   cli_value *values = calloc(RENDER_OPTION_COUNT, sizeof *values);
   char *pattern = NULL;

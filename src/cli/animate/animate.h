@@ -13,7 +13,7 @@ typedef struct animate_frames {
   const char *folder;
   frames_style style;
   int digits; /* number of digits of a picture's number */
-  int done;   /* number of pictures that are there already, among the pictures that this run makes */
+  int done;   /* number of this run's pictures that are finished, those that were there before included */
   int rendered;
 } animate_frames;
 
@@ -23,8 +23,8 @@ void animate_frame_path(const animate_frames *frames, int frame, char *path, siz
 /* Whether a frame's picture is there and was made of the frame's own scene. */
 bool animate_frame_is_there(const animate_frames *frames, int frame);
 
-/* Renders the pictures that are missing: every `parts`-th one, beginning with number `part` (from 0). Draws
- * the bar, with an estimate of the time that is left. Returns the exit code. */
+/* Renders the pictures that are missing: every `parts`-th one, beginning with number `part` (from 0). Draws a
+ * progress bar with the estimated time to the end. Returns the exit code. */
 int animate_render(animate_frames *frames, int part, int parts);
 
 /* Whether all pictures of the film are there. */
@@ -33,10 +33,10 @@ bool animate_is_complete(const animate_frames *frames);
 /* Joins the pictures to a film. Returns the exit code. */
 int animate_join(const animate_frames *frames, const char *path, double frames_per_second);
 
-/* Removes the film's pictures, and the folder if it is empty then. */
+/* Removes the film's pictures, and then their folder if it is empty. */
 void animate_remove_frames(const animate_frames *frames);
 
-/* These two functions join and remove the pictures of a series of files, whose names are
+/* These two functions join, and remove, the pictures of a series of files. The pictures are named
  * "turn-frames/000000.png" and so on. */
 int animate_join_series(const char *folder, int count, const char *output, double frames_per_second,
                         bool quiet);

@@ -1,8 +1,8 @@
 /* cli/animate/frames.c - the numbered pictures of `halflight animate`: pictures that are missing are
  * rendered; then pictures are joined to a film, and removed.
  *
- * A picture carries its scene. A picture that exists with the scene of its frame is kept. So a run goes on
- * where the last run stopped, and several runs can share a folder. */
+ * A picture carries its scene. A picture that carries the scene of its frame is kept and not rendered again.
+ * So a run goes on where the last run stopped, and several runs can share a folder. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <stdio.h>
@@ -38,7 +38,8 @@ static hl_status do_frame(animate_frames *frames, hl_renderer *renderer, int fra
   char path[PATH_BYTES];
   hl_scene *scene = NULL;
   double began = clock_seconds();
-  /* The scene that a picture carries does not say what is drawn over the picture. */
+  /* A picture with overlays is always rendered anew, because the scene that a picture carries does not tell
+   * its overlays. */
   if (overlay_is_any(frames->style.overlay) || !animate_frame_is_there(frames, frame)) {
     animate_frame_path(frames, frame, path, sizeof path);
     hl_status status = film_scene(frames->film, frame, &scene, error);

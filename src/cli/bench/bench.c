@@ -96,7 +96,7 @@ typedef struct bench_job {
   bench_result *result;
 } bench_job;
 
-/* Applies the options that bench has in common with render, by render's own function. */
+/* Applies the options that `bench` shares with `render`, by the function that `render` uses. */
 static int change_scene(bench_job *job) {
   static const struct {
     enum bench_option from;
@@ -153,7 +153,7 @@ static int open_renderers(bench_job *job) {
   return EXIT_CODE_OK;
 }
 
-/* Processor time of all threads together: on a busy machine it says more than the clock. */
+/* Processor time of all threads together. On a busy machine it is a better measure than the elapsed time. */
 static double processor_seconds(void) {
   struct timespec now;
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
@@ -175,8 +175,8 @@ static bench_sample sample_of(double frame, const hl_render_statistics *statisti
   return sample;
 }
 
-/* Renders one frame of one setting; frame -1 is a warm-up, which is not measured. Where sub-lights are not
- * supported, their setting is left out from then on. */
+/* Renders one frame of one setting; frame -1 is a warm-up, which is not measured. If sub-lights turn out not
+ * to be supported, their setting is left out from then on. */
 static int run_frame(bench_job *job, enum bench_setting setting, int frame) {
   bench_result *result = job->result;
   bench_run *run = &result->run[setting];
@@ -202,8 +202,8 @@ static int run_frame(bench_job *job, enum bench_setting setting, int frame) {
   return EXIT_CODE_OK;
 }
 
-/* Runs all frames. Settings take turns within each frame: a machine that slows down then slows all settings
- * alike. */
+/* Runs all frames. In each frame the settings take turns, so that a machine that becomes slower affects all
+ * settings alike. */
 static int run_frames(bench_job *job) {
   for (int frame = -1; frame < job->result->frames; frame++)
     for (int setting = 0; setting < SETTING_COUNT; setting++) {
@@ -243,7 +243,8 @@ static double seconds_of(const bench_sample *sample, int stage) {
   return stage == WHOLE_FRAME ? sample->frame : stage == PROCESSOR ? sample->processor : sample->stage[stage];
 }
 
-/* The first kind of shadows that was measured. Its counts of voxels and threads are those of every kind. */
+/* The first kind of shadows that was measured. The counts of voxels and threads are reported from it, because
+ * they are the same for every kind. */
 static const bench_run *first_measured(const bench_result *result) {
   int setting = 0;
   while (setting < SETTING_COUNT - 1 && !result->run[setting].supported) setting++;

@@ -119,7 +119,8 @@ static int read_options(figure_job *job, figure_panel *panel) {
   return exit_code;
 }
 
-/* Places panels row by row, as wide as the page has room for; insets are placed with their panels. */
+/* Places panels row by row, as many in a row as fit into the page's width. Insets are placed with their
+ * panels. */
 static void place_widths(figure_page *page) {
   int outer = 0;
   for (int p = 0; p < page->count; p++) outer += page->panels[p].inset.of < 0;
@@ -261,8 +262,8 @@ static int make_and_write(figure_job *job) {
 
 /* ---- the run ---- */
 
-/* Makes the file's folder the current folder, because names in the file are relative to it. The output's name
- * is made absolute before. */
+/* Makes the folder of the file FIGURE.json the current folder, because names in this file are relative to it.
+ * The output's name was made absolute before. */
 static int enter_folder(figure_job *job) {
   static const char *const extensions[] = {".pdf", ".svg", ".png", ".tif", ".tiff", NULL};
   const cli_value *given = &job->values[FIGURE_OUTPUT];

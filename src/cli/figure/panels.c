@@ -1,8 +1,9 @@
 /* cli/figure/panels.c - reads FIGURE.json of `halflight figure`.
  *
- * A panel's keys are "input", "letter", "aspect", "inset" and the options of `halflight render`, which are
- * put on a command line and read as that command reads them: so they mean the same. What the file names is
- * hostile: inputs, and the files of options, lie in the file's folder or below. */
+ * A panel's keys are "input", "letter", "aspect", "inset" and the options of `halflight render`. The options
+ * are put on a command line and parsed by the parser of `render`, so that they mean the same. The names of
+ * files in FIGURE.json may be hostile: names of inputs, and of files in options, that lead out of its folder
+ * are refused. */
 #define _GNU_SOURCE
 #include "panels.h"
 
@@ -22,7 +23,7 @@
 
 enum { MOST_WORDS = 4 * MAXIMUM_OPTIONS, MOST_KEY = 40 };
 
-/* A reading; errors name the file and the place in it. */
+/* The reading of one FIGURE.json. Errors name the file and the place in it. */
 typedef struct page_reading {
   const char *path;
   figure_page *page;
@@ -31,7 +32,7 @@ typedef struct page_reading {
 
 /* ---- names of files ---- */
 
-/* Whether a text, or the part of it after '=', leads out of the folder. */
+/* Whether a text, or the part of it after '=', is a name that leads out of the folder. */
 static bool leads_out(const char *text) {
   const char *equals = strchr(text, '=');
   for (const char *at = text; at != NULL; at = at == text && equals != NULL ? equals + 1 : NULL) {
@@ -134,7 +135,7 @@ static int add_json_option(const page_reading *reading, figure_panel *panel, con
   if (json_is_true(value) && render_options[which].kind == OPTION_SWITCH)
     return add_option(panel, name, NULL);
   if (json_is_null(value) || json_is_false(value))
-    return EXIT_CODE_OK; /* `null` or `false` switches an option off that the shared options give */
+    return EXIT_CODE_OK; /* `null` or `false` switches off an option that the shared options set */
   if (!json_is_array(value) || !render_options[which].repeatable)
     return add_value(reading, panel, which, value);
   size_t index;
@@ -238,7 +239,7 @@ static int fill_panel(const page_reading *reading, figure_panel *panel, const js
   return add_inputs(reading, panel, json_object_get(keys, "input"));
 }
 
-/* Adds a panel, and its inset, which has the panel's input and options where it does not say otherwise. */
+/* Adds a panel and its inset. The inset has the panel's input and options unless it sets its own. */
 static int add_panel(page_reading *reading, const json_t *given, const json_t *below, int inside) {
   figure_page *page = reading->page;
   if (!json_is_object(given)) return fail(EXIT_CODE_INPUT, "%s: a panel is an object", reading->path);
@@ -267,8 +268,8 @@ static int add_panel(page_reading *reading, const json_t *given, const json_t *b
   return exit_code;
 }
 
-/* Letters the panels. Without letters in the file, several panels are "a", "b" and so on; "letters": false
- * leaves letters out. */
+/* Gives the panels letters. If the file gives no letters and there are several panels, the letters are "a",
+ * "b" and so on; "letters": false leaves them out. */
 static int add_letters(const page_reading *reading, const json_t *letters) {
   figure_page *page = reading->page;
   int outer = 0;

@@ -10,7 +10,7 @@ enum { FIGURE_MOST_PANELS = 64 };
 /* Where an inset lies in another panel. */
 typedef struct figure_inset {
   int of;            /* the number of the panel in which this inset lies; -1: the panel is no inset */
-  double part;       /* the inset's width over that panel's width */
+  double part;       /* the inset's width divided by the width of the panel in which it lies */
   bool right, lower; /* the corner of that panel */
 } figure_inset;
 

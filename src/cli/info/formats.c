@@ -9,7 +9,7 @@
 #include "cli/message.h"
 #include "cli/openvdb.h"
 
-/* One kind of formats, as volumes or pictures. get: hl_volume_get_format() or a function like it. */
+/* A kind of formats: volumes, pictures and so on. get: hl_volume_get_format() or a function like it. */
 typedef struct format_kind {
   const char *key, *title;
   hl_status (*get)(size_t index, hl_file_format *format);

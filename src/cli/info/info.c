@@ -194,8 +194,8 @@ static void print_label_maps(json_writer *json, const char *path, const hl_volum
   if (json != NULL) json_close(json);
 }
 
-/* Whether a file's only array has nothing to tell but its type and its time steps, which have lines of
- * their own. */
+/* Whether a file's only array has no more to tell than its type and its time steps, which are printed on
+ * lines of their own. */
 static bool is_plain(const hl_volume *volume, const hl_volume_array *array) {
   hl_volume_selection s = {.struct_size = sizeof s};
   bool steps = hl_volume_get_selection(volume, &s) == HL_OK && array->components == s.times;
@@ -362,7 +362,7 @@ static void print_text(const char *path, const hl_volume *volume, const hl_volum
   print_histogram(info);
 }
 
-/* Tells of one volume. json: null for text. */
+/* Prints what a volume is like. json: null for text. */
 static int tell_volume(cli_host *host, json_writer *json, const char *path, hl_volume *volume) {
   const char *kind = NULL, *next = NULL;
   hl_volume_info info = {.struct_size = sizeof info};
@@ -391,8 +391,8 @@ static int info_of_volume(cli_host *host, const cli_value *values, const cli_inp
   return exit_code == EXIT_CODE_OK ? finish_stdout() : exit_code;
 }
 
-/* Tells of a scene: its picture, the number of its volumes, lights and so on, and each volume as if its file
- * were told of alone. */
+/* Prints what a scene is like: its picture, the numbers of its volumes, lights and so on, and each volume as
+ * for a volume file. */
 static int tell_scene(cli_host *host, bool as_json, const char *title, const hl_scene_description *scene) {
   json_writer json = {0};
   int exit_code = EXIT_CODE_OK;

@@ -1,8 +1,8 @@
 /* cli/render/inputs.c - one scene from the operands of `halflight render`: a scene, or volumes.
  *
  * Where there are several volumes, each keeps the look that it would have alone. Light, background and render
- * settings come from the first volume; the camera frames all volumes, and the sheets are as close as the
- * finest of the volumes needs them. */
+ * settings come from the first volume; the camera frames all volumes, and the distance between sheets is the
+ * one that the finest volume needs. */
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
@@ -13,8 +13,9 @@
 #include "render.h"
 #include "text/plain.h"
 
-/* Errors of a bare volume's scene lose "/volumes/0/file", because INPUT is that file. An error that already
- * begins with the input's name, which may begin with a slash too, is left alone. */
+/* Puts the input's name before an error of its scene. For a bare volume, "/volumes/0/file" is removed from
+ * the error, because INPUT is that file. An error that already begins with the input's name, which may begin
+ * with a slash too, is left alone. */
 void render_name_scene(const char *input, bool bare, hl_error *error) {
   char line[sizeof error->message];
   if (error->message[0] != '/' || strncmp(error->message, input, strlen(input)) == 0) return;
@@ -45,7 +46,7 @@ static int check_kinds(const cli_value *values, const cli_input *inputs, size_t 
   return EXIT_CODE_OK;
 }
 
-/* The anatomical space of a bare volume's scene, which the volumes after it are turned into. */
+/* The anatomical space of the first volume, to which all further volumes are converted. */
 static hl_space space_of(const hl_scene *scene) {
   hl_volume_info info = {.struct_size = sizeof info};
   const hl_scene_description *description = hl_scene_describe(scene);
@@ -54,7 +55,7 @@ static hl_space space_of(const hl_scene *scene) {
   return known ? info.space : HL_SPACE_UNKNOWN;
 }
 
-/* The number of pixels that a volume on the command line fills, for the choice of a resolution: the
+/* The length in pixels that a volume on the command line fills, by which its resolution is chosen: the
  * picture's longer side times the zoom. */
 static int pixels_of(const cli_value *values) {
   hl_scene_description description;

@@ -62,8 +62,8 @@ hl_status render_layers_create(hl_image *image, const hl_scene_description *desc
 
 void render_layers_release(render_layers *layers) { free(layers->lights); }
 
-/* Refuses if "picture-NAME.npy", where hl_image_write() writes layer NAME of "picture.npy", is a file that
- * was read. */
+/* Refuses the output "picture.npy" if the file of one of its layers, "picture-NAME.npy", is a file that the
+ * run has read. */
 static int protect_from_layer(const cli_host *host, const char *output, const char *name, const char *input) {
   const char *dot = strrchr(output, '.');
   size_t size = strlen(output) + strlen(name) + 2;

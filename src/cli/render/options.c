@@ -12,7 +12,8 @@ static const cli_choice formats[] = {{"png", 0}, {"exr", 1}, {"npy", 2}, {"tif",
                                      {"pdf", 4}, {"svg", 5}, {NULL, 0}};
 static const cli_choice axes_choices[] = {
     {"arrows", HL_AXES_ARROWS}, {"letters", HL_AXES_LETTERS}, {NULL, 0}};
-/* Names that has_extension() takes for the formats'. */
+/* A file name for each choice of --format, in their order, so that checks of a name's extension serve for
+ * --format, too. */
 static const char *const format_extensions[] = {"-.png", "-.exr", "-.npy", "-.tif", "-.pdf", "-.svg"};
 const cli_choice instruction_set_choices[] = {{"auto", HL_INSTRUCTION_SET_AUTO},
                                               {"scalar", HL_INSTRUCTION_SET_SCALAR},

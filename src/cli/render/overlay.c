@@ -14,7 +14,8 @@ static const double default_pixels_per_inch = 300;
 
 /* ---- reading ---- */
 
-/* The millimetres of a length as text, "89mm", "8.9cm", "3.5in" or "252pt"; 0: the text is no such length. */
+/* Reads a length, "89mm", "8.9cm", "3.5in" or "252pt", and converts it to millimetres; 0: the text is no such
+ * length. */
 static double read_width(const char *text) {
   char *rest;
   double number = hl_plain_number(text, &rest);

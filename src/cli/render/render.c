@@ -44,13 +44,13 @@ static const char *wanted_extension(const cli_value *values) {
   return extensions[values[RENDER_FORMAT].given ? values[RENDER_FORMAT].choice : 0];
 }
 
-/* The name that the picture's name is made from: INPUT's, or "stdin" and "pipe" for pipes. */
+/* The name from which the picture's default name is made: INPUT, or "stdin" or "pipe" if INPUT is a pipe. */
 static const char *nameable(const char *input) {
   if (strcmp(input, "-") == 0) return "stdin";
   return strncmp(input, "/dev/fd/", 8) == 0 ? "pipe" : input;
 }
 
-/* Whether a text is printed and no picture is made. */
+/* Whether the command only prints a text, and makes no picture. */
 static bool prints_text(const cli_value *values) {
   return values[RENDER_PRINT_SCENE].given || values[RENDER_PRINT_PLAN].given;
 }
@@ -63,7 +63,7 @@ static char *default_output(const render_job *job) {
   return output_default_name(nameable(job->input.first), again ? "-again.png" : extension);
 }
 
-/* Decides where the picture goes: --output, or a name made from INPUT's. */
+/* Decides where the picture goes: to the path of --output, or to a name made from INPUT. */
 static int choose_output(render_job *job) {
   const cli_value *values = job->values, *output = &values[RENDER_OUTPUT];
   job->to_stdout = output->given && strcmp(output->text, "-") == 0;
@@ -265,8 +265,8 @@ static int job_write(render_job *job) {
   return status == HL_OK ? exit_code : host_fail(&job->host, PHASE_RUN, status, &error);
 }
 
-/* Finds out, for the report, which kind of data a bare volume was taken for, and the next best look. This
- * is done only if the volume's transfer function was chosen by this kind. */
+/* Finds out, for the report, which kind of data a bare volume was taken for, and which look to try next. Only
+ * volumes whose transfer function was chosen by their kind have such a report. */
 static void find_choice(render_job *job) {
   const hl_scene_description *description = job->result.description;
   bool wanted = job->values[RENDER_JSON].given || (!job->host.quiet && isatty(STDERR_FILENO));

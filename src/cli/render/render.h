@@ -100,18 +100,18 @@ enum render_option {
 
 enum { RENDER_SIZE_TEXT = 32 };
 
-/* The choices of --instruction-set, which other commands have, too. */
+/* The choices of --instruction-set; other commands have this option, too. */
 extern const cli_choice instruction_set_choices[];
 
 extern const cli_option render_options[RENDER_OPTION_COUNT];
 
-/* Whether an option is about a single picture or its file. Commands that do not make a single picture do
- * not have such options. */
+/* Whether an option is about a single picture or its file. Commands that make several pictures do not have
+ * such options. */
 bool render_is_of_picture(enum render_option which);
 
-/* render_is_series() tells whether the operands or the options ask for a picture of each of several files,
- * and render_series() makes these pictures. motion: the numbers that change from file to file (film/film.h);
- * its context, scene and frames are not used; null: nothing changes. */
+/* render_is_series() tells whether the operands or the options ask for a series: a picture of each of several
+ * files. render_series() makes these pictures. motion: the numbers that change from file to file
+ * (film/film.h); its context, scene and frames are not used; null: nothing changes. */
 struct film_options;
 bool render_is_series(const cli_value *values, char **operands);
 int render_series(const cli_value *values, char **operands, const struct film_options *motion);
@@ -126,31 +126,32 @@ typedef int render_one_fn(const cli_value *values, char **operands);
 
 /* Renders each scene that the pattern finds; returns the exit code. */
 int render_scenes(const cli_value *values, char **operands, render_one_fn *render_one);
-/* Whether one of the operands stands for several files. */
+/* Whether one of the operands is a pattern that stands for several files. */
 bool render_has_pattern(char **operands);
 
 /* Refuses options that contradict each other. */
 int render_check_options(const cli_value *values);
 
-/* Parts operands into meshes, by their names, and others; both lists end with null. */
+/* Divides operands by their names into meshes and others; both lists end with null. */
 void render_part_meshes(hl_context *context, char **operands, char **meshes, char **others);
-/* Loads meshes and adds them to a scene, in the colours from `first` on; *scene null: makes one for them.
- * bare: the camera frames them too. */
+/* Loads meshes and adds them to a scene. Their colours are those of hl_surface_color(), from number `first`
+ * on. If *scene is null, a scene is made for the meshes. bare: the camera frames the meshes, too. */
 int render_add_meshes(cli_host *host, char *const *paths, size_t first, bool bare, hl_scene **scene);
 
-/* Whether the options say that a bare volume is a label map itself. */
+/* Whether the options say that a bare volume is itself a label map. */
 bool render_is_label_map(const cli_value *values);
 
-/* Makes the scene of a label map's layers, whose labels get their names from --label-table. The labels that
- * --show names show; labels of --show that the map lacks are passed over. */
+/* Makes the scene of a label map's layers, with the names of --label-table for the labels. It shows the
+ * labels that --show names; labels of --show that the map lacks are passed over. */
 hl_status render_load_label_map(cli_host *host, const cli_value *values, const char *path,
                                 const hl_volume_load_options *reading, hl_scene **scene, hl_error *error);
 
-/* Loads the volumes, or the scene, of operands that are no meshes: the first half of render_load_inputs(). */
+/* Loads the operands that are no meshes: volumes, or a scene. This is the first half of
+ * render_load_inputs(). */
 int render_load_volumes(cli_host *host, const cli_value *values, char **operands, bool *bare,
                         hl_scene **scene);
 
-/* Reads the channels that --channel names. *count becomes their number, or 0 for all channels and where the
+/* Reads the channels that --channel names. *count becomes their number; it becomes 0 for "all" and where the
  * option was not given. Other values are refused. */
 int render_channels(const cli_value *values, int channels[HL_CHANNELS_MOST], size_t *count);
 
@@ -162,17 +163,18 @@ bool render_has_channels(const cli_value *values);
 void render_load_options(const cli_value *values, hl_volume_load_options *options);
 
 /* Loads the operands into one scene: a scene file, a picture that carries a scene, or one or more volumes,
- * and meshes; *bare: they are volumes. Several volumes share one world, and each keeps its own look. They are
- * named like their files without folder and extensions; "-2" and so on is appended to names that are taken.
- * Returns the exit code. */
+ * and meshes. *bare: whether they are volumes. Several volumes share one world, and each keeps its own look.
+ * Volumes are named after their files, without folder and extensions; "-2" and so on is appended to names
+ * that are taken. Returns the exit code. */
 int render_load_inputs(cli_host *host, const cli_value *values, char **operands, bool *bare,
                        hl_scene **scene);
 
-/* Puts the input's name before an error that begins with a JSON pointer into the scene. */
+/* Puts the input's name before an error line that begins with a JSON pointer into the scene. bare: the scene
+ * was made for volume files. */
 void render_name_scene(const char *input, bool bare, hl_error *error);
 
-/* Replaces *scene by one with the options applied (hl_scene_compose()). bare: the scene was made for volume
- * files. Returns the exit code. */
+/* Applies the options to *scene, which becomes a new scene (hl_scene_compose()). bare: the scene was made for
+ * volume files. Returns the exit code. */
 int render_change_scene(cli_host *host, const cli_value *values, bool bare, hl_scene **scene);
 
 /* Refuses options about the scene that contradict each other or cannot be read. */
@@ -195,11 +197,11 @@ hl_status render_layers_create(hl_image *image, const hl_scene_description *desc
                                render_layers *layers, hl_error *error);
 void render_layers_release(render_layers *layers);
 
-/* Refuses an .npy OUT if one of its layers' files is a file that the run has read; input: what errors call
- * the scene. */
+/* Refuses an output .npy if the file of one of its layers is a file that the run has read. input: the scene's
+ * name in errors. */
 int render_layers_protect(const cli_host *host, const char *output, size_t light_count, const char *input);
 
-/* Refuses --layers for an OUT that cannot hold them. */
+/* Refuses --layers if the output's format cannot hold layers. */
 int render_layers_check(const cli_value *values);
 
 /* Reads the options that draw over pictures. Call overlay_release() even after a failure. Returns the exit
@@ -214,9 +216,9 @@ int render_overlay_check_options(const cli_value *values, const char *path);
  * which the value of --size points afterwards. */
 void render_set_size(cli_value *size, double width, double height, char text[RENDER_SIZE_TEXT]);
 
-/* Sets --size to what --width and --dpi ask for, if it is not given. The picture has the shape of this
- * scene's picture; null: the shape of a bare volume's picture. text: room for the text of --size, which the
- * values borrow. */
+/* Sets --size, if it is not given, to the size that --width and --dpi ask for. The picture has the
+ * proportions of this scene's picture; scene null: those of a bare volume's picture. text: room for the text
+ * of --size, which the values borrow. */
 void render_overlay_set_size(cli_value *values, const hl_scene *scene, char text[RENDER_SIZE_TEXT]);
 
 typedef struct render_seconds {
@@ -226,15 +228,16 @@ typedef struct render_seconds {
 /* The data of a report on a finished rendering. */
 typedef struct render_result {
   const char *input, *output;
-  const char *taken_for;    /* the kind of data that the transfer function was chosen for; null: not chosen */
-  const char *next_look;    /* the look that shows such data next best; null: a look was asked for */
+  const char *taken_for;    /* the kind of data by which the transfer function was chosen; null: it was not
+                             * chosen by a kind */
+  const char *next_look;    /* the look to try next for such data; null if the user asked for a look */
   const char *field_errors; /* JSON that says how much the fields of the scene's volumes differ from their
                              * files; null: no difference is known */
   bool reference;
   const hl_scene_description *description;
   hl_render_statistics statistics;
   render_seconds seconds;
-  const hl_ranks *ranks; /* borrowed; the picture's; null: one process */
+  const hl_ranks *ranks; /* borrowed; the ranks that made the picture; null: one process made it */
 } render_result;
 
 /* Prints the statistics as JSON on stdout, or in one line on stderr. */

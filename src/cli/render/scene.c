@@ -12,7 +12,7 @@ enum { MOST_OPTIONS = RENDER_OPTION_COUNT * MAXIMUM_REPEATS, RANGE_BYTES = 64 };
 typedef struct option_list {
   hl_option options[MOST_OPTIONS];
   size_t count;
-  char range[RANGE_BYTES]; /* text of the range that --range-of-all has found */
+  char range[RANGE_BYTES]; /* text of the range that was found for --range-of-all */
 } option_list;
 
 static bool is_of_scene(const char *name) {

@@ -45,7 +45,7 @@ static int check_options(series_job *job) {
   return exit_code == EXIT_CODE_OK ? render_overlay_read(job->values, &job->overlay) : exit_code;
 }
 
-/* The folder of the pictures is made where it is missing. */
+/* Makes the folder of the pictures if it is missing. */
 static int make_folder(const series_job *job) {
   char path[PATH_BYTES];
   picture_path(job, 0, path, sizeof path);
@@ -76,7 +76,7 @@ static int find_range(series_job *job) {
   return EXIT_CODE_OK;
 }
 
-/* Loads the first file that can be read: a scene of it alone. */
+/* Loads the first file that can be read, and makes a scene of this file alone. */
 static int load_first(series_job *job, bool *bare) {
   int exit_code = EXIT_CODE_INPUT;
   *bare = true;
@@ -97,8 +97,8 @@ static int load_first(series_job *job, bool *bare) {
   return exit_code;
 }
 
-/* Moves to the time of a picture: *scene, the scene of a file, is replaced by the scene of a film's frame,
- * in which the numbers of keys have their values at this time. */
+/* Moves a scene to the time of a picture: *scene, which is the scene of a file, is replaced by a scene in
+ * which the film's keys have set their numbers for this time. */
 static hl_status move(const series_job *job, int number, hl_scene **scene, hl_error *error) {
   if (job->motion == NULL) return HL_OK;
   film_options options = *job->motion;
@@ -116,7 +116,7 @@ static hl_status move(const series_job *job, int number, hl_scene **scene, hl_er
   return HL_OK;
 }
 
-/* Tries the keys with the first file's scene, so that a mistake in them is found before the first picture. */
+/* Applies the keys to the first file's scene, so that a mistake in them is found before the first picture. */
 static int try_motion(series_job *job) {
   hl_scene *scene = job->scene;
   hl_error error = {0};
@@ -126,7 +126,7 @@ static int try_motion(series_job *job) {
   return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_CHANGE, status, &error);
 }
 
-/* The scene of the first file that can be read, with the other files that are in every picture. */
+/* Makes the first scene: of the first file that can be read, and of the files that are in every picture. */
 static int make_scene(series_job *job) {
   bool bare;
   render_overlay_set_size(job->values, NULL, job->size_text);
@@ -150,8 +150,8 @@ static bool is_there(const series_job *job, int number, const hl_scene *scene, c
   return frames_have_scene(&job->host, path, scene);
 }
 
-/* Whether the picture is there and was made of the right scene. The scenes' texts are compared. To make the
- * text, no volume or mesh is read: the first file's volume or mesh stands in its place. */
+/* Whether the picture exists and was made of the right scene. The texts of the scenes are compared. For the
+ * right scene's text no volume or mesh is read: the first file's volume or mesh takes its place. */
 static bool is_made(series_job *job, int number, const char *path) {
   hl_scene *scene = NULL;
   hl_error error = {0};
@@ -198,7 +198,8 @@ static int make_pictures(series_job *job) {
   if (hl_renderer_create(job->host.context, &renderer, &error) != HL_OK)
     return host_fail(&job->host, PHASE_SETUP, HL_ERROR_MEMORY, &error);
   job->progress.wanted = (job->files.count - job->part + job->parts - 1) / job->parts;
-  job->host.quiet = true; /* the first file's warnings were printed; later files give the same ones */
+  job->host.quiet = true; /* the warnings were printed for the first file; later files would give the same
+                           * warnings */
   int exit_code = EXIT_CODE_OK;
   for (int n = job->part; n < job->files.count && exit_code == EXIT_CODE_OK; n += job->parts) {
     frames_draw_bar(&job->host, job->progress.done + job->progress.failed, job->progress.wanted,

@@ -7,7 +7,7 @@
 
 /* How far a series has come. */
 typedef struct series_progress {
-  int wanted;     /* number of pictures of this part of the series */
+  int wanted;     /* number of pictures in this run's part of the series */
   int done;       /* number of pictures that are there */
   int rendered;   /* number of pictures that this run has rendered */
   int failed;     /* number of files that cannot be read */
@@ -19,28 +19,28 @@ typedef struct series_job {
   cli_value values[RENDER_OPTION_COUNT]; /* --range is set by --range-of-all */
   const char *pattern;                   /* pattern of OUT, with one %d */
   struct {
-    char **names; /* owned; [count]: volumes, or meshes where there is no volume */
+    char **names; /* owned; [count]: paths of volumes, or of meshes where there is no volume */
     int count;
     bool of_meshes; /* the files are meshes */
-    bool *bad;      /* owned; [count]; whether the file cannot be read; its error was then printed */
-    int first;      /* the number of the file whose content `scene` has */
+    bool *bad;      /* owned; [count]; whether the file could not be read; its error line was printed then */
+    int first;      /* the number of the file from which `scene` was made */
   } files;
-  char *meshes[MAXIMUM_OPERANDS + 1]; /* borrowed; meshes that are in every picture; null after the last */
+  char *meshes[MAXIMUM_OPERANDS + 1]; /* borrowed; paths of meshes that are in every picture; ended by null */
   int mesh_count;
   int part, parts;
   series_progress progress;
-  hl_scene *scene;                  /* owned; of the first file that can be read */
+  hl_scene *scene;                  /* owned; made of the first file that can be read */
   char size_text[RENDER_SIZE_TEXT]; /* text of --size, where --width sets it */
   cli_overlay overlay;              /* owned; drawn over each picture */
-  const film_options *motion;       /* borrowed; the keys that move numbers from picture to picture; null:
-                                     * nothing moves */
+  const film_options *motion;       /* borrowed; the keys that change numbers of the scene from picture to
+                                     * picture; null: nothing changes */
 } series_job;
 
 /* True if the text has one "%d" or "%04d", and no other '%' but "%%". */
 bool series_has_number(const char *text);
 
-/* Finds the files that the operands name, and tells files of the series from files that are in every picture.
- * Call series_release_files() even after a failure. Returns the exit code. */
+/* Finds the files that the operands name. Files of the series are separated from files that are in every
+ * picture. Call series_release_files() even after a failure. Returns the exit code. */
 int series_find_files(series_job *job, char **operands);
 void series_release_files(series_job *job);
 
@@ -48,13 +48,13 @@ void series_release_files(series_job *job);
  * failure is printed once. Returns the exit code. */
 int series_load_volume(series_job *job, int number, int channel, hl_volume **volume);
 
-/* The scene of a file: the scene of the first file, with the content of this file. Where the exit code is not
- * 0, job->files.bad[number] says whether the file is to blame. */
+/* Makes the scene of a file: the scene of the first file, with the voxels or triangles of this file. After a
+ * failure, job->files.bad[number] says whether the file is the cause. */
 int series_scene(series_job *job, int number, hl_scene **scene);
 
-/* Makes the scene of a file with the voxels or triangles of the first file. Only its text is used, to find
- * out whether a picture belongs to this scene. Fails, without an error line, for label maps, whose text
- * depends on the file's content. */
+/* Makes the scene of a file, but with the voxels or triangles of the first file, so that the file need not be
+ * read. Only the scene's text is used, to find out whether a picture was made of this scene. Fails, without
+ * an error line, for label maps, because their text depends on the file's content. */
 hl_status series_scene_unread(const series_job *job, int number, hl_scene **scene);
 
 #endif

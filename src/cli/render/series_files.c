@@ -1,7 +1,7 @@
 /* cli/render/series_files.c - the files of a series: their names, and the scene of each.
  *
- * A series is of volumes, each of which may be a label map itself, or of meshes. Meshes beside volumes are in
- * every picture. */
+ * The files of a series are volumes, which may be label maps, or meshes. Meshes beside volumes are in every
+ * picture. */
 #define _GNU_SOURCE
 #include <glob.h>
 #include <stdio.h>
@@ -75,9 +75,9 @@ static int add_pattern(series_job *job, const char *pattern) {
   return exit_code;
 }
 
-/* Separates meshes from the series. Meshes that are named one by one are in every picture, unless there are
- * only meshes. A pattern that finds meshes beside volumes is refused, because nothing says which mesh belongs
- * to which volume. */
+/* Decides whether the series is one of meshes or of volumes. Meshes that were named one by one are in every
+ * picture and are not here, unless there are only meshes. A pattern that finds meshes beside volumes is
+ * refused, because nothing says which mesh belongs to which volume. */
 static int part_meshes(series_job *job) {
   int meshes = 0;
   for (int n = 0; n < job->files.count; n++) meshes += is_mesh_file(job->host.context, job->files.names[n]);
@@ -96,7 +96,7 @@ int series_find_files(series_job *job, char **operands) {
     else if (is_mesh_file(job->host.context, operand)) job->meshes[job->mesh_count++] = operand;
     else exit_code = add_file(job, operand);
   }
-  /* Without a volume and without a pattern, the meshes are the series. */
+  /* If there is neither a volume nor a pattern, the meshes are the files of the series. */
   if (job->mesh_count == operand_count) {
     job->mesh_count = 0;
     for (int n = 0; n < operand_count && exit_code == EXIT_CODE_OK; n++)
@@ -118,7 +118,8 @@ void series_release_files(series_job *job) {
 
 /* ---- what a file holds ---- */
 
-/* All files are read alike: at the resolution of the first file, and only in its anatomical space. */
+/* Finds the options for reading a file. All files are read at the first file's resolution. They must have the
+ * first file's anatomical space (check_space()). */
 static void reading_of(const series_job *job, hl_volume_load_options *options) {
   render_load_options(job->values, options);
   if (job->scene != NULL) options->level = hl_scene_describe(job->scene)->volumes[0].level;
@@ -139,7 +140,7 @@ static int check_space(const series_job *job, int number, const hl_volume *volum
               job->files.names[number], job->files.names[job->files.first]);
 }
 
-/* Marks the file as bad by the exit code of its reading. */
+/* Marks the file as bad if the exit code of reading it says so. */
 static int note(series_job *job, int number, int exit_code) {
   job->files.bad[number] = exit_code == EXIT_CODE_INPUT || exit_code == EXIT_CODE_UNSUPPORTED;
   return exit_code;
@@ -166,7 +167,7 @@ int series_load_volume(series_job *job, int number, int channel, hl_volume **vol
 
 /* ---- the scene of a file ---- */
 
-/* Makes the first file's scene anew with other volumes; volumes: null: with another first mesh. */
+/* Makes a scene like the first file's, but with other volumes; with volumes null, with another first mesh. */
 static hl_status make_scene(const series_job *job, hl_scene_volume *volumes, size_t volume_count,
                             const hl_scene_mesh *mesh, hl_scene **scene, hl_error *error) {
   hl_scene_description description = *hl_scene_describe(job->scene);
@@ -188,8 +189,8 @@ static hl_status make_scene(const series_job *job, hl_scene_volume *volumes, siz
   return status;
 }
 
-/* The number of volumes of the first file in its scene: one, or one for each channel. The volumes after them
- * are label maps. */
+/* The number of volumes in the scene that come from the first file: one, or one for each channel. The volumes
+ * after them are label maps. */
 static size_t volumes_of_file(const series_job *job) {
   const hl_scene_description *description = hl_scene_describe(job->scene);
   size_t count = 1;
@@ -200,8 +201,9 @@ static size_t volumes_of_file(const series_job *job) {
   return count;
 }
 
-/* Makes a scene with other volumes in place of the first file's. volumes: null: the first file's voxels
- * stay. Bare label maps get their own labels. The label maps of --labels stay. */
+/* Makes a scene like the first file's, with this file's volumes in place of the first file's. loaded null:
+ * the first file's voxels stay. Bare label maps get the labels of their own voxels. The label maps of
+ * --labels stay. */
 static hl_status scene_of_volumes(const series_job *job, int number, hl_volume *const *loaded,
                                   hl_scene **scene, hl_error *error) {
   const hl_scene_description *description = hl_scene_describe(job->scene);
@@ -240,7 +242,7 @@ static int volume_scene(series_job *job, int number, hl_scene **scene) {
   return exit_code;
 }
 
-/* Gives a layer of a label map the settings that options gave the first file's layer. */
+/* Copies to a layer of a label map the settings that the options gave to the same layer of the first file. */
 static void take_settings(const hl_scene_volume *from, hl_scene_volume *layer) {
   hl_scene_volume made = *from;
   made.volume = layer->volume;

@@ -155,7 +155,7 @@ static hl_status write_file(views_job *job, size_t v, hl_error *error) {
   return status;
 }
 
-/* Pictures side by side, a fiftieth of their width apart, in whole pixels. */
+/* Copies the pictures side by side; the gap between them is a fiftieth of their width, in whole pixels. */
 static hl_status write_sheet(views_job *job, hl_error *error) {
   hl_figure figure;
   hl_figure_panel panels[MOST_VIEWS];

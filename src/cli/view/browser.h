@@ -4,15 +4,16 @@
 
 #include <limits.h>
 
-/* A file that leads the browser to the page. Command lines can be read by every user of the machine, so the
- * page's URL, which holds the token, stands in this file, which its owner alone can read. */
+/* A file that leads the browser to the viewer's page. The page's URL holds the token. It is not put on the
+ * browser's command line, which every user of the machine can read, but into this file, which only its owner
+ * can read. */
 typedef struct browser_page {
   char folder[PATH_MAX / 2]; /* folder of the file; "": there is none */
   char path[PATH_MAX];
 } browser_page;
 
-/* Opens the URL in the user's browser, by way of a file that stays until browser_forget(). Where there is
- * no screen, or no browser opens, the user must open the URL. */
+/* Opens the URL in the user's browser, by a file that leads to it and that stays until browser_forget(). If
+ * there is no screen, or no browser opens, the user must open the URL. */
 void browser_open(const char *url, browser_page *page);
 /* Removes the file; harmless where there is none. */
 void browser_forget(browser_page *page);

@@ -27,9 +27,9 @@ static char *path_below(const char *folder, const char *file) {
 
 enum { MOST_PATHS = 1024 };
 
-/* The absolute paths that a changed description borrows. */
+/* The absolute paths of a description's files. The description borrows them. */
 typedef struct path_list {
-  const char *folder; /* the folder from which relative names start; null: the current folder */
+  const char *folder; /* the folder to which relative names are relative; null: the current folder */
   char *paths[MOST_PATHS];
   size_t count;
 } path_list;

@@ -1,12 +1,12 @@
-/* cli/view/files.h - the scenes of the viewer: names of their files that hold in any folder, and files that
- * pages open. */
+/* cli/view/files.h - makes the scenes of the viewer: absolute names for their files, and the scenes of files
+ * that pages open. */
 #ifndef HL_CLI_VIEW_FILES_H
 #define HL_CLI_VIEW_FILES_H
 
 #include "server/server.h"
 
-/* Replaces the names of files in a scene by absolute paths, so that the page's scene can be rendered from
- * any folder. folder: the folder from which the scene's names start; null: the current folder. */
+/* Replaces the names of files in a scene by absolute paths, so that the scene that a page saves can be
+ * rendered from any folder. folder: the folder to which the names are relative; null: the current folder. */
 hl_status view_name_absolutely(hl_context *context, const char *folder, hl_scene **scene, hl_error *error);
 
 /* Opens a file, and makes its scene. The file may hold a scene, a mesh or a volume. context: the hl_context

@@ -11,7 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Whether a file or folder is the user's, and nobody else may look into it. */
+/* Whether a file or folder belongs to the user, and nobody else has access to it. */
 static bool is_private(const struct stat *about) {
   return about->st_uid == getuid() && (about->st_mode & (S_IRWXG | S_IRWXO)) == 0;
 }

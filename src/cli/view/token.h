@@ -6,10 +6,10 @@
 
 enum { VIEW_TOKEN_DIGITS = 32 };
 
-/* The token that the user's last viewer on this port had, or a new one that is kept, so that an open page
- * goes on when the viewer is started again. It lies in XDG_RUNTIME_DIR, which only the user can enter, and
- * which is removed when the user logs out. False: there is no such folder, or no file in it can be trusted or
- * written. */
+/* Gets the token that the user's last viewer on this port had, or makes a new one and keeps it. So a page
+ * that is open goes on when the viewer is started again. The token lies in XDG_RUNTIME_DIR, which only the
+ * user can enter, and which is removed when the user logs out. False: there is no such folder, or the token's
+ * file cannot be trusted or written. */
 bool view_token_of_port(int port, char token[VIEW_TOKEN_DIGITS + 1]);
 
 #endif

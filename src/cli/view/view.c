@@ -37,7 +37,8 @@ static const cli_option view_options[VIEW_OPTION_COUNT] = {
          .help = "print the URL, and open no browser (default: one is\nopened where there is a screen)"},
 };
 
-/* The options of `render` that say what is shown and how, without those that the page sets by itself. */
+/* Whether this command has an option of `render`: those that say what is shown and how, except those that the
+ * page sets itself. */
 static bool has_render_option(size_t row) {
   switch ((enum render_option)row) {
     case RENDER_SIZE:
@@ -92,12 +93,12 @@ static void on_ready(void *user_data, const char *url) {
         port, port);
 }
 
-/* The browser has the page: the file that led to it is needed no longer. */
+/* The browser has loaded the page, so the file that led it there can be removed. */
 static void on_visit(void *user_data) { browser_forget(&((view_job *)user_data)->page); }
 
 /* ---- the command ---- */
 
-/* The name of the first INPUT, and how many more there are. */
+/* Writes the name of the first INPUT, and the number of further INPUTs. */
 static void make_title(char **inputs, char *title, size_t size) {
   size_t count = 0;
   while (inputs[count] != NULL) count++;

@@ -1,5 +1,5 @@
-/* gpu/kernels/cuts.h - the cuts of a volume: the part of a ray that they leave, and where rays cross their
- * faces. The functions do for one pixel what render/view_sheets.c, render/cut_lanes.h and
+/* gpu/kernels/cuts.h - the cuts of a volume: the part of a ray that cuts leave, and where rays cross the
+ * cuts' faces. The functions do for one pixel what render/view_sheets.c, render/cut_lanes.h and
  * fill/face_skin_lanes.h do for many. */
 #ifndef HL_GPU_CUTS_H
 #define HL_GPU_CUTS_H
@@ -22,7 +22,7 @@ DEVICE heights_in_box heights_left(GLOBAL const plan_box *box, GLOBAL const plan
   return left;
 }
 
-/* Removes the section from `from` to `to` from a ray's section in a slab, as remove_section() in
+/* Shortens a ray's section in a slab by the removed section from `from` to `to`, as remove_section() in
  * render/view_sheets.c. */
 DEVICE void remove_section(float from, float to, heights_in_box *left) {
   if (!(from < to) || to <= left->enter || from >= left->leave) return;
@@ -33,7 +33,7 @@ DEVICE void remove_section(float from, float to, heights_in_box *left) {
 }
 
 /* The heights between which a pixel's ray runs through a slab outside of all cuts that keep their outside.
- * left: of heights_left(). */
+ * left: the result of heights_left(). */
 DEVICE heights_in_box heights_in_slab(heights_in_box left, GLOBAL const plan_cut *cuts, int count, float u,
                                       float v, float height, float spacing) {
   left.enter = greater(left.enter, height - spacing);
@@ -85,7 +85,7 @@ DEVICE ray_section cross_cut(GLOBAL const plan_cut *cut, vector from, vector alo
   return way;
 }
 
-/* The gradient, per frame unit, of a point's height over a shape. */
+/* The gradient of the height of points over a shape, per frame unit. */
 DEVICE vector gradient_over_cut(GLOBAL const plan_cut *cut, vector point) {
   const vector q = point_in_shape(cut->rows, point);
   if (cut->shape == CUT_PLANE) return scaled(vector_at(cut->rows[0]), -1.0f);
@@ -115,7 +115,8 @@ typedef struct way_left {
   float enter, leave;
 } way_left;
 
-/* Shortens a way from a point towards the light to the part next to the point that cuts leave. */
+/* Shortens a way from a point towards the light: keeps the part that begins at the point and that no cut
+ * removes. */
 DEVICE void shorten_way(GLOBAL const plan_cut *cuts, int count, vector from, vector towards, way_left *left) {
   for (int i = 0; i < count; i++) {
     const ray_section way = cross_cut(&cuts[i], from, towards);
@@ -128,8 +129,8 @@ DEVICE void shorten_way(GLOBAL const plan_cut *cuts, int count, vector from, vec
   }
 }
 
-/* The length of the parts that cuts leave of a way from a point towards the light. left: the part of the way
- * that is looked at. */
+/* The length of those parts of a way from a point towards the light that cuts leave. left: the part of the
+ * way that counts. */
 DEVICE float length_left(GLOBAL const plan_cut *cuts, int count, vector from, vector towards, way_left left) {
   float removed = 0.0f;
   for (int i = 0; i < count; i++) {
@@ -168,21 +169,21 @@ DEVICE int is_far_from_cuts(GLOBAL const plan_cut *cuts, int count, vector posit
 
 #define FACE_VOXELS 2.0f
 
-/* How much matter belongs to one face (its skin). before, depth: how deep a ray lies behind the face on a
- * slab's first and last sheet; in voxels. */
+/* The skin of one face: how much of the matter behind the face belongs to it. before, depth: how deep a ray
+ * lies behind the face on a slab's first and last sheet; in voxels. */
 DEVICE float skin_of_depth(float before, float depth) {
   const float middle = (greater(before, 0.0f) + depth) * 0.5f;
   return depth > before ? limited(FACE_VOXELS - middle, 0.0f, 1.0f) : 0.0f;
 }
 
-/* How much matter belongs to either of two opposite faces, at the places low and high of an axis. scale:
- * voxels per unit of the axis. */
+/* The skin of two opposite faces, which lie at the places low and high of an axis. scale: voxels per unit of
+ * the axis. */
 DEVICE float skin_of_axis(float from, float to, float low, float high, float scale) {
   return greater(skin_of_depth((from - low) * scale, (to - low) * scale),
                  skin_of_depth((high - from) * scale, (high - to) * scale));
 }
 
-/* How far a point lies outside of a cut's shape, in voxels; below 0 inside. */
+/* The distance of a point from a cut's shape, in voxels; below 0 inside the shape. */
 DEVICE float distance_to_shape(GLOBAL const plan_cut *cut, vector at) {
   if (cut->shape == CUT_PLANE) return at.x * -cut->scale[0];
   if (cut->shape == CUT_SPHERE) return (root(dot3(at, at)) - 1.0f) * cut->scale[0];

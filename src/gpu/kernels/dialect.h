@@ -1,9 +1,9 @@
-/* gpu/kernels/dialect.h - the dialect of the kernels: macros for the differences of OpenCL C 1.2, CUDA C++
- * and C17.
+/* gpu/kernels/dialect.h - the dialect of the kernels: macros that hide the differences between OpenCL C 1.2,
+ * CUDA C++ and C17.
  *
  * Every float operation is one IEEE operation, rounded to nearest. Products and sums are fused only where
- * fused() says so. So the kernels give the bytes of the processor's functions (simd/lanes.h), each of which
- * has the same operations in the same order. */
+ * fused() says so. So the kernels give the same bytes as the processor's functions (simd/lanes.h), which do
+ * the same operations in the same order. */
 #ifndef HL_GPU_DIALECT_H
 #define HL_GPU_DIALECT_H
 
@@ -15,7 +15,7 @@
 
 #pragma OPENCL FP_CONTRACT OFF
 #define GLOBAL __global
-/* Marks a pointer: no other pointer of the kernel leads to the same memory. */
+/* Marks a pointer to memory to which no other pointer of the kernel leads. */
 #define APART       restrict
 #define DEVICE      static
 #define DEVICE_CALL static
@@ -35,9 +35,9 @@ typedef ulong wide;
 #define member_number() ((int)get_local_id(0))
 #define work_number()   ((int)get_global_id(0))
 #define work_count()    ((unsigned)get_global_size(0))
-/* A pack is the members that step together. least_of_pack() is the least of its members' numbers, and
- * any_of_pack() tells whether a condition holds for any of its members. In OpenCL a pack is a single member,
- * and where all members of a group must take the same steps, they step by one. */
+/* A pack is the members that step together. least_of_pack() gives the least of the members' numbers, and
+ * any_of_pack() tells whether a condition holds for any of its members. In OpenCL a pack is a single member.
+ * Where all members of a group must take the same steps, the steps are of length one. */
 #define least_of_pack(value)   (value)
 #define any_of_pack(condition) (condition)
 #define least_of_group(value)  1

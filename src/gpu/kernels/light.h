@@ -1,7 +1,7 @@
-/* gpu/kernels/light.h - the light that reaches a sample: the shadow buffer is read at its position, and the
- * slab's own matter absorbs a part. The functions do for one pixel, one volume and media what
- * render/reaching_lanes.h, render/light_depth_lanes.h, render/before_slab_lanes.h and
- * shadow/shadow_lookup_lanes.h do for sixteen pixels. */
+/* gpu/kernels/light.h - the light that reaches a sample. The shadow buffer is read at the sample's position,
+ * and the slab's own matter absorbs a part of the light. The functions serve one pixel and one volume that is
+ * a medium. They do what render/reaching_lanes.h, render/light_depth_lanes.h, render/before_slab_lanes.h and
+ * shadow/shadow_lookup_lanes.h do for sixteen pixels and several volumes. */
 #ifndef HL_GPU_LIGHT_H
 #define HL_GPU_LIGHT_H
 
@@ -22,17 +22,18 @@ typedef struct slab_sample {
   vector position, start, step_sheet, towards_eye;
   float path; /* length of the eye's ray through the slab */
   covered_span part;
-  float place;         /* where the eye sees the slab's matter: a fraction of the way through the slab */
+  float place;         /* where the eye sees the slab's matter, as a fraction of the way through the slab */
   float before, after; /* coordinates in the tables */
   way_sums sums;
   float extinction, depth, left, opacity;
-  float seen, evenly; /* where the matter is seen, and where it would be seen if its extinction were even:
-                       * fractions of the way through the slab's covered part */
+  float seen, evenly; /* seen: where the matter is seen; evenly: where it would be seen if its extinction were
+                       * even; both are fractions of the way through the slab's covered part */
   int sloped;
   vector slope, normal;
-  float factor; /* the factor of gradient opacity by which extinction and the sums were multiplied */
+  float factor; /* the factor by which gradient opacity has multiplied extinction and the sums */
   float surface;
-  float skin; /* how much the matter belongs to a face that cuts it: 1 at the face, 0 two voxels behind it */
+  float skin; /* how much of the matter belongs to a face that cuts it: 1 at the face, 0 two voxels behind the
+               * face */
 } slab_sample;
 
 /* ---- the buffer's pixels around a sample ---- */
@@ -71,7 +72,7 @@ DEVICE float between_taps(const shadow_taps *taps, float a, float b, float c, fl
   return taps->inside ? fused(bottom - top, taps->fy, top) : 1.0f;
 }
 
-/* The first pixel around a sample, in a plane. */
+/* The index, in a plane, of the first of the four pixels around a sample. */
 DEVICE GLOBAL const float *first_tap(GLOBAL const plan_light *light, const shadow_taps *taps,
                                      GLOBAL const float *plane) {
   return plane + taps->row * light->stride + taps->column;
@@ -117,7 +118,7 @@ DEVICE float interpolated(GLOBAL const plan_light *light, const shadow_taps *tap
 /* exp(-x), also of negative x. */
 DEVICE float exp_of_depth(float x) { return exp_negative(greater(x, -40.0f)); }
 
-/* (1 - exp(-x)) / x as numerator (over) and denominator (under). left: exp(-x). */
+/* The value of (1 - exp(-x)) / x, given as numerator (over) and denominator (under). left: exp(-x). */
 typedef struct mean_transmittance {
   float over, under;
 } mean_transmittance;
@@ -142,9 +143,9 @@ typedef struct light_ways {
   float first, last;
 } light_ways;
 
-/* The lengths of the light's ways, from the slab's first sheet, to the begin and to the end of the slab's
- * covered part. Only those parts of the ways count that the volume's box and cuts leave. path: the lengths if
- * the box and cuts cut nothing. */
+/* The lengths of the light's ways from the slab's first sheet to the begin and to the end of the slab's
+ * covered part. Only those parts of the ways count that the volume's box and cuts leave. path: the lengths of
+ * the complete ways. */
 DEVICE light_ways ways_in_box(const volume_data *data, GLOBAL const plan_light *light, vector start,
                               vector way, vector towards, light_ways path) {
   GLOBAL const plan_volume *volume = data->plan;
@@ -187,7 +188,7 @@ DEVICE light_ways ways_in_box(const volume_data *data, GLOBAL const plan_light *
 
 DEVICE float coordinate_seen(const slab_sample *s) { return fused(s->after - s->before, s->seen, s->before); }
 
-/* The even extinction with which the light's way through the slab has the right optical depth. */
+/* The even extinction that gives the light's way through the slab its right optical depth. */
 DEVICE float extinction_towards(const volume_data *volume, const slab_sample *s, vector towards, float way) {
   if (!s->sloped) return s->sums.extinction;
   float late = lesser(divided(s->seen, greater(s->evenly, 1e-3f)), 4.0f), seen = coordinate_seen(s);
@@ -206,7 +207,7 @@ typedef struct light_depths {
   float close[CHANNELS][NEAR_PIXELS]; /* the optical depths from the face to each of the pixels around the
                                        * sample */
   int face;                           /* the sample is near a face of the box */
-  float beside;                       /* how much the face changes the light at the sample, 0 to 1 */
+  float beside;                       /* how much the face affects the light at the sample, 0 to 1 */
   float before_enter[CHANNELS], before_more[CHANNELS];
 #endif
 } light_depths;
@@ -246,8 +247,8 @@ typedef struct faces_of_axis {
   float ahead, behind, u, v, along;
 } faces_of_axis;
 
-/* Does for a cut the work of find_faces(), which gives the box's faces. The cut's face is taken to be flat,
- * as it is where the light's ray meets it. */
+/* Does for a face of a cut what find_faces() does for the faces of the box. The cut's face counts as flat: as
+ * the plane that touches it where the light's ray meets it. */
 DEVICE float face_of_cut(GLOBAL const plan_cut *cut, vector position, vector towards,
                          const near_pixels *close_pixels, float through) {
   const ray_section way = cross_cut(cut, position, towards);
@@ -310,8 +311,8 @@ typedef struct ways_around {
   const near_pixels *close_pixels;
 } ways_around;
 
-/* The length of the light's way to a point before the slab, as far as the box and cuts leave it. The point
- * lies u and v pixels of the buffer and `along` sheets away from the sample. within: the length of the
+/* The length of that part of the light's way, before the slab, to a point that the box and cuts leave. The
+ * point lies u and v pixels of the buffer and `along` sheets away from the sample. within: the length of the
  * light's way from the slab's first sheet to the point. */
 DEVICE float way_before(const ways_around *around, float u, float v, float along, float within) {
   way_left left;
@@ -394,9 +395,9 @@ DEVICE void add_face(const volume_data *data, GLOBAL const plan_light *light, co
   }
 }
 
-/* Adds the optical depth from the face to the slab to the depths in the slab. found: the transmittance in the
- * buffer. own: the transmittance if the matter behind the face were even and nothing else in the light's way.
- * The ratio of the logarithms of the two scales the depth. */
+/* Adds the optical depth from the face to the slab to the depths within the slab. found: the transmittance in
+ * the buffer. own: the transmittance as it would be if the matter behind the face were even and nothing else
+ * were in the light's way. The depth is scaled by log(found) / log(own). */
 DEVICE void pass_face(light_depths *depths, int channel, float found, float own) {
   float ratio = 1.0f;
   if (own < 0.999f)
@@ -406,7 +407,7 @@ DEVICE void pass_face(light_depths *depths, int channel, float found, float own)
   depths->more[channel] = fused(ratio, depths->before_more[channel], depths->more[channel]);
 }
 
-/* The light that reaches the slab beside a face. */
+/* The light that reaches the slab near a face. */
 DEVICE float reaching_face(GLOBAL const plan_light *light, const shadow_taps *taps, light_depths *depths,
                            int channel, GLOBAL const float *plane) {
   GLOBAL const float *at = first_tap(light, taps, plane), *below = at + light->stride;
@@ -427,8 +428,8 @@ DEVICE float reaching_face(GLOBAL const plan_light *light, const shadow_taps *ta
 
 #endif
 
-/* The light's transmittance to the sample in each channel, as a mean over the slab's matter in which matter
- * counts as much as the eye sees of it. planes: the planes of the sheet before the slab. */
+/* The light's transmittance to the sample in each channel. It is a mean over the slab's matter, in which
+ * matter has the weight with which the eye sees it. planes: the planes of the sheet before the slab. */
 DEVICE void passing_light(const volume_data *volume, vector normal, GLOBAL const plan_light *light,
                           const slab_sample *s, vector towards, float path, GLOBAL const float *planes,
                           float passing[CHANNELS]) {

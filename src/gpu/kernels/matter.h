@@ -21,7 +21,8 @@ DEVICE table_coordinate split_coordinate(float x) {
   at.fraction = x - (float)at.entry;
   return at;
 }
-/* The coordinate of a density in the tables that tell whether it shows. It is not clamped. */
+/* The coordinate of a density in the tables that tell whether the density shows. The coordinate is not
+ * clamped. */
 DEVICE float shown_coordinate(GLOBAL const plan_volume *volume, float density) {
   return fused(density, volume->scale, volume->offset);
 }
@@ -32,8 +33,8 @@ DEVICE table_coordinate coordinate_of_density(GLOBAL const plan_volume *volume, 
 DEVICE GLOBAL const float *sums_table(GLOBAL const float *tables) { return tables; }
 DEVICE GLOBAL const float *color_table(GLOBAL const float *tables) { return tables + PLAN_TABLE_ROWS * 4; }
 DEVICE GLOBAL const float *shown_table(GLOBAL const float *tables) { return tables + PLAN_TABLE_ROWS * 8; }
-/* The integral of extinction from entry 0 to the coordinate at which a surface begins: the surface of the
- * values from an entry to the next one. */
+/* For the values from an entry to the next one: the integral of extinction, from entry 0 to the coordinate at
+ * which the surface of these values begins. */
 DEVICE float beginning_at(GLOBAL const float *tables, int entry) { return sums_table(tables)[entry * 4 + 3]; }
 DEVICE GLOBAL const float *outside_table(GLOBAL const float *tables) { return tables + PLAN_TABLE_ROWS * 12; }
 DEVICE GLOBAL const float *bent_table(GLOBAL const float *tables) { return tables + PLAN_TABLE_ROWS * 13; }
@@ -42,13 +43,13 @@ DEVICE GLOBAL const float *steepness_table(GLOBAL const float *tables) {
   return tables + PLAN_TABLE_ROWS * 14;
 }
 
-/* The values of a table's first columns at a coordinate. */
+/* A table's first columns at a coordinate. */
 DEVICE void table_values(GLOBAL const float *table, table_coordinate at, int columns, float values[4]) {
   GLOBAL const float *row = table + at.entry * 4;
   for (int i = 0; i < columns; i++) values[i] = fused(row[4 + i] - row[i], at.fraction, row[i]);
 }
 
-/* Integrals from one coordinate to another. */
+/* Integrals of a table from one coordinate to another. */
 typedef struct way_sums {
   float extinction, integral, moment;
   float to_a, to_b; /* the integrals of extinction from entry 0 */
@@ -97,8 +98,8 @@ DEVICE float factor_of_slope(const volume_data *volume, vector slope) {
   return fused(factor[1] - factor[0], at.fraction, factor[0]);
 }
 
-/* Moves a and b from the slab's two sheets to the ends of the slab's covered part. Coordinates run linearly
- * between the sheets. */
+/* Moves the coordinates a and b from the slab's two sheets to the ends of the slab's covered part.
+ * Coordinates change linearly between the sheets. */
 DEVICE void cut_way(covered_span span, table_coordinate *a, table_coordinate *b) {
   float from = a->x, way = b->x - a->x;
   *a = split_coordinate(fused(way, span.begin, from));

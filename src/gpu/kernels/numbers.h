@@ -1,11 +1,11 @@
-/* gpu/kernels/numbers.h - the numbers, functions and vectors of simd/lanes.h and view/rays_lanes.h, for one
- * pixel. */
+/* gpu/kernels/numbers.h - the numbers, functions and vectors of simd/lanes.h and view/rays_lanes.h, here for
+ * one pixel. */
 #ifndef HL_GPU_NUMBERS_H
 #define HL_GPU_NUMBERS_H
 
 #include "gpu/kernels/dialect.h"
 
-/* Returns the second number where either is NaN. */
+/* Both functions return the second number where either number is NaN. */
 DEVICE float lesser(float a, float b) { return a < b ? a : b; }
 DEVICE float greater(float a, float b) { return a > b ? a : b; }
 DEVICE float limited(float x, float low, float high) { return lesser(greater(x, low), high); }

@@ -54,7 +54,7 @@ DEVICE ray_section section_in_box(GLOBAL const plan_box *box, float u, float v) 
   return section;
 }
 
-/* The roots s of |start + s direction| = 1. */
+/* The section of a ray within the unit sphere: the roots s of |start + s direction| = 1. */
 DEVICE ray_section roots_of_sphere(vector start, vector direction) {
   float squared = dot3(direction, direction), along = dot3(start, direction);
   float rest = fused(along, along, squared * (1.0f - dot3(start, start))), size = root(greater(rest, 0.0f));
@@ -72,7 +72,7 @@ DEVICE ray_section section_in_sphere(GLOBAL const plan_box *box, float u, float 
   return section;
 }
 
-/* The heights at which the ray enters the box and leaves it. */
+/* The heights at which a ray enters the box and leaves it. */
 typedef struct heights_in_box {
   float enter, leave;
 } heights_in_box;

@@ -1,6 +1,6 @@
-/* gpu/kernels/sample.h - the density at a point and its gradient, as in fill/gather_lanes.h and
- * fill/gradient_lanes.h but for one pixel; and whether a point's cell may show anything
- * (fill/block_lanes.h). */
+/* gpu/kernels/sample.h - the density at a point and its gradient, and whether the point's cell may show
+ * anything. The functions do for one pixel what fill/gather_lanes.h, fill/gradient_lanes.h and
+ * fill/block_lanes.h do for sixteen. */
 #ifndef HL_GPU_SAMPLE_H
 #define HL_GPU_SAMPLE_H
 
@@ -13,18 +13,19 @@
 /* A volume on the device. */
 typedef struct volume_data {
   GLOBAL const plan_volume *plan;
-  GLOBAL const byte *voxels;          /* or the coefficients of bricks, one brick after the other */
+  GLOBAL const byte *voxels;          /* the volume's voxels, or the coefficients of bricks, one brick after
+                                       * the other */
   GLOBAL const plan_brick *directory; /* [z][y][x] blocks of cells; read only where the volume is in bricks */
   GLOBAL const byte *distances;       /* [bricks z][y][x]; distance, in bricks, to the nearest brick that may
-                                       * show anything: the greatest of the distances along the three axes; at
-                                       * most FARTHEST_BRICK */
+                                       * show anything: the greatest of the distances along the three axes,
+                                       * and at most FARTHEST_BRICK */
   GLOBAL const wide *cell_bits;       /* [bricks z][y][x]; read only where plan->has_cell_bits */
   GLOBAL const float *tables;
   GLOBAL const byte *colors;   /* [z][y][x][4]; read only where the voxels have colours */
-  GLOBAL const plan_cut *cuts; /* [views][cut_count]; the eye's view comes first */
+  GLOBAL const plan_cut *cuts; /* [views][cut_count]; the eye's view comes first, then the lights' views */
 } volume_data;
 
-/* A point's place in the grid; index space, clamped to [-1, n). */
+/* The position of a point in the grid; index space, clamped to [-1, n). */
 typedef struct grid_point {
   float at[3];
   int inside; /* the point lies in the grid or at most GRID_MARGIN outside */
@@ -45,8 +46,8 @@ DEVICE grid_point point_in_grid(GLOBAL const plan_volume *volume, vector p) {
   return point;
 }
 
-/* Whether the point's cell may show something (grid/relevant.h). *voxels: the distance along each axis within
- * which no cell shows anything; 0 where the point's own brick may show something. */
+/* Whether the point's cell may show something (grid/relevant.h). *voxels: a distance, in voxels along each
+ * axis, within which no cell shows anything; 0 where the point's own brick may show something. */
 DEVICE int cell_may_show(const volume_data *volume, const grid_point *point, float *voxels) {
   GLOBAL const plan_volume *plan = volume->plan;
   *voxels = 0.0f;
@@ -63,16 +64,18 @@ DEVICE int cell_may_show(const volume_data *volume, const grid_point *point, flo
   return (int)(volume->cell_bits[brick] >> ((x & 3) | (y & 3) << 2 | (z & 3) << 4) & 1);
 }
 
-/* The taps around a point. cell: tap 0 is at cell - 1. part: the point's place in this cell. step: the edge
- * of a voxel, in cells of the taps. even: the field has one value, `value`, everywhere around the point. */
+/* The taps around a point. cell: tap 0 is at cell - 1. part: the point's position in this cell. step: the
+ * edge of a voxel, in cells of the taps. even: the field has one value, `value`, everywhere around the
+ * point. */
 typedef struct tap_place {
   int cell[3];
   float part[3], step, value;
   int even;
 } tap_place;
 
-/* Finds the taps around a point of index space; as lanes_in_brick() in fill/gather_lanes.h for a field in
- * bricks. There the third coordinate of the cell counts slices through the coefficients of all bricks. */
+/* Finds the taps around a point of index space. For a field in bricks it works as lanes_in_brick() in
+ * fill/gather_lanes.h; there the third coordinate of the cell counts the slices of the coefficients of all
+ * bricks. */
 DEVICE tap_place place_of_taps(const volume_data *volume, const float at[3]) {
   tap_place place;
   place.even = 0;
@@ -106,7 +109,8 @@ DEVICE tap_place place_of_taps(const volume_data *volume, const float at[3]) {
   return place;
 }
 
-/* Whether taps around a cell lie outside the grid along an axis. Bricks hold all taps of their cells. */
+/* Whether any tap around a cell lies outside the grid along an axis. In a field in bricks no tap does,
+ * because bricks hold all taps of their cells. */
 DEVICE int taps_leave(GLOBAL const plan_volume *volume, int cell, int axis) {
   return !BRICKS && !taps_inside(cell, volume->dimension[axis]);
 }

@@ -1,6 +1,6 @@
-/* gpu/kernels/shade.h - steps 12 to 16 for one pixel: where a slab is seen, its gradient, its colour, the
- * light that it sends to the eye. The functions do for one pixel and one volume what render/slab_lanes.h and
- * render/shade_lanes.h do. */
+/* gpu/kernels/shade.h - steps 12 to 16 for one pixel: where a slab is seen, its gradient and its colour, and
+ * the light that it sends to the eye. The functions do for one pixel and one volume what render/slab_lanes.h
+ * and render/shade_lanes.h do. */
 #ifndef HL_GPU_SHADE_H
 #define HL_GPU_SHADE_H
 
@@ -29,15 +29,16 @@ DEVICE void find_geometry(GLOBAL const device_sweep *plan, GLOBAL const plan_ray
 #endif
 }
 
-/* The fraction of a slab's optical depth at which it is seen on average. left: exp(-e). */
+/* The fraction of a slab's optical depth e that lies, on average, before the place where the slab is seen.
+ * left: exp(-e). */
 DEVICE float seen_part(float e, float left) {
   if (e < 0.05f) return fused(e, -1.0f / 12, 0.5f);
   float lost = 1.0f - left;
   return divided(fused(-lesser(e, 100.0f), left, lost), greater(e, 0.05f) * lost);
 }
 
-/* The fraction of the way through a slab after which its optical depth has reached the fraction u. from_a,
- * from_b: the matter's mean distances from the way's ends. */
+/* The fraction of the way through a slab after which the fraction u of its optical depth is reached. from_a,
+ * from_b: the matter's mean distances from the two ends of the way. */
 DEVICE float way_of_depth(float from_a, float from_b, float u) {
   int rising = from_a >= from_b;
   float t = power_of_part(rising ? u : 1.0f - u, divided(lesser(from_a, from_b), greater(from_a, from_b)));
@@ -60,9 +61,9 @@ DEVICE void place_slab(GLOBAL const device_sweep *plan, GLOBAL const plan_rays *
   s->position = add_scaled(s->start, s->step_sheet, s->place);
 }
 
-/* Applies gradient opacity after place_slab(), as weigh_slab() in render/slab_lanes.h. Finds the factor where
- * the matter would be seen without gradient opacity, multiplies the extinction by it, and places the slab
- * again. */
+/* Applies gradient opacity after place_slab(), as weigh_slab() in render/slab_lanes.h. Finds the factor at
+ * the place where the matter would be seen without gradient opacity, multiplies the extinction by this
+ * factor, and places the slab again. */
 DEVICE void weigh_slab(GLOBAL const device_sweep *plan, GLOBAL const plan_rays *rays, float u, float v,
                        const volume_data *volume, slab_sample *s) {
   s->slope = gradient_at(*volume, s->position);
@@ -207,7 +208,7 @@ DEVICE float find_direction(GLOBAL const device_sweep *plan, GLOBAL const plan_l
   return path;
 }
 
-/* The light that arrives at a sample's medium, and at the outside of its surface. */
+/* The light that arrives at a sample's medium, and the light that arrives at the outside of its surface. */
 typedef struct arriving_light {
   float on_medium[3], on_surface[3];
 } arriving_light;
@@ -281,7 +282,7 @@ DEVICE void add_light(GLOBAL const device_sweep *plan, const volume_data *volume
   *lit = vector_of(sum[0], sum[1], sum[2]);
 }
 
-/* The light that a sample sends to the eye. slot: the slot, in the buffers' rings, of the sheet before the
+/* The light that a sample sends to the eye. slot: number, in the ring of each buffer, of the sheet before the
  * slab. */
 DEVICE vector color_of_slab(GLOBAL const device_sweep *plan, const volume_data *volume,
                             GLOBAL const float *planes, int slot, const slab_sample *s) {

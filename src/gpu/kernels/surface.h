@@ -1,5 +1,5 @@
-/* gpu/kernels/surface.h - surfaces of a volume: how much a sample belongs to a face at which the box or a cut
- * cuts matter, and the light at the outside of surfaces, Y in shadow/attenuate.h.
+/* gpu/kernels/surface.h - surfaces of a volume: how much of a sample belongs to a face at which the box or a
+ * cut cuts matter, and the light at the outside of surfaces (Y in shadow/attenuate.h).
  *
  * The functions here do for one pixel and one volume what render/slab_lanes.h, render/reaching_lanes.h,
  * grid/classifier_lanes.h and shadow/attenuate_lanes.h do for sixteen pixels. */
@@ -22,7 +22,8 @@ DEVICE_CALL float density_on_face(const volume_data volume, vector crossing) {
   return density_at(volume, at[0], at[1], at[2]);
 }
 
-/* Whether a point is so near to a face of the box that shows matter that it may belong to it. */
+/* Whether a point lies so near to a face of the box with visible matter that the point may belong to this
+ * face. */
 DEVICE int is_near_face(GLOBAL const plan_volume *volume, vector point) {
   const float reach = FACE_VOXELS * volume->voxel * 1.001f;
   int close = 0;
@@ -43,8 +44,8 @@ typedef struct cut_face {
   int cuts;       /* the face cuts matter */
 } cut_face;
 
-/* Sets *nearest to the face of a cut through which the eye's ray comes to the sample, if this face is nearer.
- * least: how far behind the sample, as the eye sees it, the face may lie; frame units. */
+/* Sets *nearest to the face of a cut through which the eye's ray comes to the sample, if this face is nearer
+ * than *nearest. least: how far the face may lie behind the sample as the eye sees it; frame units. */
 DEVICE void find_cut(GLOBAL const plan_cut *cut, const slab_sample *s, float least, cut_face *nearest) {
   const ray_section section = cross_cut(cut, s->position, s->towards_eye);
   float way = cut->keep_inside ? section.last : section.first;
@@ -58,7 +59,8 @@ DEVICE void find_cut(GLOBAL const plan_cut *cut, const slab_sample *s, float lea
   nearest->cuts = 1;
 }
 
-/* How much a sample belongs to the face that the eye's ray comes through last before it. */
+/* The skin of a sample: how much of it belongs to the face through which the eye's ray comes last before it
+ * meets the sample. */
 DEVICE float find_skin(const volume_data *volume, const slab_sample *s, vector *outward) {
   GLOBAL const plan_volume *plan = volume->plan;
   cut_face nearest;
@@ -90,8 +92,9 @@ DEVICE float find_skin(const volume_data *volume, const slab_sample *s, vector *
   return limited(FACE_VOXELS - depth * divided(1.0f, plan->voxel), 0.0f, 1.0f);
 }
 
-/* Treats a sample behind a face that cuts matter: turns its normal towards the face's normal, or shades it
- * more as a medium than as a surface. How much it does so is the sample's skin. */
+/* Treats a sample behind a face that cuts matter. Depending on the cut shading, it turns the sample's normal
+ * towards the face's normal, or shades the sample less as a surface and more as a medium. The sample's skin
+ * says how much. */
 DEVICE void find_cut_face(const volume_data *volume, slab_sample *s) {
   vector outward;
   float skin = find_skin(volume, s, &outward), rest = 1.0f - skin;
@@ -116,8 +119,8 @@ DEVICE float integral_to(GLOBAL const float *tables, float x) {
   return values[1];
 }
 
-/* kept: the fraction of the light taken by the first surface that counts as taken by the second one. ahead:
- * the optical depth from `start` to the second surface's foot. */
+/* kept: of the light that the first surface has absorbed, the fraction that counts as absorbed by the second
+ * surface. ahead: the optical depth from `start` to the place where the second surface begins. */
 typedef struct second_surface {
   float kept, ahead;
 } second_surface;
@@ -140,7 +143,7 @@ DEVICE second_surface kept_at_foot(GLOBAL const float *tables, float first, floa
 #define OUTWARDS_POWER   16
 #define ROUNDING_OF_SPAN 1e-3f
 
-/* The numbers k and k' of shadow/attenuate.h. */
+/* The fractions k and k' of shadow/attenuate.h. */
 typedef struct kept_light {
   float before, within;
 } kept_light;
@@ -151,8 +154,7 @@ DEVICE float power_of_depth(float h1, float h2) {
   return left;
 }
 
-/* Finds the fractions k and k' (kept_light) for a volume with several surfaces. light, outside: T and Y
- * before the slab. */
+/* Finds k and k' (kept_light) for a volume with several surfaces. light, outside: T and Y before the slab. */
 DEVICE kept_light kept_of_several(const volume_data *volume, table_coordinate a, table_coordinate b,
                                   const way_sums *sums, float way, float depth, float even, float light,
                                   float outside) {
@@ -175,8 +177,8 @@ DEVICE kept_light kept_of_several(const volume_data *volume, table_coordinate a,
   return kept;
 }
 
-/* How much the matter on a light's ray belongs to a face of the box or of a cut in a slab. in_index: the rays
- * in index space at the sheet before the slab; the rays at the next sheet follow. */
+/* The skin of the faces of the box and of cuts on a light's ray in a slab: how much of the matter belongs to
+ * them. in_index: the rays in index space at the sheet before the slab; the rays at the next sheet follow. */
 DEVICE float skin_of_faces(const volume_data *data, GLOBAL const plan_light *light,
                            GLOBAL const plan_rays *in_index, float u, float v) {
   GLOBAL const plan_volume *volume = data->plan;
@@ -194,9 +196,9 @@ DEVICE float skin_of_faces(const volume_data *data, GLOBAL const plan_light *lig
   return skin;
 }
 
-/* Finds how much of the light that a surface has taken still counts after a slab (k and k'). sums:
- * integrals from a to b. path: length of the light's ray through the slab. extinction: the slab's
- * extinction. skin: how much visible matter belongs to a face. */
+/* Finds k and k': how much of the light that a surface has absorbed still lights the surface after a slab.
+ * sums: integrals from a to b. path: length of the light's ray through the slab. extinction: the slab's
+ * extinction. skin: how much of the visible matter belongs to a face. */
 DEVICE kept_light kept_in_slab(const volume_data *volume, table_coordinate a, table_coordinate b,
                                const way_sums *sums, covered_span span, float path, float extinction,
                                float skin, float light, float outside) {
@@ -234,7 +236,8 @@ DEVICE float pass_outside(float outside, float before, float after, kept_light k
 
 /* ---- the light that lights a sample's surface ---- */
 
-/* Where the light's way to a sample begins, at the slab's first sheet; as in render/reaching_lanes.h. */
+/* Where a light's way to a sample begins: on the slab's first sheet. The members are those of way_begin in
+ * render/reaching_lanes.h. */
 typedef struct way_begin {
   float start, change, first, foot;
   int there;

@@ -2,7 +2,7 @@
 #include "gpu/kernels/sweep.h"
 #include "gpu/kernels/trial.h"
 
-/* Sets floats to a value, four for each member. */
+/* Sets floats to a value; each member sets four floats. */
 KERNEL(16) fill_floats(GLOBAL float *at, unsigned fours, float value) {
   unsigned number = (unsigned)work_number();
   if (number >= fours) return;
@@ -20,7 +20,7 @@ KERNEL(8) try_arithmetic(GLOBAL const float *from, GLOBAL float *to, unsigned co
 
 /* Finds, for each brick, the distance in bricks to the nearest brick that may show something. This takes
  * three passes, one along each axis; a call makes one pass. x, y, z: the numbers of bricks. relevant: not 0
- * in the first pass, in which `from` holds no distances yet, but 1 for each brick that may show something. */
+ * in the first pass; there `from` holds 1 for each brick that may show something, and no distances yet. */
 KERNEL(16)
 spread_distances(GLOBAL const byte *from, GLOBAL byte *to, unsigned x, unsigned y, unsigned z, unsigned axis,
                  unsigned relevant) {
@@ -107,7 +107,7 @@ KERNEL(16) composite_samples(SWEEP_ARGUMENTS) {
   composite_slabs(&sweep, work_number());
 }
 
-/* Takes the tiles of all lights' buffers through slabs first to end - 1. */
+/* Composites slabs first to end - 1 into the tiles of all lights' buffers. */
 KERNEL(12) run_light(SWEEP_ARGUMENTS) {
 #if SHADOWED
   SHARED_VOTES;

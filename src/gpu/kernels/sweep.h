@@ -1,10 +1,10 @@
 /* gpu/kernels/sweep.h - the work of the kernels on a run of slabs.
  *
- * In a light's buffer, a member takes its pixel through all slabs of the run. The picture takes three steps.
- * Each pixel lists the slabs in which it may see something. Then each listed slab is lit, by any member. Then
- * each pixel composites its own slabs, in order. Lighting a slab takes long, and some pixels see many slabs
- * and others none; from a list all members get equal work. Where neither of a slab's two sheets shows
- * anything, their densities are not even computed. */
+ * In a light's buffer, a member composites all slabs of the run into its pixel. The picture takes three
+ * steps. First each pixel lists the slabs in which it may see something. Then each listed slab is lit, by any
+ * member. Last, each pixel composites its own slabs, in order. The list gives all members equal work:
+ * lighting a slab takes long, and some pixels see many slabs and others none. Where a ray can see nothing on
+ * either of a slab's two sheets, the densities on these sheets are not computed. */
 #ifndef HL_GPU_SWEEP_H
 #define HL_GPU_SWEEP_H
 
@@ -12,11 +12,12 @@
 
 #define PIXEL_OPAQUE (1.0f - 1.0f / 2048)
 
-/* A pixel's way through the sheets: the densities on the last two sheets, where they are known. */
+/* The state of a pixel's ray on its way from sheet to sheet: the densities on the last two sheets, as far as
+ * they are known. */
 typedef struct sheet_way {
   int before_known, after_known;
-  int before_shows, after_shows; /* the density is known, and greater than the densities before the first
-                                  * visible one */
+  int before_shows, after_shows; /* the density on the sheet is known, and greater than all densities that
+                                  * come before the first visible density */
   float before, after;
 } sheet_way;
 
@@ -27,15 +28,15 @@ DEVICE sheet_way no_sheets(void) {
   return way;
 }
 
-/* Finds the densities of a pixel on a sheet and on the sheet before, where they are needed. The sheet's own
- * density is needed where the point's cell may show something. Both densities are needed where one of the two
- * shows something. Where one member of a pack needs its sheet's density, all members of the pack compute
- * theirs. way->after must be the density on the sheet before when the function is called. starts: whether
- * nothing is known of the sheet before, and only this sheet's density is wanted. rays: the rays at the sheet.
- * speed: the number of voxels by which the ray advances from sheet to sheet, along the axis where it is
- * fastest. Returns the number of
- * sheets from this sheet to the next one at which the ray may meet anything. The sums are computed in a loop
- * of two passes, so that their code exists once. */
+/* Finds the densities of a pixel on a sheet and on the sheet before, where they are needed. The density on
+ * this sheet is needed where the point's cell may show something. Where one of the two densities shows
+ * something, the other one is needed, too. If one member of a pack needs a density, all members of the pack
+ * compute theirs. When the function is called, way->after must be the density on the sheet before. starts:
+ * whether the ray starts at this sheet: nothing is known of the sheet before, and only this sheet's density
+ * is wanted. rays: the rays at the sheet. speed: the number of voxels by which the ray advances from sheet to
+ * sheet, along the axis where it is fastest. Returns the number of sheets from this sheet to the next sheet
+ * at which the ray may meet anything. The sums are computed in a loop of two passes, so that their code
+ * exists once. */
 DEVICE int fill_way(const volume_data *volume, GLOBAL const plan_rays *rays, int perspective, float u,
                     float v, float speed, int starts, sheet_way *way) {
   GLOBAL const plan_volume *plan = volume->plan;
@@ -87,7 +88,7 @@ DEVICE slab_range slabs_with_content(GLOBAL const plan_box *content, float u, fl
   return range;
 }
 
-/* Voxels that a ray advances from sheet to sheet, and a little more for rounding. */
+/* The number of voxels by which a ray advances from sheet to sheet, and a little more for rounding. */
 DEVICE float speed_of_ray(GLOBAL const plan_rays *rays, int perspective, float u, float v) {
   vector a = position_on(rays, perspective, u, v), b = position_on(rays + 1, perspective, u, v);
   float x = magnitude(b.x - a.x), y = magnitude(b.y - a.y), z = magnitude(b.z - a.z);
@@ -105,24 +106,26 @@ typedef struct sweep_data {
   GLOBAL float *pixels; /* [tiles][16 blocks][R G B A][16] */
   GLOBAL float *planes; /* planes of all lights */
   GLOBAL float *light;  /* [light tiles][planes of a sheet][256 pixels]; the light at the last sheet of the
-                         * run before */
+                         * previous run */
   GLOBAL int *changed;  /* [light tiles][256 pixels]; the last sheet at which the pixel's light changed */
   GLOBAL const int *shown_from; /* [tiles][16] */
-  GLOBAL unsigned *counts;      /* [256]: numbers of composited samples; tile t adds its samples to number t %
-                                 * 256. Then [runs]: the lengths of the lists */
-  /* There are two copies of this array and of the next two: one for even runs, one for odd runs. [slabs of a
-   * run][256 * tiles pixels][4]: for each pixel and slab, first the densities on the slab's two sheets; later
-   * the light that the slab sends to the eye (R, G, B) and its opacity, which is -1 where nothing is seen. */
+  GLOBAL unsigned *counts;      /* [256], then [runs]. The first 256 numbers count composited samples; tile t
+                                 * adds its samples to number t % 256. The others are the lengths of the
+                                 * lists */
+  /* [slabs of a run][256 * tiles pixels][4]; a slot for each pixel and slab. At first a slot holds the
+   * densities on the slab's two sheets. Later it holds the light that the slab sends to the eye (R, G, B),
+   * and the slab's opacity, which is -1 where nothing is seen. Of this array and of the next two there are
+   * two copies: one for even runs, one for odd runs. */
   GLOBAL float *slots;
-  GLOBAL unsigned *list;  /* [slabs of a run * 256 * tiles]; the numbers of the slots in use */
-  GLOBAL unsigned *masks; /* [256 * tiles]; bit k of a pixel's mask: the pixel uses its slot for the run's
-                           * k-th slab */
+  GLOBAL unsigned *list;  /* [slabs of a run * 256 * tiles]; the numbers of those slots that are in use */
+  GLOBAL unsigned *masks; /* [256 * tiles]; bit k of a pixel's mask is set if the pixel uses its slot for the
+                           * run's k-th slab */
 } sweep_data;
 
 DEVICE int column_of(int member) { return (member >> 4 & 3) * 4 + (member & 3); }
 DEVICE int row_of(int member) { return (member >> 6) * 4 + (member >> 2 & 3); }
 
-/* A pixel's ray as the volume's box and cuts leave it. */
+/* The part of a pixel's ray that the volume's box and cuts leave. */
 typedef struct ray_left {
   float u, v;
   GLOBAL const plan_cut *cuts; /* [cut_count]; the cuts of the pixel's view */
@@ -146,7 +149,7 @@ DEVICE ray_left left_of_ray(GLOBAL const plan_box *box, GLOBAL const plan_cut *c
   return ray;
 }
 
-/* The part of the slab below a sheet that the volume's box and cuts leave. */
+/* The part that the volume's box and cuts leave of the slab that ends at a sheet. */
 DEVICE covered_span part_of_slab(const ray_left *ray, float height, float spacing) {
 #if CUTS
   return covered(heights_in_slab(ray->in_box, ray->cuts, ray->cut_count, ray->u, ray->v, height, spacing),
@@ -165,7 +168,7 @@ DEVICE covered_span part_of_slab(const ray_left *ray, float height, float spacin
 
 /* A member's pixel. */
 typedef struct tile_pixel {
-  int tile, member, inside; /* inside: some pixel of its block lies in the picture */
+  int tile, member, inside; /* inside: some pixel of this pixel's block lies in the picture */
   float u, v;
 } tile_pixel;
 
@@ -184,8 +187,8 @@ DEVICE GLOBAL float *values_of(GLOBAL float *pixels, const tile_pixel *pixel) {
   return pixels + (wide)pixel->tile * 1024 + (pixel->member >> 4) * 64 + (pixel->member & 15);
 }
 
-/* Lists the slabs of a run that a pixel may see. Returns a bit for each of them. count: the counter of the
- * list. */
+/* Lists the slabs of a run that a pixel may see. Returns a bit for each of these slabs. count: the counter of
+ * the list's entries. */
 DEVICE unsigned find_slabs(const sweep_data *sweep, int number, int run_first, int end,
                            GLOBAL unsigned *count) {
   GLOBAL const device_sweep *plan = sweep->plan;
@@ -201,8 +204,8 @@ DEVICE unsigned find_slabs(const sweep_data *sweep, int number, int run_first, i
 #endif
   slab_range slabs = slabs_with_content(&plan->content, pixel.u, pixel.v, plan->spacing, first, end);
   if (slabs.first >= slabs.end) return 0;
-  slabs.first = least_of_pack(slabs.first); /* a pack works on one sheet at a time; each member leaves out
-                                             * slabs before its own `first` */
+  slabs.first = least_of_pack(slabs.first); /* all members of a pack work on the same sheet at a time; each
+                                             * member leaves out the slabs before its own `first` */
   const float speed = speed_of_ray(sweep->rays + slabs.first - 1, EYE_PERSPECTIVE, pixel.u, pixel.v);
   sheet_way way = no_sheets();
   unsigned mask = 0;
@@ -308,8 +311,9 @@ DEVICE float factor_in_slab(const sweep_data *sweep, GLOBAL const plan_light *li
   return factor_of_slope(&sweep->volume, gradient_at(sweep->volume, point));
 }
 
-/* What a slab does to the light of a pixel. SLAB_TAKES: it absorbs light. SLAB_HIDES: it absorbs no light,
- * but surfaces of the pixel's block end there, because gradient opacity may hide matter. */
+/* The effect of a slab on the light of a pixel. SLAB_TAKES: the slab absorbs light. SLAB_HIDES: the slab
+ * absorbs no light, but it ends surfaces in the pixel's block, because gradient opacity may hide matter
+ * there. */
 #define SLAB_TAKES 1
 #define SLAB_HIDES (2 * STEEP)
 
@@ -352,9 +356,8 @@ DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *ligh
   return all > 0.0f ? SLAB_TAKES : 0;
 }
 
-/* Ends the surface in a light's pixel: the light at the surface's outside becomes the transmittance. This is
- * done where a slab absorbs no light in the pixel, but does something to the light of another pixel of the
- * block. */
+/* Ends the surface in a light's pixel: sets the light at the surface's outside to the transmittance. This is
+ * done where a slab absorbs no light in this pixel, but affects the light of another pixel of the block. */
 DEVICE void leave_surface(light_pixel *pixel) {
   for (int c = 0; c < PLANES_OF_SHEET - CHANNELS; c++)
     pixel->passing[CHANNELS + c] = greater(pixel->passing[c], 0.0f);

@@ -63,8 +63,8 @@ DEVICE void tap_slopes(GLOBAL const plan_volume *volume, float t, float slope[4]
   slope[2] = -(slope[0] + slope[1] + slope[3]);
 }
 
-/* Continues the values at the border beyond it: the weights of taps outside are added to the border voxel's
- * weight, and the four taps move inside. Returns the moved cell. */
+/* Continues the values at the border beyond the grid: adds the weights of outside taps to the border voxel's
+ * weight, and moves the four taps inside. Returns the moved cell. */
 DEVICE int fold_border(int cell, int count, float weight[4]) {
   int first = cell == -1, second = cell == 0, last_but_one = cell == count - 2, last = cell == count - 1;
   float w0 = weight[0], w1 = weight[1], w2 = weight[2], w3 = weight[3];
@@ -82,8 +82,8 @@ DEVICE int taps_inside(int cell, int count) { return cell >= 1 && cell < count -
 DEVICE int round_to_units(float x, int units) {
   return bits_of(fused(x, (float)units, 12582912.0f)) - bits_of(12582912.0f); /* 3 * 2^22 */
 }
-/* Rounds weights to whole units, as round_weights() in fill/row_lanes.h: it rounds the sums of weights from
- * the first tap on. total: the sum of all four weights. */
+/* Rounds weights to whole units, as round_weights() in fill/row_lanes.h: rounds the sums of weights from the
+ * first tap on, and not each weight. total: the sum of all four weights. */
 DEVICE void round_weights(const float weight[4], int units, int total, int rounded[4]) {
   int first = round_to_units(weight[0], units), two = round_to_units(weight[0] + weight[1], units);
   int last = round_to_units(weight[3], units);
@@ -135,8 +135,8 @@ DEVICE int dot_signed_bytes(unsigned a, unsigned b, int c) {
   asm("dp4a.u32.s32 %0, %1, %2, %0;" : "+r"(c) : "r"(a), "r"(b));
   return c;
 }
-/* The sum of c and of two products, each of one of the two 16-bit numbers in `a` and a byte of `b`. dot_low()
- * uses the two lower bytes of `b`, dot_high() the two higher ones. */
+/* The sum of c and of two products. Each product multiplies one of the two 16-bit numbers in `a` by a byte of
+ * `b`. dot_low() uses the two lower bytes of `b`, dot_high() the two higher bytes. */
 DEVICE int dot_low(unsigned a, unsigned b, int c) {
   asm("dp2a.lo.u32.u32 %0, %1, %2, %0;" : "+r"(c) : "r"(a), "r"(b));
   return c;
@@ -157,7 +157,8 @@ DEVICE int dot_signed_high(unsigned a, unsigned b, int c) {
 DEVICE unsigned word_between(unsigned low, unsigned high, unsigned shift) {
   return __funnelshift_r(low, high, shift);
 }
-/* first_bytes() joins the lowest bytes of four numbers in one word, second_bytes() the next higher bytes. */
+/* Both functions join bytes of four numbers in one word: first_bytes() the lowest bytes, second_bytes() the
+ * next higher bytes. */
 DEVICE unsigned first_bytes(const int x[4]) {
   return __byte_perm(__byte_perm(x[0], x[1], 0x0040), __byte_perm(x[2], x[3], 0x0040), 0x5410);
 }
@@ -243,8 +244,8 @@ DEVICE int weigh_signed(row_voxels voxels, row_weights w) {
   return dot_bytes(voxels.word[0], w.low, dot_signed_bytes(voxels.word[0], w.high, 0) * 256);
 }
 #else
-/* Sums of products with slopes may exceed 32 bits on the way, but never at the end: they are computed modulo
- * 2^32. */
+/* Partial sums of products with slopes may exceed 32 bits, but complete sums never do. So sums are computed
+ * modulo 2^32. */
 DEVICE int weigh(row_voxels voxels, row_weights w) {
   int sum = dot_high(voxels.word[1], w.high, dot_low(voxels.word[0], w.high, 0));
   return dot_high(voxels.word[1], w.low, dot_low(voxels.word[0], w.low, (int)((unsigned)sum << 8)));

@@ -5,8 +5,8 @@
 #include "json/color_space.h"
 #include "json/parts.h"
 
-/* The greatest number of points of a foreign function. The pieces that are made of them must stay below
- * HL_LIMIT_POINTS. */
+/* The greatest number of points of a foreign function. Each point becomes several of Halflight's points,
+ * whose number must stay below HL_LIMIT_POINTS. */
 enum { HL_FOREIGN_NODES = 2048 };
 
 /* A point: an opacity or an sRGB colour at a value. Midpoint and sharpness shape the segment to the next
@@ -15,7 +15,7 @@ typedef struct hl_foreign_node {
   double value, y[3], midpoint, sharpness;
 } hl_foreign_node;
 
-/* Checks the points where errors can still name the file's own points. */
+/* Checks the points before they are converted, so that errors name the points of the file. */
 hl_status hl_foreign_check(hl_json_reader *reader, const hl_foreign_node *nodes, size_t count);
 
 /* Converts points to opacities, which are owned by the caller. */

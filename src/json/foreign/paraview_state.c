@@ -1,17 +1,18 @@
 /* json/foreign/paraview_state.c - the transfer function of the volume that a ParaView state (.pvsm, XML)
  * shows.
  *
- * In: proxies of representations that show volumes, and the proxies that these representations name. Such a
- * proxy is a lookup table with a function of opacity, or a TransferFunction2D with the properties Boxes (x,
- * y, width, height, sRGB, alpha) and Range. Out: colours and opacities, or Halflight's boxes.
+ * In: proxies of representations that show volumes, and the proxies that these representations name: a lookup
+ * table and a function of opacity, or a TransferFunction2D with the properties Boxes (x, y, width, height,
+ * sRGB, alpha) and Range. Out: colours and opacities, or Halflight's boxes.
  *
  * A proxy with a group is defined where it stands. A proxy without a group, within a property, names another
- * proxy by its id. Lookup tables and functions of opacity are kept as objects of JSON, in which ParaView
- * writes colour maps with the same names.
+ * proxy by its id. Lookup tables and functions of opacity are kept as JSON objects whose keys are the names
+ * of their properties. ParaView uses the same names in its colour maps, which are JSON.
  *
- * ParaView's boxes are Gaussians that are cut off at their sides (vtkPVTransferFunction2DBox): where the
- * Gaussian has the value g, opacity is alpha g. Halflight's weights multiply extinction, which is -log(1 -
- * alpha g) = sum over k of (alpha g)^k / k: one box per term, as g^k is a Gaussian, too (derived). */
+ * ParaView's boxes are Gaussians that are cut off at their sides (vtkPVTransferFunction2DBox). Where the
+ * Gaussian has the value g, the opacity is alpha g. Halflight's boxes multiply extinction instead, which is
+ * -log(1 - alpha g) = sum over k of (alpha g)^k / k. Each term of this sum becomes a box, as g^k is a
+ * Gaussian, too (derived). */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -33,9 +34,9 @@ enum { ID_BYTES = 24 };
 
 /* The properties of a representation that shows a volume. */
 typedef struct shown_volume {
-  bool by_plane;      /* a function of two numbers shows the volume */
-  bool by_gradient;   /* the function's second number is the gradient's length */
-  bool other_opacity; /* the opacity depends on another array than the colours */
+  bool by_plane;      /* whether the representation uses a function of two numbers */
+  bool by_gradient;   /* whether the second of the two numbers is the length of the gradient */
+  bool other_opacity; /* whether the opacity depends on another array than the colours */
   double unit;
   char colors[ID_BYTES], opacities[ID_BYTES]; /* ids of the lookup table and of the opacity function */
 } shown_volume;
@@ -44,21 +45,22 @@ typedef struct shown_volume {
 typedef struct state {
   double boxes[MOST_BOXES * BOX_NUMBERS], range[4];
   size_t box_numbers, range_numbers;
-  size_t functions;       /* number of functions of two numbers with boxes */
-  size_t planes, volumes; /* number of representations that show a volume by a function of two numbers, and
-                           * number of representations that show a volume by a function of one number */
+  size_t functions;       /* number of TransferFunction2D with boxes in the state */
+  size_t planes, volumes; /* number of volumes that are shown by a function of two numbers, and by a function
+                           * of one number */
   shown_volume shown;     /* the last representation that shows a volume */
-  json_t *kept;           /* owned; the lookup tables and opacity functions by their ids, each as arrays of
-                           * numbers by property */
+  json_t *kept;           /* owned; the lookup tables and opacity functions by their ids; each is an object
+                           * that has an array of numbers for each property */
 } state;
 
 /* The content of the proxy that the current tags are in. */
 typedef struct proxy {
   bool is_function;                 /* the proxy is a function of two numbers */
-  bool is_representation, is_other; /* is_other: a representation that shows no volume */
+  bool is_representation, is_other; /* is_other: the proxy is a representation of another kind, which shows no
+                                     * volume */
   bool is_named_volume, is_visible;
   shown_volume shown;
-  json_t *kept; /* borrowed from the state; null if nothing is kept */
+  json_t *kept; /* borrowed from the state; collects the proxy's properties; null if they are not needed */
   double range[4];
   size_t box_numbers, range_numbers;
   char property[32];
@@ -74,7 +76,7 @@ static bool is_one_of(const char *name, const char *const names[]) {
   return *names != NULL;
 }
 
-/* Keeps a number of a property of a lookup table or a function. */
+/* Stores a number of the current property, if the property belongs to those that colour maps have. */
 static hl_status keep(proxy *in, double value, hl_error *error) {
   static const char *const names[] = {
       "RGBPoints",   "Points",        "ColorSpace",         "HSVWrap",
@@ -125,7 +127,7 @@ static hl_status take_element(const hl_stream *stream, const char *text, proxy *
   return in->kept != NULL ? keep(in, value, error) : HL_OK;
 }
 
-/* Takes the id of a proxy that a property names. */
+/* Stores the id of the proxy that the current property names. */
 static void take_name(const char *id, proxy *in) {
   if (strcmp(in->property, "LookupTable") == 0) snprintf(in->shown.colors, ID_BYTES, "%.23s", id);
   if (strcmp(in->property, "ScalarOpacityFunction") == 0)
@@ -189,7 +191,7 @@ static hl_status read_tags(hl_stream *stream, hl_xml_tag *tag, state *made, hl_e
 
 /* ---- colours and opacities ---- */
 
-/* The first number of a kept property; 0 if it has none. */
+/* The first number of a property among the kept ones; 0 if the property has no number. */
 static double number_of(const json_t *kept, const char *property) {
   return json_number_value(json_array_get(json_object_get(kept, property), 0));
 }
@@ -234,7 +236,7 @@ static hl_status make_map(hl_context *context, const char *path, const state *ma
 
 /* ---- boxes ---- */
 
-/* Converts numbers in the function's range to numbers of the volume. */
+/* Linear maps from ParaView's Range to data values and to lengths of gradients. */
 typedef struct fit {
   double from[2], factor[2], to[2];
 } fit;
@@ -252,7 +254,7 @@ static fit fit_to(const state *made, const hl_volume *volume) {
   return f;
 }
 
-/* Writes the boxes that stand for one of ParaView's. Returns their number. */
+/* Writes Halflight's boxes that together stand for one box of ParaView's. Returns their number. */
 static size_t write_terms(const double numbers[BOX_NUMBERS], const fit *f, hl_function_box *to) {
   double alpha = fmin(fmax(numbers[7], 0), most_alpha), left = -log1p(-alpha), power = 1;
   size_t made = 0;
@@ -295,7 +297,7 @@ static hl_status make_plane(hl_context *context, const char *path, const state *
   return HL_OK;
 }
 
-/* Makes the function of the only volume that is shown. */
+/* Makes the function of the volume that is shown. Fails unless it is the only one. */
 static hl_status make_function(hl_context *context, const char *path, const state *made,
                                const hl_volume *volume, hl_transfer_function *function, hl_error *error) {
   if (made->planes + made->volumes == 0 && made->functions > 0)

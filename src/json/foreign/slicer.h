@@ -5,25 +5,25 @@
 
 #include "json/parts.h"
 
-/* Reads an object with "volumeProperties". volume: the volume that the function is for; where there are
- * functions for several components, those of the volume's component are read. Null if the volume is not
- * known. */
+/* Reads an object with "volumeProperties". volume: the volume for which the function is read; null if it is
+ * not known. If the object has functions for several components, those of the volume's component are read. */
 hl_status hl_json_read_slicer(hl_json_reader *reader, const json_t *root, const hl_volume *volume,
                               hl_transfer_function *function);
 
-/* Whether a path names a text of Slicer's: NAME.vp, NAME.xml (of one preset) or NAME.xml:PRESET. */
+/* Whether a path names a file of Slicer's text formats: NAME.vp, NAME.xml (with one preset) or
+ * NAME.xml:PRESET. */
 bool hl_slicer_is_text(const char *path);
 
-/* Reads a text of Slicer's. Errors name path. */
+/* Reads a file of Slicer's text formats. Errors name path. */
 hl_status hl_slicer_read_text(hl_context *context, const char *path, hl_transfer_function *function,
                               hl_error *error);
 
 /* Removes opacity by gradient that is 1 everywhere. */
 void hl_slicer_drop_even_gradient(hl_context *context, hl_transfer_function *function);
 
-/* Converts Slicer's lengths of gradients to lengths per world unit. Slicer's lengths are per mean voxel edge.
- * Opacity at a quarter of the range of values holds for greater lengths, too, as in VTK
- * (vtkFixedPointVolumeRayCastMapper). */
+/* Converts a function's gradients from Slicer's unit, data values per mean voxel edge, to data values per
+ * world unit. The opacity at a quarter of the range of values is also used for all greater gradients, as in
+ * VTK (vtkFixedPointVolumeRayCastMapper). */
 void hl_slicer_fit_gradient(const hl_volume *volume, hl_transfer_function *function);
 
 #endif

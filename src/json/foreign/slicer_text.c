@@ -90,7 +90,7 @@ static hl_status read_property(hl_json_reader *reader, const property *from, hl_
 
 /* ---- presets.xml ---- */
 
-/* The beginning of the preset's name in PATH.xml:PRESET; null if no name is given. */
+/* The name of the preset in PATH.xml:PRESET, as a pointer into path; null if path names no preset. */
 static const char *preset_name(const char *path) {
   const char *found = NULL;
   for (const char *at = path; (at = strstr(at, ".xml:")) != NULL; at++) found = at + strlen(".xml:");
@@ -163,7 +163,7 @@ static hl_status read_presets(hl_json_reader *reader, hl_stream *stream, const c
 
 /* ---- .vp ---- */
 
-/* Reads the lines of a property, which hold in this order: interpolation, shade, diffuse, ambient,
+/* Reads a property from its lines. The order of the lines is: interpolation, shade, diffuse, ambient,
  * specular, specular power, opacity, gradient opacity, colour. text: ends with 0; its line ends become 0. */
 static hl_status read_lines(hl_json_reader *reader, char *text, hl_transfer_function *function) {
   enum { LINES = 9 };

@@ -1,5 +1,5 @@
-/* platform/linux/processors.c - how many processors this process may use: those that it may run on, limited
- * by the processor time that its control groups grant (containers, batch jobs). */
+/* platform/linux/processors.c - how many processors this process may use: the processors on which it may run,
+ * limited by the processor time that its control groups (of containers and batch jobs) allow. */
 #define _GNU_SOURCE /* sched_getaffinity */
 #include "platform/processors.h"
 
@@ -58,7 +58,7 @@ static int read_numbers(const char *folder, const char *name, double number[2]) 
   return take_number(&rest, &number[1]) ? 2 : 1;
 }
 
-/* The number of processors whose time one group may use; infinite where it has no limit. */
+/* The number of processors' worth of time that one group may use; infinite if it has no limit. */
 static double quota_of_group(const char *folder, bool unified) {
   double of_quota[2] = {-1, 100000}, of_period[2];
   if (unified) {
@@ -70,9 +70,9 @@ static double quota_of_group(const char *folder, bool unified) {
   return of_quota[0] > 0 && of_quota[1] > 0 ? of_quota[0] / of_quota[1] : INFINITY;
 }
 
-/* The least quota of a group and of all groups above it. path: the group's folder, "/..." below the
- * hierarchy's. It may be missing: within a container a process may be told another path than the one that the
- * container sees, where its own group is the hierarchy's top. */
+/* The least quota of a group and of all groups above it. path: the group's folder, "/...", below the folder
+ * of the hierarchy. The folder may be missing. A process in a container may be told a path outside the
+ * container, in which its own group is the top of the hierarchy. */
 static double quota_of_path(const char *hierarchy, const char *path, bool unified) {
   char folder[PATH_BYTES];
   int length = snprintf(folder, sizeof folder, "%s%s", hierarchy, path);
@@ -87,7 +87,7 @@ static double quota_of_path(const char *hierarchy, const char *path, bool unifie
   }
 }
 
-/* Whether a list such as "cpu,cpuacct" has the controller of processor time. */
+/* Whether a list of controllers, such as "cpu,cpuacct", has the controller of processor time. */
 static bool has_cpu(const char *controllers) {
   for (const char *at = controllers; at != NULL; at = strchr(at, ',')) {
     at += *at == ',';

@@ -1,5 +1,5 @@
-/* platform/macos/system.c - what macOS lacks of Linux's functions: see the headers in platform/macos/include.
- */
+/* platform/macos/system.c - the functions of Linux that macOS lacks: see the headers in
+ * platform/macos/include. */
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
@@ -30,8 +30,8 @@ sine_and_cosine hl_sincos(double x) {
 }
 
 double hl_exp10(double x) {
-  volatile double ten = 10; /* volatile: otherwise compilers turn pow() of the constant ten into a call of
-                             * this very function */
+  volatile double ten = 10; /* volatile, because compilers turn pow() of the constant ten into a call of this
+                             * function itself */
   return pow(ten, x);
 }
 

@@ -5,14 +5,15 @@
 #include <stdlib.h>
 #include <sys/mman.h>
 
-/* The size of a large page, and the size of the blocks for which large pages are asked. With small pages,
- * every row of a tile would lie in a page of its own, and translating the pages' addresses took longer than
- * reading the rows. */
+/* The size of a large page, and the least size of the blocks for which large pages are asked. With small
+ * pages, every row of a tile would lie in a page of its own, and translating the pages' addresses would take
+ * longer than reading the rows. */
 enum { LARGE_PAGE = 1 << 21, LARGE_BLOCK = 1 << 22 };
 
 void *hl_aligned_allocate(size_t bytes, size_t alignment) {
   if (bytes < LARGE_BLOCK) return aligned_alloc(alignment, bytes);
-  void *block = NULL; /* aligned_alloc() might accept only multiples of the page size */
+  void *block = NULL; /* aligned_alloc() is not used here, because it might accept only multiples of the page
+                       * size */
   if (posix_memalign(&block, LARGE_PAGE, bytes) != 0) return NULL;
 #ifdef MADV_HUGEPAGE
   madvise(block, bytes, MADV_HUGEPAGE);

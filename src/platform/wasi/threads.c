@@ -1,10 +1,10 @@
-/* platform/wasi/threads.c - see threads.h. Makes POSIX threads of WebAssembly's atomic waits: the C library's
- * functions start no thread and wait for none. Puts a lock around the C library's allocator, which is made
- * for one thread.
+/* platform/wasi/threads.c - see threads.h. Implements POSIX threads by WebAssembly's atomic waits, because
+ * the C library's functions neither start threads nor wait for them. Puts a lock around the C library's
+ * allocator, which serves only one thread.
  *
- * A mutex is Drepper's second one ("Futexes are tricky", 2011): 0 open, 1 held, 2 held and waited for. A
- * condition is a count of its signals: a waiting thread sleeps until the count differs from what it was
- * before the mutex was opened. */
+ * A mutex is Drepper's second one ("Futexes are tricky", 2011): 0 is open, 1 held, 2 held while another
+ * thread waits. A condition variable is a count of its signals: a waiting thread reads the count before it
+ * opens the mutex, and sleeps until the count has changed. */
 #include "platform/wasi/threads.h"
 
 #include <errno.h>
@@ -23,7 +23,8 @@ typedef struct helper {
 static helper helpers[MOST_HELPERS];
 static atomic_int allowed = 1;
 
-/* Sleeps as long as *number equals `expected`. Both have 32 bits, as the instruction requires. */
+/* Sleeps as long as *number equals `expected`. Both have 32 bits, because WebAssembly's instruction requires
+ * it. */
 static void wait_while(atomic_int *number, int expected) {
   __builtin_wasm_memory_atomic_wait32((int *)number, expected, -1);
 }
@@ -164,8 +165,8 @@ int pthread_cond_signal(pthread_cond_t *condition) { return pthread_cond_broadca
 
 /* ---- memory ---- */
 
-/* The C library's own functions. The linker replaces calls of malloc() by calls of __wrap_malloc(), and so on
- * (scripts/wasm.ini). */
+/* The allocator of the C library. The linker replaces calls of malloc() by calls of __wrap_malloc(), and so
+ * on (scripts/wasm.ini). */
 void *__real_malloc(size_t bytes);
 void *__real_calloc(size_t count, size_t bytes);
 void *__real_realloc(void *memory, size_t bytes);

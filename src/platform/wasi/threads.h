@@ -1,6 +1,6 @@
 /* platform/wasi/threads.h - the threads of a page. WebAssembly's system interface has no threads. A page
- * therefore starts workers, the helpers, before the library asks for threads. Helpers share one memory and
- * wait in it; each thread of the library runs on one helper.
+ * therefore starts web workers, called helpers, before the library asks for threads. Helpers share the
+ * library's memory, and wait until they are needed; each thread of the library runs on one helper.
  *
  * Helpers cannot use files. While a caller opens files, it allows one thread alone. */
 #ifndef HL_PLATFORM_WASI_THREADS_H
@@ -10,18 +10,18 @@
 
 enum { MOST_HELPERS = 30 };
 
-/* Limits the threads of pools: hl_cpu_count() tells no greater number. threads: the caller of a pool counts
- * as one. The limit is 1 at the beginning. */
+/* Limits the number of threads in pools: hl_cpu_count() returns no greater number. threads: includes the
+ * caller of a pool. The limit is 1 at first. */
 void hl_helpers_allow(int threads);
 
-/* Says that a helper has started. number: from 0 on, another one for each helper. False if there is no such
- * number. */
+/* Reports that a helper has started. number: each helper has its own number, from 0 on. False if the number
+ * is impossible. */
 bool hl_helper_arrive(int number);
 
-/* Runs in a helper's worker, after hl_helper_arrive(), and does not return: runs threads of the library. */
+/* Runs threads of the library, in the worker of a helper, after hl_helper_arrive(). Does not return. */
 void hl_helper_serve(int number);
 
-/* The number of helpers that run no thread. */
+/* The number of helpers on which no thread runs. */
 int hl_helpers_free(void);
 
 #endif

@@ -40,8 +40,8 @@ static DWORD creation_of(int flags) {
   return (flags & O_TRUNC) != 0 ? TRUNCATE_EXISTING : OPEN_EXISTING;
 }
 
-/* A descriptor for a handle, which is taken over. Fails for a link, or for a file that is no folder, where
- * the flags ask for it. */
+/* Makes a descriptor for a handle, which the descriptor then owns. If the flags ask for it, links, or files
+ * that are no folders, fail. */
 static int descriptor_of(HANDLE handle, int flags) {
   BY_HANDLE_FILE_INFORMATION about;
   int problem = 0;
@@ -74,7 +74,7 @@ int hl_posix_open(const char *path, int flags, ...) {
   return handle != INVALID_HANDLE_VALUE ? descriptor_of(handle, flags) : hl_system_error(error);
 }
 
-/* Opens what lies below a handle's folder. `name` is the folder itself if it is empty. */
+/* Opens a file below the folder of a handle. If `name` is empty, it is the folder itself. */
 static HANDLE open_below(HANDLE folder, wchar_t *name, int flags) {
   size_t bytes = wcslen(name) * sizeof *name;
   UNICODE_STRING text = {.Length = (USHORT)bytes, .MaximumLength = (USHORT)bytes, .Buffer = name};
@@ -96,7 +96,7 @@ static HANDLE open_below(HANDLE folder, wchar_t *name, int flags) {
 
 int hl_posix_openat(int folder, const char *path, int flags, ...) {
   if (path[0] == '/' || strpbrk(path, ":\\") != NULL || (flags & FOR_CREATION) != 0) {
-    errno = (flags & FOR_CREATION) != 0 ? EINVAL : ENOENT; /* a drive, or a stream beside a file's bytes */
+    errno = (flags & FOR_CREATION) != 0 ? EINVAL : ENOENT; /* a drive, or a second stream of a file */
     return -1;
   }
   wchar_t *name = hl_wide_text(strcmp(path, ".") == 0 ? "" : path);
@@ -133,7 +133,7 @@ int hl_nameless_file(char *path) {
 
 /* ---- reading and writing ---- */
 
-enum { MOST_AT_ONCE = 1 << 30 }; /* bytes: the system's calls take no more than 32 bits */
+enum { MOST_AT_ONCE = 1 << 30 }; /* bytes; the system's calls take numbers of 32 bits */
 
 static DWORD at_once(size_t count) { return count < MOST_AT_ONCE ? (DWORD)count : MOST_AT_ONCE; }
 
@@ -236,8 +236,8 @@ int hl_posix_stat(const char *path, struct stat *about) {
   return stat_opened(hl_posix_open(path, O_PATH | O_CLOEXEC), about);
 }
 
-/* Tells about a link itself if AT_SYMLINK_NOFOLLOW is set: the link is opened, and descriptor_of() does not
- * refuse it, because its flags lack O_NOFOLLOW. */
+/* If AT_SYMLINK_NOFOLLOW is set, tells about a link itself. The link is then opened, and descriptor_of() does
+ * not refuse it, because its flags do not have O_NOFOLLOW. */
 int hl_posix_fstatat(int folder, const char *path, struct stat *about, int flags) {
   wchar_t *name = strpbrk(path, ":\\") == NULL ? hl_wide_text(path) : NULL;
   if (name == NULL) return errno = ENOENT, -1;

@@ -15,7 +15,7 @@
 struct hl_folder_listing {
   int descriptor; /* owned */
   bool begun;
-  FILE_ID_BOTH_DIR_INFO *next; /* within `entries`; null if they are all read */
+  FILE_ID_BOTH_DIR_INFO *next; /* points into `entries`; null if all entries were read */
   struct dirent entry;
   _Alignas(8) unsigned char entries[1 << 16];
 };

@@ -3,15 +3,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The value that uselocale() returns. Given to a later call, it restores the locale that was set before. */
+/* The object that uselocale() returns. A later call with this object restores the locale that the thread had
+ * before. */
 typedef struct kept_locale {
   int mode; /* whether the thread had a locale of its own */
   char name[];
 } kept_locale;
 
 static char the_locale; /* its address stands for the locale "C" */
-/* What uselocale() returns if nothing was changed, because the thread had the locale "C" already or memory
- * was short. */
+/* What uselocale() returns if it changed nothing, because the thread had the locale "C" already or memory was
+ * short. */
 static char no_change;
 
 locale_t newlocale(int mask, const char *name, locale_t base) {

@@ -1,4 +1,5 @@
-/* platform/windows/names.h - names between UTF-8, with '/', and the system's UTF-16, with '\'; its errors. */
+/* platform/windows/names.h - converts names between UTF-8, with '/', and the system's UTF-16, with '\'; and
+ * converts the system's errors. */
 #ifndef HL_PLATFORM_WINDOWS_NAMES_H
 #define HL_PLATFORM_WINDOWS_NAMES_H
 
@@ -6,9 +7,9 @@
 #include <stddef.h>
 #include <wchar.h>
 
-/* Converts a name for calls of the system. Long names get the prefix that lifts the system's limit of
- * 260 characters. The caller frees the result. Null, with errno set, if the text is no UTF-8 or memory
- * is short. */
+/* Converts a name for the system's calls. A long name gets the prefix that removes the system's limit of 260
+ * characters. The caller frees the result. Null, with errno set, if the text is no UTF-8 or memory is
+ * short. */
 wchar_t *hl_wide_name(const char *path);
 
 /* The same text in UTF-16, with '\' for '/' and without a prefix. */
@@ -17,10 +18,10 @@ wchar_t *hl_wide_text(const char *text);
 /* Writes UTF-16 of `length` characters as UTF-8, with '/' for '\'. False if it does not fit. */
 bool hl_narrow_name(const wchar_t *wide, size_t length, char *text, size_t size);
 
-/* Replaces the last six characters of a name by letters, at random. False, with errno set, on failure. */
+/* Replaces the last six characters of a name by random letters. False, with errno set, on failure. */
 bool hl_choose_name(char *path);
 
-/* Sets errno for an error of the system, GetLastError()'s kind. Returns -1. */
+/* Sets errno for an error number of the system, as GetLastError() returns it. Returns -1. */
 int hl_system_error(unsigned long error);
 
 #endif

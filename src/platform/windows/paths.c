@@ -14,9 +14,9 @@
 #include "platform/paths.h"
 #include "platform/windows/names.h"
 
-/* Names of the network ("//server/share/file") do not count as absolute: a scene with such a name would
- * make the system show its user to that server. Appended to a folder's name, they lead to a place below the
- * folder. */
+/* Names of the network ("//server/share/file") do not count as absolute, because a scene with such a name
+ * could make the system send the user's identity to that server. Such a name is appended to a folder's name,
+ * and so leads to a place below the folder. */
 bool hl_path_is_absolute(const char *path) {
   bool drive = ((path[0] | 0x20) >= 'a' && (path[0] | 0x20) <= 'z') && path[1] == ':';
   bool slash = path[0] == '/' || path[0] == '\\';
@@ -98,8 +98,8 @@ char *hl_posix_getcwd(char *path, size_t size) {
   return NULL;
 }
 
-/* The name of the opened file: links are followed. The prefix "\\?\" is removed, and "\\?\UNC\" becomes
- * "\\". */
+/* Writes the absolute name of the file that a handle has opened, after following links. The prefix "\\?\" is
+ * removed, and "\\?\UNC\" becomes "\\". */
 static char *final_name(HANDLE handle, char *resolved) {
   wchar_t wide[PATH_MAX];
   DWORD length = GetFinalPathNameByHandleW(handle, wide, PATH_MAX, VOLUME_NAME_DOS);

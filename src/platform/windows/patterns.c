@@ -8,7 +8,8 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Moves past "[...]"; *fits: whether the set has the character. Returns null if nothing closes it. */
+/* Moves past "[...]" in a pattern; *fits: whether the set contains the character. Returns null if the set has
+ * no closing bracket. */
 static const char *match_set(const char *set, char c, bool *fits) {
   bool other = set[1] == '!' || set[1] == '^', in = false;
   const char *at = set + 1 + other;
@@ -51,12 +52,13 @@ static int add(glob_t *found, const char *path) {
   return 0;
 }
 
-/* Adds the files that a pattern finds in a folder. path: [PATH_MAX]; the folder's name and a '/', or "" for
- * the current folder, `length` characters; the function appends names to it. */
+/* Finds the files of a folder that fit a pattern, and adds them. path: [PATH_MAX]; its first `length`
+ * characters are the folder's name with a '/', or "" for the current folder; the function appends names to
+ * it. */
 static int find(char *path, size_t length, const char *pattern, glob_t *found);
 
-/* Goes on with a search at a file or folder `name` in the folder `path`. rest: the pattern after this name,
- * from its '/' on; "" at the pattern's end. */
+/* Continues a search at a file or folder `name` in the folder `path`. rest: the rest of the pattern, from the
+ * '/' after this name on; "" at the pattern's end. */
 static int go_on(char *path, size_t length, const char *name, const char *rest, glob_t *found) {
   int written = snprintf(path + length, PATH_MAX - length, "%s%s", name, rest[0] != '\0' ? "/" : "");
   if (written < 0 || (size_t)written >= PATH_MAX - length || access(path, F_OK) != 0) return 0;

@@ -1,4 +1,5 @@
-/* platform/windows/program.c - see platform/program.h. Standard streams carry bytes, the console UTF-8. */
+/* platform/windows/program.c - see platform/program.h. Standard streams carry bytes; the console's text is
+ * UTF-8. */
 #include "platform/program.h"
 
 #include <windows.h>
@@ -18,7 +19,7 @@ static char *narrow_text(const wchar_t *wide) {
   return text;
 }
 
-/* Users type '\' in names of files. The program's own names have '/'. */
+/* Users type '\' in names of files, but the program uses '/'. */
 static void turn_slashes(char *text) {
   for (char *c = text; *c != '\0'; c++)
     if (*c == '\\') *c = '/';

@@ -65,8 +65,8 @@ ssize_t getrandom(void *bytes, size_t count, unsigned flags) {
 
 /* ---- the environment ---- */
 
-/* A value of an environment variable that was asked for, in UTF-8. Values are kept because the C library
- * has them only in the system's code page. */
+/* The value, in UTF-8, of an environment variable that was asked for. Values are kept here, because the C
+ * library has them only in the system's code page. */
 typedef struct kept_value {
   struct kept_value *next;
   char text[];

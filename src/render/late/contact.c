@@ -9,9 +9,9 @@
 #include "surface/primitive.h"
 #include "surface/triangle.h"
 
-/* A buffer takes surfaces into account late by at most CLOSE times the sum of the edge of its pixels and the
- * distance of sheets. The pixels' edge is at most three quarters of a voxel's. The factor of two is for
- * slanted rays. */
+/* Bounds the distance at which surfaces count as close. A buffer is late with surfaces by at most CLOSE times
+ * the sum of the edge of its pixels and the distance of sheets. The edge of its pixels is at most three
+ * quarters of a voxel's. The factor of two is for slanted rays. */
 double hl_contact_distance(const frame *frame) {
   return 2 * CLOSE * (0.75 * frame->content.voxel + frame->spacing);
 }
@@ -40,7 +40,8 @@ typedef struct contact_ray {
   vec3 point, normal;       /* the sample's place, and the primitive's normal towards the eye */
   vec3 plane;               /* a point of the primitive's plane */
   vec3 smooth;              /* the sample's normal */
-  double close; /* a surface counts as close if its plane is nearer to the sample than this; frame units */
+  double close; /* a surface counts as close if the distance of its plane from the sample is less than this;
+                 * frame units */
   double (*passing)[HL_CHANNELS]; /* [points of the light] */
 } contact_ray;
 
@@ -53,7 +54,7 @@ static bool are_neighbours(const surfaces *all, uint32_t a, uint32_t b) {
   return false;
 }
 
-/* Lowers the fraction of light that passes along the ray by the part that a surface absorbs, if this surface
+/* Lowers the fraction of light that passes along the ray by the light that a surface absorbs, if the surface
  * is close to the sample. A neighbouring triangle that continues the sample's own rounded surface absorbs
  * nothing. */
 static void meet(void *data, const surface_hit *hit) {
@@ -73,15 +74,15 @@ static void meet(void *data, const surface_hit *hit) {
 
 /* ---- one light ---- */
 
-/* A light, with the data by which samples search for surfaces that hide it. */
+/* A light, with the data for the search for surfaces that hide it from samples. */
 typedef struct contact_light {
   const light_source *source;
   const light_shadow *shadow;
   const light_points *points;
 } contact_light;
 
-/* The edge of a buffer's pixel at a point (derived: the buffer's column is (r1.p) / (r0.p); a way d at a
- * right angle to the light moves it by about |r1| d / (r0.p)); frame units. */
+/* The edge of a buffer's pixel at a point (derived: the column of a point p in the buffer is (r1.p) / (r0.p);
+ * a way d at a right angle to the light moves it by about |r1| d / (r0.p)); frame units. */
 static double pixel_at(const contact_light *light, vec3 point) {
   const light_shadow *shadow = light->shadow;
   const shadow_map *map = shadow->sublight_count > 0 ? &shadow->sublights[0].map : &shadow->lookups[0].map;
@@ -91,7 +92,8 @@ static double pixel_at(const contact_light *light, vec3 point) {
   return (light->source->parallel ? 1 : fmax(depth, 0)) / length;
 }
 
-/* The way from a point to a point of the light, given by its offset. */
+/* The vector from a point to a point of the light. offset: the offset of the light's point from the light's
+ * centre. */
 static vec3 way_to(const light_source *source, vec3 from, vec3 offset) {
   return source->parallel ? vec3_scale(vec3_add(source->direction, offset), -1)
                           : vec3_subtract(vec3_add(source->position, offset), from);
@@ -105,8 +107,8 @@ static hull_ball ends_of_rays(const contact_light *light, vec3 point, double lat
   return (hull_ball){vec3_add(point, vec3_scale(way, part)), 2 * part * light->points->reach};
 }
 
-/* Whether some sample may have a surface close before it. Samples that do not face the light count only where
- * a layer asks for both sides. */
+/* Whether there may be a surface close before some sample. Samples that face away from the light count only
+ * where a layer asks for both sides. */
 static bool may_find(const sweep *sweep, const contact_light *light, const contact_ray *rays, int count) {
   hull_ball balls[2 * SURFACE_SAMPLES];
   int balls_count = 0;
@@ -114,7 +116,7 @@ static bool may_find(const sweep *sweep, const contact_light *light, const conta
   for (int i = 0; i < count; i++) {
     vec3 way = way_to(light->source, rays[i].point, (vec3){0, 0, 0});
     double facing = vec3_dot(way, rays[i].smooth), pixel = pixel_at(light, rays[i].point);
-    /* By its normal the sample faces the light, by its triangle it does not, or the other way round. */
+    /* Whether the sample's normal and its triangle disagree: one faces the light, and the other does not. */
     if (vec3_dot(way, rays[i].normal) * facing <= 0) continue;
     if (facing < 0 && sweep->layers.pass_count == 0) continue; /* the sample faces away, and no layer asks */
     least = fmin(least, RAY_START * pixel);
@@ -124,7 +126,8 @@ static bool may_find(const sweep *sweep, const contact_light *light, const conta
   return balls_count > 0 && hl_surface_tree_reaches(sweep->frame->contact, balls, balls_count, least);
 }
 
-/* Finds the fractions of a light that pass the surfaces close before a sample. False: all of it passes. */
+/* Finds the fractions of a light that pass the surfaces close before a sample. Returns false if all light
+ * passes. */
 static bool look(const sweep *sweep, const contact_light *light, contact_ray *ray,
                  double passing[HL_CHANNELS]) {
   const light_points *points = light->points;
@@ -155,10 +158,11 @@ static bool look(const sweep *sweep, const contact_light *light, contact_ray *ra
 
 /* ---- points of hollow surfaces that light almost grazes ---- */
 
-/* The more light grazes a surface, the later a shadow buffer takes the surface into account
- * (surface_plane.h: the slope of the surface's heights grows without end). A ray that grazes a hollow
- * surface meets the surface again close by, where the buffer does not hold it yet. Without this correction,
- * the inner wall of a cut ball would get a streak of light where the wall turns away from the light.
+/* The flatter light falls on a surface, the later a shadow buffer takes the surface into account
+ * (surface_plane.h: the slope of the surface's heights grows without bound). A ray that grazes a hollow
+ * surface meets the surface again close by; the buffer does not hold the surface there yet. Without this
+ * correction, the inner wall of a cut ball would get a streak of light where the wall turns away from the
+ * light.
  *
  * Derived: where the normal turns towards the light by k per length along the light's way (k = 1 / radius
  * within a ball), the surface is a circle of radius 1 / k in the plane of its normal and the light. A ray
@@ -166,8 +170,8 @@ static bool look(const sweep *sweep, const contact_light *light, contact_ray *ra
  * the surface there. */
 
 /* How far the normal of a batch's sample turns towards the light, per length along the way to the light. It
- * is above 0 where the surface is hollow. It is 0 on flat and on rough surfaces, and on spheres that light
- * passes. towards_light: of any length. */
+ * is above 0 where the surface is hollow. It is 0 on flat and on rough surfaces, and on spheres that let
+ * light pass. towards_light: a vector of any length. */
 static double hollow_bend(const surfaces *all, const surface_batch *batch, int sample, vec3 towards_light) {
   const uint32_t primitive = batch->fragments[sample]->primitive;
   const surface_samples *samples = &batch->samples;
@@ -184,14 +188,14 @@ static double hollow_bend(const surfaces *all, const surface_batch *batch, int s
 typedef struct hollow {
   vec3 point, normal;
   double bend; /* hollow_bend() */
-  double late; /* the length by which a buffer takes surfaces into account late; frame units */
+  double late; /* how late a buffer takes surfaces into account, as a length; frame units */
 } hollow;
 
 static vec3 vector_of(const float v[3][SURFACE_SAMPLES], int i) { return (vec3){v[0][i], v[1][i], v[2][i]}; }
 
-/* The point of a triangle in the middle of the part of a pixel in which the eye sees the triangle. The
- * middle of the whole pixel may lie behind a wall that hides a part of the pixel. point: some point of the
- * triangle's plane. */
+/* A point of a triangle: the middle of that part of a pixel in which the eye sees the triangle. The middle of
+ * the whole pixel may lie behind a wall that hides a part of the pixel. point: any point of the triangle's
+ * plane. */
 static vec3 seen_point(const sweep *sweep, const tile_slab *slab, const fragment *f, vec3 normal,
                        vec3 point) {
   double u, v;
@@ -204,7 +208,7 @@ static vec3 seen_point(const sweep *sweep, const tile_slab *slab, const fragment
   return vec3_length(vec3_subtract(seen, point)) < MOST_PIXELS_ASIDE * sweep->frame->pixel ? seen : point;
 }
 
-/* Sets the ray of sample i. last: the ray of the sample before it; null: there is none. */
+/* Sets the ray of sample i. last: the ray of the sample before it; null: sample i is the first. */
 static void place_ray(const sweep *sweep, const tile_slab *slab, const surface_batch *batch, int i,
                       const contact_ray *last, contact_ray *ray) {
   const surfaces *all = sweep->frame->surfaces;
@@ -244,8 +248,8 @@ static void find_bounds(const surface_batch *batch, vec3 *low, vec3 *high) {
   *low = hl_surface_vector(least), *high = hl_surface_vector(greatest);
 }
 
-/* Extends a box to hold the rays from a point. The rays begin a little away from the point, so that the box
- * does not hold the flat surface on which the point lies. */
+/* Extends a box to hold all rays that are cast from a point. The rays begin a little away from the point. So
+ * the box does not hold a flat surface on which the point lies. */
 static void hold_rays(const sweep *sweep, const contact_light *light, vec3 point, double aside, double low[3],
                       double high[3]) {
   double pixel = pixel_at(light, point);
@@ -256,8 +260,8 @@ static void hold_rays(const sweep *sweep, const contact_light *light, vec3 point
   vec3_bound_ball(ends.at, aside + ends.radius, low, high);
 }
 
-/* Whether the light on some sample is needed. The picture needs it on samples that face the light, a layer on
- * all samples. */
+/* Whether the light on any sample of the batch is needed. The picture needs it on samples that face the
+ * light; layers need it on all samples. */
 static bool is_asked(const sweep *sweep, const contact_light *light, const surface_batch *batch) {
   if (sweep->layers.pass_count > 0) return true;
   for (int i = 0; i < batch->count; i++) {
@@ -267,9 +271,9 @@ static bool is_asked(const sweep *sweep, const contact_light *light, const surfa
   return false;
 }
 
-/* Whether some surface may be close before the batch. This is quick, and nearly always answers no. The rays
- * of parallel light are all alike, so that rays from two opposite corners of the samples' box bound them all;
- * for other lights, rays from all eight corners are taken. */
+/* Whether some surface may be close before the batch's samples. The test is quick, and the answer is nearly
+ * always no. The rays of parallel light are all alike, so the rays from two opposite corners of the samples'
+ * box bound them all; for other lights, the rays from all eight corners are taken. */
 static bool is_close(const sweep *sweep, const contact_light *light, const surface_batch *batch) {
   vec3 least, greatest;
   double aside = 0, low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -285,15 +289,15 @@ static bool is_close(const sweep *sweep, const contact_light *light, const surfa
   return hl_surface_tree_overlaps(sweep->frame->contact, low, high);
 }
 
-/* Whether all of a light is outside of a mesh. `reach` is the greatest distance from the light's centre of
- * the points that stand for the light; the light itself extends less than 1.5 times as far. */
+/* Whether all of a light is outside of a mesh. `reach` is the greatest distance, from the light's centre, of
+ * the points that stand for the light. The light itself extends to less than 1.5 times this distance. */
 static bool is_outside(const contact_light *light, const surface_mesh *mesh) {
   const light_source *source = light->source;
   return source->parallel || hl_surface_is_outside(mesh, source->position, 1.5 * light->points->reach);
 }
 
-/* The samples that the eye sees from within a closed part of their mesh, one bit each. 0 for meshes that let
- * light through. */
+/* The samples that the eye sees from within a closed part of their mesh, one bit each. The result is 0 for
+ * meshes that let light through. */
 static uint32_t samples_within(const sweep *sweep, const surface_batch *batch) {
   const surfaces *all = sweep->frame->surfaces;
   const view *eye = &sweep->frame->eye;
@@ -312,14 +316,14 @@ static uint32_t samples_within(const sweep *sweep, const surface_batch *batch) {
   return within;
 }
 
-/* The search for the fractions of all lights that pass to a batch. */
+/* A search for the fractions of all lights that pass the surfaces close before a batch's samples. */
 typedef struct contact_search {
   const sweep *sweep;
   float (*passing)[SURFACE_SAMPLES]; /* [lights][channels] */
-  bool found;                        /* some light is taken, and `passing` is set */
+  bool found;                        /* some surface absorbs light, and `passing` is set */
 } contact_search;
 
-/* Lowers the fraction of one light that passes to a sample. */
+/* Lowers the fraction of one light that passes to a sample. parts: the factors for each channel. */
 static void set_passing(contact_search *search, int light, int sample, const double parts[HL_CHANNELS]) {
   const int channels = search->sweep->frame_plan->channels;
   for (int row = 0; row < search->sweep->geometry->light_count * channels && !search->found; row++)
@@ -341,7 +345,8 @@ static bool returns(const contact_search *search, const surface_batch *batch, co
                          vec3_add(at->point, vec3_scale(way, chord)));
 }
 
-/* Takes the light that a hollow surface hides from its own points, where the light almost grazes it. */
+/* Removes the light that a hollow surface hides from its own points, where the light almost grazes the
+ * surface. */
 static void shade_hollows(contact_search *search, int l, const contact_light *light,
                           const surface_batch *batch) {
   const light_points *points = light->points;
@@ -369,7 +374,7 @@ static bool may_be_hollow(const surface_mesh *mesh) {
   return (mesh->is_cut || !mesh->mesh->closed) && hl_surface_takes_all(mesh);
 }
 
-/* Darkens the samples within a closed part of a mesh: light from outside does not reach them. */
+/* Darkens the samples within a closed part of a mesh, because light from outside does not reach them. */
 static void darken_within(contact_search *search, int light, uint32_t within) {
   const double nothing[HL_CHANNELS] = {0, 0, 0};
   for (; within != 0; within &= within - 1) set_passing(search, light, __builtin_ctz(within), nothing);

@@ -1,5 +1,5 @@
-/* render/late/near_surfaces.c - finds the light that surfaces take from samples of volumes close behind them:
- * see late_surfaces.h. */
+/* render/late/near_surfaces.c - finds the light that surfaces absorb before it reaches samples of volumes
+ * close behind them: see late_surfaces.h. */
 #include "render/late/late_surfaces.h"
 
 #include "render/surface_point.h"
@@ -15,13 +15,15 @@ double hl_surface_delay(const light_shadow *shadow) {
 /* A sample of a volume, close to a surface that the eye sees in the same pixel. */
 typedef struct near_sample {
   const fragment *fragment;
-  vec3 point, met;  /* the position of the sample, and the position where the eye's ray meets the surface */
+  vec3 point, met;  /* point: the position of the sample; met: the position where the eye's ray meets the
+                     * surface */
   double low, high; /* heights at which the pixel's piece of the slab begins and ends; the sample is its
                      * middle */
   bool cut;         /* the piece ends at the surface */
 } near_sample;
 
-/* Sets the heights at which a pixel's piece of the slab begins and ends. False: the piece is empty. */
+/* Sets the heights at which a pixel's piece of the slab begins and ends. Returns false if the piece is
+ * empty. */
 static bool set_piece(const shade_job *job, slab_piece piece, int pixel, near_sample *sample) {
   sample->low = (double)job->height - (double)job->spacing;
   sample->high = (double)job->height;
@@ -33,7 +35,7 @@ static bool set_piece(const shade_job *job, slab_piece piece, int pixel, near_sa
 static double middle_of(const near_sample *sample) { return (sample->low + sample->high) / 2; }
 
 /* The fraction of the piece that lies behind the surface as seen from a light, if the light's buffer takes
- * the surface into account only from a later slab on; else 0. */
+ * the surface into account only in a later slab. Otherwise 0. */
 static double part_missed(const sweep *sweep, int light, const near_sample *sample, int slab) {
   const surfaces *all = sweep->frame->surfaces;
   const sheet_stack *sheets = &sweep->geometry->sheets;
@@ -53,8 +55,8 @@ static double part_missed(const sweep *sweep, int light, const near_sample *samp
   return height + delay > (slab - 1 - LEAST_DELAY) * sheets->spacing ? fmin(part, 1) : 0;
 }
 
-/* Lowers the light of a sample by the light that a fragment absorbs. part: the fraction of the sample's piece
- * of the slab that lies behind the fragment. */
+/* Lowers a sample's light by what a fragment absorbs. part: the fraction of the sample's piece of the slab
+ * that lies behind the fragment. */
 static void take(const sweep *sweep, const near_sample *sample, int light, double part,
                  float (*passing)[TILE_PIXELS]) {
   const fragment *f = sample->fragment;
@@ -82,8 +84,8 @@ static void fill_with_ones(float (*passing)[TILE_PIXELS], int count) {
     for (int k = 0; k < TILE_PIXELS; k++) passing[i][k] = 1;
 }
 
-/* Does the work of hl_near_surfaces_find() for one list of fragments. cut: slabs are cut at these fragments.
- * any: some light was taken before, so that `passing` is set. */
+/* Does the work of hl_near_surfaces_find() for one list of fragments. cut: whether slabs are cut at these
+ * fragments. any: whether an earlier list has absorbed light, so that `passing` is set. */
 static bool find_near(const sweep *sweep, const tile_slab *slab, fragment_range near, bool cut,
                       slab_piece piece, bool any, float (*passing)[TILE_PIXELS]) {
   const shade_job *job = slab->job;

@@ -1,9 +1,8 @@
 /* scene/check/check.c - is a description possible?
  *
- * In: a description that nobody has looked at yet. Out: HL_OK, or the first fault as one line: the JSON
- * pointer of the field, the bad value and the mend. hl_scene_create() asks before it copies anything, so
- * the renderers downstream never meet a NaN, a zero direction or an unknown enumerator.
- */
+ * In: a description that was not checked yet. Out: HL_OK, or the first fault as one line: the JSON pointer of
+ * the field, the bad value, and how to mend it. hl_scene_create() checks before it copies anything, so that
+ * renderers never get a NaN, a zero direction or an unknown enumerator. */
 #include "scene/check/check.h"
 
 #include <math.h>
@@ -35,8 +34,8 @@ static hl_status check_camera(const hl_camera *camera, hl_error *error) {
 
 /* ---- checks of several parts together: distances beside voxels, brightness ---- */
 
-/* Checks that lights are not too bright beside voxels. Derived: a light whose brightness falls with the
- * square of the distance has the brightness intensity / d^2 at the distance d. */
+/* Checks that a light is not too bright at a distance as short as a voxel. Derived: if a light's brightness
+ * falls with the square of the distance, it is intensity / d^2 at the distance d. */
 static hl_status check_brightness(const hl_checker *check, const hl_light *light,
                                   const hl_frame_space *space) {
   double brightness = fmax(fmax(light->color[0], light->color[1]), light->color[2]) * light->intensity;
@@ -49,8 +48,8 @@ static hl_status check_brightness(const hl_checker *check, const hl_light *light
                  light->falloff == HL_FALLOFF_INVERSE_SQUARE ? " at the distance of a voxel's edge" : "");
 }
 
-/* Checks the places and lengths of one light. Positions in camera axes are measured from the camera's target,
- * which was checked itself. */
+/* Checks the places and lengths of one light. Positions in the camera's axes are relative to the camera's
+ * target, which is checked separately. */
 static hl_status check_light_reach(const hl_light *light, size_t index, const hl_frame_space *world,
                                    hl_error *error) {
   const hl_frame_space beside = {{0, 0, 0}, world->unit},
@@ -84,7 +83,7 @@ static hl_status check_scales(const hl_scene_description *d, hl_error *error) {
   return status;
 }
 
-/* Checks that the scene has everything that a transfer function of two numbers needs. */
+/* Checks that the scene has what a transfer function of two numbers needs. */
 static hl_status check_second(const hl_scene_description *d, size_t v, hl_error *error) {
   const hl_function_plane *plane = &d->volumes[v].transfer_function.plane;
   if (plane->second == HL_SECOND_NONE || d->volumes[v].label_count > 0) return HL_OK;
@@ -108,7 +107,8 @@ static hl_status check_second(const hl_scene_description *d, size_t v, hl_error 
   return HL_OK;
 }
 
-/* Checks that the scene suits a field in bricks: fields of several levels are sums of B-splines. */
+/* Checks that the scene can use a field in bricks: if the field has several levels, it must be a sum of
+ * B-splines. */
 static hl_status check_bricks(const hl_scene_description *d, size_t v, hl_error *error) {
   const hl_kernel kernel = d->render.kernel;
   if (d->volumes[v].volume->bricks == NULL) return HL_OK;

@@ -16,8 +16,8 @@ typedef struct hl_checker {
 /* Fails with "PLACE/KEY: PROBLEM". */
 hl_status hl_check_refuse(const hl_checker *check, const char *key, const char *problem);
 
-/* hl_check_key() checks one setting. hl_check_settings() checks all settings that an object of this type has
- * (type 0 for kinds without types). */
+/* hl_check_key() checks one setting. hl_check_settings() checks all settings that an object of this type has;
+ * for kinds of objects without types, type is 0. */
 hl_status hl_check_key(const hl_checker *check, hl_setting_kind kind, const char *key, const void *object);
 hl_status hl_check_settings(const hl_checker *check, hl_setting_kind kind, const void *object, int type);
 

@@ -14,21 +14,22 @@
 #define HL_LIMIT_TEXTURE_PIXELS (1 << 26)
 #define HL_LIMIT_POINTS         65536 /* number of points of one transfer function */
 /* Greatest number of boxes, or of polygons, of a transfer function of two numbers. */
-#define HL_LIMIT_SHAPES     256
-#define HL_LIMIT_PLANE_SIDE 4096 /* greatest number of pixels along a side of such a function's image */
-#define HL_LIMIT_LENGTH     1e15 /* greatest coordinate or length; squares and cubes of it stay finite */
-/* The greatest distance of a volume from the origin. With it, a camera that frames the volume stands within
+#define HL_LIMIT_SHAPES 256
+/* greatest number of pixels along a side of the image of a transfer function of two numbers */
+#define HL_LIMIT_PLANE_SIDE 4096
+#define HL_LIMIT_LENGTH     1e15 /* greatest coordinate or length; its square and its cube are finite */
+/* The greatest distance of a volume from the origin. A camera that frames such a volume stands within
  * HL_LIMIT_LENGTH. */
 #define HL_LIMIT_CORNER 1e14
-/* The greatest intensity. It is large because light may fall off with the square of distances in
- * nanometres. */
+/* The greatest intensity. It is large because light may fall off with the square of a distance that is given
+ * in nanometres. */
 #define HL_LIMIT_INTENSITY 1e35
 /* The greatest brightness of a light at a distance of one voxel edge. Sums and products of such numbers still
  * fit floats. */
 #define HL_LIMIT_BRIGHTNESS    1e20
 #define HL_LIMIT_REACH         1e12 /* greatest distance or length, in smallest voxel edges */
 #define HL_LIMIT_TEXTURE_VALUE 1e6
-#define HL_LIMIT_RADIANCE      1e6 /* greatest radiance of a sky's colours, and greatest factor of it */
+#define HL_LIMIT_RADIANCE      1e6 /* greatest radiance of a sky's colours, and greatest strength of a sky */
 /* Greatest value of a voxel; differences and sums of such values still fit floats. */
 #define HL_LIMIT_VOXEL_VALUE   1e36
 #define HL_LIMIT_LIGHT_SAMPLES 64

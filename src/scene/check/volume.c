@@ -9,7 +9,7 @@
 #include "scene/geometry/placement.h"
 #include "scene/label/label_table.h"
 
-/* Checks that points are sorted by value, with at most two at one value, which make a step. */
+/* Checks that points are sorted by value. At most two points may have one value; they make a step. */
 static hl_status check_order(const hl_checker *check, const char *key, size_t index, double before2,
                              double before, double value) {
   if (value < before)
@@ -77,8 +77,8 @@ hl_status hl_transfer_function_check(const hl_transfer_function *function, const
   return status == HL_OK ? hl_plane_check(&function->plane, place, error) : status;
 }
 
-/* Checks the three scale factors. Each is the product of the common factor and the axis's own factor; errors
- * name the product. */
+/* Checks the three scale factors. Each is the product of `scale` and one of axis_scale; errors tell the
+ * product. */
 static hl_status check_axis_scales(const hl_checker *check, const hl_scene_volume *volume) {
   const double *axis = volume->axis_scale;
   if (axis[0] == 1 && axis[1] == 1 && axis[2] == 1) return HL_OK;
@@ -154,7 +154,8 @@ static double farthest_corner(const hl_scene_volume *volume, affine3 placement) 
   return farthest;
 }
 
-/* Checks the placement as a whole: factors that are possible one by one may together vanish or overflow. */
+/* Checks the placement as a whole, because factors that are possible one by one may have a product that is
+ * zero or infinite. */
 static hl_status check_placement(const hl_checker *check, const hl_scene_volume *volume) {
   affine3 placement = hl_scene_volume_index_to_world(volume), inverse;
   for (int a = 0; a < 3; a++) {
@@ -187,7 +188,7 @@ static hl_status check_placement(const hl_checker *check, const hl_scene_volume 
   return HL_OK;
 }
 
-/* Checks data values and, where they are stored as floats, stored values. */
+/* Checks the data values; if they are stored as floats, also checks the stored values. */
 static hl_status check_values(const hl_checker *check, const hl_volume *volume) {
   double greatest = fmax(fabs(volume->minimum), fabs(volume->maximum)), stored = 0;
   if (volume->storage == HL_STORAGE_F32)

@@ -1,8 +1,9 @@
 /* scene/function/function_plane.c - the boxes, polygons and images of a transfer function of two numbers:
- * their opacity and colour at a point of the plane of the two numbers, or on average in a part of it.
+ * evaluates their opacity and colour at a point of the plane of the two numbers, or as a mean over a part of
+ * it.
  *
  * In: a transfer function. Out: extinction and colour, for the tables of grid/plane_table.c, for the
- * reference, and for the outline over the value alone, which framing and exposure use. */
+ * reference, and for the outline: a function of the value alone, which framing and exposure use. */
 #include "scene/function/function_plane.h"
 
 #include <math.h>
@@ -27,7 +28,7 @@ static double gaussian_up_to(double middle, double deviation, double x) {
   return deviation * sqrt(HL_PI / 2) * erf((x - middle) / (deviation * sqrt(2)));
 }
 
-/* The mean, along one axis from `from` to `to`, of the Gaussian that a box stands for. */
+/* The mean of a box's Gaussian along one axis, over from..to. */
 static double gaussian_along(const hl_function_box *box, int axis, double from, double to) {
   double low = box->low[axis], high = box->high[axis], middle = (low + high) / 2,
          deviation = box->sigma * (high - low), begin = fmax(from, low), end = fmin(to, high);
@@ -46,8 +47,9 @@ static double weight_along(const hl_function_box *box, int axis, double from, do
   return edge > 0 ? fmin(fmin(from - low, high - from) / edge, 1) : 1;
 }
 
-/* The weight of a point in the triangle of the apex and two vertices: the apex's barycentric coordinate,
- * which falls linearly from 1 at the apex to 0 on the border. Negative: the point is outside. */
+/* The weight of a point in the triangle of the apex and two vertices. It is the apex's barycentric
+ * coordinate, which falls linearly from 1 at the apex to 0 on the border. It is negative if the point is
+ * outside the triangle. */
 static double weight_in_triangle(const double apex[2], const double a[2], const double b[2],
                                  const double at[2]) {
   double ax = a[0] - apex[0], ay = a[1] - apex[1], bx = b[0] - apex[0], by = b[1] - apex[1];
@@ -174,7 +176,7 @@ bool hl_plane_bounds(const hl_function_plane *plane, plane_box *bounds) {
 
 enum { OUTLINE_COLUMNS = 257 };
 
-/* A column of the plane: the greatest opacity that a shape has in it, and sums over shapes of opacity and of
+/* A column of the outline: the greatest opacity of a shape in it; the sum over shapes of opacity, and of
  * colour times opacity. */
 typedef struct column {
   double greatest, opacity, color[3];
@@ -222,8 +224,8 @@ static column column_between(const hl_function_plane *plane, double from, double
   return found;
 }
 
-/* Beyond `low` and `high` the outline keeps the opacity that it has there if shapes go on; otherwise it falls
- * to 0. */
+/* If shapes go on beyond `low` or `high`, the outline keeps its opacity there; otherwise its opacity falls to
+ * 0. */
 hl_status hl_plane_outline(hl_context *context, double low, double high, hl_transfer_function *function,
                            hl_error *error) {
   plane_box bounds;

@@ -19,7 +19,7 @@ static inline double hl_plane_second_scale(const hl_function_plane *plane) {
 /* The keys under which a scene file has the ranges of the two axes: "value" and "second". */
 extern const char *const hl_plane_range_keys[2];
 
-/* A part of the plane: [value, second number]. */
+/* A part of the plane, from low to high: [value, second number]. */
 typedef struct plane_box {
   double low[2], high[2];
 } plane_box;
@@ -27,27 +27,30 @@ typedef struct plane_box {
 /* The box around all shapes; false where there are none. */
 bool hl_plane_bounds(const hl_function_plane *plane, plane_box *bounds);
 
-/* Sums over all shapes of the function. Each shape adds its mean over a part of the plane. */
+/* Sums over all shapes of a function. Each shape adds its mean over the part of the plane that is asked
+ * for. */
 typedef struct plane_sum {
   double extinction; /* per world unit */
   double color[3];   /* linear RGB, times extinction */
 } plane_sum;
 
-/* The function's mean over a part of the plane; where low and high are the same, its value at a point. */
+/* The function's mean over a part of the plane. If low and high are the same, it is the function at this
+ * point. */
 plane_sum hl_plane_mean(const hl_transfer_function *function, const plane_box *part);
 
-/* Replaces the function's opacity and colour by the outline of the plane over the values between low and
- * high. The outline's opacity is a bound of the greatest opacity, which is 0 only where nothing shows with
- * any second number. The new points are owned by *function; the old points are not freed. */
+/* Replaces the function's opacity and colour by the outline of the plane: a function of the value alone, over
+ * the values between low and high. Its opacity at a value is at least the greatest opacity over all second
+ * numbers, and is 0 only if nothing shows with any second number. The new points are owned by *function; the
+ * old points are not freed. */
 hl_status hl_plane_outline(hl_context *context, double low, double high, hl_transfer_function *function,
                            hl_error *error);
 
-/* Copies the plane; *to owns its arrays and texts, after a failure, too (hl_plane_release). */
+/* Copies the plane. *to owns its arrays and texts, also after a failure (hl_plane_release). */
 hl_status hl_plane_copy(hl_context *context, const hl_function_plane *from, hl_function_plane *to,
                         hl_error *error);
 void hl_plane_release(hl_context *context, hl_function_plane *plane);
 
-/* A number that identifies the plane's content: other content has another number. */
+/* A hash of the plane's content, which identifies it. */
 uint64_t hl_plane_mark(const hl_function_plane *plane);
 
 /* Checks the plane of a transfer function. place: the function's name in errors. */

@@ -2,8 +2,8 @@
  * logarithms.
  *
  * With t from 0 to 1 over the old range, a point moves to low + t (high - low), or to low (high / low)^t. The
- * latter bends the straight lines between points, so there each line is divided where t is a multiple of
- * 1/PIECES. */
+ * latter makes curves of the straight lines between points. So each line is then divided at the multiples of
+ * 1/PIECES of t. */
 #include <math.h>
 #include <string.h>
 
@@ -11,9 +11,9 @@
 #include "core/memory.h"
 #include "scene/function/transfer_function.h"
 
-/* The number of pieces into which the range is divided. A straight piece differs from the logarithm by at
- * most d^2 / 8 of ln(high / low), where d = ln(high / low) / PIECES (derived: a chord's distance from a
- * logarithm). Over six decades this is 4e-4 of the range. */
+/* The number of pieces into which the range is divided. With d = ln(high / low) / PIECES, a straight piece
+ * differs from the logarithm by at most d^2 / 8 (derived: a chord's distance from a logarithm). As a fraction
+ * of ln(high / low), this is 4e-4 for six decades. */
 enum { PIECES = 64 };
 
 hl_status hl_transfer_function_visible_range(const hl_volume *volume, const hl_transfer_function *function,
@@ -46,21 +46,21 @@ typedef struct rows {
   size_t made;
 } rows;
 
-/* Appends the row a + f (b - a). The row's value becomes t, a place in the old range. */
+/* Appends the row a + f (b - a). The row begins with t, a place in the old range, in place of a value. */
 static void add_row(rows *r, const double *a, const double *b, double f, double t) {
   double *row = r->to + r->made++ * r->width;
   row[0] = t;
   for (size_t n = 1; n < r->width; n++) row[n] = f <= 0 ? a[n] : f >= 1 ? b[n] : a[n] + f * (b[n] - a[n]);
 }
 
-/* The place of a row in the old range, from 0 to 1. A place very near to a multiple of 1/PIECES becomes
- * this multiple, so that rounding makes no tiny pieces. */
+/* The place of a row's value in the old range, from 0 to 1. A place very close to a multiple of 1/PIECES
+ * becomes this multiple, so that rounding makes no tiny pieces. */
 static double place_of(const double *row, const double old[2]) {
   double t = (row[0] - old[0]) / (old[1] - old[0]), whole = round(t * PIECES);
   return fabs(t * PIECES - whole) < 1e-9 ? whole / PIECES : t;
 }
 
-/* Appends points of the line from row a to the next row, where t is from 0 to 1. The line's last point is
+/* Appends points of the line from row a to the next row, as far as t is from 0 to 1. The line's last point is
  * left out, because the next line begins with it. */
 static void add_line(rows *r, size_t a, const double old[2]) {
   const double *row = r->from + a * r->width, *next = row + r->width;
@@ -72,7 +72,7 @@ static void add_line(rows *r, size_t a, const double old[2]) {
   }
 }
 
-/* Appends all lines where t is from 0 to 1, divided into pieces. At least one row is appended. */
+/* Appends all lines, divided into pieces, as far as t is from 0 to 1. At least one row is appended. */
 static void divide_rows(rows *r, const double old[2]) {
   const double *first = r->from, *last = r->from + (r->count - 1) * r->width;
   double start = place_of(first, old), end = place_of(last, old);

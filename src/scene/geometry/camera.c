@@ -1,5 +1,5 @@
-/* scene/geometry/camera.c - the camera's axes, views, the camera turned to a view, and directions of lights
- * as the camera sees them. */
+/* scene/geometry/camera.c - the camera's axes, views, turning a camera to a view, and directions of lights
+ * relative to a camera. */
 #include "scene/geometry/camera.h"
 
 #include <string.h>
@@ -7,11 +7,11 @@
 #include "core/door.h"
 #include "volume/volume.h"
 
-/* Degrees. In a view with a steeper elevation, the view's up is too close to the line of sight to serve as
- * the camera's up. */
+/* Degrees. At a steeper elevation, the view's up is too close to the line of sight to be the camera's up. */
 #define STEEP 89.5
-#define LEVEL 1e-6 /* a horizon is level if it leans by at most this; the sine of the angle */
-/* Angles that are found from a camera's rounded coordinates are rounded to this many steps of a degree. */
+#define LEVEL 1e-6 /* a horizon counts as level if the sine of its angle is at most this */
+/* Angles that follow from a camera's rounded coordinates are rounded to multiples of a degree divided by this
+ * number. */
 #define ANGLE_STEPS 1e9
 /* An axis cannot be the front if the cosine of its angle to `up` is greater than this. */
 #define OBLIQUE 0.9
@@ -56,8 +56,7 @@ void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elev
   memcpy(direction, &way, sizeof way);
 }
 
-/* The first volume that tells its space; null: there is none. A volume that the scene turns counts as one
- * that does not tell it. */
+/* The first volume that tells its anatomical space and is not rotated in the scene; null: there is none. */
 static const hl_volume *first_in_space(const hl_scene_description *description) {
   for (size_t v = 0; v < description->volume_count; v++)
     if (description->volumes[v].volume->space != HL_SPACE_UNKNOWN &&
@@ -93,12 +92,13 @@ void hl_view_about(const hl_scene_description *description, vec3 given_up, hl_vi
                     .elevation_deg = HL_VIEW_ELEVATION};
 }
 
-/* The direction to the right for an eye at the view's front (azimuth 0). */
+/* The direction to the right of an eye that is in front of the volumes (azimuth 0). */
 static vec3 right_of_front(const hl_view *view) {
   return vec3_cross(vec3_of(view->up), vec3_of(view->front));
 }
 
-/* At elevation 90 the picture's up is where forward pointed on the horizon, so that up never jumps. */
+/* At elevation 90 the picture's up is the horizontal direction in which the camera looked at elevation 0, so
+ * that up never jumps. */
 void hl_view_axes(const hl_view *view, vec3 *right, vec3 *up, vec3 *forward) {
   double azimuth = view->azimuth_deg * HL_PI / 180, elevation = view->elevation_deg * HL_PI / 180,
          roll = view->roll_deg * HL_PI / 180;
@@ -141,9 +141,9 @@ hl_status hl_camera_turn(const hl_view *view, hl_camera *camera) {
   return HL_OK;
 }
 
-/* Which way is up for a camera: its up vector, unless that was made perpendicular to the line of sight from
- * an axis of the world. Then it is this axis: the first of z, y, x and their opposites for which the picture
- * is level. */
+/* The direction that is up for a camera. It is the camera's up vector, unless this vector is perpendicular to
+ * the line of sight and the picture is level for an axis of the world. Then it is this axis: the first of z,
+ * y, x and their opposites. */
 static vec3 upright_of(const hl_camera *camera) {
   static const vec3 axes[] = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0, 0, -1}, {0, -1, 0}, {-1, 0, 0}};
   vec3 right, up, forward, given = vec3_normalise(vec3_of(camera->up));

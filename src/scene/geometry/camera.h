@@ -7,9 +7,9 @@
 
 #include "core/vector.h"
 
-/* The camera's unit axes: forward from position to target, up as near to the camera's up as a right angle
- * allows. False if the camera's up lies along the line of sight: z is used then, or y where the line of sight
- * is along z. */
+/* Finds the camera's unit axes: forward points from position to target; up is perpendicular to forward, and
+ * as close to the camera's up as possible. False if the camera's up lies along the line of sight. Then z
+ * takes the place of the camera's up, or y if the line of sight is along z. */
 bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forward);
 
 #define HL_VIEW_AZIMUTH   30 /* azimuth of the three-quarter view, degrees */
@@ -18,21 +18,21 @@ bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forwa
 /* The picture's axes; unit. */
 void hl_view_axes(const hl_view *view, vec3 *right, vec3 *up, vec3 *forward);
 
-/* Whether a view is possible: false where up and front are not unit vectors at a right angle, or an angle
+/* Whether a view is possible. It is not if up and front are not unit vectors at a right angle, or if an angle
  * is not finite. */
 bool hl_view_is_possible(const hl_view *view);
 
 /* Places the camera at this distance from the target, in the view's direction. */
 void hl_camera_place(const hl_view *view, vec3 target, double distance, hl_camera *camera);
 
-/* The three-quarter view in which a direction (of any length) is up. Where a volume tells the anatomy, the
- * front of the view is the patient's. */
+/* The three-quarter view in which a direction (of any length) is up. If a volume tells the anatomy, the front
+ * of the view is the patient's front. */
 void hl_view_about(const hl_scene_description *description, vec3 up, hl_view *view);
 
-/* The anatomical space that the first volume tells which tells one and is not turned in the scene. */
+/* The anatomical space of the first volume that tells its space and is not rotated in the scene. */
 hl_space hl_scene_space(const hl_scene_description *description);
-/* Whether hl_scene_space() is known to tell the anatomy, as in files of DICOM and NIfTI: bodies then stand
- * upright along z. */
+/* Whether the space of hl_scene_space() really tells the anatomy, as in files of DICOM and NIfTI. Bodies then
+ * stand upright along z. */
 bool hl_scene_is_anatomical(const hl_scene_description *description);
 
 #endif

@@ -73,7 +73,7 @@ bool hl_cuts_leave(const cut_shape *cuts, size_t count, vec3 point) {
   return true;
 }
 
-/* A box around the region that is tested, in a shape's space: its middle, and half of its length along each
+/* The region that is tested, as a box in a shape's space: its middle, and half of its length along each
  * axis. */
 typedef struct extent {
   double middle[3], half[3];

@@ -8,8 +8,9 @@
 #include "core/key.h"
 #include "core/vector.h"
 
-/* A shape is a simple one in a space of its own: a plane's inside has x above 0, a box's has x, y and z from
- * -1 to 1, a sphere's is nearer than 1 to the origin. A plane's y and z are 0 everywhere. */
+/* A shape is given by the map to a space of its own, in which it is simple. There, the inside of a plane has
+ * x above 0, that of a box has x, y and z from -1 to 1, and that of a sphere is nearer than 1 to the origin.
+ * For a plane, the map makes y and z 0. */
 typedef struct cut_shape {
   hl_cut_type type;
   bool keep_inside;
@@ -22,24 +23,24 @@ cut_shape hl_cut_shape_in_world(const hl_cut *cut);
 /* The shape of volume->cuts[cut]. */
 cut_shape hl_cut_shape(const hl_scene_volume *volume, size_t cut);
 
-/* The shapes of all cuts of a volume. *shapes: [volume->cut_count], which the caller releases; null where the
- * volume has no cuts. Fails for lack of memory alone. */
+/* Finds the shapes of all cuts of a volume. *shapes: [volume->cut_count]; the caller releases them; null if
+ * the volume has no cuts. Fails only for lack of memory. */
 hl_status hl_cut_shapes(hl_context *context, const hl_scene_volume *volume, cut_shape **shapes,
                         hl_error *error);
 
-/* Gives a copy of a scene's volume the scene's cuts beside its own. cuts: [the volume's and the scene's
- * cut_count], which the volume then borrows. */
+/* Adds the scene's cuts to the cuts of a copy of one of the scene's volumes. cuts: room for the cuts of the
+ * volume and of the scene; the volume borrows it. */
 void hl_add_scene_cuts(const hl_scene_description *scene, hl_scene_volume *volume, hl_cut *cuts);
 
-/* Copies of a scene's volumes that have the scene's own cuts beside each volume's cuts; all null where the
+/* Copies of a scene's volumes to whose cuts the scene's own cuts were added; all members are null if the
  * scene has no cuts. */
 typedef struct placed_cuts {
   hl_scene_volume *volumes; /* owned; the arrays in them belong to the scene */
   hl_cut *cuts;             /* owned; the cuts of all volumes */
 } placed_cuts;
 
-/* Replaces the volumes of a placed description by those of `made`, where the scene has cuts. After a failure,
- * too, call hl_placed_cuts_release(). */
+/* If the scene has cuts, replaces the volumes of a placed description by copies, which `made` owns. Call
+ * hl_placed_cuts_release() even after a failure. */
 hl_status hl_cuts_place(hl_context *context, hl_scene_description *placed, placed_cuts *made,
                         hl_error *error);
 void hl_placed_cuts_release(hl_context *context, placed_cuts *made);
@@ -50,13 +51,13 @@ void hl_cuts_key_add(hl_key *key, const cut_shape *cuts, size_t count);
 /* Whether two shapes are the same. */
 bool hl_cut_same(const cut_shape *a, const cut_shape *b);
 
-/* Whether no cut removes a point of the shapes' space. */
+/* Whether a point of the space on which the shapes' maps act is left by all cuts. */
 bool hl_cuts_leave(const cut_shape *cuts, size_t count, vec3 point);
 
-/* Whether a box along the axes of the shapes' space is surely cut away: some cut removes all of it. */
+/* Whether a box along the axes of this space is surely cut away, because one cut removes all of it. */
 bool hl_cuts_remove_box(const cut_shape *cuts, size_t count, const double low[3], const double high[3]);
 
-/* Whether a box along the axes of the shapes' space is surely left: no cut removes any of it. */
+/* Whether a box along the axes of this space is surely left, because no cut removes any part of it. */
 bool hl_cuts_leave_box(const cut_shape *cuts, size_t count, const double low[3], const double high[3]);
 
 #endif

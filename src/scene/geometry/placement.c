@@ -1,5 +1,5 @@
-/* scene/geometry/placement.c - where a scene's volume is in the world, which part of it is there, and what
- * surrounds it. */
+/* scene/geometry/placement.c - where a scene's volumes lie in the world, which parts of them remain after
+ * clipping, and the empty value around them. */
 #include "scene/geometry/placement.h"
 
 #include <string.h>
@@ -82,8 +82,8 @@ void hl_scene_volume_box(const hl_scene_volume *volume, double low[3], double hi
   }
 }
 
-/* A value that stands for a histogram bin, and that voxels may really have: a whole number for integers, the
- * extreme values in the outermost bins. */
+/* A value that represents a bin of the histogram, and that voxels can have: a whole number for integers; in
+ * the outermost bins, the extreme value. */
 static double typical_value(const hl_volume *volume, int bin) {
   double width = (volume->maximum - volume->minimum) / HL_HISTOGRAM_BINS;
   if (bin == 0) return volume->minimum;
@@ -241,7 +241,7 @@ hl_status hl_lights_place(hl_context *context, const hl_scene_description *from,
   }
   for (int i = 0; i < suns->count; i++)
     *(hl_light *)&to->lights[to->light_count++] = hl_sun_light(&from->sky, &suns->suns[i]);
-  to->sky.suns = suns->count > 0; /* a sky with suns has another image, from which their light is taken */
+  to->sky.suns = suns->count > 0; /* if the sky has suns, their light was taken out of its image */
   if (suns->count > 0) to->sky.pixels = suns->rest;
   return HL_OK;
 }

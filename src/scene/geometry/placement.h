@@ -11,31 +11,33 @@
 /* The volume's scale along x, y or z (axis 0 to 2) of the world of its file. */
 double hl_scene_volume_scale(const hl_scene_volume *volume, int axis);
 
-/* Index space of scene volume -> world: the volume's own placement, then scale, rotate, translate. */
+/* The map from a volume's index space to the world: the volume's own placement, then scale, rotation,
+ * translation. */
 affine3 hl_scene_volume_index_to_world(const hl_scene_volume *volume);
 
-/* Index space of the volume's mask -> world: the mask's own placement, then the volume's scale, rotation and
- * translation. */
+/* The map from the index space of the volume's mask to the world: the mask's own placement, then the volume's
+ * scale, rotation and translation. */
 affine3 hl_scene_mask_index_to_world(const hl_scene_volume *volume);
 
-/* A mesh's own space -> world: scale, rotate, translate. */
+/* The map from a mesh's own space to the world: scale, rotation, translation. */
 affine3 hl_scene_mesh_to_world(const hl_scene_mesh *mesh);
 
-/* The box that the volume fills in its own index space: from -0.5 to n - 0.5 along each axis, cut down to
- * the clip box. The clip box lies in the file's own world; where the grid is oblique to it, its bounds in
- * index space count. */
+/* The box that the volume fills in its own index space: from -0.5 to n - 0.5 along each axis, cut down to the
+ * clip box. The clip box lies in the world of the volume's file. If the grid is oblique to the clip box, the
+ * bounds of the clip box in index space are used. */
 void hl_scene_volume_box(const hl_scene_volume *volume, double low[3], double high[3]);
 
-/* The smallest edge of a voxel. Without a volume it is a 200th of the longest side of the meshes' box. */
+/* The shortest edge of all voxels. In a scene without volumes it is a 200th of the longest side of the box
+ * around all meshes. */
 double hl_scene_smallest_edge(const hl_scene_description *scene);
 
-/* Finds the box around all volumes of a scene, as their clip boxes leave them, or around all meshes of a
- * scene without volumes; world space. */
+/* Finds the box, in the world, around all volumes of a scene, cut down to their clip boxes. In a scene
+ * without volumes it is the box around all meshes. */
 void hl_scene_content_box(const hl_scene_description *scene, vec3 *low, vec3 *high);
 
-/* Frame space, in which a scene is rendered: p -> (p - centre) / unit. centre is the middle of the boxes of
- * all volumes, or, where there are none, of all meshes; unit is the power of two that the smallest voxel edge
- * is 1 to 2 times as long as. */
+/* Frame space, in which a scene is rendered: p -> (p - centre) / unit. centre is the middle of the box around
+ * all volumes or, if there are none, around all meshes. unit is a power of two: the smallest voxel edge is 1
+ * to 2 units long. */
 typedef struct hl_frame_space {
   vec3 centre;
   double unit;
@@ -47,16 +49,16 @@ typedef struct hl_frame_space {
 /* Finds frame space. The description must have at least one volume or mesh. */
 hl_frame_space hl_scene_frame_space(const hl_scene_description *scene);
 
-/* The empty value, which the volume's surroundings and voxels that are not finite have: the most frequent
- * transparent value; if no value is transparent, a value below the volume's range, which is then treated as
- * transparent. */
+/* The empty value: the value of the volume's surroundings, and of voxels that are not finite. It is the most
+ * frequent transparent value. If no value is transparent, it is a value below the volume's range, which is
+ * then treated as transparent. */
 double hl_scene_volume_empty_value(const hl_scene_volume *volume);
 
 /* The direction in which a directional or spot light travels, in the world. */
 vec3 hl_light_way(const hl_camera *camera, const hl_light *light);
 
-/* Copies a description with all lights converted to the world, the suns of its sky after them. Images are
- * shared with `from` and `suns`; the array of lights and the vertices of polygons are owned by *to
+/* Copies a description. All lights of the copy are in the world, and are followed by the suns of its sky.
+ * Images are shared with `from` and `suns`. *to owns the array of lights and the vertices of polygons
  * (hl_placed_lights_release). */
 hl_status hl_lights_place(hl_context *context, const hl_scene_description *from, const sky_suns *suns,
                           hl_scene_description *to, hl_error *error);

@@ -30,13 +30,13 @@ hl_status hl_labels_function(hl_context *context, const hl_scene_volume *volume,
     hl_transfer_function_release(context, function);
     return hl_fail_memory(error, OPACITY_A_LABEL * labels * sizeof *opacity, "a transfer function");
   }
-  /* The value at which the points of the label before end, and their opacity there. */
+  /* The value at which the points of the previous label end, and the opacity there. */
   double end = -INFINITY, last = 0;
   if (labels > 0) opacity[opacity_count++] = (hl_opacity_point){(double)volume->labels[0].value - 1, 0};
   for (size_t n = 0; n < labels; n++) {
     const hl_label *label = &volume->labels[n];
     const double value = (double)label->value;
-    /* The voxels are floats. The voxels of a large label lie within this distance of it. */
+    /* Voxels are floats, which round large labels. They differ from the label by less than this. */
     const double around = fmax(0.5, fabs(value) * 0x1p-24);
     double begin = fmax(value - around, end), shown = label->visible ? label->opacity : 0;
     if (begin > end && last > 0) opacity[opacity_count++] = (hl_opacity_point){end, last};
@@ -62,12 +62,12 @@ hl_status hl_labels_function(hl_context *context, const hl_scene_volume *volume,
 
 enum { POINTS = 4 };
 
-/* A solid label's matter begins at this occupancy and is whole at the next, a sixth of a voxel deeper. A ray
- * that just touches a ball of a few voxels is half covered where the occupancy is 1/2: outlines are the
- * label's own. */
+/* The matter of a solid label begins at the first of these occupancies, and is whole at the second, a sixth
+ * of a voxel deeper. If a ray just touches a ball of a few voxels at the occupancy 1/2, it is half covered,
+ * so that outlines are those of the label. */
 static const double SOLID_FROM = 0.48, SOLID_TO = 0.51, SOLID_OPACITY = 0.9999;
-/* A translucent label is a skin from its surface to this occupancy. A label that is one voxel thin has both
- * of its skins. */
+/* A translucent label is a skin between these occupancies, inside the label's surface. A label that is only
+ * one voxel thick has a skin on both sides. */
 static const double SKIN_FROM = 0.5, SKIN_TO = 0.7;
 
 /* The points of one drawn volume. */
@@ -76,8 +76,9 @@ typedef struct drawn_points {
   hl_color_point color;
 } drawn_points;
 
-/* Gives an occupancy its transfer function. A skin takes `opacity` of the light that crosses it at a right
- * angle: a homogeneous layer of opacity o per u has the opacity o if it is u thick. */
+/* Gives an occupancy its transfer function. A skin takes the fraction `opacity` of light that crosses it at a
+ * right angle: a homogeneous layer whose opacity is o per unit distance u has the opacity o if it is u
+ * thick. */
 static void set_function(const hl_label *label, hl_scene_volume *drawn, drawn_points *points) {
   mat3 placed = hl_scene_volume_index_to_world(drawn).linear;
   hl_transfer_function *function = &drawn->transfer_function;
@@ -103,7 +104,8 @@ static bool is_drawn(const hl_label *label) { return label->visible && label->op
 static bool is_solid(const hl_label *label) { return label->visible && label->opacity >= 1; }
 static bool is_skin(const hl_label *label) { return is_drawn(label) && !is_solid(label); }
 
-/* The number of drawn volumes. All solid labels are drawn as one volume, and each other label by itself. */
+/* The number of volumes that draw a label map. All solid labels are drawn as one volume, and each other label
+ * by a volume of its own. */
 static size_t count_drawn(const hl_scene_volume *volume) {
   if (volume->label_count == 0) return 1;
   size_t skins = 0, solids = 0;
@@ -114,7 +116,7 @@ static size_t count_drawn(const hl_scene_volume *volume) {
   return skins + (solids > 0);
 }
 
-/* Adds a volume that draws a label, or several solid ones. The volume owns the occupancy from now on. */
+/* Adds the volume that draws a label, or all solid labels. This volume owns the occupancy from now on. */
 static void add_drawn(hl_scene_description *placed, const hl_scene_volume *map, const hl_label *label,
                       hl_volume *occupancy, drawn_points **points) {
   if (occupancy == NULL) return;
@@ -126,8 +128,8 @@ static void add_drawn(hl_scene_description *placed, const hl_scene_volume *map, 
   set_function(label, drawn, (*points)++);
 }
 
-/* Draws all solid labels as one volume. If they have colours of their own, its own colour is white, which
- * these multiply. */
+/* Draws all solid labels as one volume. If the labels' colours differ, they are the colours of the volume's
+ * own voxels, and the transfer function's colour is white. */
 static hl_status draw_solids(hl_context *context, hl_scene_description *placed, const hl_scene_volume *map,
                              drawn_points **points, hl_error *error) {
   size_t count = 0;
@@ -178,7 +180,7 @@ static hl_status draw_map(hl_context *context, hl_scene_description *placed, con
   return status == HL_OK ? draw_skins(context, placed, &whole, points, error) : status;
 }
 
-/* Adds a volume with its mask as a lattice. */
+/* Adds a volume whose mask is replaced by its lattice. */
 static hl_status draw_masked(hl_context *context, hl_scene_description *placed, const hl_scene_volume *volume,
                              hl_error *error) {
   hl_volume *lattice = NULL;

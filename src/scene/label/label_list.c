@@ -1,5 +1,5 @@
-/* scene/label/label_list.c - the labels of a label map: the labels that its voxels have, with names and
- * colours from its file or from a table, if these give them any. */
+/* scene/label/label_list.c - the labels of a label map: lists the labels that its voxels have, with the names
+ * and colours that its file or a table gives them. */
 #include <math.h>
 #include <string.h>
 
@@ -19,7 +19,7 @@ typedef struct found_labels {
   size_t count;
 } found_labels;
 
-/* Adds a label where it is new; false where there are too many. */
+/* Adds a label if it is new; false if there are too many. */
 static bool add_value(found_labels *found, int64_t value) {
   size_t low = 0, high = found->count;
   while (low < high) {
@@ -41,8 +41,8 @@ static hl_status fail_value(double value, hl_error *error) {
                  value);
 }
 
-/* Collects the values of a map's voxels. Equal labels stand side by side in a row, so only a value that
- * differs from the voxel before is looked up. */
+/* Collects the values of a map's voxels. Neighbours in a row mostly have the same label, so that a value is
+ * looked up only if it differs from that of the voxel before it. */
 static hl_status find_values(const hl_volume *map, found_labels *found, hl_error *error) {
   for (size_t k = 0; k < map->dimension[2]; k++)
     for (size_t j = 0; j < map->dimension[1]; j++) {

@@ -33,8 +33,9 @@ static word make_word(char *text, bool quoted) {
   return made;
 }
 
-/* The characters that part a line's words. Names have blanks where another character follows the number and
- * parts the rest: commas, semicolons, or tabs between all of the words. */
+/* The characters that separate a line's words. They are blanks, tabs, commas and semicolons, unless one of
+ * these characters follows the number: a comma, a semicolon, or a tab if tabs separate all words. Then this
+ * character alone separates words, and names may have blanks. */
 static const char *separators_of(const char *line) {
   const char *at = line + strspn(line, " \t");
   at += strspn(at, "-0123456789");
@@ -44,7 +45,7 @@ static const char *separators_of(const char *line) {
   return *at == ',' ? "," : *at == ';' ? ";" : *at == '\t' && tabs >= 4 ? "\t" : " \t,;";
 }
 
-/* Parts a line into words, in place; quotes hold separators together. */
+/* Splits a line into words, in place. Separators within quotes do not count. */
 static int part_line(char *line, word words[MOST_WORDS]) {
   int count = 0;
   const char *separators = separators_of(line);
@@ -61,7 +62,7 @@ static int part_line(char *line, word words[MOST_WORDS]) {
   return count;
 }
 
-/* Parts a line at its tabs alone, in place: names have blanks, and fields may be empty. */
+/* Splits a line at its tabs alone, in place. Names may have blanks, and fields may be empty. */
 static int part_at_tabs(char *line, word words[MOST_WORDS]) {
   int count = 0;
   for (char *at = line; at != NULL && count < MOST_WORDS;) {
@@ -105,7 +106,7 @@ static bool read_color(const word *words, double color[3]) {
   return true;
 }
 
-/* Reads a label from one line. False: the line has none of the forms. */
+/* Reads a label from one line. False: the line has no form that is known. */
 static bool read_label(const word *words, int count, hl_label *label) {
   *label = (hl_label){.value = words[0].whole, .opacity = 1, .visible = 1};
   if (count >= 5 && !words[1].is_number) {
@@ -244,9 +245,9 @@ void hl_label_list_release(hl_context *context, hl_label_list *list) {
   *list = (hl_label_list){0};
 }
 
-/* The fractional part of the golden ratio, times 2^64. Hues that follow each other at this distance lie as
- * far as possible from all earlier ones. The product with a label, modulo 2^64, is the fraction of the
- * turn, exact for numbers of any size. */
+/* The fractional part of the golden ratio, times 2^64. If hues follow each other at this distance, each is as
+ * far as possible from all earlier ones. The product with a label, modulo 2^64, is the hue as a fraction of a
+ * full turn; it is exact for numbers of any size. */
 static const uint64_t GOLDEN = 0x9e3779b97f4a7c15u;
 
 void hl_label_distinct_color(int64_t value, double linear[3]) {
@@ -254,8 +255,7 @@ void hl_label_distinct_color(int64_t value, double linear[3]) {
   double hue = 6 * (double)((uint64_t)value * GOLDEN >> 11) * 0x1p-53;
   double strength = strengths[(value < 0 ? 0 - (uint64_t)value : (uint64_t)value) % 3];
   for (int c = 0; c < 3; c++) {
-    /* away: the distance of the hue from the one opposite to this channel's own hue; 3: it is this channel's
-     * own. */
+    /* The distance of the hue from the one opposite to this channel's hue. It is 3 for this channel's hue. */
     double away = fabs(fmod(hue + 6 - 2 * c, 6) - 3);
     double pure = fmin(fmax(away - 1, 0), 1);
     linear[c] = hl_srgb_decode(0.92 * (1 - strength * (1 - pure)));

@@ -16,16 +16,17 @@ typedef struct hl_label_list {
   char *names; /* memory that the labels' names point into */
 } hl_label_list;
 
-/* Reads a table. Lines are "number name R G B [A]", "number R G B A visible mesh \"name\"" or either with
- * commas; colours are sRGB, of 0 to 255 or, where none is above 1 and one has a point, of 0 to 1. Lines that
- * begin with #, and a first line without a number, are skipped. */
+/* Reads a table. Lines are "number name R G B [A]", "number R G B A visible mesh \"name\"", or one of these
+ * with commas. Colours are sRGB, from 0 to 255; if no number is above 1 and one has a decimal point, from 0
+ * to 1. Lines that begin with #, and a first line without a number, are skipped. */
 hl_status hl_label_table_load(hl_context *context, const char *path, hl_label_list *list, hl_error *error);
 /* Reads a table from memory. name: the text's name in errors. */
 hl_status hl_label_table_parse(hl_context *context, const char *text, size_t length, const char *name,
                                hl_label_list *list, hl_error *error);
 void hl_label_list_release(hl_context *context, hl_label_list *list);
 
-/* A colour of its own for each label: hues a golden angle apart. */
+/* A colour for each label, by which it differs from other labels. Hues of consecutive labels are a golden
+ * angle apart. */
 void hl_label_distinct_color(int64_t value, double linear[3]);
 
 #endif

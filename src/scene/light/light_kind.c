@@ -1,4 +1,4 @@
-/* scene/light/light_kind.c - finds the table of a light's type, and has functions that several types
+/* scene/light/light_kind.c - finds the table of a light's type, and has the functions that several types
  * share. */
 #include "scene/light/light_kind.h"
 

@@ -1,12 +1,13 @@
 /* scene/light/light_kind.h - the interface of a type of light.
  *
- * A type of light is a table in a file of its own: the rules for its settings, and its shape as geometry.
- * light_kinds.h lists the types. Checks, files and everything that renders ask the table: they do not name a
- * type. (The reference, which shares no code with what it judges, names them.)
+ * Each type of light is a table, in a file of its own: the rules for its settings, and its shape as geometry.
+ * light_kinds.h lists the types. Checks, the reading and writing of scene files, and renderers use this
+ * table, and name no type. (Only the reference names types, because it shares no code with the renderers that
+ * it judges.)
  *
- * `facing` is a unit vector: the direction from the light to the content, or the direction of parallel light.
- * Offsets are counted from the light's centre. For parallel light they are counted from its direction;
- * directions are points at distance 1. */
+ * `facing` is a unit vector: the direction from the light to the scene's content, or the direction of
+ * parallel light. Offsets are relative to the light's centre. For parallel light, points are directions at
+ * distance 1, and offsets are relative to the light's direction. */
 #ifndef HL_SCENE_LIGHT_LIGHT_KIND_H
 #define HL_SCENE_LIGHT_LIGHT_KIND_H
 
@@ -19,8 +20,9 @@ struct light_kind {
   bool parallel;      /* the light is infinitely far away, and has a direction instead of a position */
   bool sphere;        /* the light looks like a disk that faces the observer */
   bool cone;          /* the light shines only within a cone around `direction` */
-  bool outline;       /* the members `vertices` of the light give its shape and its place */
-  bool parallelogram; /* the unit square, from which points are taken, is spanned along edge1 and edge2 */
+  bool outline;       /* `vertices` give the light's shape and its place */
+  bool parallelogram; /* points are taken from a unit square, and edge1 and edge2 are the sides of this square
+                       * on the light */
   double deviations;  /* the light's extent is this many times the standard deviation of its points */
 
   /* ---- checks; settings are in their ranges already ---- */
@@ -32,24 +34,24 @@ struct light_kind {
   /* ---- its shape ---- */
   /* Makes the light's shape from its settings. hl_light_shape() sets `kind` and `image_up` afterwards. */
   light_shape (*shape)(const hl_light *light);
-  /* The mean of x x' over all points of the light, where x is a point's offset: a rect has (e1 e1' + e2
-   * e2') / 12, a disk r^2/4 (1 - n n'). Spheres, and the directions of parallel light, count as the disk
+  /* The mean of x x' over all points of the light, where x is a point's offset: a rect has (e1 e1' + e2 e2')
+   * / 12, a disk r^2/4 (1 - n n'). A sphere, and the directions of parallel light, count as a disk
    * perpendicular to `facing`. */
   mat3 (*spread)(const light_shape *shape, vec3 facing);
-  /* The offset of the light's point that belongs to (a, b) of the unit square. Equal areas of the square
-   * belong to equal areas of the light. */
+  /* The offset of the light's point for the point (a, b) of the unit square. Equal areas of the square become
+   * equal areas of the light. */
   vec3 (*point)(const light_shape *shape, vec3 facing, double a, double b);
   /* The plane of the emission image on the light's surface. */
   emission_plane (*plane)(const light_shape *shape, vec3 facing);
-  /* The apparent lengths of the two sides of the unit square as seen along a unit vector, in units of length;
-   * infinite: a length is not known. The function is null for types that are parallel. */
+  /* The lengths that the two sides of the unit square on the light seem to have when seen along a unit
+   * vector, in units of length. Infinite: a length is not known. The function is null for parallel types. */
   void (*apparent_lengths)(const light_shape *shape, vec3 along, double length[2]);
 };
 
 /* The table of a light's type. */
 const light_kind *hl_light_kind(const hl_light *light);
 
-/* The shape of a light. Its vertices are borrowed from the light. */
+/* Finds the shape of a light. The shape borrows the light's vertices. */
 light_shape hl_light_shape(const hl_light *light);
 
 /* ---- for types whose place is `position` and whose shape is a disk or a sphere of `radius` ---- */
@@ -57,8 +59,8 @@ light_shape hl_light_shape(const hl_light *light);
 hl_status hl_check_round_reach(const hl_checker *check, const hl_light *light, const hl_frame_space *space);
 light_shape hl_round_shape(const hl_light *light);
 void hl_apparent_diameter(const light_shape *shape, vec3 along, double length[2]);
-/* The spread and the points of a disk of the shape's radius that faces along a unit vector. A sphere counts
- * as the disk that faces the viewer. */
+/* The spread, a point and the image's plane of a disk with the shape's radius and the normal `facing`. A
+ * sphere counts as the disk that faces the viewer. */
 mat3 hl_round_spread(const light_shape *shape, vec3 facing);
 vec3 hl_round_point(const light_shape *shape, vec3 facing, double a, double b);
 emission_plane hl_round_plane(const light_shape *shape, vec3 facing);

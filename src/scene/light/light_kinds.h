@@ -1,6 +1,6 @@
-/* scene/light/light_kinds.h - the list of the types of light: the enumerator, the name that scene files
- * use, and the settings that lights of the type have beside those of all lights. The file of a type "rect"
- * is light/rect.c, its table hl_light_kind_rect (light_kind.h). The build reads the names here. */
+/* scene/light/light_kinds.h - the list of the types of light: the enumerator, the name in scene files, and
+ * the settings that lights of this type have in addition to those of all lights. The file of a type "rect" is
+ * light/rect.c, its table hl_light_kind_rect (light_kind.h). The build reads the names here. */
 #ifndef HL_SCENE_LIGHT_LIGHT_KINDS_H
 #define HL_SCENE_LIGHT_LIGHT_KINDS_H
 
@@ -15,7 +15,8 @@ enum light_settings {
   LIGHT_CONE = 64
 };
 
-/* Calls a macro for each type of light. KIND: a macro of four arguments, of which the first one is `with`. */
+/* Calls a macro for each type of light. KIND: a macro of four arguments; `with` is passed to it as the
+ * first. */
 /* clang-format off */
 #define HL_LIGHT_KINDS(KIND, with)                                                           \
   KIND(with, HL_LIGHT_DIRECTIONAL, directional, LIGHT_DIRECTION | LIGHT_ANGULAR_DIAMETER)    \

@@ -1,4 +1,5 @@
-/* scene/light/light_shape.c - polygons and disks: their points, and the first and second moments of these. */
+/* scene/light/light_shape.c - polygons and disks: their points, and the first and second moments of their
+ * points. */
 #include "scene/light/light_shape.h"
 
 /* a b' */
@@ -22,9 +23,10 @@ static double greatest_side(const double (*vertices)[3], size_t count) {
   return side;
 }
 
-/* A fan of triangles from the first vertex, each with a signed area; parts outside the polygon cancel. Over a
- * triangle a, b, c the mean of x is s / 3, and the mean of x x' is (a a' + b b' + c c' + s s') / 12, s = a +
- * b + c, since barycentric coordinates have the mean products 1/6 (squares) and 1/12 (derived). */
+/* The polygon is treated as a fan of triangles around the first vertex, with signed areas, so that parts
+ * outside the polygon cancel. Over a triangle a, b, c the mean of x is s / 3, and the mean of x x' is (a a' +
+ * b b' + c c' + s s') / 12, s = a + b + c, because the mean of the square of a barycentric coordinate is 1/6,
+ * and that of the product of two of them 1/12 (derived). */
 polygon_shape hl_polygon_shape(const double (*vertices)[3], size_t count) {
   polygon_shape shape = {.diameter = greatest_side(vertices, count)};
   vec3 first = vec3_of(vertices[0]), twice_area = {0, 0, 0}, sum = {0, 0, 0};
@@ -127,8 +129,8 @@ void hl_upright(vec3 normal, vec3 wanted_up, vec3 *right, vec3 *up) {
   *up = vec3_cross(normal, *right);
 }
 
-/* Solves offset = middle + s right + t up for s and t. The vectors right and up need not be perpendicular
- * (derived, by their cross products). */
+/* Solves offset = middle + s right + t up for s and t, also if right and up are not perpendicular (derived,
+ * by cross products). */
 void hl_emission_place(const emission_plane *plane, vec3 offset, double *s, double *t) {
   vec3 on_plane = vec3_subtract(offset, plane->middle), normal = vec3_cross(plane->right, plane->up);
   double area = vec3_dot(normal, normal);

@@ -8,8 +8,8 @@
 
 typedef struct light_kind light_kind; /* light_kind.h */
 
-/* The shape of a light, which the light's type makes of the light's settings. Lengths and positions are those
- * of the space that the settings are in. Members that a type does not have are 0. */
+/* The shape of a light, which is made from the light's settings by the rules of its type. Lengths and
+ * positions are in the space of the settings. Members that a type does not use are 0. */
 typedef struct light_shape {
   const light_kind *kind;
   vec3 centre;       /* not of parallel lights */
@@ -17,15 +17,15 @@ typedef struct light_shape {
                       * length */
   vec3 normal;       /* of a disk; unit */
   vec3 edge1, edge2; /* of a parallelogram: full edges */
-  double radius;     /* for a sphere or a disk its radius; for parallel light the radius of the disk of its
+  double radius;     /* for a sphere or a disk: its radius; for parallel light: the radius of the disk of
                       * directions, at distance 1 */
-  double cone_half_angle, cone_edge; /* for a cone, radians: there is no light beyond its half angle; the
-                                      * smooth edge within has the width cone_edge */
+  double cone_half_angle, cone_edge; /* for a cone, in radians: half of its angle, beyond which there is no
+                                      * light, and the width of the smooth edge inside it */
   const double (*vertices)[3];       /* for a polygon: [vertex_count]; borrowed from the settings */
   size_t vertex_count;
-  vec3 image_up;    /* the direction in which the top of an image on the light's surface lies */
-  bool is_wide;     /* the light is more than a point, or than one direction */
-  bool has_surface; /* the light has a surface on which an image can be */
+  vec3 image_up;    /* for an image on the light's surface: the direction in which its top lies */
+  bool is_wide;     /* the light has more than one point, or more than one direction */
+  bool has_surface; /* the light has a surface that can carry an image */
 } light_shape;
 
 typedef struct polygon_shape {
@@ -46,14 +46,14 @@ double hl_polygon_unevenness(const polygon_shape *shape, const double (*vertices
 /* Whether two edges cross each other (touching is not crossing). */
 bool hl_polygon_crosses_itself(const polygon_shape *shape, const double (*vertices)[3], size_t count);
 
-/* The plane of a light's emission image: positions in it are offsets from the light's centre, or for parallel
- * light from the direction towards it, at distance 1. */
+/* The plane of a light's emission image. Positions in it are offsets from the light's centre; for parallel
+ * light, offsets at distance 1 from the direction to the light. */
 typedef struct emission_plane {
   vec3 middle;    /* middle of the image */
   vec3 right, up; /* vectors from `middle` to the middles of the image's right and top edges */
 } emission_plane;
 
-/* Unit vectors to the right and upwards, as seen by someone who looks against a unit normal. */
+/* Finds unit vectors to the right and upwards, as seen by someone who looks against a unit normal. */
 void hl_upright(vec3 normal, vec3 wanted_up, vec3 *right, vec3 *up);
 
 /* The image coordinates of an offset in the plane: s along right and t along up, each from -1 to 1 within the
@@ -62,7 +62,8 @@ void hl_emission_place(const emission_plane *plane, vec3 offset, double *s, doub
 
 /* ---- disks; normal: unit ---- */
 
-/* The offset from the centre of the point for (a, b) of the unit square, equal areas to equal areas. */
+/* The offset from the centre of the disk's point for the point (a, b) of the unit square. Equal areas become
+ * equal areas. */
 vec3 hl_disk_point(vec3 normal, double radius, double a, double b);
 mat3 hl_disk_spread(vec3 normal, double radius);
 /* The square around the disk. */

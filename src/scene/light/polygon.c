@@ -5,7 +5,8 @@
 
 /* ---- checks ---- */
 
-/* Fractions of the polygon's diameter: how far its vertices may leave its plane, and the least width. */
+/* As fractions of the polygon's diameter: the greatest distance of its vertices from its plane, and its least
+ * width. */
 static const double FLAT = 1e-3, THIN = 1e-6;
 
 static hl_status check_outline(const hl_checker *check, const hl_light *light) {
@@ -70,8 +71,8 @@ static flat_polygon flatten(const light_shape *shape) {
 }
 
 /* The polygon's area left of x: the integral of y dx along the part of the outline left of x (derived:
- * Green's theorem; the cut runs along y and adds nothing). The outline runs counterclockwise about the
- * normal, so the sign is reversed. */
+ * Green's theorem; the cut at x runs along y and adds nothing). The sign is reversed, because the outline
+ * runs counter-clockwise about the normal. */
 static double area_left_of(const flat_polygon *polygon, double x) {
   double area = 0;
   for (size_t i = 0; i < polygon->shape->vertex_count; i++) {
@@ -85,8 +86,8 @@ static double area_left_of(const flat_polygon *polygon, double x) {
   return area;
 }
 
-/* Finds a place on the vertical line at x. The line may enter and leave the polygon several times: the
- * fraction b of its length inside the polygon lies below the y that is returned. */
+/* Finds the y on the vertical line at x below which the fraction b of the line's length in the polygon lies.
+ * The line may enter and leave the polygon several times. */
 static double height_of_part(const flat_polygon *polygon, double x, double b) {
   double crossing[HL_LIMIT_VERTICES], length = 0;
   size_t count = 0;
@@ -110,9 +111,8 @@ static double height_of_part(const flat_polygon *polygon, double x, double b) {
   return count > 0 ? crossing[count - 1] : 0;
 }
 
-/* The point that belongs to (a, b) of the unit square: the fraction a of the polygon's area lies left of the
- * point's x, and on the vertical line at x the fraction b of the line within the polygon lies below the
- * point's y. */
+/* The point for (a, b) of the unit square. The fraction a of the polygon's area lies left of the point's x.
+ * On the vertical line at x, the fraction b of the line's length in the polygon lies below the point's y. */
 static vec3 point(const light_shape *shape, vec3 facing, double a, double b) {
   (void)facing;
   flat_polygon polygon = flatten(shape);

@@ -1,8 +1,8 @@
-/* scene/light/rect.c - a light that is a parallelogram, given by its centre and two edges. Where one edge has
- * no length, it is a line. */
+/* scene/light/rect.c - a light that is a parallelogram, given by its centre and two edges. If one of the
+ * edges has no length, the light is a line. */
 #include "scene/light/light_kind.h"
 
-/* The least area of a parallelogram that an image can be on, as a part of the product of its edges. */
+/* The least area of a parallelogram that can carry an image, as a fraction of the product of its edges. */
 static const double THIN = 1e-6;
 
 static hl_status reaches(const hl_checker *check, const hl_light *light, const hl_frame_space *space) {

@@ -12,8 +12,8 @@
 #include "scene/light/sky.h"
 #include "scene/scene.h"
 
-/* A camera's axes, and half of the picture's width (across) and height (down) where `forward` is one unit
- * long. */
+/* A camera's axes, and half of the picture's width (across) and height (down) at distance 1 along
+ * `forward`. */
 typedef struct eye {
   vec3 right, up, forward;
   double across, down;

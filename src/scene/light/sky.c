@@ -11,7 +11,8 @@ hl_status hl_sky_check(const hl_sky *sky, hl_error *error) {
   return hl_check_pixels(&check, sky->pixels, sky->width, sky->height);
 }
 
-/* Within 8 degrees of up, the world's x axis is no good direction to measure from. */
+/* If the world's x axis is within 8 degrees of up, it cannot serve as the direction from which angles are
+ * measured. */
 static const double ALONG_X = 0.99;
 
 sky_axes hl_sky_axes(const hl_sky *sky) {
@@ -26,7 +27,7 @@ sky_axes hl_sky_axes(const hl_sky *sky) {
 }
 
 /* The two pixels around a position along one axis, and the fraction of the way from the first to the second.
- * around: the first pixel follows the last one; otherwise positions beyond the ends count as the ends. */
+ * around: the first pixel follows the last one; false: positions beyond the ends count as the ends. */
 static double neighbours(double position, int count, bool around, size_t pixel[2]) {
   double at = position - 0.5;
   if (around && at < 0) at += count;

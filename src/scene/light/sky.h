@@ -10,13 +10,13 @@
 
 /* The sky's own axes: unit vectors in the world, at right angles to each other. */
 typedef struct sky_axes {
-  vec3 right, middle, up; /* middle: towards the image's middle column; right: to the right of it */
+  vec3 right, middle, up; /* middle: points to the image's middle column; right: points to its right */
 } sky_axes;
 
 sky_axes hl_sky_axes(const hl_sky *sky);
 
-/* The radiance from a direction (unit, world, towards the sky), times the strength; 0 below the horizon of a
- * hemisphere, and for no sky. */
+/* The radiance of the sky, times its strength, in a direction (unit, world, towards the sky). It is 0 below
+ * the horizon of a hemisphere, and if there is no sky. */
 void hl_sky_radiance(const hl_sky *sky, const sky_axes *axes, vec3 direction, double radiance[3]);
 
 /* Adds everything on which the radiance depends to a key. mark: the number that identifies the image's pixels

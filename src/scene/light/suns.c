@@ -1,14 +1,14 @@
 /* scene/light/suns.c - finds the suns of a sky's image, and makes lights of them.
  *
- * The search goes from the brightest pixel on. The spot around this pixel is a cap of directions. Its radius
- * is chosen from a ladder of radii: it is the radius that holds the most light for its size. In each channel,
- * the sun gets the light of the cap's pixels that exceeds the brightest pixel of the ring around the cap. The
- * rest stays in the image, so that the image has no step at the cap's rim. Spots that are too wide, or too
- * weak for a light of their own, stay as they are.
+ * The search begins at the brightest pixel. The spot around this pixel is a cap of directions. Its radius is
+ * chosen from a series of radii: it is the one that holds the most light for its size. In each channel, light
+ * that exceeds the brightest pixel of the ring around the cap goes from the cap's pixels to the sun. The rest
+ * stays in the image, so that the image has no step at the cap's rim. Spots that are too wide, or too weak
+ * for a light of their own, stay in the image.
  *
- * The image is bilinear between the middles of its pixels (scene/light/sky.c), and so is a sum of tents, one
- * for each pixel. The integral over a tent's directions is the integral over its row's angle times the
- * integral over its column's angle. */
+ * The image is interpolated bilinearly between the middles of its pixels (scene/light/sky.c). So it is a sum
+ * of tent functions, one for each pixel. The integral over a tent's directions is the integral over its row's
+ * angle times the integral over its column's angle. */
 #include "scene/light/suns.h"
 
 #include <string.h>
@@ -19,7 +19,7 @@
 /* WIDEST: the greatest half angle of a sun. FARTHEST: the greatest angle from a sun's middle at which light
  * may still belong to the sun. */
 static const double WIDEST = 12 * HL_PI / 180, FARTHEST = 20 * HL_PI / 180;
-/* Radii fall by this factor, from the farthest to less than a pixel. */
+/* The radii that are tried: from FARTHEST to less than a pixel, each is the one before times this factor. */
 static const double LADDER = 0.70710678118654752;
 /* The radius of the ring around a cap is RING times the cap's radius, plus RING_ROWS rows of the image. */
 static const double RING = 1.2, RING_ROWS = 1.5;
@@ -27,28 +27,29 @@ static const double RING = 1.2, RING_ROWS = 1.5;
 static const double FAR_ABOVE = 8;
 /* A sun sends at least this fraction of the image's light. */
 static const double LEAST_SHARE = 0.05;
-/* What surrounds a sun has at most this fraction of the brightness of the sun's brightest pixel. */
+/* The surroundings of a sun have at most this fraction of the brightness of the sun's brightest pixel. */
 static const double MOST_AROUND = 0.5;
 
 enum { TRIES = 64 /* spots that are looked at */, STEPS = 16 /* steps towards the middle of a spot */ };
 
 /* ---- integrals over a pixel's tent ---- */
 
-/* Integrals of a pixel's tent over the angle a between its row and up: of the tent times sin a, times sin^2
- * a and times sin a cos a. They give the solid angle, and the directions across and along up. */
+/* Integrals of a pixel's tent over the angle a between its row and up: of the tent times sin a, times sin^2 a
+ * and times sin a cos a. They give the tent's solid angle, and the components of its directions across and
+ * along up. */
 typedef struct row_integrals {
   double area, across, along;
 } row_integrals;
 
-/* Gauss and Legendre's rule of five points: pieces are at most half a turn long, rarely more than a degree.
- */
+/* The nodes and weights of Gauss and Legendre's rule with five points. The pieces that it integrates are at
+ * most half a turn long, and rarely more than a degree. */
 static const double NODES[5] = {-0.906179845938664, -0.538469310105683, 0, 0.538469310105683,
                                 0.906179845938664},
                     WEIGHTS[5] = {0.236926885056189, 0.478628670499366, 0.568888888888889, 0.478628670499366,
                                   0.236926885056189};
 
-/* Adds to the integrals the part of a tent from `from` to `to`, cut off at `last`. The tent rises linearly
- * from 0 at `foot` to 1 at `top`; where these are the same it is 1 everywhere. */
+/* Adds to the integrals a piece of a tent, from the angle `from` to `to`, but only up to `last`. On this
+ * piece, the tent is linear, with 0 at `foot` and 1 at `top`; if these are the same, it is 1 everywhere. */
 static void add_piece(double from, double to, double last, double foot, double top, row_integrals *sum) {
   to = fmin(to, last);
   for (int i = 0; i < 5 && to > from; i++) {
@@ -83,13 +84,13 @@ typedef struct brightest {
 
 typedef struct search {
   const hl_sky *sky;
-  const float *pixels;  /* [height][width][3]; the image without the suns found so far */
+  const float *pixels;  /* [height][width][3]; the image without the suns that were found so far */
   row_integrals *rows;  /* [height] */
   double (*columns)[2]; /* [width]: sine and cosine of the angle to the middle column */
-  brightest *peaks;     /* [height]; the brightest pixel of each row outside of the caps that are left out */
-  double wide, bend;   /* two integrals over the tent of a column: of 1, and of the cosine of the angle to the
-                        * column's middle */
-  cap left_out[TRIES]; /* caps in which no sun begins any more */
+  brightest *peaks;     /* [height]; the brightest pixel of each row, without the pixels in `left_out` */
+  double wide, bend;    /* two integrals over the tent of a column: of the tent, and of the tent times the
+                         * cosine of the angle from the column's middle */
+  cap left_out[TRIES];  /* caps in which no sun begins any more */
   int left_out_count;
   double mean, total; /* brightness of the whole image: its mean, and its integral over all directions */
 } search;
@@ -109,7 +110,7 @@ static const float *pixel_of(const search *all, int row, int column) {
   return all->pixels + place_of(all, row, column);
 }
 
-/* The integral of unit vectors over a pixel's tent. */
+/* The integral of unit vectors over the directions of a pixel's tent. */
 static vec3 moment_of(const search *all, int row, int column) {
   const row_integrals *of = &all->rows[row];
   double across = of->across * all->bend;
@@ -149,9 +150,9 @@ static void renew_peaks(search *all, const cap *changed) {
 
 typedef void visit_pixel(const search *all, int row, int column, void *data);
 
-/* The number of columns of a row, to each side of a cap's middle, that the cap may touch. Derived: a
- * direction at the angle a to up, turned about up by t from the middle, which is at the angle b to up, has
- * the cosine sin a sin b cos t + cos a cos b to the middle. */
+/* The number of columns of a row that a cap may touch on each side of its middle. Derived: let the cap's
+ * middle be at the angle b to up, and a direction at the angle a to up, turned about up by t from the middle.
+ * The cosine between the two is sin a sin b cos t + cos a cos b. */
 static int columns_of_cap(const search *all, const cap *of, int row) {
   double a = (row + 0.5) * HL_PI / all->sky->height, b = acos(fmin(fmax(of->middle.z, -1), 1));
   double least = (cos(of->radius) - cos(a) * cos(b)) / fmax(sin(a) * sin(b), 1e-12);
@@ -160,8 +161,8 @@ static int columns_of_cap(const search *all, const cap *of, int row) {
   return (int)fmin(ceil(turn / (2 * HL_PI) * all->sky->width + 1), all->sky->width / 2 + 1.0);
 }
 
-/* Visits the pixels whose middles lie within a cap, and farther than `nearest` from the cap's middle. nearest
- * below 0: all pixels of the cap. */
+/* Visits the pixels whose middles lie within a cap, but farther than `nearest` from the cap's middle. If
+ * `nearest` is below 0, visits all pixels of the cap. */
 static void visit_cap(const search *all, const cap *of, double nearest, visit_pixel *visit, void *data) {
   int first, end, width = all->sky->width;
   rows_of_cap(all, of, &first, &end);
@@ -193,8 +194,8 @@ static void add_to_center(const search *all, int row, int column, void *data) {
                        vec3_scale(direction_of(all, row, column), all->rows[row].area * (double)brightness));
 }
 
-/* The middle of the spot around a pixel. It is the mean direction of those pixels, in a cap around this
- * middle, that are at least half as bright as the pixel. */
+/* Finds the middle of the spot around a pixel. Around this middle lies a cap. The middle is the mean
+ * direction of those pixels of the cap that are at least half as bright as the given pixel. */
 static vec3 find_middle(const search *all, int row, int column, double radius) {
   cap around = {direction_of(all, row, column), radius};
   for (int i = 0; i < STEPS; i++) {
@@ -207,7 +208,7 @@ static vec3 find_middle(const search *all, int row, int column, double radius) {
   return around.middle;
 }
 
-/* A spot: a cap, and the light in it that exceeds the cap's surroundings. */
+/* A spot: a cap, and the light in the cap that exceeds its surroundings. */
 typedef struct spot {
   cap cap;
   float around[3];      /* R, G, B: the greatest values in the ring around the cap */
@@ -260,11 +261,11 @@ static spot spot_of_radius(const search *all, int row, int column, double radius
   return measure_spot(all, find_middle(all, row, column, radius), radius);
 }
 
-/* The spot around a pixel whose radius holds the most light for its power of 3/4: For an even disk this is
- * the least radius that holds all of it, for a Gaussian spot a radius with nine tenths of it. With this
- * power, a small sun counts more than a glow around it that sends as much light, and two suns side by side
- * stay two. The next wider radius is taken where it holds more light, because pixels at the rim hold a part
- * of a disk. */
+/* Finds the spot around a pixel. Its radius is the one for which the light in the cap, divided by the power
+ * 3/4 of the radius, is greatest. For a uniform disk this is the least radius that holds all of the disk, for
+ * a Gaussian spot a radius that holds nine tenths of its light. With this power, a small sun counts more than
+ * a glow around it that sends as much light, and two suns side by side stay two. If the next wider radius
+ * holds more light, it is taken instead, because a disk may cover a part of the pixels at the rim. */
 static spot find_spot(const search *all, int row, int column) {
   spot best = {.cap = {direction_of(all, row, column), FARTHEST}}, wider = best;
   double score = 0, least = 0.5 * HL_PI / all->sky->height;
@@ -279,8 +280,8 @@ static spot find_spot(const search *all, int row, int column) {
   return best;
 }
 
-/* Makes a sun of a spot. Derived: the mean of the unit vectors of a cap of half angle a is (1 + cos a) / 2
- * long. */
+/* Makes a sun of a spot. Derived: the mean of the unit vectors in a cap with half angle a has the length (1 +
+ * cos a) / 2. */
 static sky_sun sun_of_spot(const spot *of) {
   sky_sun sun = {.towards = vec3_normalise(of->moment), .straight = vec3_length(of->moment) / of->brightness};
   memcpy(sun.irradiance, of->irradiance, sizeof sun.irradiance);
@@ -312,7 +313,7 @@ static size_t image_bytes(const hl_sky *sky) {
   return (size_t)sky->width * (size_t)sky->height * 3 * sizeof(float);
 }
 
-/* Takes a sun out of the image. The first sun makes a copy of the image. */
+/* Takes a sun's light out of the image. For the first sun, the image is copied. */
 static hl_status take_out(hl_context *context, search *all, const spot *sun, sky_suns *found,
                           hl_error *error) {
   size_t bytes = image_bytes(all->sky);
@@ -345,7 +346,7 @@ static void set_up(search *all) {
   const hl_sky *sky = all->sky;
   double turn = 2 * HL_PI / sky->width, solid_angle = 0;
   all->wide = turn;
-  all->bend = 2 * (1 - cos(turn)) / turn; /* derived: the integral of (1 - |t| / turn) cos t */
+  all->bend = 2 * (1 - cos(turn)) / turn; /* derived: the integral of (1 - |t| / turn) cos t over t */
   for (int column = 0; column < sky->width; column++) {
     double angle = (column + 0.5 - 0.5 * sky->width) * turn;
     all->columns[column][0] = sin(angle);
@@ -392,12 +393,12 @@ void hl_suns_release(hl_context *context, sky_suns *found) {
 
 /* ---- lights ---- */
 
-/* Makes the parallel light that shines as a sun does. Derived: a sky of irradiance E from about one
- * direction gives a surface E / pi times the cosine to the mean of its directions, and a medium E / (4 pi)
- * times its phase function (halflight/scene.h); a light of colour I gives I times the cosine to its middle,
- * and I times the phase function. So for surfaces I is E / pi times the length of that mean. For media,
- * I would have to be E / (4 pi): so a medium takes only the part 1 / (4 length) of the light
- * (hl_sun_part_of_media). */
+/* Makes the parallel light that shines as a sun does. Derived: a sky whose irradiance E comes from about one
+ * direction gives a surface E / pi times the dot product of its normal with the mean of the sky's directions,
+ * and a medium E / (4 pi) times its phase function (halflight/light.h). A light of colour I gives a surface I
+ * times the cosine to the light's middle, and a medium I times the phase function. So for surfaces, I is E /
+ * pi times the length of that mean. For media, I would have to be E / (4 pi), so that a medium takes only the
+ * fraction 1 / (4 length) of the light (hl_sun_part_of_media). */
 hl_light hl_sun_light(const hl_sky *sky, const sky_sun *sun) {
   const sky_axes axes = hl_sky_axes(sky);
   hl_light light;

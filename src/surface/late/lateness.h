@@ -1,11 +1,10 @@
-/* surface/late/lateness.h - constants, each with its reason. Shadow buffers take surfaces into account late,
- * and the constants say how late, and how the consequences are mended.
+/* surface/late/lateness.h - constants, each with its reason. Shadow buffers take surfaces into account late.
+ * The constants say how late, and how the errors that follow from this are corrected.
  *
  * A look-up for a sample of a surface also reads pixels beside the sample, and the surface must not darken
- * itself there. So a shadow buffer takes a surface into account only some pixels behind the surface's
- * place. This lets light leak right behind the surface. The folders surface/late/ and render/late/ mend
- * these leaks, and use the constants of this file. docs/experiments.md tells how they were found
- * ("Meshes").
+ * itself there. So a shadow buffer takes a surface into account only some pixels behind the surface's place.
+ * So light leaks right behind the surface. The folders surface/late/ and render/late/ correct these leaks,
+ * and use the constants of this file. docs/experiments.md tells how they were found ("Meshes").
  *
  * Two kinds of constants stand elsewhere. The table of each method of shadows says by how many pixels
  * surfaces are delayed and rise (shadow/shadow_method.h). The marks of dark pixels belong to the cascade
@@ -18,8 +17,9 @@
 /* The greatest number of slabs that a fragment fills. With 64, no picture changed. */
 enum { MOST_SLABS = 16 };
 
-/* The greatest slope of a surface that counts for its delay, in frame units per pixel. Without this limit, a
- * surface that light grazes would have an unlimited slope and delay; such a surface is hardly lit. */
+/* The greatest slope of a surface that is used for its delay, in frame units per pixel. Without this limit, a
+ * surface that light grazes would have an unlimited slope and an unlimited delay; but such a surface is
+ * hardly lit. */
 #define STEEPEST_SLOPE 12
 
 /* How far above its triangle a fragment's slabs may lie, in distances of sheets. A pixel on the edge between
@@ -33,61 +33,62 @@ enum { MOST_SLABS = 16 };
 
 /* ---- seams: corners at which large triangles meet (surface_seams.h, seen_seams.h) ---- */
 
-/* A triangle is large if one of its edges is longer than this; the unit is the diagonal of a box around all
- * clusters. Light that leaks at corners between smaller triangles makes only specks. */
+/* A triangle is large if one of its edges is longer than this number of units. The unit is the diagonal of a
+ * box around all clusters. Between smaller triangles, light that leaks at corners makes only specks. */
 static const double LARGE_EDGE = 1.0 / 64;
 
-/* Ends of edges that are closer together than this count as one place; the unit is the same diagonal. */
+/* Two ends of edges count as one place if they are closer together than this number of the same units. */
 static const double SAME_PLACE = 1e-5;
 
-/* Limits of memory and time. MOST_SEAMED: the greatest number of triangles whose edges are looked at, in the
- * order of clusters. MOST_AT_EDGE: the greatest number of neighbours that are kept for an edge.
- * MOST_SEAMS_ASKED: the greatest number of edges with which an edge is compared on either side of it, in the
- * order of keys. Only by chance do more edges have nearly the same key. */
+/* Limits of memory and time. MOST_SEAMED: the greatest number of triangles whose edges are looked at; the
+ * first triangles in the order of clusters are taken. MOST_AT_EDGE: the greatest number of neighbours that
+ * are kept for an edge. MOST_SEAMS_ASKED: the greatest number of edges with which an edge is compared on
+ * either side of it, in the order of keys. Only by chance do more edges have nearly the same key. */
 enum { MOST_SEAMED = 1 << 14, MOST_AT_EDGE = 4, MOST_SEAMS_ASKED = 64 };
 
 /* The greatest number of seams of a triangle that a light's view looks at: MOST_AT_EDGE for each edge. */
 enum { MOST_SEEN_SEAMS = 12 };
 
-/* Fragments nearer than this to a corner, in pixels, fill all slabs up to the other triangle of the corner.
- */
+/* A fragment that is closer to a corner than this number of pixels fills all slabs up to the corner's other
+ * triangle. */
 static const double BESIDE_SEAM = 1.5;
 
-/* The overlap of fragments beside a corner with the corner's other triangle. The unit is the height by which
+/* How far a fragment beside a corner overlaps the corner's other triangle. The unit is the height by which
  * the other triangle's plane rises over a pixel, because the height at a pixel's middle may differ by that
  * much from the height at the corner. */
 static const double SEAM_OVERLAP = 1;
 
 /* ---- rims: triangles near boundary edges and corners (surface_rims.h) ---- */
 
-/* The number of passes over all triangles, forwards and backwards in turn. Each pass carries distances from
- * vertex to vertex over at least one edge. */
+/* The number of passes over all triangles. Passes go forwards and backwards in turn. Each pass carries
+ * distances on, from vertex to vertex, over at least one edge. */
 enum { RIM_PASSES = 8 };
 
 /* A mesh is rough if more than MOST_CORNERS of its vertices, and more than one vertex in MOST_PARTS, lie at
  * corners. The corners of a rough mesh are ignored, for two reasons. Rays all over such a mesh would take
- * several times as long as the rest of the frame. And it has no corners as those of rooms, where light could
- * leak. */
+ * several times as long as the rest of the frame. And a rough mesh has no corners like those of rooms, at
+ * which light could leak. */
 enum { MOST_CORNERS = 4096, MOST_PARTS = 8 };
 
 /* ---- look-ups ---- */
 
-/* The distance by which look-ups are moved away from a surface, in pixels of the shadow buffer: along the
- * normal, but not to places where the buffer meets the surface earlier (render/surface_lanes.h). So look-ups
- * are affected as little as possible by light behind the surface, and by what the surface itself absorbs. */
+/* The distance by which look-ups are moved away from a surface, in pixels of the shadow buffer. They are
+ * moved along the normal, but not to places where the buffer meets the surface earlier
+ * (render/surface_lanes.h). So look-ups are affected as little as possible by light behind the surface, and
+ * by what the surface itself absorbs. */
 static const float LOOKUP_OFFSET = 1.25f;
 
-/* The delay of surfaces, in pixels, where look-ups use cubic convolution: it is how far such look-ups
+/* The delay of surfaces, in pixels, if look-ups use cubic convolution: the distance that such look-ups
  * reach. */
 static const double CUBIC_DELAY = 1.75;
 
-/* How far around a volume's sample its look-up reads, in pixels of the buffer. Behind an opaque surface, the
- * surface may enter the pixels beside the sample later than the sample's own pixel. So for volumes an opaque
- * surface counts as delayed by this many pixels more. A translucent surface does not, because its light would
- * be absorbed twice. */
+/* How far around a volume's sample its look-up reads, in pixels of the buffer. For a sample behind an opaque
+ * surface, the surface may enter the neighbouring pixels later than the sample's own pixel. So for volumes,
+ * the delay of an opaque surface counts as larger by this number of pixels. The delay of a translucent
+ * surface does not, because it would absorb light twice. */
 static const double READ_BESIDE = 1.25;
 
-/* The number of slabs before the current one whose fragments may not be in the buffers yet. */
+/* The number of slabs before the current slab whose fragments may be missing in the buffers. */
 enum { NEAR_SLABS = 2 };
 
 /* ---- rays to what is close (render/late/contact.c) ---- */
@@ -97,25 +98,27 @@ enum { NEAR_SLABS = 2 };
  * units away. A ray ends after FARTHEST_CLOSE units. */
 static const double CLOSE = 3, FARTHEST_CLOSE = 10;
 
-/* How far from its point a ray begins, in pixels of the buffer. It is more than the errors of rounding. */
+/* The distance from a point at which its ray begins, in pixels of the buffer. It is greater than the errors
+ * of rounding. */
 static const double RAY_START = 0.0005;
 
-/* The greatest distance of the middle of a pixel's visible part from the sample's place, in pixels of the
- * picture at the content. Without this limit the middle could lie anywhere where the eye grazes a surface. */
+/* The greatest distance from a sample's place to the middle of the visible part of its pixel, in pixels of
+ * the picture at the content. Without this limit, the middle could be arbitrarily far away where the eye
+ * grazes a surface. */
 static const double MOST_PIXELS_ASIDE = 8;
 
 /* ---- hollow surfaces (render/late/contact.c) ---- */
 
-/* The sine of the greatest angle between a light's ray and a hollow surface at which it is tested whether the
- * surface shades itself. At greater angles the buffer is hardly late. */
+/* The sine of an angle between a light's ray and a hollow surface. Up to this angle it is tested whether the
+ * surface shades itself; at greater angles the buffer is hardly late. */
 static const double GRAZING = 0.2;
 
 /* The greatest bend of a hollow surface that may shade itself, as the bend times the length by which the
  * buffer is late. A sharper bend counts as roughness. */
 static const double SHARPEST_BEND = 0.12;
 
-/* A triangle is rough, or a saddle, where it bends the other way along one of its edges by more than this
- * fraction of its own bend. */
+/* A triangle counts as rough, or as a saddle, if it bends the other way along one of its edges by more than
+ * this fraction of its own bend. */
 static const double OTHER_BEND = 0.25;
 
 #endif

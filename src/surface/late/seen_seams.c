@@ -10,7 +10,7 @@ static bool set_end(const fragments_source *source, uint32_t vertex, double at[2
   return hl_view_project(source->view, place, at);
 }
 
-/* Whether no cut may remove a part of a triangle, and it casts a shadow and lets no light through. */
+/* Whether a triangle casts a shadow and lets no light through, and no cut may remove a part of it. */
 static bool is_opaque_shade(const fragment_work *work, uint32_t triangle) {
   const surfaces *all = work->source->surfaces;
   size_t mesh = hl_surface_mesh_of(all, triangle);
@@ -35,8 +35,8 @@ void hl_see_seams(const fragment_work *work, const fragment *f, seen_seams *seam
   }
 }
 
-/* The place on a corner's edge that is closest to a point, as a fraction of the way from the edge's first
- * end to its second. */
+/* The point of a corner's edge that is closest to a given point, as a fraction of the way from the edge's
+ * first end to its second end. */
 static double closest_part(const seen_seam *seam, double u, double v) {
   double x = seam->at[1][0] - seam->at[0][0], y = seam->at[1][1] - seam->at[0][1], square = x * x + y * y;
   if (!(square > 0)) return 0;

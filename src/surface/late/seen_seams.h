@@ -1,9 +1,10 @@
 /* surface/late/seen_seams.h - how far fragments of a light's view reach where triangles meet at a corner.
  *
- * A fragment takes light from a delayed height on (fragment_work.h: delay). The steeper its triangle is, the
- * longer is the delay. So the delays of two triangles that meet at a corner differ, and slanted rays could
- * pass between the end of one and the start of the other. So fragments beside the corner also fill the slabs
- * between the two. The lit side of the other triangle stays bright, because its own delay is as long. */
+ * A fragment absorbs light from a delayed height on (fragment_work.h: delay). The steeper its triangle is,
+ * the longer is the delay. So two triangles that meet at a corner have different delays. Slanted rays could
+ * pass between the end of one triangle and the start of the other. Therefore fragments beside the corner also
+ * fill the slabs between the two triangles. The lit side of the other triangle stays bright, because its own
+ * delay is as long. */
 #ifndef HL_SURFACE_LATE_SEEN_SEAMS_H
 #define HL_SURFACE_LATE_SEEN_SEAMS_H
 
@@ -13,9 +14,9 @@
 
 /* A corner as a light's view sees it. */
 typedef struct seen_seam {
-  double at[2][2],
-      height[2]; /* places of the corner's two ends in pixels, and the ends' heights above the first sheet */
-  surface_plane other; /* the plane of the other triangle */
+  double at[2][2], height[2]; /* at: the places of the corner's two ends, in pixels; height: the heights of
+                               * these ends above the first sheet */
+  surface_plane other;        /* the plane of the other triangle */
 } seen_seam;
 
 typedef struct seen_seams {
@@ -23,11 +24,12 @@ typedef struct seen_seams {
   int count;
 } seen_seams;
 
-/* Finds the corners at which an opaque triangle meets opaque triangles of meshes that cast shadows. */
+/* Finds the corners at which an opaque triangle meets other opaque triangles. All of them belong to meshes
+ * that cast shadows. */
 void hl_see_seams(const fragment_work *work, const fragment *f, seen_seams *seams);
 
-/* The height up to which a fragment at the continuous pixel (u, v) fills slabs: `end`, or a greater height
- * close to a corner. */
+/* The height up to which a fragment at the continuous pixel (u, v) fills slabs: `end`, or close to a corner a
+ * greater height. */
 double hl_seam_end(const fragments_source *source, const seen_seams *seams, double u, double v, double end);
 
 #endif

@@ -8,8 +8,8 @@
 #include "surface/late/lateness.h"
 #include "surface/surface_cuts.h"
 
-/* Adds each edge's hash to both of its vertices, with the sign of its direction (derived as in mesh.c: the
- * sum is 0 at a vertex where each edge is used equally often in both directions). */
+/* Adds each edge's hash to the sums of its two vertices, with the sign of the edge's direction (derived as in
+ * mesh.c: a vertex whose edges are all used equally often in both directions has the sum 0). */
 static void sum_edges(const surfaces *all, const surface_mesh *mesh, uint64_t *sum) {
   for (uint32_t t = 0; t < mesh->primitives[PRIMITIVE_triangle].count; t++) {
     const uint32_t *corner = all->triangles[mesh->primitives[PRIMITIVE_triangle].first + t];
@@ -23,11 +23,11 @@ static void sum_edges(const surfaces *all, const surface_mesh *mesh, uint64_t *s
   }
 }
 
-/* The distance that marks a vertex at a corner, until begin_distances() sets it to 0. */
+/* The distance that marks a vertex as being at a corner, until begin_distances() sets the distance to 0. */
 static const float AT_CORNER = -1;
 
 /* Marks each vertex that has a triangle whose normal differs much from the normal of the vertex's first
- * triangle. Returns the number of marked vertices. first: [vertices]; becomes the first triangle of each
+ * triangle. Returns the number of marked vertices. first: [vertices]; receives the first triangle of each
  * vertex. */
 static size_t mark_corners(const surfaces *all, const surface_mesh *mesh, uint32_t *first, float *from_edge) {
   size_t count = 0;
@@ -70,8 +70,8 @@ static void begin_at_cuts(const surfaces *all, const surface_mesh *mesh, float *
   }
 }
 
-/* Lowers the distance of each vertex of a triangle to another vertex's distance plus the length of the edge
- * between. Returns whether a distance changed. */
+/* For each vertex of a triangle, lowers its distance to at most another vertex's distance plus the length of
+ * the edge between the two. Returns whether a distance changed. */
 static bool follow_edges(const surfaces *all, const surface_mesh *mesh, uint32_t triangle, float distance,
                          float *from_edge) {
   const uint32_t *corner = all->triangles[mesh->primitives[PRIMITIVE_triangle].first + triangle];
@@ -90,7 +90,7 @@ static bool follow_edges(const surfaces *all, const surface_mesh *mesh, uint32_t
   return changed;
 }
 
-/* The arrays of the search, one entry for each vertex of the mesh. */
+/* The arrays of the search; each has one entry for each vertex of the mesh. */
 typedef struct rim_search {
   uint64_t *sum;
   uint32_t *first;

@@ -9,8 +9,9 @@
 #include "surface/surfaces.h"
 
 /* Sets near[t] for each triangle t of a mesh: whether a vertex of the triangle lies within a distance of an
- * open edge, a cut or a corner; frame units, along edges. Distances are followed over RIM_PASSES or a few
- * more edges only. So where triangles are very small, triangles beyond these edges do not count as near. */
+ * open edge, a cut or a corner. The distance is measured along edges, in frame units. It is followed over
+ * only RIM_PASSES edges or a few more. So where triangles are very small, triangles beyond these edges do not
+ * count as near. */
 hl_status hl_surface_rims(hl_context *context, const surfaces *all, const surface_mesh *mesh, double distance,
                           bool *near, hl_error *error);
 

@@ -19,7 +19,7 @@ typedef struct seam_search {
   large_edge *edges;  /* [edge_room] */
   size_t edge_count, edge_room;
   order_key *order;       /* [2][edge_count] */
-  surface_seam *found;    /* [found_count]; the seams, in the order in which they were found */
+  surface_seam *found;    /* [found_count]; the seams in the order in which the search found them */
   order_key *found_order; /* [2][found_count] */
   size_t found_count;
 } seam_search;
@@ -72,7 +72,7 @@ static bool may_hold_large(const seam_search *search, const surface_cluster *clu
              search->large;
 }
 
-/* Lists the edges of large triangles that belong to no closed part of their mesh. */
+/* Lists those edges of large triangles that do not belong to a closed part of their mesh. */
 static void list_edges(seam_search *search) {
   const surfaces *all = search->all;
   for (size_t c = 0; c < all->cluster_count; c++) {
@@ -92,7 +92,7 @@ static bool is_near(const seam_search *search, uint32_t a, uint32_t b) {
   return vec3_length(apart) <= search->same;
 }
 
-/* Whether two edges lie in one place, and the normals of their triangles differ much. */
+/* Whether two edges lie in one place, and the normals of their triangles differ by much. */
 static bool is_corner(const seam_search *search, const large_edge *a, const large_edge *b) {
   if (a->triangle == b->triangle) return false;
   if (!(is_near(search, a->ends[0], b->ends[0]) && is_near(search, a->ends[1], b->ends[1])) &&
@@ -107,8 +107,8 @@ static void add_seam(seam_search *search, const large_edge *edge, const large_ed
       edge->triangle, other->triangle, {edge->ends[0], edge->ends[1]}};
 }
 
-/* Adds the seams between an edge and edges on one side of it in the order of keys. i: the edge's number in
- * this order. way: 1 for edges after it, -1 for edges before it. */
+/* Finds the seams between an edge and other edges on one side of it in the order of keys. i: the edge's
+ * number in this order. way: 1 for the edges after it, -1 for the edges before it. */
 static void find_at(seam_search *search, size_t i, int way) {
   const large_edge *own = &search->edges[search->order[i].index];
   int found = 0;
@@ -124,7 +124,7 @@ static void find_at(seam_search *search, size_t i, int way) {
   }
 }
 
-/* Sorts edges by their keys, rounded to floats. */
+/* Sorts the edges by their keys, which are rounded to floats. */
 static void sort_edges(seam_search *search) {
   for (size_t i = 0; i < search->edge_count; i++)
     search->order[i] = (order_key){(uint64_t)hl_ordered_bits((float)search->edges[i].key, false) << 32,
@@ -138,7 +138,7 @@ static void lay_out_edges(seam_search *search, hl_layout *layout) {
   search->edges = hl_layout_take(layout, search->edge_room, sizeof *search->edges);
 }
 
-/* Lays out the arrays of the search among a number of edges. */
+/* Lays out the arrays for the search among a number of edges. */
 static void lay_out_found(seam_search *search, size_t edges, hl_layout *layout) {
   search->order = hl_layout_take(layout, 2 * edges, sizeof *search->order);
   search->found = hl_layout_take(layout, MOST_AT_EDGE * edges, sizeof *search->found);
@@ -165,7 +165,8 @@ void hl_surface_seams_count(uint64_t triangles, hl_layout *layout) {
 
 /* ---- all seams ---- */
 
-/* Copies the seams that were found, sorted by their triangles. The seams of a triangle keep their order. */
+/* Copies the seams that were found, and sorts them by their triangles. The seams of one triangle keep their
+ * order. */
 static hl_status sort_seams(hl_context *context, const seam_search *search, hl_error *error) {
   surfaces *all = search->all;
   const size_t count = search->found_count;

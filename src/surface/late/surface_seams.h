@@ -1,9 +1,9 @@
 /* surface/late/surface_seams.h - corners: where large triangles of meshes that are not closed meet at an edge
  * and bend.
  *
- * Two edges are the same edge where their ends lie in the same places: triangles that meet need not share
- * vertices, nor belong to one mesh. In: triangles in frame space. Out: for each triangle, its neighbours at
- * corners, which fragments of a light's view need (seen_seams.h). */
+ * Two edges count as the same edge if their ends lie in the same places. So triangles that meet need not
+ * share vertices, nor belong to one mesh. In: triangles in frame space. Out: the neighbours of each triangle
+ * at corners. Fragments of a light's view need these (seen_seams.h). */
 #ifndef HL_SURFACE_LATE_SURFACE_SEAMS_H
 #define HL_SURFACE_LATE_SURFACE_SEAMS_H
 
@@ -14,18 +14,18 @@
 /* An edge at which a triangle meets another one, at an angle of more than 40 degrees. */
 struct surface_seam {
   uint32_t triangle, other; /* of surfaces->triangles */
-  uint32_t ends[2];         /* indices in surfaces->positions of the ends of `triangle`'s own edge */
+  uint32_t ends[2];         /* the ends of the edge of `triangle`, as indices in surfaces->positions */
 };
 
-/* Counts the memory that hl_surface_seams_create() takes at most for a number of triangles. */
+/* Counts the greatest amount of memory that hl_surface_seams_create() takes for a number of triangles. */
 void hl_surface_seams_count(uint64_t triangles, hl_layout *layout);
 
-/* Fills all->seams, sorted by their triangles. Clusters must have been made. A triangle is large where one of
- * its edges is longer than a 64th of the diagonal of a box around all clusters. */
+/* Fills all->seams, sorted by their triangles. The clusters must have been made. A triangle is large if one
+ * of its edges is longer than a 64th of the diagonal of a box around all clusters. */
 hl_status hl_surface_seams_create(hl_context *context, surfaces *all, hl_error *error);
 void hl_surface_seams_release(hl_context *context, surfaces *all);
 
-/* The seams of a triangle, borrowed. *count becomes their number. */
+/* The seams of a triangle, borrowed. *count receives their number. */
 const surface_seam *hl_surface_seams_of(const surfaces *all, uint32_t triangle, size_t *count);
 
 #endif

@@ -1,7 +1,7 @@
 /* surface/late/triangle_bend.c - see triangle.h: how the interpolated normal turns within a triangle.
  *
- * In: a triangle of a smooth mesh, and a way along it. Out: whether it is part of a hollow surface, which may
- * shade itself (render/late/contact.c). */
+ * In: a triangle of a smooth mesh, and a direction along it. Out: how much the surface bends in this
+ * direction. A hollow surface may shade itself (render/late/contact.c). */
 #include "surface/late/lateness.h"
 #include "surface/triangle.h"
 
@@ -23,8 +23,8 @@ static bent_triangle bent_triangle_of(const surfaces *all, const surface_mesh *m
   return bent;
 }
 
-/* How much the normal turns per length along a way on the triangle. Derived: the gradient of corner i's
- * weight is cross x edge / cross^2, where `edge` is the edge opposite to the corner. The normal is the
+/* How much the normal turns, per length, along a direction on the triangle. Derived: the gradient of corner
+ * i's weight is cross x edge / cross^2, where `edge` is the edge opposite to the corner. The normal is the
  * weighted sum of the corners' normals. */
 static double bend_along(const bent_triangle *bent, vec3 along) {
   vec3 turn = {0, 0, 0};
@@ -38,8 +38,8 @@ static double bend_along(const bent_triangle *bent, vec3 along) {
   return -vec3_dot(turn, along);
 }
 
-/* Whether the surface bends the other way along one of the triangle's edges: then it is rough, or a saddle.
- */
+/* Whether the surface bends the other way along one of the triangle's edges. If so, the triangle is rough, or
+ * a saddle. */
 static bool bends_both_ways(const bent_triangle *bent, double bend) {
   for (int i = 0; i < 3; i++) {
     vec3 edge = vec3_subtract(bent->at[(i + 1) % 3], bent->at[i]),

@@ -1,5 +1,5 @@
-/* volume/formats/format.c - shared by the readers of all formats: the choice of an array and a component,
- * names of types. */
+/* volume/formats/format.c - functions that the readers of all formats share: they choose an array and a
+ * component, and find types by their names. */
 #include "volume/formats/format.h"
 
 #include <stdio.h>
@@ -57,8 +57,8 @@ static hl_status choose_named(hl_load_request *request, const char *path, hl_err
                  hl_text_printable(shown, request->array), list);
 }
 
-/* Whether an array is one in which VTK marks values that are doubles of others, or hidden. Such an array is
- * no volume. */
+/* Whether an array is one of those by which VTK marks points and cells that are duplicates or hidden. Such an
+ * array cannot be the volume. */
 static bool is_ghost(const hl_array_entry *array) {
   return hl_text_is_one_of(array->name, "vtkGhostType|vtkGhostLevels|vtkValidPointMask");
 }
@@ -90,7 +90,7 @@ hl_status hl_arrays_choose(hl_load_request *request, const char *path, int activ
   return HL_OK;
 }
 
-/* Chooses one of `count` times, channels or levels. The first is the default. */
+/* Chooses one of `count` times, channels or levels: the wanted one, or the first if none is wanted. */
 static hl_status choose_step(const char *path, const char *kind, int wanted, size_t count, int *chosen,
                              hl_error *error) {
   if (wanted >= 0 && (size_t)wanted >= count && count <= 1)
@@ -141,12 +141,12 @@ void hl_channel_name(hl_channel *channel, const char *name) {
 
 /* ---- levels ---- */
 
-/* The greatest number of voxels of a level that is chosen by default. More voxels show nothing more in a
- * picture a thousand pixels across, and take minutes. */
+/* The greatest number of voxels of a level that is chosen by default. More voxels would take minutes, and
+ * show nothing more in a picture a thousand pixels across. */
 static const uint64_t VOXELS_OF_A_PICTURE = (uint64_t)1 << 30;
 
-/* Whether a level is fine enough for a picture: its longest axis has a voxel for each pixel of the part that
- * the volume fills. */
+/* Whether a level is fine enough for a picture: its longest axis has at least as many voxels as the picture's
+ * longer side has pixels. */
 static bool fills_picture(const hl_level_size *level, int pixels) {
   size_t longest = 0;
   for (int axis = 0; axis < 3; axis++)
@@ -203,7 +203,7 @@ static hl_status check_steps(const hl_load_request *request, const char *path, h
                          : status;
 }
 
-/* Chooses the default component, and warns by a line that names it. Colours need no warning. */
+/* Chooses the default component, and writes a warning that names it. For colours there is no warning. */
 static int default_component(hl_load_request *request, const char *path, bool is_series,
                              const hl_payload *payload) {
   size_t components = payload->components;
@@ -222,7 +222,7 @@ static int default_component(hl_load_request *request, const char *path, bool is
   return magnitude ? HL_COMPONENT_MAGNITUDE : 0;
 }
 
-/* Finds the component for the caller's time and channel, if the components are a series. *wanted: set to this
+/* If the components are a series, finds the component of the caller's time and channel. *wanted: set to this
  * component. */
 static hl_status component_of_steps(hl_load_request *request, const char *path, bool is_series,
                                     const hl_payload *payload, int *wanted, hl_error *error) {

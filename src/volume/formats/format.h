@@ -12,7 +12,7 @@
 
 enum { HL_ARRAYS_MOST = 256 }; /* greatest number of arrays that are listed for one file */
 
-/* The caller's wishes, and the reader's findings in the file. */
+/* What the caller wishes, and what the reader finds in the file. */
 typedef struct hl_load_request {
   hl_context *context;
   const char *array;        /* null if the reader may choose */
@@ -20,55 +20,56 @@ typedef struct hl_load_request {
   double spacing[3];        /* world units; all 0 for the file's own */
   int time, channel, level; /* HL_INDEX_DEFAULT, or an index */
   int pixels;               /* pixels of the picture's longer side; 0 if unknown */
-  double window[2];         /* set by readers: the data values between which greys are to be shown; equal if
-                             * not told */
-  hl_channel *channels;     /* owned; [selection.channels]; set by readers, where the file describes
+  double window[2];         /* set by readers: the data values that are to be shown black and white; two equal
+                             * values if the file does not state them */
+  hl_channel *channels;     /* owned; [selection.channels]; set by readers if the file describes its
                              * channels */
-  const char *unit;       /* set by readers: the unit of lengths, static; null if the file does not tell it */
-  bool is_anatomical;     /* set by readers of formats that hold bodies: whether the file states its
-                           * anatomical space on purpose */
-  bool says_labels;       /* set by readers: the file says that its values are names of regions */
-  const char *series;     /* DICOM: the number, UID or description of the wanted series; null if the
-                           * reader may choose */
-  hl_array_entry *arrays; /* owned; [array_count]; in the file's order */
+  const char *unit;         /* set by readers: the unit of lengths, static; null if the file does not state
+                             * it */
+  bool is_anatomical;       /* set by readers of medical formats: whether the file states its anatomical space
+                             * on purpose */
+  bool says_labels;         /* set by readers: whether the file says that its values are labels */
+  const char *series;       /* DICOM: the number, UID or description of the wanted series; null if the
+                             * reader may choose */
+  hl_array_entry *arrays;   /* owned; [array_count]; in the file's order */
   size_t array_count;
   size_t chosen; /* index of the array that is read */
   int chosen_component;
   hl_series_entry *series_list; /* owned; [series_count]; DICOM series */
   size_t series_count, chosen_series;
   bool more;              /* whether the file has more than HL_ARRAYS_MOST arrays */
-  hl_selection selection; /* the numbers of times, channels and levels in the file, and the ones that are
-                           * read; the numbers are 1 before the reader sets them */
+  hl_selection selection; /* the numbers of times, channels and levels in the file, 1 until the reader sets
+                           * them; and those that are read */
   char array_told[1000], component_told[400],
-      selection_told[600]; /* warnings that name the array, component, time and channel chosen by default; ""
-                            * if there are none */
+      selection_told[600]; /* warnings that name what was chosen by default: the array, the component, and the
+                            * time and channel; "" if there are none */
 } hl_load_request;
 
-/* Adds an array to the list. name: "" if the format has no names; type: 0 if arrays of this type cannot be
- * read. */
+/* Adds an array to the list. name: "" if arrays have no names in the format; type: 0 if an array of its type
+ * cannot be read. */
 hl_status hl_arrays_add(hl_load_request *request, const char *name, size_t components, hl_voxel_type type,
                         bool of_cells, hl_error *error);
 
-/* Sets request->chosen. If an array is wanted by name, it is chosen. Otherwise the choice is `active` (an
- * index; -1 if there is none), else the first array of one component at points, else at cells, else the first
- * array. The list must not be empty. */
+/* Sets request->chosen to the array that the caller wants by its name. Without a name, it is the array
+ * `active` (-1 if there is none), else the first array of one component at points, else the first one at
+ * cells, else the first array. The list must not be empty. */
 hl_status hl_arrays_choose(hl_load_request *request, const char *path, int active, hl_error *error);
 
-/* Chooses the component to read, and sets it in the payload, whose `components` and `block` must be known.
+/* Chooses the component to read, and stores it in the payload, whose `components` and `block` must be set.
  * The choice is the wanted component, else the only one, else the magnitude of vectors of two or three
- * components, else the first component. is_series: components are time steps, and the time steps of a
- * channel follow each other. The payload has as many channels as request->selection says, or one. By default
- * the first time step of the first channel is read. Refuses a time, a channel or a level that
- * request->selection does not have. */
+ * components, else the first component. is_series: whether components are time steps and channels, where the
+ * time steps of a channel follow each other. The numbers of times and channels are those of
+ * request->selection, or else all components are times. By default the first time step of the first channel
+ * is read. Refuses a time, a channel or a level that request->selection does not have. */
 hl_status hl_component_choose(hl_load_request *request, const char *path, bool is_series, hl_payload *payload,
                               hl_error *error);
 
-/* Chooses a time step and a channel, and sets request->selection except its levels. Refuses a number that is
+/* Chooses a time step and a channel, and sets request->selection except its levels. Refuses numbers that are
  * out of range. */
 hl_status hl_steps_choose(hl_load_request *request, const char *path, size_t times, size_t channels,
                           hl_error *error);
 
-/* Makes request->channels, without names and colours, once the number of channels is known. */
+/* Allocates request->channels, with empty descriptions. The number of channels must be known. */
 hl_status hl_channels_make(hl_load_request *request, hl_error *error);
 
 /* Sets the name of a channel. A long name is cut, and unprintable characters become '?'. */
@@ -80,9 +81,10 @@ typedef struct hl_level_size {
   hl_voxel_type type;
 } hl_level_size;
 
-/* Sets request->selection's level among `count` levels, of which the finest is first. The choice is the
- * wanted level, else the finest that leaves half of the memory limit free and has at most 2^30 voxels. A
- * coarser level is chosen if it is as fine as the request's pixels can show. */
+/* Chooses one of `count` levels, which begin with the finest, and sets it in request->selection. The choice
+ * is the wanted level. If none is wanted, it is the finest level that takes at most half of the memory limit
+ * and has at most 2^30 voxels. If a coarser level still has as many voxels as the request's pixels, the
+ * coarsest such level is chosen. */
 hl_status hl_level_choose(hl_load_request *request, const char *path, const hl_level_size *levels,
                           size_t count, hl_error *error);
 
@@ -95,44 +97,47 @@ enum { HL_FORMAT_SNIFFED_BYTES = 1024, HL_FORMAT_ENDINGS = 3 };
 /* A format's reader. Every member except load may be null. */
 typedef struct hl_format {
   const char *name;                       /* the format's name in error lines */
-  const char *endings[HL_FORMAT_ENDINGS]; /* extensions of file names with which files must start with
-                                           * `beginning`; the last one is followed by null */
-  const char *title;                      /* the name in lists of formats; null: `name` */
-  const char *more_endings;     /* further endings of names, for lists of formats, separated by blanks */
-  const char *(*missing)(void); /* returns the library that the format needs and this build lacks;
-                                 * null if there is none */
-  const char *beginning;        /* the beginning that a file of this format must have, for error lines */
+  const char *endings[HL_FORMAT_ENDINGS]; /* extensions of the names of files that must start with
+                                           * `beginning`; null follows the last one */
+  const char *title;                      /* the name in lists of formats; if null, `name` is used there */
+  const char *more_endings;     /* other extensions of such files, separated by blanks; used only in lists of
+                                 * formats */
+  const char *(*missing)(void); /* returns the name of the library that the format needs, if this build lacks
+                                 * it; else null */
+  const char *beginning;        /* the bytes with which a file of this format must begin, as error lines
+                                 * describe them */
 
-  /* Whether a file that starts with these bytes has the format. length: HL_FORMAT_SNIFFED_BYTES, or less if
+  /* Whether a file whose first bytes are these has the format. length: HL_FORMAT_SNIFFED_BYTES, or less if
    * the file is shorter. */
   bool (*has_content)(const unsigned char *bytes, size_t length);
 
-  /* Whether the file's name alone proves the format, whatever its bytes are. This is asked of every format
-   * before any has_content(). */
+  /* Whether the file's name alone proves the format, whatever its bytes are. All formats are asked this
+   * before any has_content() is called. */
   bool (*fits)(const hl_stream *stream);
 
-  /* Whether the file's name suggests the format. This is asked only if has_content() of every format is
-   * false. May replace *stream by the file that holds the header. */
+  /* Whether the file's name suggests the format. Formats are asked this only if has_content() of all formats
+   * is false. May replace *stream by the file that holds the header. */
   hl_status (*claim_name)(hl_stream **stream, bool *claimed, hl_error *error);
 
   /* Reads *stream from its current position. May replace *stream or push decoders on it. The caller closes
    * it. */
   hl_status (*load)(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
 
-  /* Reads a folder or a zip archive. *claimed: false if it holds nothing of the format; other formats are
-   * asked next. */
+  /* Reads a folder or a zip archive. *claimed: set to false if it contains nothing of the format. Then the
+   * next format is asked. */
   hl_status (*load_bundle)(hl_bundle *bundle, hl_load_request *request, bool *claimed, hl_volume **volume,
                            hl_error *error);
 
-  /* Whether load_bundle opens its files by their names and needs no list of files. Such a format can be read
-   * from servers, too. */
+  /* Whether load_bundle opens files by their names, without a list of all files. Only such formats can be
+   * read from servers. */
   bool finds_by_name;
 } hl_format;
 
-/* All formats, in the order in which a file is offered to them (formats.h); null past the last. */
+/* All formats, in the order in which they are asked whether they know a file (formats.h); null after the
+ * last. */
 extern const hl_format *const hl_formats[];
 
-/* A format's name of a voxel type. name may list alternatives, as in hl_text_is_one_of(). */
+/* The name that a format gives to a voxel type. name may list alternatives, as in hl_text_is_one_of(). */
 typedef struct hl_named_type {
   const char *name;
   hl_voxel_type type;

@@ -80,8 +80,8 @@ hl_status hl_volume_get_format(size_t index, hl_file_format *format) {
 
 typedef struct packing {
   const char *name, *missing;
-  const char *read_endings,
-      *written_endings; /* null: whole files are not packed so; or they are not written */
+  const char *read_endings, *written_endings; /* null if whole files cannot be packed in this way, or if such
+                                               * files are not written */
 } packing;
 
 static const packing packings[] = {

@@ -26,7 +26,8 @@ typedef struct meta_header {
   } grid;
   hl_voxel_type type; /* 0 if not yet stated */
   size_t channels, header_bytes;
-  bool header_is_rest; /* HeaderSize is -1: the voxels are the last bytes of the file */
+  bool header_is_rest; /* whether HeaderSize is -1, which means that the voxels are the last bytes of the
+                        * file */
   bool big_endian, compressed, text;
   double slope, intercept;
   char data_file[NAME_BYTES];
@@ -193,14 +194,14 @@ static void make_grid(const meta_header *header, hl_volume_description *grid) {
     }
   }
   grid->type = header->type;
-  /* positions are in ITK's world (x to the left, y to the back), whatever the directions of the axes are */
+  /* positions are always in ITK's world (x to the left, y to the back), whatever directions the axes have */
   grid->space = header->grid.is_anatomical ? HL_SPACE_LPS : HL_SPACE_UNKNOWN;
   grid->value_scale = header->slope;
   grid->value_offset = header->intercept;
 }
 
-/* Finds the components. The channels of a voxel lie side by side. Samples along a fourth or later axis are
- * whole volumes, one after the other. */
+/* Finds the components. They are either the channels of a voxel, which lie side by side, or whole volumes
+ * along a fourth or later axis, which follow each other. */
 static hl_status find_components(const meta_header *header, bool *is_series, hl_payload *payload,
                                  hl_error *error) {
   size_t series = 1;
@@ -220,7 +221,7 @@ static hl_status find_components(const meta_header *header, bool *is_series, hl_
   return HL_OK;
 }
 
-/* Goes to the voxels. A LOCAL payload follows the header. Another file may begin with a header of its own,
+/* Goes to the voxels. With "LOCAL" they follow the header. Another file may begin with a header of its own,
  * which is skipped. */
 static hl_status go_to_voxels(hl_stream **stream, meta_header *header, const hl_payload *payload,
                               hl_error *error) {

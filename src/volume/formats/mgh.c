@@ -40,9 +40,10 @@ static bool has_content(const unsigned char *bytes, size_t length) {
   return bytes[IS_GOOD] == 0 && bytes[IS_GOOD + 1] <= 1;
 }
 
-/* Places the volume by its middle, which is at the index size / 2, even if the size is odd. */
+/* Sets the volume's axes and origin. The file states the position of the middle, which has the index size /
+ * 2, even if the size is odd. */
 static void place(const unsigned char *header, hl_volume_description *grid) {
-  /* Directions of the axes i, j, k, and the middle. */
+  /* Axes i, j, k and position of the middle, if the file states none. */
   static const double usual[12] = {-1, 0, 0, 0, 0, -1, 0, 1, 0, 0, 0, 0};
   bool good = header[IS_GOOD + 1] == 1;
   const unsigned char *at = header + PLACE;
@@ -88,7 +89,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
 }
 
-/* Claims damaged headers, too, so that load() reports their damage. */
+/* Claims files by their names, so that load() is called for damaged headers, too, and reports the damage. */
 static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) {
   (void)error;
   static const char *const endings[] = {".mgh", ".mgz", ".mgh.gz"};

@@ -2,9 +2,9 @@
  * .rec, .st.
  *
  * Source of the fields: the MRC2014 format (Cheng et al., Journal of Structural Biology 192, 2015, and the
- * CCP-EM project's page of it). The header has 1024 bytes of 4-byte words. Its byte order follows from the
- * numbers themselves. World coordinates are the cell's X, Y, Z in Angstroms: MAPC, MAPR and MAPS say along
- * which of these axes the file's columns, rows and sections run. */
+ * CCP-EM project's page of it). The header has 1024 bytes of 4-byte words. Its byte order is the one in which
+ * the numbers are possible. World coordinates are the cell's X, Y, Z in Angstroms. MAPC, MAPR and MAPS say
+ * along which of these axes the file's columns, rows and sections run. */
 #include <math.h>
 #include <string.h>
 
@@ -55,12 +55,12 @@ static double load_real(const mrc_header *header, int place) {
   return (double)value;
 }
 
-/* Whether a number is a mode by the pages of IMOD or CCP-EM. */
+/* Whether a number is a mode that the pages of IMOD or CCP-EM list. */
 static bool is_mode(int64_t mode) {
   return (mode >= 0 && mode <= 4) || mode == 6 || mode == 12 || mode == 16 || mode == 101;
 }
 
-/* Whether the sizes and the mode are possible if the header has this byte order. */
+/* Whether the sizes and the mode are possible if they are read in this byte order. */
 static bool is_possible(const unsigned char *bytes, bool big_endian) {
   for (int axis = 0; axis < 3; axis++)
     if ((int32_t)load_word(bytes + AT_SIZES + 4 * axis, big_endian) < 1) return false;
@@ -95,8 +95,8 @@ static hl_status read_header(hl_stream *stream, mrc_header *header, hl_error *er
   return HL_OK;
 }
 
-/* Whether the bytes of a file of mode 0 are unsigned. The format says that they are signed, but IMOD writes
- * unsigned ones, too: its stamp marks its files, and a flag then marks signed bytes. */
+/* Whether the bytes of a file of mode 0 are unsigned. By the format they are signed, but IMOD writes unsigned
+ * bytes, too. A file of IMOD has IMOD's stamp, and a flag says whether its bytes are signed. */
 static bool has_unsigned_bytes(const mrc_header *header) {
   enum { STAMP = 1146047817, SIGNED = 1 };
   return load_integer(header, AT_IMOD_STAMP) == STAMP && (load_integer(header, AT_IMOD_FLAGS) & SIGNED) == 0;
@@ -122,8 +122,8 @@ static void read_type(const mrc_header *header, hl_payload *payload) {
   payload->big_endian = header->big_endian;
 }
 
-/* Reads a stack of volumes. Stacks have space groups from 401 on; MZ says how many sections each volume has.
- * Sets the grid's dimensions, and a stack's components and block. */
+/* Finds the grid's dimensions, and whether the file is a stack of volumes. Stacks have space groups from 401
+ * on; MZ says how many sections each volume has. Of a stack, also sets the components and the block. */
 static hl_status read_stack(const mrc_header *header, const char *path, hl_payload *payload, bool *is_series,
                             hl_error *error) {
   int64_t group = load_integer(header, AT_SPACE_GROUP), each = load_integer(header, AT_INTERVALS + 8),
@@ -152,10 +152,10 @@ static void turn(double degrees, double *cosine, double *sine) {
   *sine = right ? 1 : sin(degrees * (HL_PI / 180));
 }
 
-/* Finds the steps of one interval along the cell's axes a, b, c. The cell's angles are alpha (between b and
- * c), beta (c and a) and gamma (a and b). Axis a lies along X, and b in the plane of X and Y, as in
+/* Finds the steps, one interval long, along the cell's axes a, b, c. The cell's angles are alpha (between b
+ * and c), beta (c and a) and gamma (a and b). Axis a lies along X, and b in the plane of X and Y, as in
  * International Tables for Crystallography, volume F (2001), chapter 11.1, and in PDB files. The third
- * coordinate of c gives c the length 1. */
+ * coordinate of c follows from its length 1. */
 static void place_cell(const mrc_header *header, double step[3][3]) {
   double length[3], cosine[3], sine[3];
   for (int axis = 0; axis < 3; axis++) {
@@ -172,22 +172,22 @@ static void place_cell(const mrc_header *header, double step[3][3]) {
     for (int row = 0; row < 3; row++) step[axis][row] = length[axis] * unit[axis][row];
 }
 
-/* Finds along which of X, Y, Z the file's columns, rows and sections run. The order is X, Y, Z if the
- * header's numbers are not 1, 2, 3 in some order. */
+/* Finds along which of X, Y, Z the file's columns, rows and sections run. If the header's numbers are not a
+ * permutation of 1, 2, 3, the order is X, Y, Z. */
 static void read_axes(const mrc_header *header, int axes[3]) {
   int seen = 0;
   for (int n = 0; n < 3; n++) {
     int64_t axis = load_integer(header, AT_AXES + 4 * n);
     if (axis >= 1 && axis <= 3) seen |= 1 << axis;
-    axes[n] = (int)(axis - 1); /* computed in 64 bits; an order with numbers other than 1, 2, 3 is replaced
-                                * below */
+    axes[n] = (int)(axis - 1); /* the subtraction is done in 64 bits, as the number may be any; numbers other
+                                * than 1, 2, 3 are replaced below */
   }
   if (seen == (1 << 1 | 1 << 2 | 1 << 3)) return;
   for (int n = 0; n < 3; n++) axes[n] = n;
 }
 
-/* Places the first voxel at ORIGIN. Where ORIGIN is 0, as in crystallography, it lies NXSTART, NYSTART and
- * NZSTART steps from 0 along columns, rows and sections. */
+/* Places the first voxel at ORIGIN. If ORIGIN is 0, as in crystallography, the voxel lies NXSTART columns,
+ * NYSTART rows and NZSTART sections from the world's origin. */
 static void place(const mrc_header *header, hl_volume_description *grid) {
   double step[3][3], origin[3];
   int axes[3];
@@ -213,8 +213,8 @@ static void place(const mrc_header *header, hl_volume_description *grid) {
 
 typedef struct nibble_stream {
   hl_stream base;
-  uint64_t columns, column; /* numbers in a row; index of the next number in the row */
-  unsigned char upper;      /* the second voxel of the last byte that was read */
+  uint64_t columns, column; /* numbers in a row; index of the next number within its row */
+  unsigned char upper;      /* upper four bits of the last byte that was read, which are its second voxel */
 } nibble_stream;
 
 static hl_status pull_nibbles(hl_stream *stream, unsigned char *bytes, size_t capacity, size_t *count,
@@ -282,7 +282,8 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
 }
 
-/* Claims headers older than the mark "MAP", and damaged ones, so that load() reports their damage. */
+/* Claims files by their names, so that load() reads headers older than the mark "MAP", and reports damaged
+ * ones. */
 static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) {
   static const char *const endings[] = {".mrc", ".mrcs", ".map", ".ccp4", ".rec", ".ali", ".st"};
   const unsigned char *bytes;

@@ -1,9 +1,9 @@
 /* volume/formats/nifti.c - NIfTI-1 and NIfTI-2: .nii, and pairs of .hdr and .img; ANALYZE 7.5 and SPM99,
  * whose headers are like NIfTI-1's.
  *
- * ANALYZE headers tell no orientation. As nibabel does it, SPM's file NAME.mat beside the header tells it;
- * else x runs to the left, and the world's origin is the voxel that SPM's field names, if it names one near
- * the volume, else the volume's middle.
+ * ANALYZE headers state no orientation. As in nibabel, the orientation is taken from SPM's file NAME.mat
+ * beside the header. Without this file, x runs to the left, and the world's origin is a voxel: the one that
+ * SPM's field states, if it lies near the volume, else the middle of the volume.
  *
  * World coordinates are the file's (x to the right, y to the front, z up). They come from the sform, else
  * from the qform, else from the voxel sizes alone. Source of the fields: nifti1.h and nifti2.h of the NIfTI
@@ -20,7 +20,7 @@
 
 enum { HEADER_1_BYTES = 348, HEADER_2_BYTES = 540, NAME_BYTES = 1024 };
 
-/* The offsets of the fields in a version's header. */
+/* The offsets of the fields in the header of one version of the format. */
 typedef struct nifti_layout {
   int version;
   size_t header_bytes, magic, dim, intent, datatype, pixdim, vox_offset, slope, intercept, qform_code,
@@ -71,7 +71,8 @@ static int64_t load_dimension(const nifti_header *header, int index) {
   return (int64_t)load_bits(header, header->layout->dim + 8 * (size_t)index, 8);
 }
 
-/* The layout and byte order that the first four bytes state; null if they state none. */
+/* Finds the layout and the byte order of a header from its first four bytes, which state its length. Null if
+ * they are no header's. */
 static const nifti_layout *identify(const unsigned char *bytes, bool *big_endian) {
   uint32_t little = (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 |
                     (uint32_t)bytes[3] << 24;
@@ -112,8 +113,8 @@ static hl_status read_header(hl_stream *stream, nifti_header *header, hl_error *
   return HL_OK;
 }
 
-/* Reads the sizes of the first three axes; *series: the fourth axis's size; *others: the product of all later
- * axes' sizes. */
+/* Reads the sizes of the first three axes. *series: set to the size of the fourth axis. *others: set to the
+ * product of the sizes of all later axes. */
 static hl_status read_dimensions(const nifti_header *header, size_t dimensions[3], size_t *series,
                                  size_t *others, hl_error *error) {
   int64_t count = load_dimension(header, 0);
@@ -123,7 +124,7 @@ static hl_status read_dimensions(const nifti_header *header, size_t dimensions[3
                           (long long)count);
   for (int n = 1; n <= count; n++) {
     int64_t size = load_dimension(header, n);
-    if (size < 1 && n > 1) { /* the format's reference implementation repairs such a size in the same way */
+    if (size < 1 && n > 1) { /* a size below 1 counts as 1, as in the format's reference implementation */
       hl_log(header->context, HL_LOG_WARNING, "%s: dim[%d] is %lld: 1 is taken", header->path, n,
              (long long)size);
       size = 1;
@@ -154,7 +155,8 @@ static bool says_labels(const nifti_header *header) {
   return !header->is_analyze && load_code(header, header->layout->intent) == LABEL;
 }
 
-/* Reads the type. components: the number of values that lie side by side in each voxel, as for colours. */
+/* Reads the type. components: set to the number of values that lie side by side in each voxel, as for
+ * colours. */
 static hl_status read_type(const nifti_header *header, hl_voxel_type *type, size_t *components,
                            hl_error *error) {
   static const struct {
@@ -202,7 +204,7 @@ static hl_status read_scale(const nifti_header *header, hl_volume_description *g
   return HL_OK;
 }
 
-/* Places the volume by the format's method 3: the rows of an affine matrix. */
+/* Sets axes and origin by the format's method 3, in which the header states the rows of an affine matrix. */
 static void place_by_sform(const nifti_header *header, hl_volume_description *grid) {
   for (int row = 0; row < 3; row++) {
     for (int axis = 0; axis < 3; axis++)
@@ -211,12 +213,14 @@ static void place_by_sform(const nifti_header *header, hl_volume_description *gr
   }
 }
 
-/* A smaller a * a is only the rounding error of a half turn's three floats and counts as 0, as in
- * nifti_quatern_to_mat44() of the format's reference implementation, nifti1_io.c. */
+/* The least a * a that is not taken for 0. In a half turn a is 0, and a smaller a * a is only the rounding
+ * error of the three floats b, c, d. The function nifti_quatern_to_mat44() of the reference implementation,
+ * nifti1_io.c, does the same. */
 static const double HALF_TURN = 1e-7;
 
-/* Places the volume by the format's method 2: a rotation, voxel sizes and an offset. The rotation is the unit
- * quaternion (a, b, c, d), where a >= 0 is not stored. */
+/* Sets axes and origin by the format's method 2, in which the header states a rotation, voxel sizes and an
+ * offset. The rotation is the unit quaternion (a, b, c, d). The header does not state a, which follows from
+ * the others, as a >= 0. */
 static void place_by_qform(const nifti_header *header, const double spacing[3], hl_volume_description *grid) {
   double b = load_real(header, header->layout->quaternion, 0),
          c = load_real(header, header->layout->quaternion, 1);
@@ -240,8 +244,8 @@ static void place_by_sizes(const double spacing[3], hl_volume_description *grid)
   for (int axis = 0; axis < 3; axis++) grid->axis[axis][axis] = spacing[axis];
 }
 
-/* Places an ANALYZE volume, as described above. SPM's origin is three whole numbers at byte 253, counted from
- * 1. */
+/* Sets axes and origin of an ANALYZE volume, as the beginning of this file describes. SPM's origin is a
+ * voxel: three whole numbers at byte 253, which count from 1. */
 static void place_by_origin(const nifti_header *header, const double spacing[3],
                             hl_volume_description *grid) {
   enum { ORIGIN = 253 };
@@ -270,7 +274,7 @@ static void place_by_origin(const nifti_header *header, const double spacing[3],
          header->path, any && near ? "SPM's origin" : "the volume's middle");
 }
 
-/* Places the volume by the first of the methods that the file has and that gives possible axes. */
+/* Sets axes and origin by the first method for which the file has numbers, and which gives possible axes. */
 static void place(const nifti_header *header, hl_volume_description *grid) {
   double spacing[3];
   for (int axis = 0; axis < 3; axis++) {
@@ -292,7 +296,8 @@ static void place(const nifti_header *header, hl_volume_description *grid) {
   place_by_sizes(spacing, grid);
 }
 
-/* Switches from a pair's header to its voxels: the header's name with .img (or .img.gz) in place of .hdr. */
+/* Replaces the header's file of a pair by the file of its voxels, whose name has .img (or .img.gz) in place
+ * of .hdr. */
 static hl_status switch_to_image(hl_stream **stream, hl_error *error) {
   const char *slash = strrchr((*stream)->path, '/'), *name = slash == NULL ? (*stream)->path : slash + 1;
   char image[NAME_BYTES];
@@ -319,14 +324,15 @@ static hl_status go_to_voxels(hl_stream **stream, const nifti_header *header, co
                       ? load_real(header, header->layout->vox_offset, 0)
                       : (double)(int64_t)load_bits(header, header->layout->vox_offset, 8);
   if (header->is_analyze && offset < 0)
-    offset = -offset; /* in ANALYZE, a negative offset is one within each volume */
+    offset = -offset; /* in ANALYZE, a negative number is an offset within each volume */
   if (!(offset >= 0 && offset < 9e15) || offset != floor(offset))
     return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)header->layout->vox_offset,
                           "%s, byte %zu: vox_offset is %g, must be a whole number of bytes", header->path,
                           header->layout->vox_offset, offset);
   uint64_t skip = (uint64_t)offset;
   if (!header->is_pair) {
-    uint64_t least = header->layout->header_bytes + 4; /* four bytes tell whether extensions follow */
+    uint64_t least = header->layout->header_bytes + 4; /* after the header, four bytes say whether extensions
+                                                        * follow */
     skip = (skip < least ? least : skip) - header->layout->header_bytes;
     return hl_stream_skip(*stream, skip, error);
   }
@@ -336,8 +342,8 @@ static hl_status go_to_voxels(hl_stream **stream, const nifti_header *header, co
   return status == HL_OK ? hl_stream_skip(*stream, skip, error) : status;
 }
 
-/* Finds the components. Colours lie side by side. Volumes of a series and components along further axes
- * follow each other. */
+/* Finds the components. They are either the colours of a voxel, which lie side by side, or the volumes of a
+ * series and of further axes, which follow each other. */
 static hl_status find_components(const nifti_header *header, size_t side_by_side, size_t series,
                                  size_t others, hl_payload *payload, hl_error *error) {
   const size_t *dimension = payload->grid.dimensions;
@@ -376,8 +382,8 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
 }
 
-/* If *stream is NAME.img, the voxels' file of a pair, replaces it by the header NAME.hdr. *switched: whether
- * there is such a header. */
+/* If *stream is NAME.img, which holds the voxels of a pair, replaces it by the header NAME.hdr. *switched:
+ * set to whether this was done. */
 static hl_status switch_to_header(hl_stream **stream, bool *switched, hl_error *error) {
   const char *slash = strrchr((*stream)->path, '/'), *name = slash == NULL ? (*stream)->path : slash + 1;
   char header[NAME_BYTES];
@@ -399,7 +405,7 @@ static hl_status switch_to_header(hl_stream **stream, bool *switched, hl_error *
   return HL_OK;
 }
 
-/* Claims damaged headers, too, so that load() reports their damage. */
+/* Claims files by their names, so that load() is called for damaged headers, too, and reports the damage. */
 static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) {
   const unsigned char *bytes;
   size_t length;

@@ -1,8 +1,8 @@
 /* volume/formats/npy.c - NumPy arrays, .npy format 1.0 to 3.0: axes [z][y][x], in C or Fortran order.
  *
  * The header consists of a mark, two bytes of version, the length of a text, and the text, which is a
- * dictionary of descr, fortran_order and shape. Two axes are [y][x]. If there are four axes, the last one
- * holds the components of voxels if it has at most four values; otherwise the first one is a series. The file
+ * dictionary of descr, fortran_order and shape. Two axes are [y][x]. Of four axes, the last one holds the
+ * components of voxels if its size is at most four. Otherwise the first one is a series of volumes. The file
  * has no positions: the spacing is 1 and the origin 0. Source: NumPy's format specification,
  * numpy/lib/format.py (NEP 1). */
 #include <string.h>
@@ -173,8 +173,8 @@ static hl_status read_header(hl_stream *stream, npy_header *header, char *text, 
 
 /* ---- the voxels ---- */
 
-/* Makes the payload. Its sizes are in the order of the values in the file, the fastest axis first. This is
- * the last axis in C order, and the first one in Fortran order. */
+/* Makes the payload. Its sizes are in the order of the file, which begins with the fastest axis: the last
+ * axis in C order, the first axis in Fortran order. */
 static hl_status make_payload(const npy_header *header, bool *is_series, hl_payload *payload,
                               hl_error *error) {
   int axes = header->axes, first = 0;
@@ -203,18 +203,18 @@ static hl_status make_payload(const npy_header *header, bool *is_series, hl_payl
   hl_status status = hl_volume_check_grid(&payload->grid, header->path, error);
   if (status != HL_OK) return status;
   size_t voxels = payload->grid.dimensions[0] * payload->grid.dimensions[1] * payload->grid.dimensions[2];
-  /* the components of a voxel lie side by side if they are the fastest axis: the last one in C order, the
-   * first one in Fortran order */
+  /* the components of a voxel lie side by side if their axis is the fastest one */
   payload->block = header->numbers > 1 || last_is_component != header->fortran ? 1 : voxels;
   return HL_OK;
 }
 
-/* Rearranges voxels from z fastest to x fastest; *volume is replaced. */
+/* Changes the order of voxels so that x is the fastest axis instead of z. *volume is replaced. */
 static hl_status transpose(int grid_axes, hl_volume **volume, hl_error *error) {
   const hl_volume *read = *volume;
   hl_volume_description description;
   hl_volume_description_defaults(&description);
-  bool exact = read->exact != NULL; /* exact numbers have the file's type, packed like the stored values */
+  bool exact = read->exact != NULL; /* if there are exact numbers, they are rearranged; they have the file's
+                                     * type, and are packed */
   size_t bytes = exact ? hl_voxel_type_bytes(read->type) : hl_storage_bytes(read->storage);
   const ptrdiff_t stride[3] = {(ptrdiff_t)bytes, (ptrdiff_t)(bytes * read->dimension[0]),
                                (ptrdiff_t)(bytes * read->dimension[0] * read->dimension[1])};
@@ -253,7 +253,8 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   if (status != HL_OK) return status;
   int grid_axes = header.axes == 4 ? 3 : header.axes;
   double spacing[3];
-  for (int axis = 0; axis < 3; axis++) /* from x, y, z to the order of the file's axes */
+  for (int axis = 0; axis < 3; axis++) /* the caller's spacing along x, y, z, in the order of the file's
+                                        * axes */
     spacing[axis] = request->spacing[header.fortran && axis < grid_axes ? grid_axes - 1 - axis : axis];
   status = hl_payload_read(*stream, &payload, spacing, volume, error);
   return status == HL_OK && header.fortran ? transpose(grid_axes, volume, error) : status;

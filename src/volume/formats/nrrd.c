@@ -14,7 +14,7 @@
 
 /* ---- which axes belong to the grid, which hold components, and where the grid lies ---- */
 
-/* Whether an axis holds the components of a voxel, instead of voxels. */
+/* Whether an axis is of components instead of voxels. */
 static bool is_component_axis(const nrrd_header *header, const nrrd_axis *axis) {
   if (header->space.has_directions) return !axis->has_direction;
   int space = 0;
@@ -24,9 +24,9 @@ static bool is_component_axis(const nrrd_header *header, const nrrd_axis *axis) 
   return axis->kind[0] != 0 && !hl_text_is_one_of(axis->kind, "domain|space|none|???");
 }
 
-/* Whether the first axis holds components although the file does not say so. This is assumed if the axis has
- * at most four samples, the file states neither directions nor kinds of axes, and four axes or more have
- * several samples. */
+/* Whether the first axis is assumed to be of components although the file does not say so. This is the case
+ * if the axis has at most four samples, the file states neither directions nor kinds of axes, and at least
+ * four axes have several samples. */
 static bool is_first_of_components(const nrrd_header *header) {
   bool unsaid = header->axis[0].size <= 4 && !header->space.has_directions;
   int thick = 0;
@@ -37,8 +37,8 @@ static bool is_first_of_components(const nrrd_header *header) {
   return unsaid && thick > 3;
 }
 
-/* Keeps at most three of the axes that are not components. While there are more, drops the last axis of one
- * sample; if there is none, drops the last axis, which is a series. */
+/* Reduces the axes of voxels to at most three. First drops axes of one sample, beginning with the last; then
+ * drops all axes after the third, which become a series. */
 static int drop_thin_axes(int axes[NRRD_MOST_AXES], const nrrd_header *header, int count) {
   for (int n = count - 1; n >= 0 && count > 3; n--)
     if (header->axis[axes[n]].size == 1) {
@@ -57,12 +57,12 @@ static int choose_axes(const nrrd_header *header, int chosen[NRRD_MOST_AXES]) {
   return drop_thin_axes(chosen, header, count);
 }
 
-/* Finds the components, which the other axes hold. These axes must be neighbours; axes of the grid may come
- * before and after them. */
+/* Finds the components, which are the samples along all axes that are not the grid's. These axes must be
+ * neighbours. Axes of the grid may come before and after them. */
 static hl_status find_components(const nrrd_header *header, const int chosen[NRRD_MOST_AXES], int count,
                                  bool *is_series, hl_payload *payload, hl_error *error) {
-  size_t before = 1, since = 1; /* products of the sizes of grid axes: those before the components, and those
-                                 * since the last axis of components */
+  size_t before = 1, since = 1; /* products of the sizes of grid axes: of those before the axes of components,
+                                 * and of those after */
   int grid_axis = 0;
   *is_series = false;
   for (int n = 0; n < header->dimension; n++) {
@@ -90,8 +90,8 @@ static hl_status find_components(const nrrd_header *header, const int chosen[NRR
   return HL_OK;
 }
 
-/* Finds the step along an axis without direction, and the position of its first sample, by Teem's rules for
- * spacing, axis mins and maxs, and centering. */
+/* Finds the step along an axis and the position of its first sample, for files without directions. The rules
+ * for spacing, axis mins, axis maxs and centering are Teem's. */
 static void place_axis(const nrrd_axis *axis, double *spacing, double *first) {
   double width = axis->maximum - axis->minimum;
   double intervals = axis->is_node ? (double)axis->size - 1 : (double)axis->size;
@@ -101,7 +101,8 @@ static void place_axis(const nrrd_axis *axis, double *spacing, double *first) {
   *first = isfinite(axis->minimum) ? axis->minimum + (axis->is_node ? 0 : *spacing / 2) : 0;
 }
 
-/* Gives axes that the file does not have a unit step, perpendicular to the others. */
+/* Gives a unit step to each of the grid's axes that the file does not have, perpendicular to the other
+ * axes. */
 static void complete_axes(hl_volume_description *grid, int count) {
   if (count == 1) {
     vec3 across = vec3_perpendicular(vec3_normalise(vec3_of(grid->axis[0])));
@@ -127,7 +128,8 @@ static void make_grid(const nrrd_header *header, const int chosen[NRRD_MOST_AXES
   grid->space = header->space.kind;
 }
 
-/* Fills the payload's grid, components and block. *is_series: whether components are volumes of a series. */
+/* Fills the payload's grid, components and block. *is_series: set to whether components are the volumes of a
+ * series. */
 static hl_status place_grid(const nrrd_header *header, hl_payload *payload, bool *is_series,
                             hl_error *error) {
   int chosen[NRRD_MOST_AXES], count = choose_axes(header, chosen);
@@ -138,8 +140,8 @@ static hl_status place_grid(const nrrd_header *header, hl_payload *payload, bool
 
 /* ---- the voxels ---- */
 
-/* Goes to the last bytes of packed data: unpacks all of them to find where these bytes begin, and then
- * unpacks once more. */
+/* Goes to the last `bytes` bytes of packed data. Unpacks all data once to find where these bytes begin, and
+ * then unpacks once more up to this place. */
 static hl_status skip_to_last_unpacked(hl_stream **stream, const nrrd_header *header, uint64_t bytes,
                                        hl_error *error) {
   unsigned char piece[8192];
@@ -189,7 +191,7 @@ static hl_status skip_to_voxels(hl_stream **stream, const nrrd_header *header, c
   return status == HL_OK ? hl_stream_skip(*stream, skip, error) : status;
 }
 
-/* Opens several data files, which follow each other. */
+/* Opens several data files as one stream, in which they follow each other. */
 static hl_status open_files(hl_stream **stream, nrrd_header *header, const hl_payload *payload,
                             hl_error *error) {
   hl_file_list *files = &header->data.files;
@@ -218,7 +220,7 @@ static hl_status load_with(nrrd_header *read, hl_stream **stream, hl_load_reques
   const nrrd_header header = *read;
   bool is_series = false;
   status = place_grid(&header, &payload, &is_series, error);
-  /* the components are no times: they are layers of segments, of which one becomes the volume */
+  /* in a segmentation, the components are not times but layers of segments; one layer becomes the volume */
   if (is_series && header.segment_count > 0) {
     is_series = false;
     if (request->component == HL_COMPONENT_DEFAULT) request->component = 0;

@@ -99,8 +99,8 @@ static hl_status read_endian(nrrd_header *header, const char *value, hl_error *e
                                                               : refuse(header, "endian", value, error);
 }
 
-/* Reads a field that has one number for each axis; NaN is allowed. place: the offset of the number in
- * nrrd_axis. */
+/* Reads a field that has one number for each axis; NaN is allowed. place: the offset of the member of
+ * nrrd_axis that gets the number. */
 static hl_status read_per_axis(nrrd_header *header, const char *field, const char *value, size_t place,
                                hl_error *error) {
   double numbers[NRRD_MOST_AXES];
@@ -143,8 +143,8 @@ static hl_status read_kinds(nrrd_header *header, const char *value, hl_error *er
   return status;
 }
 
-/* Reads the first three numbers of a vector "(x, y, z)"; missing numbers become 0. *beyond: whether any
- * further number (of time, say) is not 0. */
+/* Reads the first three numbers of a vector "(x, y, z)"; missing numbers become 0. *beyond: set to whether
+ * any further number, such as one of time, is not 0. */
 static bool scan_vector(const char **cursor, double vector[3], bool *beyond) {
   const char *text = *cursor;
   while (hl_is_space(*text)) text++;
@@ -164,8 +164,8 @@ static bool scan_vector(const char **cursor, double vector[3], bool *beyond) {
   return count >= 1;
 }
 
-/* Whether a vector is no direction in space: it has no numbers, as some programs write "none", or it runs
- * along a fourth axis alone. */
+/* Whether a vector is no direction in space. This is the case if it has no numbers, as some programs write in
+ * place of "none", or if it runs only along a fourth axis, such as time. */
 static bool is_no_direction(const double v[3], bool beyond) {
   return (isnan(v[0]) && isnan(v[1]) && isnan(v[2])) || (beyond && v[0] == 0 && v[1] == 0 && v[2] == 0);
 }
@@ -199,7 +199,7 @@ static hl_status read_origin(nrrd_header *header, const char *value, hl_error *e
   return HL_OK;
 }
 
-/* Reads the space. Names of other spaces say nothing about anatomy. */
+/* Reads the field "space". Names other than these three, with or without time, say nothing about anatomy. */
 static hl_status read_space(nrrd_header *header, const char *value, hl_error *error) {
   (void)error;
   static const struct {
@@ -213,7 +213,8 @@ static hl_status read_space(nrrd_header *header, const char *value, hl_error *er
   return HL_OK;
 }
 
-/* Reads units such as "mm" "mm" "mm". They count if all axes have the same known unit of length. */
+/* Reads units such as "mm" "mm" "mm". The unit is kept only if all axes have the same known unit of
+ * length. */
 static hl_status read_space_units(nrrd_header *header, const char *value, hl_error *error) {
   (void)error;
   static const struct {
@@ -316,7 +317,8 @@ static hl_status need_segment(nrrd_header *header, size_t number, hl_error *erro
   return HL_OK;
 }
 
-/* Reads a pair "key:=value". Only pairs about segments count. colon: the colon in the line. */
+/* Reads a pair "key:=value". Pairs that do not describe segments are ignored. colon: points to the colon in
+ * the line. */
 static hl_status read_pair(nrrd_header *header, char *line, char *colon, hl_error *error) {
   static const char prefix[] = "Segment";
   size_t number = 0;
@@ -372,7 +374,7 @@ hl_status hl_nrrd_read_header(hl_stream *stream, nrrd_header *header, hl_error *
     hl_status status = hl_stream_line(stream, line, &ended, error);
     if (status != HL_OK) return status;
     if (ended || (line[0] == 0 && header->line > 1)) break;
-    if (header->data.is_list) { /* the rest of the header is the names of files */
+    if (header->data.is_list) { /* from here on, each line is the name of a data file */
       status = hl_file_list_add(&header->data.files, hl_text_trim(line), error);
       if (status != HL_OK) return status;
       continue;

@@ -32,22 +32,25 @@ typedef struct nrrd_header {
     hl_space kind;
     double origin[3];
     bool has_origin, has_directions;
-    const char *unit; /* unit of the axes, static; null if there is none, an unknown one, or several */
+    const char *unit; /* unit of the axes, static; null if there is no unit, an unknown one, or not the same
+                       * for all axes */
   } space;
   /* Where the voxels are. */
   struct {
     char file[NRRD_NAME_BYTES]; /* "" if the voxels are attached, or in several files */
     hl_file_list files;         /* owned; the list of several data files */
-    bool is_list;               /* whether the rest of the header is the names of files */
+    bool is_list;               /* whether the header ends with a list of names of files */
     size_t line_skip, byte_skip;
-    bool skip_to_last; /* byte skip is -1: the voxels are the last bytes of the file */
+    bool skip_to_last; /* whether "byte skip" is -1, which means that the voxels are the last bytes of the
+                        * file */
   } data;
-  hl_segment *segments; /* owned; [segment_count]; segments of a segmentation by Slicer */
+  hl_segment *segments; /* owned; [segment_count]; the segments of a segmentation that 3D Slicer has
+                         * written */
   size_t segment_count;
 } nrrd_header;
 
-/* Reads the header at a stream's beginning, up to the voxels if they follow it. The header's lists must be
- * empty and have their context. They are owned by the caller, also on failure. */
+/* Reads the header from a stream's beginning, and stops at the voxels if they follow it. The header's lists
+ * must be empty and have their context; the caller owns them, also on failure. */
 hl_status hl_nrrd_read_header(hl_stream *stream, nrrd_header *header, hl_error *error);
 
 #endif

@@ -1,7 +1,7 @@
-/* volume/formats/pieces.h - a volume whose file holds it in pieces. Each piece is read as a volume, and
- * copied to its place.
+/* volume/formats/pieces.h - makes a volume of the pieces in which a file holds it. Each piece is read as a
+ * volume of its own, and is then copied to its place.
  *
- * The whole volume and one piece are in memory at a time. Voxels that no piece has are 0. */
+ * Only the whole volume and one piece are in memory at a time. Voxels that are in no piece are 0. */
 #ifndef HL_VOLUME_PIECES_H
 #define HL_VOLUME_PIECES_H
 
@@ -12,7 +12,7 @@ typedef struct hl_pieces {
   hl_destination to;
 } hl_pieces;
 
-/* Begins with no pieces. grid: must have been checked. Close the pieces also after a failure. */
+/* Begins a volume without any pieces. grid: must have been checked. Close the pieces also after a failure. */
 hl_status hl_pieces_begin(hl_context *context, const hl_volume_description *grid, const char *path,
                           hl_pieces *pieces, hl_error *error);
 /* Copies a piece to the voxels from `first` on. Refuses a piece that does not fit. */

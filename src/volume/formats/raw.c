@@ -1,8 +1,8 @@
-/* volume/formats/raw.c - bare voxels, whose size and type the file's name states. Slices of bare voxels:
- * slice_raw.c.
+/* volume/formats/raw.c - files of bare voxels, whose size and type the file's name states. For slices of bare
+ * voxels see slice_raw.c.
  *
  * A name is anything_256x256x128_uint8.raw, with _be (or _le) after the type for the byte order, and .gz for
- * gzip. Bare voxels with a descriptor in another file: dat.c. */
+ * gzip. For bare voxels that another file describes see dat.c. */
 #include "volume/formats/raw.h"
 
 #include <string.h>
@@ -12,7 +12,7 @@
 
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/* Reads "256x256x128_", with `count` sizes. False if something else is there. */
+/* Reads "256x256x128_", with `count` sizes. Returns false if the text is something else. */
 static bool scan_sizes(const char **cursor, int count, size_t sizes[3]) {
   const char *text = *cursor;
   for (int axis = 0; axis < count; axis++) {
@@ -91,14 +91,15 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
 }
 
-/* Whether the name fits. Raw voxels may begin with any bytes, also with another format's mark. */
+/* Whether the name states the size of the file. Then the name decides, as voxels may begin with any bytes,
+ * even with another format's mark. */
 static bool fits(const hl_stream *stream) {
   hl_payload payload;
   return hl_raw_name(stream->path, &payload) && !hl_text_ends(stream->path, ".gz") &&
          hl_stream_at_most(stream) == hl_payload_bytes(&payload);
 }
 
-/* Claims also files named .raw without a size, so that load() says which parts the name lacks. */
+/* Claims all files named .raw. If the name lacks the size or the type, load() says so. */
 static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) {
   (void)error;
   hl_payload payload;

@@ -4,10 +4,11 @@
 
 #include "volume/io/payload.h"
 
-/* Sets *payload to the size and type that the name states, unchecked. False if the name states none. */
+/* Sets *payload to the size and type that a file's name states. They are not checked. Returns false if the
+ * name states none. */
 bool hl_raw_name(const char *path, hl_payload *payload);
 
-/* The statement in the name of a slice, or of its folder: "512x512_uint16". */
+/* What the name of a slice, or of its folder, states about its voxels, such as "512x512_uint16". */
 typedef struct hl_raw_slice {
   size_t width, height;
   hl_voxel_type type;
@@ -15,7 +16,7 @@ typedef struct hl_raw_slice {
   size_t begin, end; /* its place in the name */
 } hl_raw_slice;
 
-/* Finds the statement in a name of `length` characters. False if there is none. */
+/* Finds what a name of `length` characters states. Returns false if it states nothing. */
 bool hl_raw_slice_name(const char *name, size_t length, hl_raw_slice *slice);
 
 #endif

@@ -18,7 +18,7 @@
 
 enum { MOST_BYTES = 1 << 16, HEAD_BYTES = 20, NUMBERS = 16, PATH_BYTES = 4096 };
 
-/* The rest of the file that is not read yet. */
+/* What remains to be read of the file. */
 typedef struct mat_file {
   const unsigned char *at;
   size_t left;
@@ -35,7 +35,7 @@ static uint32_t load_word(const unsigned char *bytes, bool big_endian) {
   return word;
 }
 
-/* Reads one variable; false at the end and where the file is none of version 4. */
+/* Reads one variable. Returns false at the end, and if the file is not a MAT-file of version 4. */
 static bool read_variable(mat_file *file, matrix *mat, matrix *older) {
   static const size_t sizes[] = {8, 4, 4, 2, 2, 1}; /* of numbers, by their kind */
   if (file->left < HEAD_BYTES) return false;
@@ -62,8 +62,8 @@ static bool read_variable(mat_file *file, matrix *mat, matrix *older) {
   return true;
 }
 
-/* Sets the grid's axes and origin from the matrix, which counts voxels from 1; the grid counts from 0.
- * Returns false if no grid can have such axes. */
+/* Sets the grid's axes and origin from the matrix. The matrix counts voxels from 1, the grid from 0. Returns
+ * false if no grid can have such axes. */
 static bool put(const matrix *from, const char *path, hl_volume_description *grid) {
   hl_volume_description placed = *grid;
   for (int row = 0; row < 3; row++) {

@@ -69,11 +69,12 @@ void hl_bundle_sort(hl_bundle *bundle) {
 typedef struct folder_walk {
   hl_bundle *bundle;
   char name[PATH_MAX]; /* the current entry, relative to the folder */
-  dev_t device;        /* the folder's device: folders on other file systems are not searched */
+  dev_t device;        /* the folder's file system; folders on other file systems are not searched */
   size_t files, depth; /* number of entries of all kinds so far */
 } folder_walk;
 
-/* Whether a name below the folder is a regular file, and no link in the name leads out of the folder. */
+/* Whether a name below the folder is a regular file, which is reached without a link that leads out of the
+ * folder. */
 static bool is_inside(const hl_bundle *bundle, const char *name, struct stat *about) {
   int file = hl_beneath_open(bundle->folder, name, O_PATH);
   bool inside = file >= 0 && fstat(file, about) == 0 && S_ISREG(about->st_mode);

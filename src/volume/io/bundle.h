@@ -9,30 +9,31 @@
 
 typedef struct hl_bundle_entry {
   char *name;          /* owned; relative to the folder, with '/' */
-  uint64_t size;       /* in archives: length of the unpacked file, as the archive claims */
+  uint64_t size;       /* in archives: length of the unpacked file, as the archive states it */
   uint64_t packed, at; /* in archives: length of the packed file; position of the entry's own header */
-  int method;          /* in archives: 0 is stored, 8 is deflated; other methods cannot be read */
+  int method;          /* in archives: 0 for stored, 8 for deflated; other methods cannot be read */
 } hl_bundle_entry;
 
 typedef struct hl_bundle hl_bundle;
 
-/* The files of a store that were fetched from a server so far (bundle_server.c). */
+/* The files of a store that have been fetched from a server (bundle_server.c). */
 typedef struct hl_brought hl_brought;
 
 struct hl_bundle {
   hl_context *context;
   char *path; /* owned; path of the folder or the archive */
   bool is_archive, is_file, listed;
-  bool is_open;                /* whether `folder` is open, which it is after hl_bundle_find_ready() */
+  bool is_open;                /* whether the descriptor `folder` is open, as after hl_bundle_find_ready() */
   int folder;                  /* owned; a folder's descriptor */
   const unsigned char *memory; /* borrowed; [memory_size]; the content of the archive or of the only file;
-                                * null if it is read from files */
+                                * null if the content is not in memory */
   size_t memory_size;
   hl_bundle_entry *entries; /* owned; [count], sorted by name; a folder's entries are found by
                              * hl_bundle_list() */
   size_t count, capacity;
-  hl_brought *brought; /* owned; of a store on a server; else null */
-  size_t links_passed; /* symbolic links that lead out of the folder or to folders */
+  hl_brought *brought; /* owned; the fetched files of a store on a server; else null */
+  size_t links_passed; /* number of links that are not followed, as they lead out of the folder or to
+                        * folders */
   /* Opens an entry of an archive; see hl_bundle_entry_open(). */
   hl_status (*open_entry)(const hl_bundle *bundle, const hl_bundle_entry *entry, bool quiet,
                           hl_source **source, hl_error *error);
@@ -46,40 +47,42 @@ hl_status hl_bundle_open_folder(hl_context *context, const char *path, hl_bundle
 hl_status hl_bundle_of_file(hl_context *context, const char *path, hl_bundle *bundle, hl_error *error);
 void hl_bundle_close(hl_bundle *bundle);
 
-/* Finds a folder's files. Called once. The files of an archive are known without it. */
+/* Finds the files of a folder. Call it once. For archives it is not needed, as their files are known. */
 hl_status hl_bundle_list(hl_bundle *bundle, hl_error *error);
 
-/* Adds a copy of an entry and of its name. Sort the entries when all are added. */
+/* Adds a copy of an entry and of its name. After the last one, call hl_bundle_sort(). */
 hl_status hl_bundle_add(hl_bundle *bundle, hl_bundle_entry entry, hl_error *error);
 void hl_bundle_sort(hl_bundle *bundle);
 
-/* Opens the file of an entry. quiet: the parameter of hl_source_open() with this name. May be called from
- * several threads. */
+/* Opens the file of an entry. quiet: as for hl_source_open(). Several threads may call this function at the
+ * same time. */
 hl_status hl_bundle_entry_open(const hl_bundle *bundle, const hl_bundle_entry *entry, bool quiet,
                                hl_source **source, hl_error *error);
 
-/* Makes a bundle of a store on a server, whose files are found by their names alone. */
+/* Makes a bundle of a store on a server. Its files cannot be listed, but are found by their names. */
 hl_status hl_bundle_open_server(hl_context *context, const char *url, hl_bundle *bundle, hl_error *error);
 static inline bool hl_bundle_is_on_server(const hl_bundle *bundle) { return bundle->brought != NULL; }
-/* Whether hl_bundle_find() knows this file of a server, or its absence, without asking the server. */
+/* Whether the file, or its absence, is known from an earlier request, so that hl_bundle_find() does not need
+ * the server. */
 bool hl_bundle_has_brought(const hl_bundle *bundle, const char *name);
 /* Fetches files of a server in one request. Files that were fetched before are left out. most: the greatest
  * length of a file in bytes. Only the caller's thread may call it. */
 hl_status hl_bundle_bring(const hl_bundle *bundle, const char *const *names, size_t count, uint64_t most,
                           hl_error *error);
-/* The first function gives the number of files that were fetched so far. The second forgets the files that
- * were fetched after the first `count`; no source of such a file may be open. */
+/* hl_bundle_brought_count() gives the number of files that have been fetched. hl_bundle_forget() forgets all
+ * of them after the first `count`; no source of such a file may be open. */
 size_t hl_bundle_brought_count(const hl_bundle *bundle);
 void hl_bundle_forget(const hl_bundle *bundle, size_t count);
-/* The forms of hl_bundle_find() and hl_bundle_close() for a store on a server. */
+/* hl_bundle_find() and hl_bundle_close() call these two functions for a store on a server. */
 hl_status hl_brought_find(const hl_bundle *bundle, const char *name, hl_source **source, hl_error *error);
 void hl_brought_release(hl_bundle *bundle);
 
-/* Prepares hl_bundle_find(), which may then be called from several threads. */
+/* Prepares hl_bundle_find(). Afterwards several threads may call that function at the same time. */
 hl_status hl_bundle_find_ready(hl_bundle *bundle, hl_error *error);
 
-/* Opens the file of a name (relative, with '/'), which need not be listed; in a store on a server, it must
- * have been fetched before. *source is null if there is no such file, or if a link leads out of the folder.
+/* Opens a file by its name, which is relative and has '/'. The file need not be listed. In a store on a
+ * server, it must have been fetched before. *source is null if there is no such file, or if a link leads out
+ * of the folder.
  */
 hl_status hl_bundle_find(const hl_bundle *bundle, const char *name, bool quiet, hl_source **source,
                          hl_error *error);

@@ -1,6 +1,6 @@
-/* volume/io/bundle_server.c - the files of a store on a server, which the context's `fetch` brings.
+/* volume/io/bundle_server.c - the files of a store on a server, which the context's `fetch` callback fetches.
  *
- * Files are brought many at a time, on the caller's thread, and stay open until they are forgotten, so that
+ * Many files are fetched at a time, on the caller's thread. They stay open until they are forgotten, so that
  * any thread can read them. */
 #include <string.h>
 #include <unistd.h>
@@ -52,8 +52,8 @@ void hl_bundle_forget(const hl_bundle *bundle, size_t count) {
   }
 }
 
-/* Finds a file that was fetched. The search begins at the end, because the latest files are wanted most
- * often. */
+/* Finds a fetched file. The search begins at the end, because the files that were fetched last are needed
+ * most often. */
 static const brought_file *find(const hl_brought *brought, const char *name) {
   for (size_t n = brought->count; n > 0; n--)
     if (strcmp(brought->files[n - 1].name, name) == 0) return &brought->files[n - 1];

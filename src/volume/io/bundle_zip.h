@@ -4,7 +4,7 @@
 
 #include "volume/io/bundle.h"
 
-/* Opens a zip archive, the file `path` or the caller's memory, and reads its directory. */
+/* Opens a zip archive, which is the file `path` or lies in the caller's memory, and reads its directory. */
 hl_status hl_bundle_open_zip(hl_context *context, const char *path, const void *bytes, size_t byte_count,
                              hl_bundle *bundle, hl_error *error);
 

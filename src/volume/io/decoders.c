@@ -14,11 +14,11 @@
 /* ---- compressed: gzip, zlib, VTK's blocks ---- */
 
 enum {
-  DEFLATE_GREATEST_RATIO = 1032, /* the greatest number of bytes from one byte: a code of one bit for the
-                                  * length and one of one bit for the distance give 258 bytes (RFC 1951) */
-  PENDING_BYTES = 65536,         /* more bytes than zlib can hold back: its window and bit buffer are
+  DEFLATE_GREATEST_RATIO = 1032, /* the greatest number of bytes that one deflated byte gives: a length and a
+                                  * distance, with a code of one bit each, give 258 bytes (RFC 1951) */
+  PENDING_BYTES = 65536,         /* more bytes than zlib ever holds back, as its window and its bit buffer are
                                   * smaller */
-  /* zlib.h: the largest window; gzip and zlib are told apart by their first bytes. */
+  /* zlib.h: 15 is the largest window; with 32 added, zlib finds out whether the data are gzip or zlib. */
   AUTOMATIC_WINDOW = 15 + 32
 };
 
@@ -38,9 +38,10 @@ typedef struct blocks_stream {
   uint64_t block;                                /* index of the current block */
   uint64_t plain_left, compressed_left;          /* bytes left of the current block */
   hl_vtk_packing packing;
-  unsigned char *packed, *whole; /* owned; the current block of LZ4 or xz, as it is packed and as it is
-                                  * unpacked; null for zlib */
-  size_t whole_done;             /* bytes of `whole` that were pulled; 0 until `whole` is filled */
+  unsigned char *packed, *whole; /* owned; the current block of LZ4 or xz, before and after it is unpacked;
+                                  * null for zlib */
+  size_t whole_done;             /* number of bytes of `whole` that were given to the reader; 0 until `whole`
+                                  * is filled */
 } blocks_stream;
 
 static void *zlib_allocate(void *context, unsigned items, unsigned size) {
@@ -87,7 +88,7 @@ static hl_status inflate_step(hl_stream *stream, z_stream *zlib, uint64_t input_
   return HL_OK;
 }
 
-/* Prepares the next gzip member, which may follow a member. Any other bytes end the stream. */
+/* Prepares the next gzip member, if one follows the member that has ended. Any other bytes end the stream. */
 static hl_status next_member(inflate_stream *stream, hl_error *error) {
   const unsigned char *bytes;
   size_t available;
@@ -133,7 +134,7 @@ hl_status hl_stream_push_inflate(hl_stream **stream, hl_error *error) {
   made->base.pull = inflate_pull;
   made->base.at_most = inflate_at_most;
   made->base.close = inflate_close;
-  *stream = &made->base; /* the caller must close *stream from now on, also if starting zlib fails */
+  *stream = &made->base; /* from now on the caller must close *stream, even if zlib cannot be started */
   return start_zlib(&made->zlib, &made->base, &made->started, error);
 }
 
@@ -154,8 +155,8 @@ static hl_status fail_block(const blocks_stream *stream, hl_error *error) {
                                                                     : stream->block_bytes));
 }
 
-/* Ends the current block, all of whose bytes were made: lets zlib verify the checksum, and skips packed bytes
- * that are left. */
+/* Ends the current block after all of its bytes were given. Lets zlib verify the checksum, and skips the rest
+ * of the packed bytes. */
 static hl_status end_block(blocks_stream *stream, hl_error *error) {
   inflate_result step = {.code = Z_OK};
   while (step.code != Z_STREAM_END) {
@@ -193,7 +194,7 @@ static hl_status blocks_pull(hl_stream *base, unsigned char *bytes, size_t capac
   return HL_OK;
 }
 
-/* Fills `whole` with the current block of LZ4 or xz, unpacked. */
+/* Unpacks the current block of LZ4 or xz into `whole`. */
 static hl_status unpack_block(blocks_stream *stream, hl_error *error) {
   hl_stream *base = &stream->base;
   hl_context *context = base->context;
@@ -266,8 +267,8 @@ static hl_status read_integers(hl_stream *stream, size_t header_bytes, bool big_
   return HL_OK;
 }
 
-/* Reads the sizes of the blocks. They must add up to the array's size, which the file states elsewhere; this
- * also bounds the number of blocks. */
+/* Reads the header, which states the sizes of the blocks. Their sum must be the size of the array, which the
+ * file states elsewhere. This also limits the number of blocks. */
 static hl_status read_block_header(blocks_stream *stream, size_t header_bytes, bool big_endian,
                                    uint64_t promised, hl_error *error) {
   hl_stream *below = stream->base.below;
@@ -328,8 +329,8 @@ typedef struct coded_stream {
   unsigned group_digits;    /* digits in a full group: 4 or 2 */
   unsigned digit_bits;      /* bits in a digit: 6 or 4 */
   uint32_t bits;            /* value of the group's digits so far */
-  unsigned held, padding;   /* number of the group's digits and padding characters so far */
-  unsigned char left[3];    /* decoded bytes of the last group for which the last pull had no room */
+  unsigned held, padding;   /* numbers of digits and of padding characters of the current group so far */
+  unsigned char left[3];    /* decoded bytes of the last group that did not fit into the reader's memory */
   unsigned left_count;
   bool finished;
 } coded_stream;
@@ -342,7 +343,8 @@ static hl_status fail_character(const coded_stream *stream, hl_error *error) {
                         stream->digit_bits == 6 ? "base64" : "hexadecimal");
 }
 
-/* Converts a complete group to bytes. False if the group's padding is impossible. */
+/* Converts a complete group of digits to bytes. Returns false if the group has an impossible number of
+ * padding characters. */
 static bool end_group(coded_stream *stream, unsigned char bytes[3], unsigned *count) {
   unsigned bits = stream->held * stream->digit_bits;
   *count = bits / 8;

@@ -8,12 +8,12 @@
 #include "volume/brick_bounds.h"
 #include "volume/convert.h"
 
-/* The size in bytes from which a volume is spread over ranks. Smaller volumes, as label maps often are, lie
- * in every rank. */
+/* The least size in bytes of a volume that is spread over ranks. Smaller volumes, such as most label maps,
+ * lie as a whole in the memory of every rank. */
 enum { LEAST_OVER_RANKS = 1 << 20 };
 
-/* Warns, before a large file is read, that renderers will refuse to make a picture of it. A renderer takes
- * memory for each brick: its bounds, a flag and a number of 32 bits (grid/bounds.h). */
+/* Warns, before a file is read, if the volume will be too large for renderers. A renderer takes memory for
+ * each brick: its bounds, a flag and a number of 32 bits (grid/bounds.h). */
 static void warn_of_pictures(hl_context *context, const hl_volume_description *grid, const char *path) {
   double bricks = 1, limit = (double)context->options.memory_limit;
   for (int axis = 0; axis < 3; axis++) bricks *= (double)(grid->dimensions[axis] / BRICK_SIDE + 1);
@@ -32,8 +32,8 @@ static void warn_of_pictures(hl_context *context, const hl_volume_description *g
            path, bytes / (1 << 20), limit / (1 << 20));
 }
 
-/* The numbers of the first of this rank's voxels and of the voxel after the last one. They belong to adjacent
- * slices. */
+/* Finds the numbers of this rank's first voxel and of the voxel after its last one. A rank's voxels are
+ * consecutive, as they are whole slices. */
 static void own_range(const hl_own_voxels *own, size_t *begin, size_t *end) {
   size_t slice = own->box.count[0] * own->box.count[1];
   *begin = own->box.begin[2] * slice;

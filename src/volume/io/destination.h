@@ -1,5 +1,5 @@
-/* volume/io/destination.h - where a reader puts voxels: memory, the pages of a scratch file where memory has
- * no room, or, over ranks, this rank's share of the slices.
+/* volume/io/destination.h - where a reader puts voxels: into memory, into the pages of a scratch file if
+ * memory is short, or over ranks into this rank's share of the slices.
  *
  * In: stored values, in pieces of any size and order, from several threads at once. Out: the volume. */
 #ifndef HL_VOLUME_DESTINATION_H
@@ -15,14 +15,14 @@ typedef struct hl_destination {
   size_t voxel_bytes;    /* bytes of a stored value, or of a voxel's colours */
   unsigned char *voxels; /* owned; [k][j][i]; null with pages */
   hl_pages *pages;       /* owned; null if the voxels are in memory */
-  hl_exact exact;        /* the file's own numbers, where stored values round them */
-  hl_own_voxels *own;    /* owned; this rank's slices, for a volume over ranks, whose `voxels` is null; null
+  hl_exact exact;        /* the file's own numbers, if stored values round any of them */
+  hl_own_voxels *own;    /* owned; this rank's slices of a volume over ranks, for which `voxels` is null; null
                           * for other volumes */
 } hl_destination;
 
 typedef enum hl_destination_kind {
-  HL_DESTINATION_PIECES, /* in pages where memory is short, or over ranks */
-  HL_DESTINATION_VOXELS, /* always in memory, as the reader comes back to voxels */
+  HL_DESTINATION_PIECES, /* in memory; in pages if memory is short, or over ranks */
+  HL_DESTINATION_VOXELS, /* always in memory, for readers that access voxels more than once */
   HL_DESTINATION_COLORS  /* always in memory; the values are colours (colors.h) */
 } hl_destination_kind;
 
@@ -31,23 +31,25 @@ hl_status hl_destination_open(hl_context *context, const hl_volume_description *
                               hl_destination_kind kind, const char *path, hl_destination *destination,
                               hl_error *error);
 
-/* Gives a place to which the caller writes `count` voxels, beginning with number `first`: the volume's own
- * memory for these voxels, or a block of its own. hl_destination_put() takes the voxels over and releases
- * such a block. Every place that was taken must be put. */
+/* Gives memory into which the caller writes `count` voxels, of which the first is number `first`. It is the
+ * volume's own memory for these voxels, or a separate block. Afterwards the caller must call
+ * hl_destination_put(), which stores the voxels of such a block and releases it. */
 hl_status hl_destination_take(hl_destination *destination, size_t first, size_t count, void **place,
                               hl_error *error);
 void hl_destination_put(hl_destination *destination, size_t first, size_t count, void *place);
 
-/* Whether any of these voxels is kept. Over ranks, voxels of other ranks are not, and need not be read. */
+/* Whether any of these voxels is kept. Over ranks, voxels of other ranks are not kept, and need not be
+ * read. */
 bool hl_destination_wants(const hl_destination *destination, size_t first, size_t count);
 
-/* Whether there is no array of all voxels, so that hl_destination_store() copies voxels to their places. */
+/* Whether voxels are not in one array in memory. Then hl_destination_store() must copy them to their
+ * places. */
 static inline bool hl_destination_is_apart(const hl_destination *destination) {
   return destination->voxels == NULL;
 }
 void hl_destination_store(hl_destination *destination, size_t first, size_t count, const void *values);
 
-/* Notes voxels in the file's own type before they are stored; see hl_exact_note(). */
+/* Records the numbers of voxels in the file's own type, before the voxels are stored; see hl_exact_note(). */
 static inline void hl_destination_note(hl_destination *destination, bool swap, const void *source,
                                        size_t first, size_t count) {
   hl_exact_note(&destination->exact, swap, source, first, count);
@@ -58,7 +60,7 @@ static inline void hl_destination_note(hl_destination *destination, bool swap, c
 hl_status hl_destination_adopt(hl_destination *destination, const hl_volume_description *grid,
                                hl_volume **volume, hl_error *error);
 
-/* Makes a volume of colours, and otherwise does what hl_destination_adopt() does. */
+/* Does what hl_destination_adopt() does, for a volume of colours. */
 hl_status hl_destination_adopt_colors(hl_destination *destination, const hl_color_source *source,
                                       hl_volume **volume, hl_error *error);
 

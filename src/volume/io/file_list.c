@@ -34,8 +34,8 @@ void hl_file_list_release(hl_file_list *list) {
   *list = (hl_file_list){.context = list->context};
 }
 
-/* Finds the only "%d", "%5d" or "%05d" of a pattern ("%i" and "%u" count, too). False if the pattern has
- * none, or another percent sign. */
+/* Finds the number in a pattern: the only "%d", "%5d" or "%05d", where 'i' or 'u' may stand for 'd'. Returns
+ * false if the pattern has none, or if it has another percent sign. */
 static bool find_number(const char *pattern, size_t *begin, size_t *end, int *width, bool *zeros) {
   const char *percent = strchr(pattern, '%'), *at = percent;
   if (percent == NULL) return false;
@@ -78,11 +78,12 @@ hl_status hl_file_list_pattern(hl_file_list *list, const char *text, bool *sound
 
 typedef struct files_stream {
   hl_stream base;
-  char *header_path; /* owned; path of the header, beside which the files lie */
+  char *header_path; /* owned; path of the header, in whose folder the files are looked for */
   hl_file_list list;
   size_t next;         /* index of the file that is opened next */
   hl_stream *file;     /* owned; the current file, at its voxels; null if there is none */
-  uint64_t each, left; /* bytes of voxels in each file; bytes that are left in the current file */
+  uint64_t each, left; /* number of bytes of voxels in each file; number of them that are left in the current
+                        * file */
 } files_stream;
 
 /* Opens a file and goes to its voxels. *file is owned by the caller, also on failure. */
@@ -147,7 +148,7 @@ static void files_close(hl_stream *base) {
   hl_release(base->context, stream->header_path);
 }
 
-/* Checks that each file is long enough for its voxels, before memory is taken for these. */
+/* Checks that each file is long enough for its voxels, before memory for the voxels is allocated. */
 static hl_status check_files(const files_stream *stream, hl_error *error) {
   for (size_t n = 0; n < stream->list.count; n++) {
     hl_stream *file = NULL;

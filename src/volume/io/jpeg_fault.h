@@ -9,9 +9,9 @@
 #include <jpeglib.h>
 
 typedef struct hl_jpeg_fault {
-  struct jpeg_error_mgr manager; /* libjpeg's member, to which the decoder's `err` points */
+  struct jpeg_error_mgr manager; /* libjpeg's part; the decoder's `err` points to it */
   jmp_buf jump;                  /* where execution goes on after an error */
-  char message[JMSG_LENGTH_MAX]; /* set by the jump: the error's message */
+  char message[JMSG_LENGTH_MAX]; /* the error's message, set before the jump */
 } hl_jpeg_fault;
 
 static inline void hl_jpeg_stop(j_common_ptr info) {
@@ -22,7 +22,8 @@ static inline void hl_jpeg_stop(j_common_ptr info) {
 
 static inline void hl_jpeg_pass_over(j_common_ptr info) { (void)info; }
 
-/* Sets up the decoder's errors: an error jumps, and a warning is ignored. The caller sets `jump`. */
+/* Sets what the decoder does on errors: it jumps to `jump`, which the caller must set. Warnings are
+ * ignored. */
 static inline void hl_jpeg_catch(struct jpeg_decompress_struct *info, hl_jpeg_fault *fault) {
   info->err = jpeg_std_error(&fault->manager);
   fault->manager.error_exit = hl_jpeg_stop;

@@ -1,5 +1,5 @@
-/* volume/io/lengths.c - see lengths.h. The symbols come from OME's schema (UnitsLength) and the International
- * System of Units. The names come from UDUNITS-2 and ImageJ. */
+/* volume/io/lengths.c - see lengths.h. The symbols are those of OME's schema (UnitsLength) and the
+ * International System of Units. The names are those of UDUNITS-2 and ImageJ. */
 #include "volume/io/lengths.h"
 
 #include <stddef.h>

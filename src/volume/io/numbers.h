@@ -9,7 +9,7 @@
 /* Whether a character may stand between numbers of a text. */
 static inline bool hl_is_separator(unsigned char c) { return hl_is_space((char)c) || c == ','; }
 
-/* Reads the next number of a text; *found is false at the end. */
+/* Reads the next number of a text. *found is set to false at the end. */
 hl_status hl_next_number(hl_stream *stream, double *value, bool *found, hl_error *error);
 
 /* The coding of numbers. */
@@ -18,11 +18,11 @@ typedef struct hl_number_code {
   bool text, big_endian; /* text: decimal numbers of any type */
 } hl_number_code;
 
-/* The number that the bytes of a type stand for. */
+/* The number that these bytes of a type stand for. */
 double hl_binary_number(const unsigned char *bytes, hl_voxel_type type, bool big_endian);
 
 /* Reads `count` numbers. *numbers: [count], owned by the caller (hl_release). Integers are exact up to 2^53.
- * Fails if the stream cannot hold so many numbers; this is found before memory is taken. */
+ * If the stream is too short for this many numbers, fails before memory is allocated. */
 hl_status hl_read_numbers(hl_stream *stream, const hl_number_code *code, uint64_t count, double **numbers,
                           hl_error *error);
 

@@ -1,5 +1,5 @@
-/* volume/io/packed_streams.c - streams that unpack whole files of bzip2 and xz. Such files are recognised by
- * their first bytes, as files of gzip are.
+/* volume/io/packed_streams.c - streams that unpack whole files of bzip2 and xz. Like files of gzip, such
+ * files are recognised by their first bytes.
  *
  * In: packed bytes from the stream below. Out: plain bytes, never more than the reader requests. The two
  * libraries take their own memory: bzip2 some 4 MB, xz at most XZ_MEMORY. */
@@ -43,8 +43,8 @@ static hl_status fail_absent(const hl_stream *stream, const char *name, hl_error
 
 #ifdef HL_HAS_BZIP2
 
-/* The greatest number of bytes that one packed byte can become: a block of 900000 bytes is packed to about 40
- * or more. */
+/* The greatest number of bytes that one packed byte gives. A block of 900000 bytes is packed to at least
+ * about 40 bytes. */
 enum { BZIP2_GREATEST_RATIO = 25000 };
 
 typedef struct bzip2_stream {
@@ -65,7 +65,8 @@ static hl_status bzip2_start(bzip2_stream *stream, hl_error *error) {
   return stream->started ? HL_OK : hl_fail_memory(error, 100000, stream->base.path);
 }
 
-/* Prepares the next packed stream, which may follow a stream, as parallel programs write them. */
+/* Prepares the next packed stream, if one follows the stream that has ended. Programs that pack in parallel
+ * write several streams. */
 static hl_status bzip2_next(bzip2_stream *stream, hl_error *error) {
   const unsigned char *bytes;
   size_t available;
@@ -131,9 +132,11 @@ hl_status hl_stream_push_bzip2(hl_stream **stream, hl_error *error) {
 
 #ifdef HL_HAS_LZMA
 
-/* The most memory that unpacking may take, in bytes. Files packed with the strongest setting take 65 MiB. */
+/* The greatest number of bytes of memory that unpacking may take. Files packed with the strongest setting
+ * need 65 MiB. */
 #define XZ_MEMORY ((uint64_t)256 << 20)
-/* The greatest ratio: about 273 bytes from two bits, and the coder's own overhead. */
+/* The greatest number of bytes from one packed byte: two bits give about 273, to which the format's overhead
+ * is added. */
 enum { XZ_GREATEST_RATIO = 8192 };
 
 typedef struct xz_stream {
@@ -198,8 +201,8 @@ hl_status hl_stream_unpack(hl_stream **stream, hl_error *error) {
   hl_status status = hl_stream_peek(*stream, 10, &bytes, &length, error);
   if (status != HL_OK) return status;
   if (length >= 3 && memcmp(bytes, "\x1f\x8b\x08", 3) == 0) return hl_stream_push_inflate(stream, error);
-  /* the mark is "BZh", a digit, and the digits of pi, or of the square root of pi where nothing follows; a
-   * file that was cut has only some of these digits */
+  /* the mark of bzip2 is "BZh", a digit, and six bytes: digits of pi, or of its square root if the file is
+   * empty. A file that was cut short may have fewer of these bytes */
   size_t marked = length < 10 ? (length > 4 ? length - 4 : 0) : 6;
   if (length >= 4 && memcmp(bytes, "BZh", 3) == 0 && bytes[3] >= '1' && bytes[3] <= '9' &&
       (memcmp(bytes + 4, "\x31\x41\x59\x26\x53\x59", marked) == 0 ||

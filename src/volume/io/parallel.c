@@ -1,4 +1,5 @@
-/* volume/io/parallel.c - parts of a volume on all threads: progress, cancellation, and the first error. */
+/* volume/io/parallel.c - see parallel.h. It also reports progress, handles cancellation, and keeps the first
+ * error. */
 #include "volume/io/parallel.h"
 
 #include <pthread.h>
@@ -12,8 +13,8 @@ typedef struct parts {
   hl_part_reader read;
   void *data;
   pthread_mutex_t lock;
-  atomic_size_t done, failed; /* done: number of parts that are done; failed: the lowest index of a part that
-                               * failed, or SIZE_MAX */
+  atomic_size_t done, failed; /* done: number of parts that have been read; failed: the lowest index of a part
+                               * that failed, SIZE_MAX if there is none */
   hl_status status;           /* status of one part */
   hl_error error;
 } parts;

@@ -1,8 +1,8 @@
 /* volume/io/payload.c - reads the voxels that a header promises.
  *
  * In: a stream at the first voxel, and the header. Out: the volume. The file's bytes are read into the
- * volume's own memory and converted there, piece by piece. Voxels of 8 bytes, which become shorter, pass
- * through a small buffer. Voxels of volumes larger than memory pass through a piece. */
+ * volume's own memory and converted there, piece by piece. Voxels of 8 bytes, which become shorter, are read
+ * through a small buffer. Voxels of volumes larger than memory are read through a piece of memory. */
 #include "volume/io/payload.h"
 
 #include <math.h>
@@ -56,8 +56,8 @@ static hl_status check_promise(const hl_stream *stream, const hl_payload *payloa
   if (payload->text)
     promised = value_count(payload) > UINT64_MAX / 2
                    ? UINT64_MAX
-                   : 2 * value_count(payload) - 1; /* each value has at least a digit, and two values have a
-                                                    * separator between them */
+                   : 2 * value_count(payload) - 1; /* each value has at least one digit, and there is a
+                                                    * separator between values */
   if (promised <= most) return HL_OK;
   return hl_fail_offset(
       error, HL_ERROR_INPUT, (int64_t)stream->offset,
@@ -90,9 +90,8 @@ static bool is_swapped(const hl_payload *payload) {
   return !payload->text && payload->big_endian != native_is_big_endian;
 }
 
-/* Reads the next `count` values into `raw`, and converts them into `place`. Both may be the same memory.
- * done: the number of values that were read before, which is also the number of the first voxel in
- * `place`. */
+/* Reads the next `count` values into `raw`, and converts them into `place`, which may be the same memory.
+ * done: the number of values that were read before; this is also the number of the first voxel in `place`. */
 static hl_status read_piece(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t count,
                             void *raw, void *place, hl_destination *destination, hl_error *error) {
   hl_voxel_type type = payload->grid.type;
@@ -105,21 +104,21 @@ static hl_status read_piece(hl_stream *stream, const hl_payload *payload, uint64
   return HL_OK;
 }
 
-/* Voxels on their way into pages. One thread at a time reads them, in order; all threads copy them into their
- * pages. */
+/* The state of reading voxels into pages. Threads take turns at reading the stream, in order. All threads
+ * copy what they have read into pages. */
 typedef struct page_reading {
   hl_stream *stream;
   const hl_payload *payload;
   hl_destination *destination;
-  size_t piece, done; /* number of voxels that are read at once; number of voxels that all threads together
-                       * have read */
-  bool in_place;      /* whether voxels of the file are as long as stored ones */
-  bool failed;        /* whether reading has stopped after a failure */
+  size_t piece, done; /* number of voxels that a thread reads at once; number of voxels that all threads have
+                       * read so far */
+  bool in_place;      /* whether a voxel of the file has as many bytes as a stored one */
+  bool failed;        /* whether a thread has failed, so that reading has stopped */
   pthread_mutex_t lock;
 } page_reading;
 
-/* Reads the next piece. It need not be the piece number `index`: pieces are read in their order, and threads
- * may take the lock in another order. */
+/* Reads the next piece of the stream, and stores it. The index is ignored: pieces are read in their order in
+ * the stream, whichever thread comes first. */
 static hl_status read_into_pages(void *data, size_t index, int worker, hl_error *error) {
   page_reading *r = data;
   (void)index, (void)worker;
@@ -141,9 +140,9 @@ static hl_status read_into_pages(void *data, size_t index, int worker, hl_error 
   return status;
 }
 
-/* The number of voxels that a thread reads at once. Whole slices are stored fastest; some of them are read at
- * once if those of all threads take at most an eighth of the memory limit. Otherwise about PIECE_BYTES are
- * read at once: whole rows, or a part of one row. */
+/* The number of voxels that a thread reads at once. Storing is fastest for whole slices. Therefore some whole
+ * slices are read at once, if those of all threads take at most an eighth of the memory limit. Otherwise
+ * about PIECE_BYTES are read: whole rows, or a part of one row. */
 static size_t piece_for_pages(const hl_context *context, const hl_payload *payload, int threads,
                               size_t voxel_bytes) {
   enum { SLICES = 8, MOST_BYTES = 1 << 27 };
@@ -214,7 +213,8 @@ static bool fits_type(hl_voxel_type type, double value) {
   return value >= low[type] && value <= high[type] && value == floor(value);
 }
 
-/* The type that values have in memory after they are read. Numbers of a text are not rounded to halves. */
+/* The type that values have directly after they are read. It is the payload's type, except that numbers of a
+ * text are not rounded to halves. */
 static hl_voxel_type read_type(const hl_payload *payload) {
   return payload->text && payload->grid.type == HL_VOXEL_F16 ? HL_VOXEL_F32 : payload->grid.type;
 }
@@ -225,7 +225,7 @@ static hl_voxel_type read_type(const hl_payload *payload) {
     memcpy(raw + index * sizeof number, &number, sizeof number); \
   } while (0)
 
-/* Stores a number that fits the type as bytes of the type. */
+/* Stores a number as bytes of a type, whose range it does not exceed. */
 static void put_number(hl_voxel_type type, double value, size_t index, unsigned char *raw) {
   switch (type) {
     case HL_VOXEL_U8: PUT(uint8_t); break;
@@ -247,7 +247,7 @@ static void put_number(hl_voxel_type type, double value, size_t index, unsigned 
   }
 }
 
-/* Reads the next number of a text. done: the number of numbers before it. */
+/* Reads the next number of a text. done: how many numbers were read before it. */
 static hl_status read_text_value(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t index,
                                  unsigned char *raw, hl_error *error) {
   double value;
@@ -268,7 +268,8 @@ static hl_status read_text_value(hl_stream *stream, const hl_payload *payload, u
   return HL_OK;
 }
 
-/* Reads `count` values of the type read_type() into `raw`. `done` values came before. */
+/* Reads `count` values into `raw`, as values of the type read_type(). done: how many values were read
+ * before. */
 static hl_status read_values(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t count,
                              unsigned char *raw, hl_error *error) {
   size_t bytes = hl_voxel_type_bytes(payload->grid.type), got;
@@ -304,9 +305,9 @@ static hl_status read_text(hl_stream *stream, const hl_payload *payload, hl_dest
  * the components of a voxel lie side by side, and all voxels where components follow each other as a whole.
  * The magnitude is summed up in the voxels themselves, so that any order needs no more memory. */
 
-/* The place, in the file's order, of the value that comes next. */
+/* The place of the next value among blocks and components. */
 typedef struct component_place {
-  size_t first; /* number of the voxel of the block's first value */
+  size_t first; /* number of the voxel to which the current block's first value belongs */
   size_t component;
   size_t in_block;
 } component_place;
@@ -322,14 +323,14 @@ static double value_of(const hl_payload *payload, const void *stage, size_t inde
          payload->grid.value_offset;
 }
 
-/* Adds the square of a component to a vector's magnitude, which is the square root of the sum of the squares.
- * The sum is computed in double, which holds the squares of all floats. */
+/* Adds a component to the magnitude of a vector, which is the square root of the sum of the components'
+ * squares. It is computed in double, which holds the squares of all floats. */
 static void add_square(float *magnitude, size_t component, double value) {
   double before = component > 0 ? (double)*magnitude : 0;
   *magnitude = (float)(component > 0 ? sqrt(before * before + value * value) : fabs(value));
 }
 
-/* Takes a value. raw: the value as it was read. stage: the stored value. */
+/* Takes a value, if its component is wanted. raw: values as they were read. stage: their stored values. */
 static void take_value(const hl_payload *payload, const unsigned char *raw, const unsigned char *stage,
                        size_t index, const component_place *place, hl_destination *destination) {
   size_t voxel = place->first + place->in_block;
@@ -357,7 +358,7 @@ static void advance(const hl_payload *payload, component_place *place) {
   place->first += payload->block;
 }
 
-/* Skips the current block if it is large and belongs to a component that is not read. */
+/* Skips the current block, if it is large and its component is not wanted. */
 static hl_status skip_block(hl_stream *stream, const hl_payload *payload, component_place *place,
                             bool *skipped, hl_error *error) {
   uint64_t bytes = (uint64_t)payload->block * hl_voxel_type_bytes(payload->grid.type);
@@ -375,7 +376,7 @@ static hl_status read_components(hl_stream *stream, const hl_payload *payload, h
   component_place place = {0, 0, 0};
   size_t count = voxel_count(payload);
   for (uint64_t done = 0; place.first < count;) {
-    /* planes after the wanted one need not be read */
+    /* of components in planes, those after the wanted one are not needed */
     if (payload->block == count && payload->component >= 0 && place.component > (size_t)payload->component)
       break;
     bool skipped;
@@ -386,7 +387,7 @@ static hl_status read_components(hl_stream *stream, const hl_payload *payload, h
       continue;
     }
     uint64_t left = (uint64_t)(count - place.first) *
-                    payload->components; /* the greatest number of values left to read */
+                    payload->components; /* number of values that may be left to read, at most */
     size_t wanted = left < STAGE_VOXELS ? (size_t)left : STAGE_VOXELS;
     if (payload->block - place.in_block < wanted && payload->block > 1)
       wanted = payload->block - place.in_block;
@@ -407,8 +408,8 @@ static hl_status read_components(hl_stream *stream, const hl_payload *payload, h
 
 /* ---- the whole ---- */
 
-/* Checks that the stream ends with the voxels. Asking for one byte more also makes a decompressor verify its
- * checksum. */
+/* Checks that the stream ends after the voxels. Trying to read one more byte also makes a decompressor verify
+ * its checksum. */
 static hl_status check_end(hl_stream *stream, const hl_payload *payload, hl_error *error) {
   bool to_the_end = payload->components == 1 || payload->component < 0 ||
                     payload->block < voxel_count(payload);

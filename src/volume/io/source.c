@@ -1,5 +1,5 @@
-/* volume/io/source.c - reads bytes at any position of a file (by pread), of memory, or of a part of either.
- * Deflated data are inflated up to the last byte that is asked for, and the inflated bytes are kept. */
+/* volume/io/source.c - see source.h. Files are read by pread(). Deflated data are inflated up to the last
+ * byte that was needed so far, and the inflated bytes are kept. */
 #define _GNU_SOURCE
 #include "volume/io/source.h"
 
@@ -23,12 +23,13 @@ struct hl_source {
   uint64_t size;
   unsigned char *window; /* owned; for files: the bytes [window_begin, + window_length) */
   uint64_t window_begin;
-  size_t window_length, window_most; /* bytes in the window; bytes for which the last look asked the file */
-  /* Data that lie in another source, perhaps deflated. */
+  size_t window_length, window_most; /* number of bytes in the window; number of bytes that the last call read
+                                      * from the file */
+  /* For data that are a part of another source, and may be deflated. */
   hl_source *below;  /* owned; may be null */
   uint64_t below_at; /* the next byte that is taken from `below` */
   struct {
-    unsigned char *bytes; /* owned; [capacity]; the first `length` bytes are known */
+    unsigned char *bytes; /* owned; [capacity]; the first `length` bytes have been inflated */
     size_t length, capacity;
     bool ended;
     z_stream zlib;
@@ -133,12 +134,12 @@ hl_status hl_source_inflate(hl_source **source, uint64_t begin, uint64_t limit, 
   made->inflated.zlib.zalloc = zlib_allocate;
   made->inflated.zlib.zfree = zlib_release;
   made->inflated.zlib.opaque = below->context;
-  /* zlib.h: a negative number means raw deflate; 15 is the largest window. */
+  /* zlib.h: 15 is the largest window; the negative sign means deflate data without a header. */
   if (inflateInit2(&made->inflated.zlib, -15) != Z_OK) {
     hl_source_close(made);
     return hl_fail_memory(error, 50000, "decompression");
   }
-  /* deflate packs at most 1032 bytes into one: 258 bytes into two bits */
+  /* one byte of deflate data gives at most 1032 bytes: two bits give 258 */
   uint64_t left = begin < below->size ? below->size - begin : 0;
   uint64_t most = left > UINT64_MAX / 1032 ? UINT64_MAX : left * 1032;
   made->below = below;
@@ -179,7 +180,7 @@ static hl_status grow(hl_source *source, uint64_t needed, hl_error *error) {
   return HL_OK;
 }
 
-/* Calls inflate() once; it may fill all the memory that is free. */
+/* Calls inflate() once. The result may fill all memory that is free in `inflated`. */
 static hl_status inflate_more(hl_source *source, hl_error *error) {
   const unsigned char *bytes;
   size_t available;
@@ -203,7 +204,7 @@ static hl_status inflate_more(hl_source *source, hl_error *error) {
   return HL_OK;
 }
 
-/* Inflates until `needed` bytes are known, or the data end. */
+/* Inflates until at least `needed` bytes are known, or until the data end. */
 static hl_status inflate_up_to(hl_source *source, uint64_t needed, hl_error *error) {
   if (needed > source->size) needed = source->size;
   hl_status status = HL_OK;
@@ -230,7 +231,8 @@ static hl_status peek_inflated(hl_source *source, uint64_t offset, size_t wanted
   else if (source->inflated.length - offset < *available)
     *available = (size_t)(source->inflated.length - offset);
   if (*available > 0)
-    *bytes = source->inflated.bytes + offset; /* else *bytes remains the empty block that the caller set */
+    *bytes = source->inflated.bytes + offset; /* otherwise *bytes stays the empty block that the caller has
+                                               * set */
   return status;
 }
 
@@ -249,7 +251,7 @@ hl_status hl_source_peek(hl_source *source, uint64_t offset, size_t wanted, cons
   if (source->below != NULL)
     return hl_source_peek(source->below, source->below_at + offset, *available, bytes, available, error);
   if (offset < source->window_begin || offset + *available > source->window_begin + source->window_length) {
-    /* the first reads are small, as most headers are short */
+    /* the first calls read little, as most headers are short; later calls read more and more */
     size_t most = source->window_most > 0 ? 4 * source->window_most : FIRST_LOOK_BYTES;
     source->window_most = most < *available ? *available : most;
     if (source->window_most > HL_SOURCE_WINDOW_BYTES) source->window_most = HL_SOURCE_WINDOW_BYTES;

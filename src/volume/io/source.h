@@ -1,4 +1,4 @@
-/* volume/io/source.h - bytes at any position of a file, of memory, or of deflated data.
+/* volume/io/source.h - reads bytes at any position of a file, of memory, or of deflated data.
  *
  * Streams (stream.h) are read once, in order. A source serves formats whose headers point to other places of
  * the file. */
@@ -13,12 +13,12 @@ enum { HL_SOURCE_WINDOW_BYTES = 65536 };
 
 typedef struct hl_source hl_source;
 
-/* Opens a regular file. quiet: whether the context's `reads` callback is not called. It must be quiet on
+/* Opens a regular file. quiet: whether the context's `reads` callback is not called. This must be so on
  * threads other than the caller's, and for files that were reported before. */
 hl_status hl_source_open(hl_context *context, const char *path, bool quiet, hl_source **source,
                          hl_error *error);
-/* Opens the first `size` bytes of a descriptor's file. The descriptor stays the caller's, and must stay open
- * as long as the source. */
+/* Makes a source of the first `size` bytes of an open file. The descriptor stays the caller's, and must stay
+ * open as long as the source exists. */
 hl_status hl_source_of_descriptor(hl_context *context, const char *path, int descriptor, uint64_t size,
                                   hl_source **source, hl_error *error);
 /* Opens memory. path: the name in error lines. The bytes must outlive the source. */
@@ -27,9 +27,9 @@ hl_status hl_source_of_memory(hl_context *context, const char *path, const void 
 /* Makes a source of the bytes [begin, begin + count) of *source. The new source replaces *source and owns
  * it. */
 hl_status hl_source_cut(hl_source **source, uint64_t begin, uint64_t count, hl_error *error);
-/* Makes a source of the bytes that are deflated, without a header, from position `begin` of *source on. At
- * most `limit` bytes are inflated. They are inflated when they are first needed, and then kept. The new
- * source replaces *source and owns it. */
+/* Makes a source of the bytes to which deflate data inflate. The data have no header, and begin at position
+ * `begin` of *source. At most `limit` bytes are inflated. They are inflated when they are first needed, and
+ * then kept. The new source replaces *source and owns it. */
 hl_status hl_source_inflate(hl_source **source, uint64_t begin, uint64_t limit, hl_error *error);
 void hl_source_close(hl_source *source); /* null is allowed */
 
@@ -38,15 +38,16 @@ const char *hl_source_path(const hl_source *source);
 /* The length in bytes; for deflated data an upper bound. */
 uint64_t hl_source_size(const hl_source *source);
 
-/* Shows up to `wanted` bytes (at most HL_SOURCE_WINDOW_BYTES) from `offset` on, fewer only at the end. The
- * bytes stay valid until the next call. */
+/* Gives access to up to `wanted` bytes (at most HL_SOURCE_WINDOW_BYTES) from `offset` on; there are fewer
+ * only at the end. The bytes stay valid until the next call. */
 hl_status hl_source_peek(hl_source *source, uint64_t offset, size_t wanted, const unsigned char **bytes,
                          size_t *available, hl_error *error);
 /* Copies `wanted` bytes from `offset` on. *count is less than wanted only at the end. */
 hl_status hl_source_read(hl_source *source, uint64_t offset, void *bytes, size_t wanted, size_t *count,
                          hl_error *error);
-/* Reads all bytes; refuses more than `most`. *bytes must be null before, and is owned by the caller
- * (hl_release), also after a failure. *length: number of bytes. name: the file's name, for error lines. */
+/* Reads all bytes. Fails if there are more than `most`. *bytes must be null before, and is owned by the
+ * caller (hl_release), also after a failure. *length: number of bytes. name: the file's name, for error
+ * lines. */
 hl_status hl_source_read_whole(hl_source *source, const char *name, uint64_t most, unsigned char **bytes,
                                size_t *length, hl_error *error);
 

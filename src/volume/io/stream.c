@@ -1,4 +1,4 @@
-/* volume/io/stream.c - shared by all streams: buffer, lines, skipping; and streams of files. */
+/* volume/io/stream.c - functions for all streams: the buffer, lines, and skipping. Also streams of files. */
 #define _GNU_SOURCE
 #include "volume/io/stream.h"
 
@@ -15,7 +15,7 @@ typedef struct file_stream {
   hl_stream base;
   int descriptor; /* -1 until the file is open */
   bool regular;
-  uint64_t size, position;     /* length of a regular file, and the position in it, in bytes */
+  uint64_t size, position;     /* length in bytes of a regular file, and the current position in it */
   const unsigned char *memory; /* borrowed; [size]; the content if it is in memory, else null */
 } file_stream;
 
@@ -216,7 +216,7 @@ hl_status hl_stream_read(hl_stream *stream, void *bytes, size_t wanted, size_t *
   while (status == HL_OK && *count < wanted) {
     size_t left = wanted - *count, got;
     if (stream->begin == stream->end &&
-        left >= HL_STREAM_BUFFER_BYTES) { /* reads directly, without a copy through the buffer */
+        left >= HL_STREAM_BUFFER_BYTES) { /* many bytes are read directly, without a copy in the buffer */
       status = pull(stream, destination + *count, left, &got, error);
       stream->offset += got;
     } else {
@@ -242,8 +242,8 @@ hl_status hl_stream_read_all(hl_stream *stream, void *bytes, size_t wanted, hl_e
   return status;
 }
 
-/* Skips bytes of a plain file or of memory without reading them, if there are enough of them to be worth it.
- * Returns the number of bytes that were skipped. */
+/* Skips bytes of a plain file or of memory without reading them. Does so only for many bytes, for which it
+ * saves time. Returns the number of bytes that were skipped. */
 static uint64_t seek_over(hl_stream *stream, uint64_t count) {
   if (stream->below != NULL || !file_of(stream)->regular) return 0;
   file_stream *file = (file_stream *)stream;
@@ -274,7 +274,8 @@ hl_status hl_stream_skip(hl_stream *stream, uint64_t count, hl_error *error) {
   return HL_OK;
 }
 
-/* Determines the kind of line end from the first line. A CR ends lines only if no LF follows it there. */
+/* Finds which line ends the stream has, from its first line. Lines end with CR only if no LF follows the
+ * first CR. */
 static void learn_line_end(hl_stream *stream, const unsigned char *bytes, size_t length, size_t available) {
   if (stream->line_end_known) return;
   const unsigned char *carriage_return = memchr(bytes, '\r', length);

@@ -38,8 +38,8 @@ bool hl_text_is_one_of(const char *text, const char *alternatives) {
   }
 }
 
-/* A number written as sign digits [. digits] [e sign digits]. It is decimal = mantissa * 10^exponent, exactly
- * unless `long_form`. */
+/* A number written as sign digits [. digits] [e sign digits]. Its value is mantissa * 10^exponent. If
+ * `long_form` is set, it has too many digits for the mantissa. */
 typedef struct decimal {
   bool negative, long_form;
   uint64_t mantissa;
@@ -92,7 +92,7 @@ static bool scan_special(const char *text, size_t length, double *value) {
   return true;
 }
 
-/* Converts numbers that the exact path cannot convert. */
+/* Converts a number for which the fast way is not exact. */
 static double convert_slowly(const char *text, size_t length) {
   char copy[HL_NUMBER_CHARACTERS];
   memcpy(copy, text, length);
@@ -107,8 +107,8 @@ bool hl_text_number(const char *text, size_t length, double *value) {
   decimal number;
   if (length == 0 || length >= HL_NUMBER_CHARACTERS) return false;
   if (!scan_decimal(text, text + length, &number)) return scan_special(text, length, value);
-  /* both factors are doubles without error, so that one rounding gives the nearest double (W. D. Clinger,
-   * "How to read floating point numbers accurately", 1990, section 2) */
+  /* the mantissa and the power of ten are exact as doubles, so that a single rounding gives the nearest
+   * double (W. D. Clinger, "How to read floating point numbers accurately", 1990, section 2) */
   if (!number.long_form && number.mantissa <= (uint64_t)1 << 53 && number.exponent >= -22 &&
       number.exponent <= 22) {
     double magnitude = number.exponent < 0 ? (double)number.mantissa / power_of_ten[-number.exponent]

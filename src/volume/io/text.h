@@ -15,18 +15,18 @@ static inline bool hl_is_space(char c) { return c == ' ' || (c >= '\t' && c <= '
  * upper or lower case. False if the text is no number or has HL_NUMBER_CHARACTERS or more characters. */
 bool hl_text_number(const char *text, size_t length, double *value);
 
-/* Converts a whole text to a whole number; the text may also be 13.0 or 1e3. False if the text is no number
- * that int64_t holds. */
+/* Converts a whole text to a whole number. The text may also have the form 13.0 or 1e3. Returns false if it
+ * is no whole number that int64_t holds. */
 bool hl_text_whole(const char *text, int64_t *whole);
 
-/* Reads numbers separated by white space. Returns their number, or -1 if the text holds anything else or more
- * than `capacity` numbers. */
+/* Reads numbers separated by white space. Returns how many there are, or -1 if the text contains anything
+ * else or more than `capacity` numbers. */
 int hl_text_numbers(const char *text, double *values, int capacity);
 
 /* Reads integers from 0 to SIZE_MAX, like hl_text_numbers(). */
 int hl_text_sizes(const char *text, size_t *values, int capacity);
 
-/* Compares without regard to the case of ASCII letters. */
+/* These functions compare texts, and ignore the case of ASCII letters. */
 bool hl_text_equal(const char *a, const char *b);
 bool hl_text_starts(const char *text, const char *prefix);
 bool hl_text_ends(const char *text, const char *suffix);
@@ -41,7 +41,8 @@ char *hl_text_trim(char *text);
  * is too long. */
 bool hl_text_word(const char **cursor, char *word, size_t capacity);
 
-/* Shortens foreign text for an error line: unprintable bytes become '?'. Returns buffer. */
+/* Makes a text from outside fit for an error line: cuts it to the buffer, and replaces unprintable bytes by
+ * '?'. Returns buffer. */
 const char *hl_text_printable(char buffer[HL_PRINTABLE_BYTES], const char *text);
 
 #endif

@@ -31,12 +31,14 @@ static voidpf zlib_allocate(voidpf context, uInt count, uInt size) {
 }
 static void zlib_release(voidpf context, voidpf memory) { hl_release(context, memory); }
 
-/* The part of a length that one call of zlib can take, because zlib counts in 32 bits. */
+/* The number of bytes that one call of zlib can process, at most `left`. zlib counts in 32 bits. */
 static uInt at_most(size_t left) { return left < (1u << 30) ? (uInt)left : 1u << 30; }
 
 hl_status hl_unpack_deflate(hl_context *context, const unsigned char *packed, size_t length, void *bytes,
                             size_t count, bool *sound, hl_error *error) {
-  enum { EITHER_HEADER = 15 + 32 }; /* zlib.h: either zlib or gzip, by the first bytes */
+  enum {
+    EITHER_HEADER = 15 + 32
+  }; /* zlib.h: the header may be zlib's or gzip's, which the first bytes tell */
   z_stream zlib = {.zalloc = zlib_allocate,
                    .zfree = zlib_release,
                    .opaque = context,
@@ -48,7 +50,7 @@ hl_status hl_unpack_deflate(hl_context *context, const unsigned char *packed, si
     size_t taken = (size_t)(zlib.next_in - packed), made = (size_t)(zlib.next_out - (Bytef *)bytes);
     zlib.avail_in = at_most(length - taken);
     zlib.avail_out = at_most(count - made);
-    answer = inflate(&zlib, Z_NO_FLUSH); /* Z_BUF_ERROR means no progress without more input or room */
+    answer = inflate(&zlib, Z_NO_FLUSH); /* Z_BUF_ERROR means that inflate() needs more input or more room */
   }
   *sound = answer == Z_STREAM_END && (size_t)(zlib.next_out - (Bytef *)bytes) == count;
   inflateEnd(&zlib);

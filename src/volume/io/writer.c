@@ -1,8 +1,8 @@
-/* volume/io/writer.c - headers of the formats that volumes are written in.
+/* volume/io/writer.c - writes the headers of the formats in which volumes are saved.
  *
- * In: the grid of a volume. Out: the bytes before the voxels, native byte order. NIfTI's world is
- * right-anterior-superior and MetaImage's left-posterior-superior: grids of another anatomical space are
- * turned by half a turn about z, so that each voxel stays at its place in the body. */
+ * In: the grid of a volume. Out: the bytes before the voxels, native byte order. The world of NIfTI is
+ * right-anterior-superior, that of MetaImage left-posterior-superior. The coordinates of a grid of another
+ * anatomical space are converted, so that each voxel stays at its place in the body. */
 #define _GNU_SOURCE
 #include "volume/io/writer.h"
 
@@ -51,7 +51,7 @@ static void put_real(hl_written_header *header, size_t at, double value) {
   memcpy(header->bytes + at, &real, sizeof real);
 }
 
-/* Turns a grid by half a turn about z: x and y point the other way afterwards. */
+/* Rotates a grid about z by half a turn, by which x and y change their signs. */
 static void turn(hl_volume_description *grid) {
   for (int row = 0; row < 2; row++) {
     grid->origin[row] = 0 - grid->origin[row];
@@ -59,7 +59,7 @@ static void turn(hl_volume_description *grid) {
   }
 }
 
-/* Brings a grid into the format's anatomical space, if the grid states its own. */
+/* Converts a grid to the format's anatomical space, if the grid states its own space. */
 static void bring_into(hl_space wanted, hl_volume_description *grid) {
   if (grid->space == HL_SPACE_LAS) { /* only x differs from RAS */
     grid->origin[0] = 0 - grid->origin[0];
@@ -135,7 +135,7 @@ static hl_status make_metaimage(const char *path, const hl_volume_description *g
     for (int row = 0; row < 3; row++) add(header, " %.17g", unit[axis][row]);
   add(header, "\nOffset = %.17g %.17g %.17g\nCenterOfRotation = 0 0 0\n", grid.origin[0], grid.origin[1],
       grid.origin[2]);
-  /* MetaIO's name of LPS, from right, front and foot to left, back and head */
+  /* MetaIO calls LPS "RAI": its letters are the sides from which the axes come (right, anterior, inferior) */
   if (grid.space != HL_SPACE_UNKNOWN) add(header, "AnatomicalOrientation = RAI\n");
   add(header, "ElementSpacing = %.17g %.17g %.17g\nDimSize = %zu %zu %zu\n", length[0], length[1], length[2],
       grid.dimensions[0], grid.dimensions[1], grid.dimensions[2]);
@@ -175,7 +175,7 @@ static hl_status make_nifti(const char *path, const hl_volume_description *given
                      "%s: NIfTI holds %d voxels along an axis, not %zu: write .nrrd", path, INT16_MAX,
                      grid.dimensions[axis]);
   bring_into(HL_SPACE_RAS, &grid);
-  header->length = HEADER_BYTES + 4; /* four zeros mean that there are no extensions */
+  header->length = HEADER_BYTES + 4; /* four zeros after the header mean that there are no extensions */
   put_integer(header, 0, HEADER_BYTES);
   put_word(header, DIM, 3);
   put_word(header, DATATYPE, codes[grid.type]);
@@ -237,8 +237,8 @@ static hl_status make_vti(const char *path, const hl_volume_description *grid, h
 
 /* ---- MRC2014 (Cheng et al., J. Struct. Biol. 192, 2015, table 1) ---- */
 
-/* Whether the grid's axes lie as a crystal's cell does: the first along X, the second in the plane of X and
- * Y. */
+/* Whether the grid's axes have the directions that a crystal's cell has: the first one along X, the second
+ * one in the plane of X and Y. */
 static bool is_cell(const hl_volume_description *grid) {
   const double(*axis)[3] = grid->axis;
   double flat = 1e-6 * vec3_length(vec3_of(axis[0]));
@@ -287,7 +287,7 @@ static hl_status make_mrc(const char *path, const hl_volume_description *grid, h
     put_real(header, ORIGIN + 4 * axis, grid->origin[axis]);
   }
   put_integer(header, MODE, (size_t)modes[grid->type]);
-  /* these values mark the statistics as unknown: least 0, greatest -1, mean -2, deviation -1 */
+  /* these values mean that the statistics are unknown: minimum 0, maximum -1, mean -2, deviation -1 */
   put_real(header, DMIN + 4, -1);
   put_real(header, DMIN + 8, -2);
   put_real(header, DMIN + 140, -1);

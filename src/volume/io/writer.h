@@ -19,10 +19,10 @@ typedef struct hl_written_header {
   unsigned char bytes[HL_WRITER_HEADER_BYTES];
   size_t length;
   const char *end;  /* text after the voxels; null if there is none */
-  const char *unit; /* set before the call: the unit of the grid's lengths, which the writer must know; null
-                     * if unknown */
-  size_t size_at;   /* position at which the number of the voxels' packed bytes is stated, in
-                     * HL_WRITER_SIZE_CHARACTERS; 0 if nowhere */
+  const char *unit; /* set by the caller: the unit of the grid's lengths, one that the writer knows; null if
+                     * unknown */
+  size_t size_at;   /* position in the header at which the length of the packed voxels is to be written, in
+                     * HL_WRITER_SIZE_CHARACTERS; 0 if the header does not state it */
 } hl_written_header;
 
 typedef struct hl_writer {
@@ -30,14 +30,15 @@ typedef struct hl_writer {
   const char *ending; /* end of the file's name */
   hl_packing packing;
   unsigned types; /* bit 1 << hl_voxel_type is set if voxels of this type can be written */
-  /* Makes the header. If the format cannot state the grid, fails and names the file. grid: dimensions, type,
-   * origin, axes, space. */
+  /* Makes the header. If the format cannot state the grid, fails with an error that names the file. grid:
+   * dimensions, type, origin, axes, space. */
   hl_status (*make_header)(const char *path, const hl_volume_description *grid, hl_written_header *header,
                            hl_error *error);
-  const char *loses; /* parts of the placement that the format cannot state, such as "the space"; null if
-                      * there are none */
-  const char *units; /* units of length that the format can state, between '|'; lengths in other units are
-                      * converted to the first. Null if it states none, so that lengths stay as they are */
+  const char *loses; /* what the format cannot state about the grid's place, such as "the space"; null if
+                      * there is nothing */
+  const char *units; /* units of length that the format can state, separated by '|'. Lengths in other units
+                      * are converted to the first of them. Null if the format states no units; then lengths
+                      * are written as they are */
 } hl_writer;
 
 /* The unit in which a writer writes lengths that are given in `unit`. *factor: the number by which the
@@ -47,7 +48,7 @@ const char *hl_written_unit(const hl_writer *writer, const char *unit, double *f
 /* The writer for a file's name; null if there is none. */
 const hl_writer *hl_writer_for(const char *path);
 
-/* The writers: index from 0 on; null beyond the last. */
+/* The writer number `index`, from 0 on; null beyond the last. */
 const hl_writer *hl_writer_at(size_t index);
 
 #endif

@@ -10,7 +10,7 @@ static hl_status fail(const hl_stream *stream, const char *message, hl_error *er
                         (unsigned long long)stream->offset, message);
 }
 
-/* Moves to the next character c. *found: false if the stream ends before one. */
+/* Goes to the next character c. *found: set to false if the stream ends before there is one. */
 static hl_status skip_to(hl_stream *stream, char c, bool *found, hl_error *error) {
   *found = false;
   while (!*found) {
@@ -25,7 +25,7 @@ static hl_status skip_to(hl_stream *stream, char c, bool *found, hl_error *error
   return HL_OK;
 }
 
-/* Moves past the next `ending`, a text that ends with '>'. */
+/* Goes past the next text `ending`, which must end with '>'. */
 static hl_status skip_past(hl_stream *stream, const char *ending, hl_error *error) {
   size_t length = strlen(ending);
   for (;;) {
@@ -43,7 +43,8 @@ static hl_status skip_past(hl_stream *stream, const char *ending, hl_error *erro
   }
 }
 
-/* The length of the tag at bytes, including '<' and '>'; 0 if the tag does not end within length. */
+/* The length of the tag that begins at `bytes`, with '<' and '>'; 0 if the tag does not end within `length`
+ * bytes. */
 static size_t tag_length(const unsigned char *bytes, size_t length) {
   unsigned char quote = 0;
   for (size_t n = 1; n < length; n++) {
@@ -58,8 +59,8 @@ static size_t tag_length(const unsigned char *bytes, size_t length) {
   return 0;
 }
 
-/* Reads a character reference, such as "&#181;" or "&#xB5;", and writes its character to *out as UTF-8, which
- * is never longer. Returns the reference's length; 0 if there is none. */
+/* Reads a character reference, such as "&#181;" or "&#xB5;", and writes its character to *out as UTF-8. This
+ * is never longer than the reference. Returns the reference's length; 0 if it is none. */
 static size_t resolve_number(const char *value, char **out) {
   bool hex = value[1] == '#' && (value[2] == 'x' || value[2] == 'X');
   size_t n = hex ? 3 : 2, digits = 0;
@@ -106,7 +107,8 @@ static void resolve_entities(char *value) {
 
 static bool ends_name(char c) { return c == 0 || hl_is_space(c) || c == '=' || c == '/'; }
 
-/* Splits name="value" off at *cursor, and moves *cursor past it. False if it is malformed. */
+/* Separates the attribute name="value" at *cursor from the rest of the tag, and moves *cursor past it.
+ * Returns false if it is malformed. */
 static bool cut_attribute(char **cursor, hl_xml_tag *tag) {
   if (tag->attribute_count == HL_XML_ATTRIBUTES) return false;
   char *name = *cursor, *end = name;

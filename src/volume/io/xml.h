@@ -11,7 +11,7 @@
 enum { HL_XML_TAG_BYTES = 8192, HL_XML_ATTRIBUTES = 32 };
 
 typedef struct hl_xml_tag {
-  char text[HL_XML_TAG_BYTES]; /* memory that the names and values point into */
+  char text[HL_XML_TAG_BYTES]; /* the tag's text; names and values are pointers into it */
   const char *name;
   bool is_start, is_end; /* both are set for <name/> */
   int attribute_count;

@@ -13,15 +13,15 @@ typedef struct gathering {
   const hl_volume *map;
   const hl_own_voxels *own;
   hl_ranks *ranks;
-  bool exact;           /* whether ranks send the file's own numbers in place of stored values */
-  size_t sent_bytes;    /* bytes of a number that ranks send */
-  unsigned char *slice; /* owned; a slice of a block, as ranks send it */
-  unsigned char *sent; /* owned; [k][j][i]; what all ranks have sent: the copy's stored values, or its numbers
-                        * if `exact` */
+  bool exact;           /* whether ranks send the file's own numbers instead of stored values */
+  size_t sent_bytes;    /* size in bytes of a number that ranks send */
+  unsigned char *slice; /* owned; one slice of a block, in the form in which ranks send it */
+  unsigned char *sent; /* owned; [k][j][i]; the numbers that all ranks have sent: stored values, or the file's
+                        * own numbers if `exact` */
 } gathering;
 
-/* Whether this rank's memory has the file's own numbers of its block, beside the stored values or in their
- * place. */
+/* Whether this rank has the file's own numbers of its block: beside the stored values, or as the caller's
+ * voxels. */
 static bool has_numbers(const hl_own_voxels *own) { return own->exact != NULL || own->type != own->stored; }
 
 static void pack_numbers(const gathering *g, const hl_box *slice, unsigned char *to) {
@@ -37,8 +37,8 @@ static void pack_numbers(const gathering *g, const hl_box *slice, unsigned char 
   }
 }
 
-/* Packs a slice of this rank's block for the other ranks. In an exact gathering, ranks send the file's own
- * numbers. A rank that has none, because its floats round nothing, computes the numbers from its floats. */
+/* Packs a slice of this rank's block for the other ranks. If `exact`, all ranks send the file's own numbers.
+ * A rank whose floats round nothing has kept no such numbers, and makes them from its floats. */
 static void pack(const gathering *g, const hl_box *slice) {
   const size_t count = slice->count[0] * slice->count[1];
   if (g->exact && has_numbers(g->own)) {
@@ -84,7 +84,7 @@ static hl_status adopt(const hl_volume *map, void *voxels, void *numbers, hl_vol
   return status;
 }
 
-/* Makes the copy of the map from what all ranks have sent. */
+/* Makes the volume of the numbers that all ranks have sent. */
 static hl_status finish(gathering *g, hl_volume **whole, hl_error *error) {
   const size_t count = hl_volume_voxel_count(g->map);
   void *sent = g->sent;
@@ -99,7 +99,7 @@ static hl_status finish(gathering *g, hl_volume **whole, hl_error *error) {
   return hl_fail_memory(error, count * sizeof *voxels, "a label map, which each process holds whole");
 }
 
-/* Whether `own` is true on any rank. Collective. */
+/* Whether `own` is true on at least one rank. All ranks must call it. */
 static bool any_rank(hl_ranks *ranks, bool own) {
   uint64_t count = own;
   hl_ranks_sum_counts(ranks, &count, 1);

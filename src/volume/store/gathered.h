@@ -1,18 +1,18 @@
-/* volume/store/gathered.h - the whole of a label map in this process's memory.
+/* volume/store/gathered.h - makes a whole label map available in this process's memory.
  *
- * Labels are fields that are made of all voxels around them, and their numbers are names: neither pages nor
- * rounded values will do. A volume over ranks is therefore gathered: each rank gets a copy of all blocks,
- * with the file's own numbers. Other label maps lie in memory already. */
+ * The field of a label is made of all voxels around it, so that voxels must be in memory. The numbers of
+ * labels are names, and must not be rounded. Therefore a label map over ranks is gathered: each rank gets a
+ * copy of all blocks, with the file's own numbers. Other label maps are in memory already. */
 #ifndef HL_VOLUME_GATHERED_H
 #define HL_VOLUME_GATHERED_H
 
 #include "core/error.h"
 #include "volume/volume.h"
 
-/* Gets a volume whose voxels lie in memory: the map itself, or for a map over ranks a copy, which the map
- * keeps and owns. The first call for a map over ranks is collective and makes the copy; later calls get the
- * same copy. HL_ERROR_UNSUPPORTED for a map in a scratch file or in bricks; HL_ERROR_MEMORY, on all ranks,
- * where one rank has no room for the copy. */
+/* Gets a volume whose voxels are in memory. It is the map itself, or for a map over ranks a copy, which the
+ * map keeps and owns. The first call for such a map makes the copy, and must be made by all ranks; later
+ * calls get the same copy. Returns HL_ERROR_UNSUPPORTED for a map in a scratch file or in bricks, and
+ * HL_ERROR_MEMORY, on all ranks, if one rank has no room for the copy. */
 hl_status hl_volume_in_memory(const hl_volume *map, hl_volume **whole, hl_error *error);
 
 #endif

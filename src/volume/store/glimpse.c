@@ -39,7 +39,8 @@ enum { LATTICES = 6 };
 
 typedef struct lattice {
   size_t count[3];       /* number of indices kept along each axis */
-  uint32_t *place[3];    /* [dimension]; for each index its place among the kept indices, or NOT_KEPT */
+  uint32_t *place[3];    /* [dimension]; for each index along the axis, its place among the kept indices, or
+                          * NOT_KEPT */
   unsigned char *voxels; /* [count[2]][count[1]][count[0]]; stored values */
 } lattice;
 
@@ -49,9 +50,10 @@ struct hl_glimpse {
   lattice lattices[LATTICES];
 };
 
-/* The indices of an axis that a lattice keeps. */
+/* Which indices along an axis a lattice keeps. */
 typedef struct series {
-  size_t first, step; /* kept indices come in runs, which begin at first, first + step and so on */
+  size_t first, step; /* kept indices form runs of neighbours; the runs begin at first, first + step, first +
+                       * 2 step and so on */
   size_t run;         /* number of consecutive indices in each run */
   bool last;          /* whether the axis's last index is kept, too */
 } series;
@@ -60,9 +62,10 @@ static bool keeps(const series *s, size_t index, size_t dimension) {
   return (index >= s->first && (index - s->first) % s->step < s->run) || (s->last && index + 1 == dimension);
 }
 
-/* Lists the indices of the lattices that guess/ looks at. Lattice 0: samples from half a step inside on, and
- * their next neighbours along each axis. Lattice 1: samples from 0 on, and the next two along each axis.
- * Lattice 2: whole rows along x. Lattices 3 to 5: samples on the pairs of opposite faces. */
+/* Lists which indices the lattices keep for guess/. Lattice 0: samples, of which the first lies half a step
+ * inside the grid, and the next neighbour of each sample along each axis. Lattice 1: samples, of which the
+ * first is voxel 0, and the next two neighbours of each. Lattice 2: whole rows along x. Lattices 3 to 5:
+ * samples on the three pairs of opposite faces. */
 static void list_series(const size_t dimension[3], series all[LATTICES][3]) {
   size_t step = hl_lattice_step(dimension, HL_LATTICE_PLACES), border = hl_border_step(dimension),
          rows = hl_row_step(dimension);
@@ -89,7 +92,8 @@ static void lay_out(hl_glimpse *g, series all[LATTICES][3], hl_layout *layout) {
         if (l->place[a] != NULL) l->place[a][i] = kept ? (uint32_t)l->count[a] : NOT_KEPT;
         l->count[a] += kept;
       }
-      voxels *= l->count[a]; /* it cannot overflow: at most the grid's number of voxels */
+      voxels *= l->count[a]; /* the product cannot overflow, as it is not greater than the grid's number of
+                              * voxels */
     }
     l->voxels = hl_layout_take(layout, voxels, g->bytes);
   }
@@ -118,16 +122,19 @@ bool hl_glimpse_create(hl_context *context, const size_t dimension[3], hl_storag
 }
 
 void hl_glimpse_release(hl_glimpse *glimpse) {
-  if (glimpse != NULL) hl_release(glimpse->context, glimpse); /* the glimpse's arrays lie in the same block */
+  if (glimpse != NULL)
+    hl_release(glimpse->context, glimpse); /* the arrays are parts of the glimpse's own
+                                            * block */
 }
 
-/* The memory in which a lattice keeps the row (j, k); null if it does not keep the row. */
+/* The memory in which a lattice keeps voxels of the row (j, k); null if it keeps none of the row. */
 static unsigned char *row_of(const hl_glimpse *g, const lattice *l, size_t j, size_t k) {
   uint32_t y = l->place[1][j], z = l->place[2][k];
   return y == NOT_KEPT || z == NOT_KEPT ? NULL : l->voxels + (z * l->count[1] + y) * l->count[0] * g->bytes;
 }
 
-/* Keeps voxels i0 to i1 - 1 of a row. values: the stored values from voxel i0 on. */
+/* Keeps those of the voxels i0 to i1 - 1 of a row that the lattice keeps. values: the stored values of these
+ * voxels. */
 static void store_row(const hl_glimpse *g, const lattice *l, size_t i0, size_t i1,
                       const unsigned char *values, unsigned char *row) {
   if (l->count[0] == g->dimension[0]) {

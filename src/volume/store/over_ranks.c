@@ -1,7 +1,7 @@
 /* volume/store/over_ranks.c - volumes whose voxels lie in the memory of all ranks (halflight/ranks.h).
  *
- * In: this rank's block. Either the caller gives it (here), or it consists of slices that were read
- * (destination.c). Out: a volume with pages (pages.h) that are fetched from the ranks. */
+ * In: this rank's block, which is given by a caller (here), or consists of slices that were read from a file
+ * (destination.c). Out: a volume whose pages (pages.h) are fetched from the ranks. */
 #include "core/door.h"
 #include "core/memory.h"
 #include "volume/store/own_voxels.h"

@@ -5,7 +5,7 @@
 
 #include "core/memory.h"
 
-/* The type of the stored values for each hl_storage. */
+/* The type of stored values in each kind of hl_storage. */
 static const hl_voxel_type stored_types[] = {HL_VOXEL_U8, HL_VOXEL_U16, HL_VOXEL_F32};
 
 static hl_status make(hl_ranks *ranks, hl_own_voxels **own, hl_error *error) {

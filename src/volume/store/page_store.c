@@ -1,8 +1,8 @@
 /* volume/store/page_store.c - stores voxels into the pages of a scratch file (pages.h).
  *
  * Whole slices, and whole rows of a slice, are written to the file page by page, in as few pieces as
- * possible. Writing through the mapping would make the system read or clear each unit of memory first, and
- * map it. Other parts of rows are copied into the mapping. */
+ * possible. If they were copied into the mapping, the system would first have to map each unit of memory, and
+ * to read or clear it. Incomplete rows are copied into the mapping. */
 #define _GNU_SOURCE
 #include <string.h>
 
@@ -14,19 +14,19 @@
 
 /* ---- parts of rows ---- */
 
-/* The number of the first page along an axis that holds a voxel. *last: the number of the last one, which
- * differs if the voxel lies in an overlap of pages. */
+/* Finds which pages along an axis hold a voxel: the function returns the number of the first one, and *last
+ * is set to that of the last. They differ if the voxel lies where pages overlap. */
 static size_t first_page(const hl_pages *pages, int axis, size_t voxel, size_t *last) {
   *last = hl_page_of(pages, axis, voxel);
   size_t within = voxel - (*last << pages->shift), first = *last;
-  /* small pages may overlap with several others */
+  /* pages that are small may overlap with more than one other page */
   while (first > 0 &&
          within + ((*last - first + 1) << pages->shift) < ((size_t)1 << pages->shift) + PAGE_OVERLAP)
     first--;
   return first;
 }
 
-/* Copies the voxels of a row from i on into one row of pages. */
+/* Copies a part of a row, from index at[0] on, into the pages of one row along x. */
 static void store_in_pages(hl_pages *pages, const size_t page_y_z[2], const size_t at[3], size_t count,
                            const unsigned char *values) {
   size_t bytes = hl_storage_bytes(pages->storage), end = at[0] + count, last, ignored;
@@ -58,7 +58,7 @@ enum {
   SLICES_AT_ONCE = 8 /* slices written to a page at once */
 };
 
-/* A block of voxels: rows j0 to j1 - 1 of slices k0 to k1 - 1. If it has several slices, it has all of their
+/* A block of voxels to write: rows j0 to j1 - 1 of slices k0 to k1 - 1. Of several slices, it must have all
  * rows. */
 typedef struct row_block {
   size_t j0, j1, k0, k1;
@@ -85,16 +85,16 @@ static page_part part_in(const hl_pages *pages, const size_t page[3], const row_
   return p;
 }
 
-/* Writes slices k0 to k1 - 1 of a part of a page; they lie in the page in one piece. Slices of zeros are left
- * out: the file is sparse, and reads as zeros where nothing was written. False if the system refused the
- * write. */
+/* Writes slices k0 to k1 - 1 of a page's part of a block. In the page, they are a single run of bytes. Slices
+ * of zeros are not written: the file is sparse, and has zeros where nothing was written. Returns false if the
+ * system has refused the write. */
 static bool write_part(const hl_pages *pages, const page_part *p, size_t k0, size_t k1,
                        const row_block *block) {
   unsigned char part[SLICES_AT_ONCE * PAGE_SLICE_BYTES], *to = part;
   const size_t bytes = hl_storage_bytes(pages->storage), side = pages->row_bytes / bytes,
                nx = pages->dimension[0], width = nx - p->x < side ? nx - p->x : side;
   for (size_t k = k0; k < k1; k++) {
-    if (k > k0) { /* pages at the grid's end have fewer rows than there is room for */
+    if (k > k0) { /* a page at the end of the grid may have fewer rows than its memory has room for */
       size_t unused = pages->slice_bytes - (p->j1 - p->j0) * pages->row_bytes;
       memset(to, 0, unused);
       to += unused;
@@ -132,9 +132,8 @@ static bool write_block(const hl_pages *pages, const row_block *block) {
   return true;
 }
 
-/* Writes voxels, beginning with number `first`: as many whole slices as there are at the beginning of the
- * `count` voxels, or else as many whole rows of one slice. Returns the number of voxels that were written,
- * which may be 0. */
+/* Writes the first of `count` voxels, which begin with number `first`: as many whole slices as possible, or
+ * else as many whole rows of one slice. Returns the number of voxels that were written; it may be 0. */
 static size_t write_rows(hl_pages *pages, size_t first, size_t count, const unsigned char *values) {
   const size_t *n = pages->dimension;
   size_t row = first / n[0], j = row % n[1], k = row / n[1], rows = count / n[0];

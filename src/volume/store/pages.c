@@ -17,9 +17,10 @@
 
 /* ---- the scratch file ---- */
 
-/* SLICES_AROUND: windows of voxels are loaded as a whole, so that the mapping has room for this many slices
- * before the first page and after the last. Pages begin at a cache line (LINE). Pages of WHOLE_UNITS or more
- * bytes, and pages over ranks, begin at one of the system's units of memory (UNIT). */
+/* SLICES_AROUND: the mapping has room for this many slices before the first page and after the last, because
+ * samplers load whole windows of voxels, which may reach beyond. LINE: pages begin at a cache line. UNIT,
+ * WHOLE_UNITS: pages of at least WHOLE_UNITS bytes, and pages over ranks, begin at one of the system's units
+ * of memory. */
 enum { SLICES_AROUND = 16, LINE = 64, UNIT = 4096, WHOLE_UNITS = 16 * UNIT };
 
 static size_t round_up(size_t bytes, size_t unit) { return (bytes + unit - 1) / unit * unit; }
@@ -71,8 +72,8 @@ static hl_status map_scratch(hl_context *context, const char *folder, hl_pages *
   return HL_OK;
 }
 
-/* Allocates the findings that are made while voxels are stored. The glimpse takes at most an eighth of the
- * free memory. */
+/* Allocates what is collected while voxels are stored: counts, bounds and a glimpse. The glimpse takes at
+ * most an eighth of the free memory. */
 static hl_status allocate_findings(hl_context *context, hl_pages *pages, hl_error *error) {
   size_t values = hl_values_of(pages->storage);
   uint64_t taken = atomic_load(&context->whole->held) + atomic_load(&context->whole->paged),
@@ -107,14 +108,15 @@ hl_status hl_pages_create(hl_context *context, const char *folder, const hl_volu
   return status;
 }
 
-/* Reserves addresses for pages over ranks; memory is taken later, page by page. */
+/* Reserves addresses for the pages of a volume over ranks. The system gives memory to a page when it is
+ * fetched. */
 static hl_status map_nothing(hl_pages *pages, hl_error *error) {
   void *mapping = mmap(NULL, pages->mapping_bytes, PROT_READ | PROT_WRITE,
                        MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (mapping == MAP_FAILED)
     return hl_fail(error, HL_ERROR_MEMORY, "out of memory: no addresses for %.1f MiB of voxels: %s",
                    (double)pages->mapping_bytes / (1 << 20), strerror(errno));
-  /* without this, the system could put several pages into one large page of its own */
+  /* otherwise the system could join several pages in one large page of its own */
   madvise(mapping, pages->mapping_bytes, MADV_NOHUGEPAGE);
   pages->mapping = mapping;
   pages->first = pages->mapping + round_up(SLICES_AROUND * pages->slice_bytes, UNIT);
@@ -184,11 +186,11 @@ void hl_pages_release(hl_pages *pages) {
 
 /* ---- which volumes ---- */
 
-/* The least size in bytes of a volume that is put into a file. */
+/* The least size in bytes of a volume that is put into a scratch file. */
 static const uint64_t LEAST_BYTES = 4 << 20;
 
-/* The number of bytes that a renderer holds for each voxel beside the voxel itself, approximately: bounds and
- * look-ups (grid/bounds.h), and a copy in columns of u8 voxels. */
+/* The number of bytes, approximately, that a renderer needs for each voxel in addition to the voxel itself:
+ * for bounds and look-ups (grid/bounds.h), and for a rearranged copy of u8 voxels. */
 static double bytes_beside(hl_storage storage) { return storage == HL_STORAGE_U8 ? 1.6 : 0.6; }
 
 bool hl_pages_wanted(const hl_context *context, const hl_volume_description *grid) {
@@ -203,12 +205,12 @@ bool hl_pages_wanted(const hl_context *context, const hl_volume_description *gri
 
 /* ---- memory ---- */
 
-/* A page fault may map neighbouring units, too, up to the borders of a window of this many bytes (Linux,
- * fault_around_bytes). */
+/* A page fault may also map neighbouring units of memory. They lie in an aligned window of this many bytes
+ * (Linux, fault_around_bytes). */
 enum { FAULT_WINDOW = 1 << 16 };
 
-/* Lets the system take back the memory of a page, and of all units that faults of the page may have
- * mapped. */
+/* Tells the system that it may take back the memory of a page, and of all units that page faults in this page
+ * may have mapped. */
 static void drop(const hl_pages *pages, size_t number) {
   uintptr_t first = (uintptr_t)pages->first + number * pages->page_bytes;
   if (pages->blocks != NULL) {
@@ -229,7 +231,7 @@ static void count_held(hl_pages *pages, bool more) {
   atomic_fetch_add(&pages->context->whole->paged, bytes);
 }
 
-/* Forgets a page if it is in a given state. Other threads may change the state meanwhile. */
+/* Forgets a page if it still is in the state `state`. Other threads may have changed the state. */
 static void forget_if(hl_pages *pages, size_t number, unsigned char state) {
   if (!__atomic_compare_exchange_n(&pages->state[number], &state, (unsigned char)PAGE_FORGOTTEN, false,
                                    __ATOMIC_RELAXED, __ATOMIC_RELAXED))
@@ -242,8 +244,8 @@ static void forget_if(hl_pages *pages, size_t number, unsigned char state) {
   count_held(pages, false);
 }
 
-/* Moves the clock's hand by one page. Forgets this page if it was not needed since the hand last moved past
- * it. */
+/* Moves the clock's hand past one page. The page is forgotten if it was not needed since the hand moved past
+ * it the last time. */
 static void move_hand(hl_pages *pages, size_t count) {
   size_t number = __atomic_fetch_add(&pages->hand, 1, __ATOMIC_RELAXED) % count;
   unsigned char state = __atomic_load_n(&pages->state[number], __ATOMIC_RELAXED);
@@ -253,8 +255,8 @@ static void move_hand(hl_pages *pages, size_t count) {
                                 __ATOMIC_RELAXED, __ATOMIC_RELAXED);
 }
 
-/* The number of bytes of this volume's pages that may stay in memory when `bytes` more are allocated;
- * UINT64_MAX without a limit. */
+/* The number of bytes of this volume's pages that may stay in memory when `bytes` more bytes are allocated;
+ * UINT64_MAX if there is no limit. */
 static uint64_t room(const hl_pages *pages, uint64_t bytes) {
   hl_context *context = pages->context;
   uint64_t limit = context->options.memory_limit, least = LEAST_PAGES * (uint64_t)pages->page_bytes;
@@ -264,8 +266,9 @@ static uint64_t room(const hl_pages *pages, uint64_t bytes) {
   return limit < others + least ? least : limit - others;
 }
 
-/* Makes room for an allocation of `bytes` bytes. If the pages in memory are more than are then allowed,
- * forgets so many that a sixteenth of the allowed bytes is free, so that the hand moves seldom. */
+/* Makes room for an allocation of `bytes` bytes. If the pages in memory exceed the bytes that they may then
+ * have, pages are forgotten until they have a sixteenth less than these bytes. In this way the hand moves
+ * seldom. */
 static void make_room(hl_pages *pages, uint64_t bytes) {
   uint64_t most = room(pages, bytes);
   if (__atomic_load_n(&pages->held_bytes, __ATOMIC_RELAXED) <= most) return;
@@ -280,12 +283,12 @@ void hl_pages_finish(hl_pages *pages) {
   if (pages->blocks != NULL) return;
   close(pages->file);
   pages->file = -1;
-  madvise(pages->mapping, pages->mapping_bytes, MADV_RANDOM); /* from now on fetch() alone tells the system
-                                                               * which pages to read */
+  madvise(pages->mapping, pages->mapping_bytes, MADV_RANDOM); /* from now on the system reads ahead only what
+                                                               * fetch() asks for */
 }
 
-/* Asks the system to read a page as a whole, at once. By itself the system reads small parts as they are
- * touched. */
+/* Asks the system to read a whole page at once. Otherwise the system reads small parts of it, each when it is
+ * first accessed. */
 static void fetch(const hl_pages *pages, size_t number) {
   uintptr_t first = (uintptr_t)pages->first + number * pages->page_bytes, begin = first / UNIT * UNIT;
   madvise((void *)begin, first + pages->page_bytes - begin, MADV_WILLNEED);
@@ -306,8 +309,8 @@ static void fetch_from_ranks(const hl_pages *pages, size_t number) {
                   pages->slice_bytes);
 }
 
-/* Gets a page over ranks. Its state becomes PAGE_NEEDED only when its voxels are there, as other threads read
- * them at once. */
+/* Makes sure that a page over ranks is in memory. Its state becomes PAGE_NEEDED only after its voxels are
+ * complete, because other threads then read them at once. */
 static void hold_over_ranks(hl_pages *pages, size_t number) {
   unsigned char state = PAGE_HELD;
   if (__atomic_compare_exchange_n(&pages->state[number], &state, (unsigned char)PAGE_NEEDED, false,
@@ -321,7 +324,7 @@ static void hold_over_ranks(hl_pages *pages, size_t number) {
     __atomic_store_n(&pages->state[number], (unsigned char)PAGE_COMING, __ATOMIC_RELAXED);
     count_held(pages, true);
     make_room(pages, 0);
-    pthread_mutex_unlock(&pages->lock); /* meanwhile, other threads may fetch other pages */
+    pthread_mutex_unlock(&pages->lock); /* other threads can fetch other pages during this time */
     fetch_from_ranks(pages, number);
     pthread_mutex_lock(&pages->lock);
     pthread_cond_broadcast(&pages->came);
@@ -374,7 +377,7 @@ bool hl_pages_take_counts(hl_pages *pages, uint64_t *counts) {
   return whole;
 }
 
-/* Copies a row of this rank's own block. False if the row lies outside the block. */
+/* Copies a row from this rank's own block. Returns false unless the whole row lies in the block. */
 static bool own_row(const hl_pages *pages, size_t j, size_t k, void *row) {
   if (pages->own == NULL) return false;
   const hl_box wanted = {{0, j, k}, {pages->dimension[0], 1, 1}};

@@ -3,18 +3,18 @@
  *
  * A scratch file holds pages: cubes of voxels. Page p of an axis holds the voxels from p * side to p * side +
  * side + PAGE_OVERLAP - 1, fewer at the grid's end. Therefore any 4x4x4 neighbouring voxels lie completely in
- * one page, the page of the first of them. The file is mapped: the system reads a page when one of its voxels
- * is needed. A sheet crosses few pages, and neighbouring sheets cross the same ones. The file has no name: it
- * is gone when the volume or the process is.
+ * the page of the first of them. The file is mapped: the system reads a page when one of its voxels is
+ * needed. A renderer's sheet crosses few pages, and neighbouring sheets cross the same ones. The file has no
+ * name, so that it vanishes with the volume or the process.
  *
- * Pages and the context's blocks together take no more than the context's memory limit, but always as much as
- * LEAST_PAGES: if one more page is needed, some pages that were not needed for long are given up (the clock
- * algorithm: F. J. Corbato, A Paging Experiment with the Multics System, 1968). Another thread may read such
- * a page at that moment: then the system reads it anew.
+ * Pages and the context's blocks together stay below the context's memory limit, except that LEAST_PAGES
+ * pages are always allowed. If one more page is needed, pages that were not needed for long are forgotten
+ * (the clock algorithm: F. J. Corbato, A Paging Experiment with the Multics System, 1968). If another thread
+ * is reading such a page, the system reads it from the file again.
  *
  * Pages over ranks do not lie in a file: a page is copied from the ranks whose blocks hold it
- * (ranks/blocks.h), and forgotten as a whole. A thread that reads a page can tell by its version that it was
- * forgotten meanwhile, and then reads once more: see hl_page_begin(). */
+ * (ranks/blocks.h), and forgotten as a whole. Each page has a version. By it, a thread that reads a page can
+ * tell that the page was forgotten meanwhile, and then reads once more: see hl_page_begin(). */
 #ifndef HL_VOLUME_PAGES_H
 #define HL_VOLUME_PAGES_H
 
@@ -24,98 +24,102 @@
 #include "volume/volume.h"
 
 /* The states of a page. FORGOTTEN: not in memory. HELD: in memory. NEEDED: in memory, and needed since the
- * clock's hand moved past it. COMING, over ranks: a thread is fetching it. */
+ * clock's hand moved past it. COMING: a thread is fetching the page from other ranks. */
 enum { PAGE_FORGOTTEN = 0, PAGE_HELD = 1, PAGE_NEEDED = 2, PAGE_COMING = 3 /* over ranks */ };
 
 enum {
   PAGE_SHIFT = 6,   /* a page's side is 2^6 = 64 voxels; tests use smaller pages */
-  PAGE_OVERLAP = 3, /* voxels along an axis that a page shares with the next page */
-  LEAST_PAGES = 16  /* number of pages that are held whatever the limit is */
+  PAGE_OVERLAP = 3, /* number of voxels along an axis that a page has in common with the next page */
+  LEAST_PAGES = 16  /* this number of pages may be in memory even if they exceed the limit */
 };
 
 typedef struct hl_pages {
-  unsigned char *mapping; /* owned; [mapping_bytes]; the pages, with room for vector loads around them */
+  unsigned char *mapping; /* owned; [mapping_bytes]; the pages, and space before and after them for vector
+                           * loads */
   size_t mapping_bytes;
-  int file;             /* owned; the mapped file, until hl_pages_finish(); -1 if closed */
+  int file;             /* owned; the mapped file; -1 after hl_pages_finish() has closed it */
   unsigned char *first; /* the first page in the mapping */
-  hl_context *context;  /* counts and limits the bytes of the pages that are held */
+  hl_context *context;  /* its count and limit of memory include the pages */
   hl_storage storage;
   size_t dimension[3];  /* voxels of the volume */
-  size_t count[3];      /* numbers of pages; page (x, y, z) has the number (z * count[1] + y) * count[0] +
-                         * x */
-  unsigned char *state; /* owned; [pages]; a number PAGE_...; atomic */
+  size_t count[3];      /* number of pages along each axis; page (x, y, z) has the number (z * count[1] + y) *
+                         * count[0] + x */
+  unsigned char *state; /* owned; [pages]; the state of each page, PAGE_...; atomic */
   uint64_t held_bytes;  /* bytes of this volume's pages that are in memory; atomic */
-  size_t hand;          /* the clock's hand: the page that it looks at next, modulo the number of pages;
-                         * atomic */
+  size_t hand;          /* the clock's hand: modulo the number of pages, the number of the page that it
+                         * reaches next; atomic */
   bool filled;          /* whether hl_pages_finish() was called */
-  bool in_use;          /* whether a volume was made of these pages; over ranks, the other ranks may then ask
-                         * for voxels */
+  bool in_use;          /* whether the pages belong to a volume; over ranks, other ranks may then ask for
+                         * voxels */
   hl_blocks *blocks;    /* owned; null for a scratch file */
   hl_own_voxels *own;   /* owned; the voxels behind `blocks` */
-  uint32_t *version;    /* owned; over ranks [pages], else null; rises when a page is forgotten; atomic */
-  pthread_cond_t came;  /* over ranks: signalled when a page that a thread was fetching has arrived */
+  uint32_t *version;    /* owned; [pages] over ranks, else null; the version of each page, which rises when
+                         * the page is forgotten; atomic */
+  pthread_cond_t came;  /* over ranks: signalled when a page that was being fetched is complete */
   pthread_mutex_t lock; /* held while values are counted; over ranks, also while the states of pages change */
-  uint64_t *counts; /* owned; [hl_values_of(storage)]; counts of the stored values; null if they were taken,
-                     * or for floats */
-  size_t counted;   /* number of counted values */
-  struct hl_brick_bounds *bricks; /* owned; bounds of the stored voxels' bricks (volume/brick_bounds.h); null
-                                   * over ranks */
+  uint64_t *counts; /* owned; [hl_values_of(storage)]; how often each stored value occurs; null for floats,
+                     * and after the counts were taken */
+  size_t counted;   /* number of stored values that were counted */
+  struct hl_brick_bounds *bricks; /* owned; bounds of the bricks of the stored voxels (volume/brick_bounds.h);
+                                   * null over ranks */
   struct hl_glimpse *glimpse; /* owned; glimpse of the stored voxels (volume/store/glimpse.h); may be null */
-  int exact_file; /* owned; the file's own numbers (exact.h); -1 if the stored values are the numbers */
+  int exact_file; /* owned; file with the file's own numbers (exact.h); -1 if the stored values are these
+                   * numbers */
   int shift;
-  size_t row_bytes, slice_bytes, page_bytes; /* distances in bytes: from row to row in a page, from slice to
-                                              * slice in a page, and from page to page */
+  size_t row_bytes, slice_bytes, page_bytes; /* number of bytes from a row of a page to the next, from a slice
+                                              * of a page to the next, and from a page to the next */
 } hl_pages;
 
-/* Makes a scratch file of zeros in the folder, whose space on the disk is taken at once. *pages is owned by
- * the caller, until a volume takes it over. */
+/* Makes pages in a new scratch file in the folder. The file's space on the disk is taken at once, and all
+ * voxels are zeros. *pages is owned by the caller, until a volume takes it over. */
 hl_status hl_pages_create(hl_context *context, const char *folder, const hl_volume_description *grid,
                           int shift, hl_pages **pages, hl_error *error);
 void hl_pages_release(hl_pages *pages); /* null is allowed */
 
-/* Makes the pages of a volume over ranks, which are filled when they are needed. own: taken over, also on
- * failure. The call is collective, and so is the release. */
+/* Makes the pages of a volume over ranks. They are filled when they are needed. own: taken over, also on
+ * failure. All ranks must call this function, and hl_pages_release(). */
 hl_status hl_pages_create_over_ranks(hl_ranks *ranks, hl_own_voxels *own, const hl_volume_description *grid,
                                      int shift, hl_pages **pages, hl_error *error);
 
-/* Whether the voxels of a volume and a renderer's tables of them exceed the memory limit, and there is a
- * scratch folder. */
+/* Whether a volume should be put into a scratch file: whether its voxels and a renderer's tables for them
+ * exceed the memory limit, and there is a scratch folder. */
 bool hl_pages_wanted(const hl_context *context, const hl_volume_description *grid);
 
-/* Copies `count` stored values from number `first` on ([k][j][i]) into all pages that hold them. Each voxel
- * is stored at most once. Storing several whole slices at once is fastest. */
+/* Stores `count` values from number `first` on ([k][j][i]) in all pages that hold these voxels. Each voxel
+ * may be stored only once. Storing several whole slices at once is fastest. */
 void hl_pages_store(hl_pages *pages, size_t first, size_t count, const void *values);
 
-/* Takes the counts of each stored value. counts: [hl_values_of(storage)]. False for floats, for counts that
- * were taken before, and if voxels were not stored once each. */
+/* Takes the counts of the stored values. counts: [hl_values_of(storage)]. Returns false for floats, if the
+ * counts were taken before, or if not each voxel was stored once. */
 bool hl_pages_take_counts(hl_pages *pages, uint64_t *counts);
 
-/* Ends storing, after the last voxel. From now on a page that is needed is read as a whole, and no
- * neighbouring page with it. By itself the system would read farther, and its mapped memory would exceed the
+/* Must be called after the last voxel was stored. From then on, a page that is needed is read as a whole, and
+ * without its neighbours. By itself the system would read farther, and would map more memory than the pages'
  * bytes that are counted. */
 void hl_pages_finish(hl_pages *pages);
 
-/* Makes a volume over ranks. own: taken over, also on failure. shift: PAGE_SHIFT, or the shift of smaller
- * pages. name: starts the error lines. */
+/* Makes a volume over ranks. own: taken over, also on failure. shift: PAGE_SHIFT; less for smaller pages.
+ * name: starts the error lines. */
 hl_status hl_volume_over_ranks(hl_ranks *ranks, const hl_volume_description *whole, hl_own_voxels *own,
                                int shift, const char *name, hl_volume **volume, hl_error *error);
 
 /* Copies the voxels of a row. row: [dimension[0]] stored values. */
 void hl_pages_load_row(const hl_pages *pages, size_t j, size_t k, void *row);
 
-/* Forgets all pages. Called after a pass over all voxels, and before other memory is allocated. Other threads
- * may read pages meanwhile. */
+/* Forgets all pages. It is called after a pass over all voxels, before other memory is allocated. Other
+ * threads may read pages at the same time. */
 void hl_pages_forget(const hl_pages *pages);
 
-/* Forgets pages so that `bytes` can be allocated within the limit. Without this call, pages would exceed the
- * limit until the next page is needed. Other threads may read pages meanwhile. */
+/* Forgets pages until `bytes` bytes can be allocated within the limit. Without this call, the limit would be
+ * exceeded until the next page is needed. Other threads may read pages at the same time. */
 void hl_pages_leave_room(const hl_pages *pages, uint64_t bytes);
 
-/* Takes a page into memory, or notes that it was needed if it is there. Forgets other pages if the limit is
- * reached. */
+/* Makes sure that a page is in memory, and notes that it was needed. If the limit is reached, forgets other
+ * pages. */
 void hl_pages_hold(const hl_pages *pages, size_t number);
 
-/* The page of a voxel along an axis. Voxels at the end of the grid may lie in the last page's overlap. */
+/* The index, along an axis, of the page of a voxel. A voxel at the end of the grid may belong to the last
+ * page as a part of its overlap. */
 static inline size_t hl_page_of(const hl_pages *pages, int axis, size_t voxel) {
   size_t page = voxel >> pages->shift;
   return page < pages->count[axis] ? page : pages->count[axis] - 1;
@@ -128,9 +132,8 @@ typedef struct hl_page_reading {
   uint32_t version; /* set over ranks */
 } hl_page_reading;
 
-/* Begins to read a page. The bytes that were read count only if hl_page_stayed() is true afterwards;
- * otherwise begin again (H.-J. Boehm, Can Seqlocks Get Along with Programming Language Memory Models?,
- * 2012). */
+/* Begins to read a page. What was read is valid only if hl_page_stayed() is true afterwards; otherwise, begin
+ * again (H.-J. Boehm, Can Seqlocks Get Along with Programming Language Memory Models?, 2012). */
 static inline hl_page_reading hl_page_begin(const hl_pages *pages, const size_t page[3]) {
   size_t number = (page[2] * pages->count[1] + page[1]) * pages->count[0] + page[0];
   uint32_t version = pages->version != NULL ? __atomic_load_n(&pages->version[number], __ATOMIC_ACQUIRE) : 0;
@@ -138,15 +141,15 @@ static inline hl_page_reading hl_page_begin(const hl_pages *pages, const size_t 
   return (hl_page_reading){pages->first + number * pages->page_bytes, number, version};
 }
 
-/* Whether a page still has its voxels. Always true for pages in a file. */
+/* Whether a page has kept its voxels since hl_page_begin(). This is always true for pages in a file. */
 static inline bool hl_page_stayed(const hl_pages *pages, const hl_page_reading *reading) {
   if (pages->version == NULL) return true;
   __atomic_thread_fence(__ATOMIC_ACQUIRE);
   return __atomic_load_n(&pages->version[reading->number], __ATOMIC_RELAXED) == reading->version;
 }
 
-/* Begins to read the page of a voxel. Returns the stored voxel and the voxels after it up to the page's
- * end. */
+/* Begins to read the page of a voxel. Returns a pointer to the stored voxel, after which its neighbours up to
+ * the page's end follow. */
 static inline const unsigned char *hl_page_voxel(const hl_pages *pages, size_t i, size_t j, size_t k,
                                                  hl_page_reading *reading) {
   const size_t page[3] = {hl_page_of(pages, 0, i), hl_page_of(pages, 1, j), hl_page_of(pages, 2, k)};

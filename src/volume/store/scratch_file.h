@@ -1,4 +1,4 @@
-/* volume/store/scratch_file.h - files without a name, for data that memory has no room for. A file is gone
+/* volume/store/scratch_file.h - files without a name, for data for which memory has no room. A file is gone
  * when it is closed, or when the process ends. */
 #ifndef HL_VOLUME_SCRATCH_FILE_H
 #define HL_VOLUME_SCRATCH_FILE_H
@@ -8,17 +8,17 @@
 
 #include "core/error.h"
 
-/* Makes a file of zeros in the folder, whose space on the disk is taken at once. *file must be closed by the
+/* Makes a file of `bytes` zeros in the folder. Its space on the disk is taken at once. *file is closed by the
  * caller; -1 on failure. */
 hl_status hl_scratch_open(hl_context *context, const char *folder, size_t bytes, int *file, hl_error *error);
 
 /* Makes an empty file in the folder, which grows as it is written. Returns -1, with errno set, on failure. */
 int hl_scratch_open_empty(hl_context *context, const char *folder);
 
-/* Writes all bytes at an offset of the file. False, with errno set, on failure. */
+/* Writes all bytes at the offset `at` of the file. Returns false, with errno set, on failure. */
 bool hl_scratch_write(int file, const unsigned char *bytes, size_t count, off_t at);
 
-/* Fails with the error line that hl_scratch_open() gives. number: the system's error number. */
+/* Fails with the same error line as hl_scratch_open(). number: the system's error number. */
 hl_status hl_scratch_fail(const char *folder, size_t bytes, int number, hl_error *error);
 
 #endif

@@ -7,9 +7,9 @@
 #include <sys/types.h>
 
 #ifndef O_NOFOLLOW
-#define O_NOFOLLOW 0x100 /* the system declares it only where no version of POSIX is asked for */
+#define O_NOFOLLOW 0x100 /* the system declares it only if no version of POSIX is asked for */
 #endif
-#define O_PATH 0 /* 0 opens for reading: there is no descriptor that only names a file */
+#define O_PATH 0 /* 0 opens for reading, because macOS has no descriptors that only name a file */
 
 /* Makes a file at least offset + bytes long, and reserves the space on its disk. Returns an error number or
  * 0. */

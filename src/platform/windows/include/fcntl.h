@@ -7,10 +7,11 @@
 #include <sys/types.h>
 
 #define O_CLOEXEC  _O_NOINHERIT
-#define O_NONBLOCK 0 /* no open() waits here: a pipe without a writer fails */
+#define O_NONBLOCK 0 /* ignored, because open() never waits here: a pipe without a writer fails */
 #define O_NOCTTY   0
-/* Flags of hl_posix_open() and hl_posix_openat() alone, beyond those of the C library. */
-#define O_PATH      0x10000000 /* a descriptor for fstat(), and to open what is below it */
+/* Flags that only hl_posix_open() and hl_posix_openat() have, beside those of the C library. */
+/* the descriptor serves only for fstat(), and to open files below the folder */
+#define O_PATH      0x10000000
 #define O_DIRECTORY 0x20000000
 #define O_NOFOLLOW  0x40000000 /* links, junctions and mounted folders fail with ELOOP */
 

@@ -1,5 +1,5 @@
-/* platform/windows/include/locale.h - <locale.h> with the part of POSIX's locales that text/plain.c asks for:
- * there is one object, of the locale "C". */
+/* platform/windows/include/locale.h - <locale.h> with the part of POSIX's locales that text/plain.c uses. The
+ * only object is the locale "C". */
 #ifndef HL_PLATFORM_WINDOWS_LOCALE_H
 #define HL_PLATFORM_WINDOWS_LOCALE_H
 
@@ -8,8 +8,8 @@
 typedef void *locale_t;
 #define LC_ALL_MASK 0x1f
 locale_t newlocale(int mask, const char *name, locale_t base);
-/* Sets the calling thread's locale. Returns an object that stands for the locale before; it must be given to
- * a second call, which restores that locale. */
+/* Sets the calling thread's locale. Returns an object that stands for the thread's previous locale; a second
+ * call with this object restores it. */
 locale_t uselocale(locale_t locale);
 double strtod_l(const char *text, char **end, locale_t locale);
 

@@ -21,12 +21,12 @@ struct sigaction {
 };
 int sigfillset(sigset_t *signals);
 int sigemptyset(sigset_t *signals);
-/* Sets what a signal does. Fails for signals that the C library does not have. */
+/* Sets what a signal does. Signals that the C library does not have fail. */
 int sigaction(int number, const struct sigaction *action, struct sigaction *before);
 
 #undef pthread_sigmask
 int pthread_sigmask(int how, const sigset_t *signals, sigset_t *before);
-/* Ignoring a signal that cannot come is no error. */
+/* Ignoring a signal that this system does not have is no error. */
 void (*hl_posix_signal(int number, void (*handler)(int)))(int);
 #define signal hl_posix_signal
 

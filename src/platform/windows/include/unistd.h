@@ -19,7 +19,7 @@ int hl_posix_chdir(const char *path);
 char *hl_posix_getcwd(char *path, size_t size);
 int hl_posix_isatty(int descriptor);
 unsigned geteuid(void); /* 0: a process has no user's number */
-/* Always fails: links are not read, so that "/proc/self/exe" leads nowhere. */
+/* Always fails, because links are not read. So "/proc/self/exe" leads nowhere. */
 ssize_t readlink(const char *path, char *text, size_t size);
 int symlink(const char *path, const char *name); /* fails */
 

@@ -8,7 +8,8 @@
 #include "core/memory.h"
 #include "volume/in_bricks.h"
 
-/* The number of halvings that make a ratio, or -1 if it is no power of two from 2 to 2^10. */
+/* The number of times that a cell is halved to refine it by a ratio. Returns -1 unless the ratio is a power
+ * of two from 2 to 2^10. */
 static int halvings(int ratio) {
   for (int steps = 1; steps <= 10; steps++)
     if (ratio == 1 << steps) return steps;
@@ -87,7 +88,7 @@ void hl_amr_set_spacing(hl_amr *amr, const double spacing[3]) {
     amr->shape.spacing[axis] = spacing[axis] * (double)refinement(amr, amr->shape.levels - 1);
 }
 
-/* The grid of the volume: its voxels are the cells of the finest level. */
+/* Describes the volume's grid, whose voxels are the cells of the finest level. */
 static hl_volume_description grid_of(const hl_amr *amr) {
   hl_volume_description grid;
   double cells = (double)((size_t)1 << amr->lattice_level[0]); /* number of cells of the finest level along a

@@ -1,7 +1,7 @@
 /* volume/formats/amr/amr.h - volumes of adaptive grids: cells in patches at levels of refinement.
  *
- * Files and callers number levels from the coarsest, 0. Each level has an index space of its own: cell i of a
- * level covers the cells i ratio .. i ratio + ratio - 1 of the next finer level. */
+ * Files and callers number the levels from 0, which is the coarsest. Each level has an index space of its
+ * own: cell i of a level covers the cells i ratio .. i ratio + ratio - 1 of the next finer level. */
 #ifndef HL_VOLUME_AMR_H
 #define HL_VOLUME_AMR_H
 
@@ -13,8 +13,8 @@ enum { HL_AMR_LEVELS_MOST = BRICK_LEVELS_LIMIT };
 /* The shape of an adaptive grid. */
 typedef struct hl_amr_shape {
   int levels;                    /* 1 .. HL_AMR_LEVELS_MOST */
-  int ratio[HL_AMR_LEVELS_MOST]; /* [levels - 1] are used; the number of cells of the next finer level
-                                  * along a cell's edge; each a power of two */
+  int ratio[HL_AMR_LEVELS_MOST]; /* for each level but the finest, the number of cells of the next finer level
+                                  * along a cell's edge; a power of two */
   ptrdiff_t first[3];            /* index of the first cell of level 0 in the domain */
   size_t count[3];               /* cells of level 0 in the domain */
   double origin[3];              /* world: the corner of the domain with the least coordinates */
@@ -24,8 +24,8 @@ typedef struct hl_amr_shape {
 typedef struct hl_amr {
   hl_context *context;
   hl_amr_shape shape;
-  int lattice_level[HL_AMR_LEVELS_MOST]; /* for each level, its number in patches.h, which counts from the
-                                          * finest level */
+  int lattice_level[HL_AMR_LEVELS_MOST]; /* for each level, its number in patches.h, where levels count from
+                                          * the finest */
   hl_patches *patches;                   /* owned */
   const char *subject;                   /* borrowed; starts error lines */
 } hl_amr;
@@ -34,12 +34,13 @@ typedef struct hl_amr {
 hl_status hl_amr_begin(hl_context *context, const hl_amr_shape *shape, const char *subject, hl_amr *amr,
                        hl_error *error);
 
-/* Adds a patch: the cells first .. first + count - 1 of a level's index space; values: [count[2]][count[1]]
- * [count[0]], x fastest. */
+/* Adds a patch, which consists of the cells first .. first + count - 1 of a level. values:
+ * [count[2]][count[1]][count[0]], x fastest. */
 hl_status hl_amr_add(hl_amr *amr, int level, const ptrdiff_t first[3], const size_t count[3],
                      const float *values, hl_error *error);
 
-/* Sets the size of the volume's voxels, the finest cells, in the world. All 0: the size stays. */
+/* Sets the size in the world of a finest cell, which is the size of the volume's voxels. If all numbers are
+ * 0, the size is not changed. */
 void hl_amr_set_spacing(hl_amr *amr, const double spacing[3]);
 
 /* Makes the volume. Its voxels have the size of the finest cells. */

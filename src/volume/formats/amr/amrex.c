@@ -2,10 +2,10 @@
  * "Header" and a folder Level_N for each level, in which Cell_H lists the patches and says where their values
  * are.
  *
- * Source: AMReX's documentation, "AMReX Plotfile", and its source (VisMF and FAB). A patch's values are
- * preceded by a line "FAB ((8, (64 11 52 0 1 12 0 1023)),(8, (8 7 6 5 4 3 2 1)))((0,0,0) (7,7,7) (0,0,0)) 2":
- * the layout of a real number, the order of its bytes, the box of cells and the number of components, each of
- * which follows as [z][y][x]. Components are the volume's arrays. */
+ * Source: AMReX's documentation, "AMReX Plotfile", and its source (VisMF and FAB). Before a patch's values
+ * stands a line "FAB ((8, (64 11 52 0 1 12 0 1023)),(8, (8 7 6 5 4 3 2 1)))((0,0,0) (7,7,7) (0,0,0)) 2". It
+ * states the layout of a real number, the order of its bytes, the box of cells and the number of components.
+ * The components follow one after the other, each as [z][y][x]. They are the volume's arrays. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -56,7 +56,8 @@ static hl_status read_text(const plotfile *file, const char *name, unsigned char
   return status;
 }
 
-/* Copies the rest of the line, and goes to the next. False at the end, or if the line is too long. */
+/* Copies the rest of the line, and goes to the next line. Returns false at the end of the text, or if the
+ * line is too long. */
 static bool take_line(text_cursor *text, char *line, size_t capacity) {
   const char *end = memchr(text->at, '\n', (size_t)(text->end - text->at));
   if (end == NULL) end = text->end;
@@ -185,7 +186,7 @@ typedef struct fab_layout {
   bool big_endian;
 } fab_layout;
 
-/* Reads the line in front of a patch's values. length: without the line's end. */
+/* Reads the line in front of a patch's values. length: the line's length without its end. */
 static bool read_fab_line(const char *line, size_t length, fab_layout *layout, ptrdiff_t first[3],
                           size_t count[3], ptrdiff_t *components) {
   text_cursor text = {line, line + length, "", 1};
@@ -205,8 +206,8 @@ static bool read_fab_line(const char *line, size_t length, fab_layout *layout, p
   return take_box(&text, first, count) && take_integer(&text, components);
 }
 
-/* Reads one component of a patch to floats, owned by the caller. place: the position of the component's
- * first byte in the file. */
+/* Reads one component of a patch as floats; *values is owned by the caller. place: the position of the
+ * component's first byte in the file. */
 static hl_status read_values(const plotfile *file, hl_source *source, uint64_t place,
                              const fab_layout *layout, size_t cells, float **values, hl_error *error) {
   enum { STAGE = 4096 };
@@ -241,7 +242,7 @@ static hl_status fail_patch(const hl_source *source, uint64_t place, hl_error *e
       hl_source_path(source), (unsigned long long)place);
 }
 
-/* The cells of a patch without its ghost cells. */
+/* Copies the cells of a patch without the ghost cells around them. */
 static void cut_patch(const float *values, const ptrdiff_t from[3], const size_t size[3],
                       const ptrdiff_t first[3], const size_t count[3], float *cut) {
   for (size_t k = 0; k < count[2]; k++)
@@ -294,7 +295,7 @@ typedef struct patch_box {
   size_t count[3];
 } patch_box;
 
-/* Reads the boxes of a level's patches; *boxes is owned by the caller. */
+/* Reads the list of a level's patches, which are boxes of cells; *boxes is owned by the caller. */
 static hl_status read_boxes(const plotfile *file, text_cursor *text, patch_box **boxes, size_t *count,
                             hl_error *error) {
   ptrdiff_t version, how, components, number, unused;

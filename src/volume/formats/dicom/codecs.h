@@ -1,8 +1,8 @@
 /* volume/formats/dicom/codecs.h - the decoders of compressed frames.
  *
  * Each decoder fills [rows][columns][samples] values of 8 or 16 bits (the pixels' `allocated`), native byte
- * order; bits above the `stored` ones are undefined. A decoder whose library is absent fails and names the
- * library. */
+ * order; bits above the pixels' `stored` bits are undefined. A decoder whose library is absent fails and
+ * names the library. */
 #ifndef HL_VOLUME_DICOM_CODECS_H
 #define HL_VOLUME_DICOM_CODECS_H
 
@@ -28,7 +28,7 @@ hl_status hl_dicom_decode_jpeg_2000(const hl_dicom_packed *packed, void *values,
 /* Fails with "PATH: a damaged CODEC picture: WHY". */
 hl_status hl_dicom_fail_packed(const hl_dicom_packed *packed, const char *codec, const char *why,
                                hl_error *error);
-/* Fails unless the header within the compressed data promises the same pixels as the file's header. */
+/* Fails unless the compressed data's own header promises the same pixels as the file's header. */
 hl_status hl_dicom_check_packed(const hl_dicom_packed *packed, const char *codec, size_t columns, size_t rows,
                                 size_t samples, int bits, hl_error *error);
 

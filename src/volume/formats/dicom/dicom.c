@@ -18,7 +18,7 @@ static bool has_content(const unsigned char *bytes, size_t length) {
   return hl_dicom_has_mark(bytes, length);
 }
 
-/* Claims files by their names, because old DICOM files lack the mark "DICM". */
+/* Claims files by the extensions of their names, as old DICOM files lack the mark "DICM". */
 static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) {
   static const char *const endings[] = {".dcm", ".dicom", ".ima"};
   const unsigned char *bytes;
@@ -43,7 +43,7 @@ static void tell_damage(const hl_dicom_set *set) {
            set->bundle->links_passed);
 }
 
-/* Copies the request's list of series to the volume. */
+/* Makes the list of all series in the input for the request. */
 static hl_status list_series(const hl_dicom_set *set, size_t chosen, hl_load_request *request,
                              hl_error *error) {
   size_t count = set->series_count;
@@ -78,8 +78,8 @@ static hl_status load_series(hl_dicom_set *set, hl_load_request *request, hl_vol
   return status;
 }
 
-/* Loads the files of a bundle. strict: the bundle is a single file, and an error in reading it is
- * reported. */
+/* Loads a volume from the files of a bundle. strict: whether the bundle is a single file, in which any error
+ * is reported. */
 static hl_status load_files(hl_bundle *bundle, bool strict, hl_load_request *request, bool *claimed,
                             hl_volume **volume, hl_error *error) {
   hl_dicom_set set;

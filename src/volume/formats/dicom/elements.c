@@ -1,4 +1,5 @@
-/* volume/formats/dicom/elements.c - tags, value representations, sequences and items, in either byte order.
+/* volume/formats/dicom/elements.c - reads tags, value representations, sequences and items, in either byte
+ * order.
  */
 #include "volume/formats/dicom/elements.h"
 
@@ -29,7 +30,8 @@ static bool is_vr(const unsigned char *letters) {
   return letters[0] >= 'A' && letters[0] <= 'Z' && letters[1] >= 'A' && letters[1] <= 'Z';
 }
 
-/* Whether a representation has two reserved bytes and a length of four bytes (PS3.5, table 7.1-1). */
+/* Whether elements of a representation have two reserved bytes and a length of four bytes (PS3.5, table
+ * 7.1-1). */
 static bool is_long(uint16_t vr) {
   static const char names[] = "OBODOFOLOVOWSQSVUCUNURUTUV";
   for (size_t n = 0; n + 1 < sizeof names; n += 2)
@@ -37,8 +39,8 @@ static bool is_long(uint16_t vr) {
   return false;
 }
 
-/* Whether a sequence is read in a file without value representations. Such a file does not mark sequences
- * whose length is stated, so that the wanted ones are listed here. */
+/* Whether an element is a sequence that is to be read. In files without value representations, nothing marks
+ * a sequence whose length is stated. Therefore the sequences that are needed are listed here. */
 static bool is_wanted_sequence(uint32_t tag) {
   static const uint32_t tags[] = {
       0x52009229, 0x52009230, /* functional groups: shared, per frame */
@@ -62,7 +64,7 @@ static uint64_t limited(uint64_t at, uint32_t length, uint64_t most) {
   return length == HL_DICOM_UNDEFINED || at + length > most ? most : at + length;
 }
 
-/* The position where the innermost sequence or item around the reader ends. */
+/* The position where the innermost sequence or item that is being read ends. */
 static uint64_t end_of_item(const hl_dicom_reader *reader) {
   uint64_t end = UINT64_MAX;
   for (int n = 0; n < reader->depth; n++) {
@@ -81,14 +83,15 @@ static hl_status enter(hl_dicom_reader *reader, const hl_dicom_element *element,
       .tag = element->tag,
       .item = UINT32_MAX,
       .fragments = element->tag == HL_DICOM_PIXEL_DATA,
-      /* PS3.5, 6.2.2: a sequence of unknown representation is written implicitly, in little-endian order */
+      /* PS3.5, 6.2.2: the elements of a sequence of unknown representation state no representations, and are
+       * little-endian */
       .implicit = outer || element->vr == HL_DICOM_VR('U', 'N'),
       .end = limited(element->offset, element->length, most)};
   reader->at = element->offset;
   return HL_OK;
 }
 
-/* Reads the tag and length that begin or end an item, or end a sequence. */
+/* Reads a tag and a length that begin an item, end an item, or end a sequence. */
 static hl_status take_item(hl_dicom_reader *reader, bool *ended, hl_error *error) {
   const unsigned char *bytes;
   size_t available;
@@ -114,7 +117,7 @@ static hl_status take_item(hl_dicom_reader *reader, bool *ended, hl_error *error
   return HL_OK;
 }
 
-/* Leaves the items and sequences that end at the reader's position, until the next thing is an element. */
+/* Leaves all items and sequences that end at the reader's position. Afterwards an element comes next. */
 static hl_status settle(hl_dicom_reader *reader, bool *ended, hl_error *error) {
   *ended = false;
   while (reader->depth > 0 && !*ended) {
@@ -131,8 +134,8 @@ static hl_status settle(hl_dicom_reader *reader, bool *ended, hl_error *error) {
   return HL_OK;
 }
 
-/* Reads tag, representation and length at reader->at. *header: the number of bytes that they take; 0 at the
- * end. */
+/* Reads an element's tag, representation and length at reader->at. *header: the number of bytes that these
+ * take; 0 at the end of the file. */
 static hl_status take_header(hl_dicom_reader *reader, hl_dicom_element *element, size_t *header,
                              hl_error *error) {
   const unsigned char *bytes;
@@ -158,7 +161,7 @@ static hl_status take_header(hl_dicom_reader *reader, hl_dicom_element *element,
 }
 
 static bool is_sequence(const hl_dicom_reader *reader, const hl_dicom_element *element) {
-  if (element->tag == HL_DICOM_PIXEL_DATA) /* Pixels within a sequence belong to an icon. */
+  if (element->tag == HL_DICOM_PIXEL_DATA) /* Pixels within a sequence belong to an icon, and are not read. */
     return reader->depth > 0 && element->length == HL_DICOM_UNDEFINED;
   return element->vr == HL_DICOM_VR('S', 'Q') || element->length == HL_DICOM_UNDEFINED ||
          (element->vr == 0 && is_wanted_sequence(element->tag));
@@ -178,7 +181,7 @@ hl_status hl_dicom_next(hl_dicom_reader *reader, hl_dicom_element *element, bool
       reader->level[reader->depth - 1].item_end = reader->at;
       continue;
     }
-    if (element->tag >> 16 == 0xfffe) { /* an end marker where nothing was begun is ignored */
+    if (element->tag >> 16 == 0xfffe) { /* an end marker without a beginning is ignored */
       reader->at = element->offset;
       continue;
     }
@@ -206,7 +209,7 @@ static bool is_utf8(const char *text) {
   return length > 0;
 }
 
-/* Cuts off the last character of a text if only some of its bytes are there. */
+/* Cuts off the last character of a UTF-8 text if it is incomplete. */
 static void cut_part_of_character(char *text) {
   size_t count = strlen(text), begin = count;
   while (begin > 0 && ((unsigned char)text[begin - 1] & 0xc0) == 0x80) begin--;
@@ -214,8 +217,8 @@ static void cut_part_of_character(char *text) {
   if (begin < count && hl_utf8_length((const unsigned char *)text + begin) == 0) text[begin] = 0;
 }
 
-/* Makes UTF-8 of Latin-1, the other character set that is common in DICOM files (PS3.3, C.12.1.1.2). What
- * does not fit is cut off. */
+/* Converts a text from Latin-1 to UTF-8. Latin-1 is the other character set that is common in DICOM files
+ * (PS3.3, C.12.1.1.2). If the result does not fit, its end is cut off. */
 static void convert_latin_1(char *text, size_t size) {
   char copy[MOST_TEXT_BYTES];
   size_t used = 0;
@@ -246,7 +249,7 @@ hl_status hl_dicom_text(hl_dicom_reader *reader, const hl_dicom_element *element
   return status;
 }
 
-/* Reads numbers written as text with backslashes between them, up to the first number that is empty or
+/* Reads numbers that are written as text and separated by backslashes. Stops at a number that is empty or
  * malformed. */
 static int parse_numbers(char *text, double *numbers, int most) {
   int count = 0;

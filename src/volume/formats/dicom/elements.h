@@ -1,14 +1,14 @@
 /* volume/formats/dicom/elements.h - the data elements of a DICOM file, one after the other.
  *
- * The elements inside sequences are returned too: an element's place is its own tag and the tags of the
- * sequences around it. Source: DICOM PS3.5, sections 7.1 (elements) and 7.5 (sequences). */
+ * Elements inside sequences are returned, too. The place of an element is described by its own tag and by the
+ * tags of the sequences around it. Source: DICOM PS3.5, sections 7.1 (elements) and 7.5 (sequences). */
 #ifndef HL_VOLUME_DICOM_ELEMENTS_H
 #define HL_VOLUME_DICOM_ELEMENTS_H
 
 #include "volume/io/source.h"
 
 enum { HL_DICOM_DEPTH_MOST = 16, HL_DICOM_PIXEL_DATA = 0x7fe00010 };
-#define HL_DICOM_UNDEFINED UINT32_MAX /* the length of a sequence or item that ends with an end marker */
+#define HL_DICOM_UNDEFINED UINT32_MAX /* stated length of a sequence or item that an end marker ends */
 
 /* A value representation, two letters as in the file: HL_DICOM_VR('U', 'S'). */
 #define HL_DICOM_VR(a, b) ((uint16_t)((a) << 8 | (b)))
@@ -25,7 +25,7 @@ typedef struct hl_dicom_level {
   uint32_t tag;
   uint32_t item; /* number of the current item, from 0 */
   bool in_item, fragments;
-  bool implicit;     /* whether the elements in its items state no value representations */
+  bool implicit;     /* whether the elements in the sequence's items state no value representations */
   uint64_t end;      /* position of the sequence's end; UINT64_MAX if an end marker ends it */
   uint64_t item_end; /* position of the item's end; UINT64_MAX if an end marker ends it */
 } hl_dicom_level;
@@ -38,15 +38,15 @@ typedef struct hl_dicom_reader {
   hl_dicom_level level[HL_DICOM_DEPTH_MOST];
 } hl_dicom_reader;
 
-/* Reads the next element that is not a sequence. *found is false at the end of the file, and after the file's
- * own pixel data. */
+/* Reads the next element that is not a sequence. *found is false at the end of the file, and after the pixel
+ * data at the file's top level. */
 hl_status hl_dicom_next(hl_dicom_reader *reader, hl_dicom_element *element, bool *found, hl_error *error);
 
 /* Copies a text without the blanks around it, cut to the buffer. */
 hl_status hl_dicom_text(hl_dicom_reader *reader, const hl_dicom_element *element, char *text, size_t size,
                         hl_error *error);
-/* Reads up to `most` numbers. vr: the type of binary numbers in files that state none. *count: the number of
- * values in the element; elements of `numbers` beyond it are left alone. */
+/* Reads up to `most` numbers. vr: the type of the binary numbers, for files that state none. *count: the
+ * number of values in the element. Places of `numbers` beyond this count are not changed. */
 hl_status hl_dicom_numbers(hl_dicom_reader *reader, const hl_dicom_element *element, uint16_t vr,
                            double *numbers, int most, int *count, hl_error *error);
 

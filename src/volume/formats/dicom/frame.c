@@ -78,8 +78,8 @@ static hl_status count_fragments(hl_source *source, const hl_dicom_pixels *p, ui
   }
 }
 
-/* Whether a fragment begins a picture: with the first marker of JPEG or JPEG 2000, or with the number of RLE
- * segments. */
+/* Whether a fragment begins a new frame. This is the case if it begins with the first marker of JPEG or JPEG
+ * 2000, and for every fragment of RLE. */
 static hl_status begins_picture(hl_source *source, const hl_dicom_pixels *p, uint64_t at, bool *begins,
                                 hl_error *error) {
   const unsigned char *bytes;
@@ -91,9 +91,8 @@ static hl_status begins_picture(hl_source *source, const hl_dicom_pixels *p, uin
   return status;
 }
 
-/* Finds where each frame begins, without the table of offsets, which may be wrong. If there are as many
- * fragments as frames, each fragment is a frame. Otherwise a frame begins at every fragment that begins a
- * picture. */
+/* Finds where each frame begins. The table of offsets is not used, as it may be wrong. If there are as many
+ * fragments as frames, each fragment is a frame. Otherwise frames begin where begins_picture() says so. */
 static hl_status place_frames(hl_source *source, hl_dicom_file *file, uint64_t begin, size_t fragments,
                               uint64_t end, hl_error *error) {
   size_t found = 0;
@@ -146,7 +145,7 @@ static hl_status read_fragments(hl_source *source, const hl_dicom_file *file, ui
     bytes += length;
   }
   if (status == HL_OK && bytes > hl_source_size(source)) status = fail_short(source, begin, error);
-  enum { SPARE = 16 }; /* number of bytes behind the frame's end that decoders may read */
+  enum { SPARE = 16 }; /* decoders may read this many bytes beyond the frame's end */
   if (status == HL_OK)
     status = make_room(space->context, &space->packed, &space->packed_capacity, (size_t)bytes + SPARE, error);
   *total = 0;
@@ -184,12 +183,13 @@ static void reverse_each(unsigned char *bytes, size_t count, size_t size) {
 
 static void unpack_bits(const unsigned char *packed, size_t first_bit, size_t count, unsigned char *values) {
   for (size_t n = 0; n < count; n++) {
-    size_t bit = first_bit + n; /* PS3.5, 8.1.1: the first pixel is in the lowest bit */
+    size_t bit = first_bit + n; /* PS3.5, 8.1.1: the lowest bit of a byte is the first pixel */
     values[n] = packed[bit / 8] >> (bit % 8) & 1;
   }
 }
 
-/* Unpacks groups of four bytes, Y1 Y2 Cb Cr. Each group stands for two pixels (PS3.3, C.7.6.3.1.2). */
+/* Unpacks pixels whose colour differences are halved along rows. Each group of four bytes, Y1 Y2 Cb Cr,
+ * stands for two pixels (PS3.3, C.7.6.3.1.2). */
 static void unpack_halved(const unsigned char *packed, size_t pixels, unsigned char *values) {
   for (size_t n = 0; n + 1 < pixels; n += 2, packed += 4, values += 6) {
     const unsigned char two[6] = {packed[0], packed[2], packed[3], packed[1], packed[2], packed[3]};
@@ -197,8 +197,8 @@ static void unpack_halved(const unsigned char *packed, size_t pixels, unsigned c
   }
 }
 
-/* Rearranges a frame that is stored as one plane for each sample, so that the samples of a pixel lie side by
- * side. size: bytes of a sample. */
+/* Converts a frame whose samples are stored as planes, one for each sample, so that the samples of a pixel
+ * lie side by side. size: bytes of a sample. */
 static void interleave(const unsigned char *planes, size_t pixels, size_t samples, size_t size,
                        unsigned char *values) {
   for (size_t n = 0; n < pixels; n++)
@@ -225,8 +225,9 @@ static hl_status read_native(hl_source *source, const hl_dicom_file *file, uint3
     } else at += index * bytes;
     hl_status status = make_room(space->context, &space->packed, &space->packed_capacity, (size_t)bytes + 2,
                                  error);
-    bool odd = p->big_endian && p->words && size == 1; /* 8-bit pixels lie in swapped 16-bit words, so that an
-                                                        * even number of bytes is read */
+    bool odd = p->big_endian && p->words && size == 1; /* 8-bit pixels are stored in 16-bit words whose bytes
+                                                        * are swapped, so that an even number of bytes must be
+                                                        * read */
     if (status == HL_OK) status = hl_source_read(source, at, space->packed, (size_t)bytes + odd, &got, error);
     if (status == HL_OK && got < bytes) status = fail_short(source, at, error);
     if (status != HL_OK) return status;
@@ -242,7 +243,7 @@ static hl_status read_native(hl_source *source, const hl_dicom_file *file, uint3
 
 /* ---- stored bits, signs, colours ---- */
 
-/* Shifts the stored bits down to bit 0, and extends the sign of signed values. */
+/* Shifts the stored bits down to bit 0, inverts them if needed, and extends the sign of signed values. */
 static void place_bits(const hl_dicom_pixels *p, size_t count, hl_dicom_workspace *space) {
   int shift = p->high + 1 - p->stored, bits = (int)space->value_bytes * 8;
   int spare = bits - p->stored;
@@ -292,7 +293,7 @@ static hl_status decode(const hl_dicom_pixels *p, const hl_dicom_packed *packed,
 
 /* ---- tiles and palettes ---- */
 
-/* Cuts one tile out of a mosaic. size: bytes of a pixel. */
+/* Moves one tile of a mosaic to the front of the values. size: bytes of a pixel. */
 static void cut_tile(const hl_dicom_pixels *p, size_t tile, size_t size, unsigned char *values) {
   size_t rows = hl_dicom_slice_rows(p), columns = hl_dicom_slice_columns(p);
   size_t x = tile % p->tiles * columns, y = tile / p->tiles * rows;
@@ -300,8 +301,8 @@ static void cut_tile(const hl_dicom_pixels *p, size_t tile, size_t size, unsigne
     memmove(values + row * columns * size, values + ((y + row) * p->columns + x) * size, columns * size);
 }
 
-/* Replaces pixel values by the colours that they stand for, in place. It begins with the last pixel, because
- * a colour is longer than a value. */
+/* Replaces pixel values by their colours, in place. The last pixel is replaced first, because a colour takes
+ * more bytes than a value. */
 static void apply_palette(const hl_dicom_pixels *p, const hl_dicom_palette *palette, size_t count,
                           hl_dicom_workspace *space) {
   for (size_t n = count; n-- > 0;) {

@@ -19,8 +19,8 @@ void hl_dicom_workspace_release(hl_dicom_workspace *space);
 /* Finds where each frame of an encapsulated file with several frames begins. */
 hl_status hl_dicom_find_frames(const hl_dicom_set *set, hl_dicom_file *file, hl_error *error);
 
-/* Reads a frame into the workspace's values. These are integers of 8, 16 or 32 bits with their sign in place,
- * or floats or doubles. Colours are RGB. */
+/* Reads a frame into the workspace's values. They become integers of 8, 16 or 32 bits, floats or doubles.
+ * Signed integers have their sign bit at the top. Colours become RGB. */
 hl_status hl_dicom_read_frame(const hl_dicom_set *set, const hl_dicom_frame *frame, hl_dicom_workspace *space,
                               hl_error *error);
 

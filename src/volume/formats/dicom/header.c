@@ -25,8 +25,8 @@ bool hl_dicom_has_mark(const unsigned char *bytes, size_t length) {
   return length >= PREAMBLE_BYTES + 4 && memcmp(bytes + PREAMBLE_BYTES, "DICM", 4) == 0;
 }
 
-/* Whether the bytes look like a file without the mark "DICM". Such files begin with an element of group 2 or
- * 8 that has a short value. */
+/* Whether the bytes begin a DICOM file, also one without the mark "DICM". Such a file begins with an element
+ * of group 2 or 8 that has a short value. */
 bool hl_dicom_may_begin(const unsigned char *bytes, size_t length) {
   if (hl_dicom_has_mark(bytes, length)) return true;
   if (length < 16 || (bytes[0] != 2 && bytes[0] != 8) || bytes[1] != 0 || bytes[3] != 0) return false;
@@ -34,13 +34,13 @@ bool hl_dicom_may_begin(const unsigned char *bytes, size_t length) {
   return explicit || (bytes[5] == 0 && bytes[6] == 0 && bytes[7] == 0 && bytes[4] <= 64);
 }
 
-/* The UID of a transfer syntax that is implicit and little-endian, except for the pixels, which are
+/* The UID of a private transfer syntax of GE. Its elements are implicit and little-endian, but its pixels are
  * big-endian. */
 #define GE_PRIVATE "1.2.840.113619.5.2"
 
 static void use_syntax(hl_dicom_header *header, hl_dicom_reader *reader) {
   static const struct {
-    const char *uid; /* the end of the UID, whose beginning is 1.2.840.10008.1.2 */
+    const char *uid; /* the end of the UID; all UIDs begin with 1.2.840.10008.1.2 */
     hl_dicom_codec codec;
   } syntaxes[] = {
       {"", HL_DICOM_NATIVE},          {".1", HL_DICOM_NATIVE},        {".1.98", HL_DICOM_NATIVE},
@@ -85,7 +85,7 @@ static hl_status read_meta(hl_dicom_header *header, hl_dicom_reader *reader, hl_
   }
 }
 
-/* Finds the transfer syntax of a file that states none, by its first element. */
+/* Guesses the transfer syntax from the first element, for a file that states none. */
 static hl_status guess_syntax(hl_dicom_reader *reader, hl_error *error) {
   const unsigned char *bytes;
   size_t available;
@@ -122,9 +122,11 @@ hl_status hl_dicom_begin(hl_source **source, hl_dicom_header *header, hl_dicom_r
 
 typedef struct attribute {
   uint32_t tag;
-  uint16_t vr;      /* type of the attribute's numbers in files that state none; 0 for a text */
-  uint16_t numbers; /* how many numbers are kept; for a text, how many bytes */
-  bool of_frame;    /* whether `place` is an offset in hl_dicom_frame, not in hl_dicom_header */
+  uint16_t vr;      /* type of the attribute's numbers, for files that state none; 0 if the attribute is a
+                     * text */
+  uint16_t numbers; /* how many numbers of the attribute are kept; for a text, how many bytes */
+  bool of_frame;    /* whether `place` is an offset in hl_dicom_frame; otherwise it is one in
+                     * hl_dicom_header */
   size_t place;
 } attribute;
 
@@ -209,8 +211,8 @@ static void clear_header(hl_dicom_header *header) {
   clear_frame(&header->base);
 }
 
-/* Finds the frame to which the current element, within the functional groups of frames, belongs. A new frame
- * is empty. */
+/* Finds the frame that the current element describes. The element lies in the functional groups of the file's
+ * frames. A frame that is described for the first time is cleared. */
 static hl_status frame_of(const hl_dicom_reader *reader, hl_dicom_header *header, hl_dicom_frame **frame,
                           hl_error *error) {
   hl_context *context = hl_source_context(reader->source);
@@ -236,7 +238,7 @@ static const attribute *find_attribute(uint32_t tag) {
   return NULL;
 }
 
-/* Takes the offsets of a dose grid's frames (PS3.3, C.8.8.3.2). */
+/* Reads the offsets of a dose grid's frames along the normal (PS3.3, C.8.8.3.2). */
 static hl_status take_offsets(hl_dicom_reader *reader, const hl_dicom_element *element,
                               hl_dicom_header *header, hl_error *error) {
   enum { BYTES_MOST = 60000 };
@@ -259,8 +261,8 @@ static hl_status take_offsets(hl_dicom_reader *reader, const hl_dicom_element *e
   return status;
 }
 
-/* A number that stands for a kind of picture, which a text names. Equal texts give equal numbers (FNV-1a, cut
- * to 52 bits). */
+/* Makes a number of a text that names a kind of picture, so that kinds can be compared. Equal texts give
+ * equal numbers (FNV-1a, cut to 52 bits). */
 static double kind_of(const char *text) {
   uint64_t hash = 14695981039346656037u;
   for (; *text != 0; text++) hash = (hash ^ (unsigned char)*text) * 1099511628211u;
@@ -342,8 +344,8 @@ static hl_status finish_pixels(const hl_source *source, hl_dicom_header *header,
   p->high = (int)high;
   p->is_signed = header->representation == 1;
   p->planar = header->planar == 1;
-  /* CT and PET store measured values, which are never inverted. In other pictures MONOCHROME1 means that
-   * the least value is shown white */
+  /* In pictures of MONOCHROME1 the least value is shown white. CT and PET are exceptions, because they store
+   * measured values, which are not to be inverted */
   bool measured = hl_text_equal(header->modality, "CT") || hl_text_equal(header->modality, "PT");
   p->inverted = hl_text_equal(header->photometric, "MONOCHROME1") && !measured;
   p->is_ybr = hl_text_starts(header->photometric, "YBR_FULL");
@@ -386,8 +388,7 @@ static hl_status take_pixels(const hl_dicom_reader *reader, const hl_dicom_eleme
   return HL_OK;
 }
 
-/* Uses a frame's place in the space of an ultrasound volume if the frame has no place in the patient's
- * space. */
+/* If a frame has no place in the patient's space, takes its place in the space of an ultrasound volume. */
 static void take_volume_place(hl_dicom_header *header, hl_dicom_frame *frame) {
   if (isnan(frame->position[0]) && !isnan(frame->volume_position[0])) {
     memcpy(frame->position, frame->volume_position, sizeof frame->position);
@@ -397,9 +398,8 @@ static void take_volume_place(hl_dicom_header *header, hl_dicom_frame *frame) {
     memcpy(frame->orientation, frame->volume_orientation, sizeof frame->orientation);
 }
 
-/* Finds how many tiles a mosaic has along a side (mosaic.h), and the position of the first slice. The
- * position that the file states is that of a picture of the mosaic's size whose middle is the middle of the
- * first slice. */
+/* Finds how many tiles a mosaic has along each side (mosaic.h). If the file does not state the number of
+ * slices, warns, and leaves the mosaic as one picture. */
 static void finish_mosaic(const hl_source *source, hl_dicom_header *header) {
   hl_dicom_pixels *p = &header->pixels;
   size_t tiles = (size_t)ceil(sqrt(fmin(header->mosaic.slices, 65536)));
@@ -413,7 +413,8 @@ static void finish_mosaic(const hl_source *source, hl_dicom_header *header) {
   p->tiles = tiles;
 }
 
-/* Frames without attributes of their own get the attributes of the whole file. */
+/* Copies the attributes of the whole file to those attributes of a frame that the file does not state for the
+ * frame. */
 static void complete_frame(const hl_dicom_header *header, hl_dicom_frame *frame) {
   double *own = (double *)frame;
   const double *base = (const double *)&header->base;

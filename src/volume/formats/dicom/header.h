@@ -31,7 +31,7 @@ typedef struct hl_dicom_frame {
                                                      * millimetres */
   double volume_position[3], volume_orientation[6]; /* position and orientation in the space of an ultrasound
                                                      * volume */
-  /* Attributes in which volumes at the same positions differ: echoes, diffusion, phases, times, kinds of
+  /* Attributes that tell volumes at the same positions apart: echoes, diffusion, phases, times, kinds of
    * pictures. */
   double temporal, echo, b_value, diffusion[3], inversion, flip, trigger, kind, acquisition, time, instance;
   double segment;       /* the number of the segment that the frame shows */
@@ -42,38 +42,41 @@ typedef struct hl_dicom_frame {
 /* The format of the pixels. */
 typedef struct hl_dicom_pixels {
   size_t rows, columns, samples;
-  int allocated, stored, high;                         /* bits allocated; bits stored; place of the highest
-                                                        * stored bit */
-  bool is_signed, planar, is_float, big_endian, words; /* words: whether 8-bit pixels lie in 16-bit words */
-  size_t tiles;           /* tiles along each side of a mosaic, each of which is a slice; else 1 */
-  bool inverted;          /* whether the least value is white (MONOCHROME1) */
-  bool is_ybr, is_halved; /* is_ybr: brightness and two colour differences; is_halved: the differences are
-                           * stored only for every other column */
-  bool has_palette;       /* whether pixels of one sample stand for colours, and become three samples of 8
-                           * bits */
+  int allocated, stored, high;                         /* bits that a sample takes; bits that are used;
+                                                        * position of the highest used bit */
+  bool is_signed, planar, is_float, big_endian, words; /* words: whether 8-bit pixels are stored in pairs as
+                                                        * 16-bit words */
+  size_t tiles;           /* number of tiles along each side of a mosaic, in which each tile is a slice; 1 for
+                           * other pictures */
+  bool inverted;          /* whether the least value is shown white (MONOCHROME1) */
+  bool is_ybr, is_halved; /* is_ybr: whether colours are stored as luma and two colour differences; is_halved:
+                           * whether the differences are stored only for every other column */
+  bool has_palette;       /* whether each pixel is an index into a table of colours, which becomes three
+                           * samples of 8 bits */
   hl_dicom_codec codec;
-  uint64_t offset, length; /* position and length of the pixel data in the file; the length is not set if they
-                            * are encapsulated */
+  uint64_t offset, length; /* position and length of the pixel data in the file; encapsulated pixel data have
+                            * no length */
   bool encapsulated;
 } hl_dicom_pixels;
 
 typedef struct hl_dicom_header {
   char syntax[HL_DICOM_UID_BYTES];
-  bool deflated, has_swapped_pixels; /* has_swapped_pixels: big-endian pixels among little-endian elements */
+  bool deflated, has_swapped_pixels; /* has_swapped_pixels: whether pixels are big-endian although all other
+                                      * elements are little-endian */
   char series_uid[HL_DICOM_UID_BYTES], modality[HL_DICOM_TEXT_BYTES], description[HL_DICOM_TEXT_BYTES];
   char image_type[2 * HL_DICOM_TEXT_BYTES], photometric[HL_DICOM_TEXT_BYTES];
   double series_number;
   double rows, columns, samples, allocated, stored, high, representation, planar, frame_count;
-  double padding[2]; /* the padding value and the other end of its range */
+  double padding[2]; /* the padding value, and the other end of the range of padding values */
   double slice_spacing, thickness, imager_spacing[2], dose_scale;
   double window[2]; /* centre and width of the window */
   hl_dicom_frame base;
-  hl_dicom_frame *frames; /* owned; [frames_told]; the attributes that the file states frame by frame; null if
-                           * it states none so */
+  hl_dicom_frame *frames; /* owned; [frames_told]; the attributes that the file states for single frames; null
+                           * if there are none */
   size_t frames_told, frames_capacity;
-  double *offsets; /* owned; [offset_count]; offsets along the normal of a dose grid's frames */
+  double *offsets; /* owned; [offset_count]; for a dose grid, the offsets of its frames along the normal */
   size_t offset_count;
-  double matrix_rows, matrix_columns; /* size of the picture of which the frames are tiles */
+  double matrix_rows, matrix_columns; /* size of a larger picture, if the frames are its tiles */
   hl_dicom_mosaic mosaic;
   hl_dicom_palette palette;
   hl_dicom_segments segments;
@@ -83,20 +86,21 @@ typedef struct hl_dicom_header {
   hl_dicom_pixels pixels;
 } hl_dicom_header;
 
-/* The size of a slice, which is a tile of a mosaic or the whole picture. */
+/* The size of a slice: of a tile if the picture is a mosaic, else of the whole picture. */
 static inline size_t hl_dicom_slice_rows(const hl_dicom_pixels *p) { return p->rows / p->tiles; }
 static inline size_t hl_dicom_slice_columns(const hl_dicom_pixels *p) { return p->columns / p->tiles; }
-/* The number of samples of a pixel after it is read. */
+/* The number of samples that a pixel has after it is read. A palette gives three. */
 static inline size_t hl_dicom_read_samples(const hl_dicom_pixels *p) {
   return p->has_palette ? 3 : p->samples;
 }
 
-/* Whether bytes may begin a DICOM file. Such a file has the mark "DICM" or begins with an element. */
+/* Whether bytes have the mark "DICM" (hl_dicom_has_mark()), or may begin a DICOM file with or without this
+ * mark (hl_dicom_may_begin()). */
 bool hl_dicom_has_mark(const unsigned char *bytes, size_t length);
 bool hl_dicom_may_begin(const unsigned char *bytes, size_t length);
 
-/* Prepares the reader for the elements after the file's meta information, and finds the transfer syntax
- * there. *source is replaced if the rest of the file is deflated. */
+/* Reads the file's meta information, which states the transfer syntax, and prepares the reader for the
+ * elements after it. *source is replaced if the rest of the file is deflated. */
 hl_status hl_dicom_begin(hl_source **source, hl_dicom_header *header, hl_dicom_reader *reader,
                          hl_error *error);
 

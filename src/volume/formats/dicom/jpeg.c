@@ -3,8 +3,8 @@
 #include "core/error.h"
 #include "volume/formats/dicom/codecs.h"
 
-/* The number n of the frame header's marker SOFn, 0 to 15, and its precision in bits (T.81, B.2.2). The
- * precision is 0 if there is no frame header. */
+/* Finds the process of a JPEG picture: the number n, 0 to 15, of its frame header's marker SOFn (T.81,
+ * B.2.2). *bits: set to the precision in bits; 0 if there is no frame header. */
 static int find_process(const hl_dicom_packed *packed, int *bits) {
   const unsigned char *bytes = packed->bytes;
   for (size_t n = 2; n + 5 < packed->length;) {
@@ -36,8 +36,8 @@ static hl_status decode(const hl_dicom_packed *packed, void *values, hl_error *e
 
 #include "volume/io/jpeg_fault.h"
 
-/* Runs the decoder. The caller must destroy the decoder afterwards, also if an error jumped out of this
- * call. */
+/* Runs the decoder. An error of libjpeg jumps out of this call. The caller must destroy the decoder in any
+ * case. */
 static hl_status run(struct jpeg_decompress_struct *info, const hl_dicom_packed *packed,
                      unsigned char *values, hl_error *error) {
   const hl_dicom_pixels *p = packed->pixels;
@@ -46,8 +46,7 @@ static hl_status run(struct jpeg_decompress_struct *info, const hl_dicom_packed 
   hl_status status = hl_dicom_check_packed(packed, "JPEG", info->image_width, info->image_height,
                                            (size_t)info->num_components, info->data_precision, error);
   if (status != HL_OK) return status;
-  /* a marker in the JPEG data says whether the picture is RGB; without such a marker, the DICOM file says
-   * it */
+  /* the JPEG data may have a marker that says whether the picture is RGB; if not, the DICOM file says it */
   bool told = info->saw_Adobe_marker || info->saw_JFIF_marker;
   if (info->num_components == 3 && !told) info->jpeg_color_space = p->is_ybr ? JCS_YCbCr : JCS_RGB;
   info->out_color_space = info->num_components == 3 ? JCS_RGB : JCS_GRAYSCALE;

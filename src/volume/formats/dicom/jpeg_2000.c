@@ -18,7 +18,7 @@ hl_status hl_dicom_decode_jpeg_2000(const hl_dicom_packed *packed, void *values,
 #include <openjpeg.h>
 #include <string.h>
 
-/* The frame's bytes, from which OpenJPEG pulls. */
+/* The bytes of a frame, in the form of a stream for OpenJPEG. */
 typedef struct pulled {
   const unsigned char *bytes;
   size_t length, at;
@@ -94,7 +94,7 @@ static hl_status decode(opj_codec_t *codec, opj_stream_t *stream, const hl_dicom
   return status;
 }
 
-/* Decodes a frame, which is a bare codestream; some writers put it into a JP2 file. */
+/* Decodes a frame. It should be a bare codestream, but some writers put it into a JP2 file. */
 hl_status hl_dicom_decode_jpeg_2000(const hl_dicom_packed *packed, void *values, hl_error *error) {
   pulled source = {packed->bytes, packed->length, 0};
   bool is_file = packed->length > 12 && memcmp(packed->bytes + 4, "jP  \r\n\x87\n", 8) == 0;
@@ -113,7 +113,7 @@ hl_status hl_dicom_decode_jpeg_2000(const hl_dicom_packed *packed, void *values,
   }
   if (stream != NULL) opj_stream_destroy(stream);
   if (codec != NULL) opj_destroy_codec(codec);
-  *packed->is_rgb = true; /* the codec's own colour transform has been undone */
+  *packed->is_rgb = true; /* the library has undone the colour transform of JPEG 2000 */
   return status;
 }
 

@@ -3,7 +3,8 @@
 
 #include <string.h>
 
-/* Takes the next marker segment: its marker and content. False at the end, or if no segment is there. */
+/* Takes the next marker segment, and sets its marker and content. Returns false at the end of the data, or if
+ * no segment begins there. */
 static bool next_segment(hl_jpeg_reader *r, int *marker, const unsigned char **content, size_t *length) {
   while (r->at + 4 <= r->length && r->bytes[r->at] == 0xff && r->bytes[r->at + 1] == 0xff) r->at++;
   if (r->at + 4 > r->length || r->bytes[r->at] != 0xff) return false;
@@ -16,7 +17,8 @@ static bool next_segment(hl_jpeg_reader *r, int *marker, const unsigned char **c
   return true;
 }
 
-/* Makes the codes of a table. Codes of each length follow each other (T.81, figures C.1 and C.2). */
+/* Makes the codes of a table from the number of codes of each length. Codes of the same length are
+ * consecutive numbers (T.81, figures C.1 and C.2). */
 static void make_codes(hl_jpeg_table *table, const unsigned char *counts) {
   int code = 0, index = 0;
   memset(table->look, 0, sizeof table->look);
@@ -34,7 +36,7 @@ static void make_codes(hl_jpeg_table *table, const unsigned char *counts) {
   table->known = true;
 }
 
-/* Takes the tables of a segment. False if one of them is damaged. */
+/* Takes the Huffman tables of a segment. Returns false if one of them is damaged. */
 static bool take_tables(hl_jpeg_reader *r, const unsigned char *bytes, size_t length) {
   while (length >= 17) {
     size_t count = 0;
@@ -58,7 +60,7 @@ hl_status hl_jpeg_read_headers(hl_jpeg_reader *r, const hl_dicom_packed *packed,
   int marker = 0;
   r->bytes = packed->bytes;
   r->length = packed->length;
-  r->at = 2; /* the position after the picture's own marker */
+  r->at = 2; /* skips the marker that begins the picture */
   hl_status status = HL_OK;
   while (status == HL_OK && marker != HL_JPEG_SCAN) {
     if (!next_segment(r, &marker, &content, &length))

@@ -1,5 +1,5 @@
-/* volume/formats/dicom/jpeg_codes.h - shared by the JPEG processes with Huffman codes: marker segments,
- * tables of codes, bits.
+/* volume/formats/dicom/jpeg_codes.h - reads marker segments, tables of codes and bits, for all JPEG processes
+ * with Huffman codes.
  *
  * Source: ITU-T T.81. Markers: annex B. Codes: annexes C and F.2.2. */
 #ifndef HL_VOLUME_DICOM_JPEG_CODES_H
@@ -13,7 +13,8 @@ typedef struct hl_jpeg_table {
   bool known;
   unsigned char values[256];
   int greatest[17];                      /* the greatest code of each length; -1 if there is none */
-  int first[17];                         /* a code less first[length] is the index of its value */
+  int first[17];                         /* for each length: a code minus first[length] is the index of the
+                                          * code's value */
   uint16_t look[1 << HL_JPEG_LOOK_BITS]; /* length << 8 | value; 0 for a longer code */
 } hl_jpeg_table;
 
@@ -21,9 +22,9 @@ typedef struct hl_jpeg_table {
 typedef struct hl_jpeg_reader {
   const unsigned char *bytes;
   size_t length, at;
-  uint64_t bits; /* bits that come next, from bit `bit_count` - 1 downwards */
+  uint64_t bits; /* the next bits of the data; the first of them is bit `bit_count` - 1 */
   int bit_count;
-  size_t missing;                         /* number of bytes that were asked for beyond the end */
+  size_t missing;                         /* number of bytes beyond the end of the data that were needed */
   size_t restart;                         /* number of units between two restart markers; 0 if there are no
                                            * such markers */
   hl_jpeg_table table[2][HL_JPEG_TABLES]; /* tables of DC codes and differences; tables of AC codes */
@@ -40,13 +41,13 @@ enum {
   HL_JPEG_RESTART_INTERVAL = 0xdd
 };
 
-/* Takes a segment that the reader does not keep itself, for the decoder: any segment except tables of codes
- * and the restart interval. */
+/* Gives a segment to the decoder. This is done for all segments except the tables of codes and the restart
+ * interval, which the reader itself keeps. */
 typedef hl_status hl_jpeg_take_function(void *decoder, int marker, const unsigned char *content,
                                         size_t length, hl_error *error);
 
-/* Reads the marker segments up to the first scan's codes, including the scan's segment. name: the kind of
- * JPEG, for error lines. */
+/* Reads the marker segments up to and including that of the first scan. The scan's codes come next. name: the
+ * kind of JPEG, for error lines. */
 hl_status hl_jpeg_read_headers(hl_jpeg_reader *r, const hl_dicom_packed *packed, const char *name,
                                hl_jpeg_take_function *take, void *decoder, hl_error *error);
 
@@ -56,10 +57,10 @@ void hl_jpeg_fill(hl_jpeg_reader *r);
 /* The value of the next code; -1 if there is no such code. At least 32 bits must be held. */
 int hl_jpeg_take_code(hl_jpeg_reader *r, const hl_jpeg_table *table);
 
-/* The signed difference that `count` bits, 1 to 16, stand for (T.81, figure F.12). */
+/* Takes `count` bits, 1 to 16, and returns the signed difference that they stand for (T.81, figure F.12). */
 int hl_jpeg_take_number(hl_jpeg_reader *r, int count);
 
-/* Skips a restart marker. The bits before it are padding. */
+/* Skips everything up to and including the next restart marker. */
 void hl_jpeg_take_restart(hl_jpeg_reader *r);
 
 #endif

@@ -15,7 +15,8 @@ typedef struct decoder {
   int precision, quantization, id; /* id: the component's number */
   const hl_jpeg_table *dc, *ac;
   size_t rows, columns;
-  uint16_t steps[HL_JPEG_TABLES][64]; /* steps of quantization, in zigzag order; 0 if not told */
+  uint16_t steps[HL_JPEG_TABLES][64]; /* quantization steps of each table, in zigzag order; 0 where the file
+                                       * states none */
 } decoder;
 
 static hl_status refuse(const decoder *d, const char *why, hl_error *error) {
@@ -76,13 +77,14 @@ static hl_status take(void *decoder_, int marker, const unsigned char *content, 
 
 /* ---- blocks of 8 x 8 ---- */
 
-/* The places of coefficients, row times 8 plus column, in the order of the codes (T.81, figure A.6). */
+/* The zigzag order: the place, row times 8 plus column, of each coefficient in a block (T.81, figure A.6). */
 static const unsigned char zigzag[64] = {0,  1,  8,  16, 9,  2,  3,  10, 17, 24, 32, 25, 18, 11, 4,  5,
                                          12, 19, 26, 33, 40, 48, 41, 34, 27, 20, 13, 6,  7,  14, 21, 28,
                                          35, 42, 49, 56, 57, 50, 43, 36, 29, 22, 15, 23, 30, 37, 44, 51,
                                          58, 59, 52, 45, 38, 31, 39, 46, 53, 60, 61, 54, 47, 55, 62, 63};
 
-/* Takes the coefficients of a block, times their steps. False if the codes are damaged. */
+/* Decodes the coefficients of a block, and multiplies them by their quantization steps. Returns false if the
+ * codes are damaged. */
 static bool take_block(decoder *d, int *previous, double block[64]) {
   hl_jpeg_reader *r = &d->reader;
   const uint16_t *steps = d->steps[d->quantization];
@@ -105,22 +107,22 @@ static bool take_block(decoder *d, int *previous, double block[64]) {
   return true;
 }
 
-/* Half the cosine of n pi / 16, for n from 0 to 7; for n = 0 divided by the square root of 2. */
+/* cos(n pi / 16) / 2 for n from 0 to 7. The first number is also divided by the square root of 2. */
 static const double cosines[8] = {0.35355339059327376220, 0.49039264020161522456, 0.46193976625564337806,
                                   0.41573480615127261854, 0.35355339059327376220, 0.27778511650980111237,
                                   0.19134171618254488586, 0.09754516100806413392};
 
-/* The factor of coefficient u at sample x: C(u) / 2 cos((2 x + 1) u pi / 16). */
+/* The factor of coefficient u in sample x of the inverse transform: C(u) / 2 cos((2 x + 1) u pi / 16). */
 static double factor(int x, int u) {
-  int turn = (2 * x + 1) * u % 32; /* in units of which 32 are a full turn; neither 0 nor 16, as u is at most
-                                    * 7 */
+  int turn = (2 * x + 1) * u % 32; /* the angle, of which 32 units are a full turn; it is neither 0 nor 16, as
+                                    * u is at most 7 */
   if (u == 0) return cosines[0];
   if (turn > 16) turn = 32 - turn;
   if (turn == 8) return 0;
   return turn < 8 ? cosines[turn] : -cosines[16 - turn];
 }
 
-/* The inverse transform, along rows, then along columns (T.81, A.3.3). */
+/* The inverse cosine transform, first along rows, then along columns (T.81, A.3.3). */
 static void transform(const double factors[8][8], double block[64]) {
   double rows[64];
   for (int v = 0; v < 8; v++)

@@ -71,7 +71,8 @@ static hl_status take(void *decoder_, int marker, const unsigned char *content, 
 
 /* ---- samples ---- */
 
-/* Takes the next difference (T.81, table H.2). False if the codes are damaged. */
+/* Decodes the next difference between a sample and its prediction (T.81, table H.2). Returns false if the
+ * codes are damaged. */
 static bool take_difference(hl_jpeg_reader *r, const hl_jpeg_table *table, int *difference) {
   if (r->bit_count < 32) hl_jpeg_fill(r);
   int category = hl_jpeg_take_code(r, table);
@@ -80,8 +81,7 @@ static bool take_difference(hl_jpeg_reader *r, const hl_jpeg_table *table, int *
   return true;
 }
 
-/* Predicts a sample (T.81, table H.1). a: the sample to the left. b: the sample above. c: the sample above on
- * the left. */
+/* Predicts a sample (T.81, table H.1) from its neighbours. a: to the left. b: above. c: above on the left. */
 static int predict(int predictor, int a, int b, int c) {
   switch (predictor) {
     case 1: return a;
@@ -94,8 +94,8 @@ static int predict(int predictor, int a, int b, int c) {
   }
 }
 
-/* Decodes a row of pixels with `step` samples each. above: the row before, null if there is none since the
- * restart. */
+/* Decodes a row of pixels with `step` samples each. above: the row above; null if this is the first row after
+ * a restart. */
 static bool take_row(decoder *d, const uint16_t *above, uint16_t *row) {
   size_t step = d->components;
   for (size_t x = 0; x < d->columns; x++)

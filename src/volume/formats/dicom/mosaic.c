@@ -41,9 +41,9 @@ static double number_of(const unsigned char *bytes, size_t length) {
   return hl_text_number(trimmed, strlen(trimmed), &number) ? number : 0;
 }
 
-/* Reads the numbers of a tag. Each is the text of an item, of which there are `items`. An item consists of
- * four words, of which one is the text's length, and of the text, which is padded to whole words. numbers:
- * [most]; set to the numbers of the first items. */
+/* Reads the numbers of a tag, which has `items` items. An item consists of four words and a text. One of the
+ * words is the length of the text, which is padded to whole words. The text is a number. numbers: [most]; set
+ * to the numbers of the first items. */
 static void read_items(csa_reader *csa, bool second, uint32_t items, double *numbers, uint32_t most) {
   for (uint32_t n = 0; n < items && csa->at < csa->length; n++) {
     uint32_t words[4];
@@ -55,7 +55,8 @@ static void read_items(csa_reader *csa, bool second, uint32_t items, double *num
   }
 }
 
-/* Looks for the number of slices and their normal. Headers of the second kind begin with "SV10". */
+/* Searches a CSA header for the number of slices and for their normal. There are two kinds of headers; the
+ * second one begins with "SV10". */
 static void read_csa(csa_reader *csa, hl_dicom_mosaic *mosaic) {
   bool second = csa->length >= 4 && memcmp(csa->bytes, "SV10", 4) == 0;
   if (second) csa->at = 8;
@@ -91,8 +92,8 @@ static hl_status take_csa(hl_dicom_reader *reader, const hl_dicom_element *eleme
   return status;
 }
 
-/* Looks at the name of a private creator, an element that reserves a block of elements. *block becomes this
- * block if the name is `name`; otherwise it stays. */
+/* Reads a private creator: an element whose value is a name, and which reserves a block of elements. If the
+ * value is `name`, *block becomes the block's number; otherwise it is not changed. */
 static hl_status take_creator(hl_dicom_reader *reader, const hl_dicom_element *element, const char *name,
                               unsigned *block, hl_error *error) {
   char text[64];

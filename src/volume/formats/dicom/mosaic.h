@@ -16,7 +16,8 @@ typedef struct hl_dicom_mosaic {
   double normal[3];                 /* the direction from slice to slice; 0 if not told */
 } hl_dicom_mosaic;
 
-/* Takes an element at the top of a file. Elements that have nothing to do with mosaics change nothing. */
+/* Looks at an element at the top level of a file, and stores what it says of a mosaic. Other elements change
+ * nothing. */
 hl_status hl_dicom_mosaic_take(hl_dicom_reader *reader, const hl_dicom_element *element,
                                hl_dicom_mosaic *mosaic, hl_error *error);
 

@@ -13,15 +13,15 @@ typedef struct hl_dicom_palette {
   size_t counts[3];          /* number of entries that were told */
 } hl_dicom_palette;
 
-/* Reads what a data element of DICOM says of the palette. The element stands at the top level of the file,
- * not within a sequence. Elements that do not concern palettes change nothing. */
+/* Stores what an element says of the palette. The element stands at the top level of the file, not within a
+ * sequence. Elements that do not concern palettes change nothing. */
 hl_status hl_dicom_palette_take(hl_dicom_reader *reader, const hl_dicom_element *element,
                                 hl_dicom_palette *palette, hl_error *error);
 void hl_dicom_palette_release(hl_context *context, hl_dicom_palette *palette);
 
 bool hl_dicom_palette_is_whole(const hl_dicom_palette *palette);
 
-/* The colour of a pixel value. Values beyond the table's ends have the colours of its ends. */
+/* The colour of a pixel value. A value beyond an end of the table has the colour at this end. */
 void hl_dicom_palette_color(const hl_dicom_palette *palette, double value, unsigned char rgb[3]);
 
 #endif

@@ -1,6 +1,6 @@
 /* volume/formats/dicom/segmentation.c - see segmentation.h.
  *
- * All masks are read once to see which segments overlap, and once more into the label map. */
+ * All masks are read twice: first to find which segments overlap, then into the label map. */
 #include "volume/formats/dicom/segmentation.h"
 
 #include <math.h>
@@ -15,7 +15,7 @@
 #include "volume/io/destination.h"
 #include "volume/io/parallel.h"
 
-/* The greatest number of components of a label map; a file with more is no picture. */
+/* The greatest number of components of a label map. Files that need more are refused. */
 enum { LAYERS_MOST = 64 };
 
 typedef struct segment_reading {
@@ -24,7 +24,8 @@ typedef struct segment_reading {
   int *layers;             /* owned; [segments]; the component to which each segment belongs */
   unsigned char *overlaps; /* owned; [segments][segments]: 1 where two segments share a voxel */
   size_t layer_count;
-  size_t chosen; /* for fractions: the segment that is read; for masks: the component that is read */
+  size_t chosen; /* index of what is read: of the segment in a file of fractions, of the component in a file
+                  * of masks */
   bool fractions;
   hl_voxel_type type;
   size_t slice_voxels;
@@ -51,7 +52,7 @@ static bool share_a_bit(const uint64_t *a, const uint64_t *b, size_t words) {
   return false;
 }
 
-/* Compares the masks of all segments in the slice `place`, to find which segments overlap. masks: scratch
+/* Reads the masks of all segments at the position `place`, and notes which segments overlap. masks: scratch
  * memory for all of these masks. */
 static hl_status compare_place(segment_reading *r, size_t place, uint64_t *masks, size_t *shown,
                                hl_error *error) {
@@ -71,7 +72,7 @@ static hl_status compare_place(segment_reading *r, size_t place, uint64_t *masks
   return HL_OK;
 }
 
-/* The first component none of whose segments overlaps the given one. */
+/* Finds the first component that has no segment overlapping the given one. */
 static int layer_for(const segment_reading *r, size_t segment) {
   bool taken[LAYERS_MOST] = {false};
   int layer = 0;
@@ -164,7 +165,8 @@ hl_status hl_dicom_name_segments(const hl_dicom_segments *segments, const int *l
   return HL_OK;
 }
 
-/* Chooses a segment of fractions. Each segment is an array, by its name or "segment N". */
+/* Lists the segments of fractions as arrays, by their names or as "segment N", and chooses the array to
+ * read. */
 static hl_status choose_fraction(segment_reading *r, hl_load_request *request, hl_error *error) {
   const hl_dicom_segments *segments = r->stack->segments;
   const hl_dicom_pixels *p = &r->set->files[0].pixels;
@@ -181,7 +183,7 @@ static hl_status choose_fraction(segment_reading *r, hl_load_request *request, h
   return status;
 }
 
-/* Warns about the segments that the chosen component leaves out. */
+/* Warns if there are segments that belong to other components than the chosen one. */
 static void tell_layers(const segment_reading *r, hl_load_request *request) {
   request->component_told[0] = 0;
   if (r->layer_count < 2 || request->component != HL_COMPONENT_DEFAULT) return;

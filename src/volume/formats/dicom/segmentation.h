@@ -8,14 +8,13 @@
 #include "volume/formats/format.h"
 
 /* Reads a stack that has segments (stack.h). Masks become a label map whose values are the segments' numbers.
- * It has one component; where segments overlap, it has as many components as are needed to keep each voxel's
- * segments apart. If the frames are fractions, each segment is an array of its own, and the chosen one is
- * read. */
+ * It has one component, or, if segments overlap, as many components as are needed to keep overlapping
+ * segments apart. If frames are fractions, each segment is an array of its own, of which one is read. */
 hl_status hl_dicom_segmentation_read(hl_dicom_set *set, hl_dicom_stack *stack, hl_load_request *request,
                                      hl_volume **volume, hl_error *error);
 
 /* Gives a volume the names and colours of its file's segments. layers: [segments->count]; the component of
- * each segment; null if all are in the first. */
+ * each segment; null if all segments belong to the first component. */
 hl_status hl_dicom_name_segments(const hl_dicom_segments *segments, const int *layers, hl_volume *volume,
                                  hl_error *error);
 

@@ -14,7 +14,10 @@ enum {
   LABEL = 0x00620005,
   COLOR = 0x0062000d
 };
-enum { HL_NO_SEGMENT = -1 /* the number of a segment whose item states none; no frame refers to it */ };
+enum {
+  HL_NO_SEGMENT = -1 /* the number of a segment whose item states none; no frame refers to such a
+                      * segment */
+};
 
 size_t hl_dicom_segment_of(const hl_dicom_segments *segments, double number) {
   for (size_t n = 0; n < segments->count; n++)
@@ -33,7 +36,7 @@ static hl_status take_kind(hl_dicom_reader *reader, const hl_dicom_element *elem
   return status;
 }
 
-/* The segment of the item that is being read. A new segment is empty. */
+/* The segment that the current item describes. If it is new, it is empty. */
 static hl_status segment_of_item(const hl_dicom_reader *reader, hl_dicom_segments *segments,
                                  hl_segment **segment, hl_error *error) {
   size_t index = reader->level[0].item;

@@ -70,8 +70,8 @@ static void list_series(const hl_dicom_set *set, char *text, size_t size) {
   if (set->series_count > NAMED && used < size) snprintf(text + used, size - used, "; ...");
 }
 
-/* How well a text names a series: 3 if it is the UID, 2 the number, 1 the description, 0 if it is none of
- * them. */
+/* How well a text names a series: 3 if it is the series' UID, 2 if it is the number, 1 if it is the
+ * description, else 0. */
 static int match(const hl_dicom_series *series, const char *wanted) {
   double number;
   if (strcmp(series->uid, wanted) == 0) return 3;
@@ -87,8 +87,7 @@ static size_t largest(const hl_dicom_set *set) {
     double size = (double)series->rows * (double)series->columns * (double)series->frames;
     if (series->frames == 1) size *= 1e-6; /* a single picture is chosen only if there are no stacks */
     if (series->is_segmentation)
-      size *= 1e-3; /* a user who names no series more likely wants the scan than a
-                     * segmentation of the scan */
+      size *= 1e-3; /* a user who names no series more likely wants the scan than its segmentation */
     if (size > most) {
       most = size;
       chosen = n;
@@ -137,15 +136,15 @@ static void move(hl_dicom_frame *frame, vec3 direction, double distance) {
   frame->position[2] += distance * direction.z;
 }
 
-/* The distance from slice to slice that the file states: its slice spacing, else its slice thickness, else 1.
- * It is negative if slices follow each other against the normal. */
+/* The distance between slices that the file states: the slice spacing, else the slice thickness, else 1. It
+ * is negative if slices follow each other in the direction opposite to the normal. */
 static double stated_step(const hl_dicom_header *header) {
   if (isfinite(header->slice_spacing) && header->slice_spacing != 0) return header->slice_spacing;
   return header->thickness > 0 && isfinite(header->thickness) ? header->thickness : 1;
 }
 
-/* Places a tile of a mosaic. The mosaic's position is the position of a picture of the mosaic's size around
- * the middle of the first slice. */
+/* Sets the position of a tile of a mosaic. The position in the file is that of a picture of the mosaic's size
+ * that has the same middle as the first slice. */
 static void place_tile(const hl_dicom_header *header, size_t tile, hl_dicom_frame *frame) {
   const hl_dicom_pixels *p = &header->pixels;
   vec3 row = vec3_of(frame->orientation), column = vec3_of(frame->orientation + 3),
@@ -158,7 +157,8 @@ static void place_tile(const hl_dicom_header *header, size_t tile, hl_dicom_fram
   frame->tile = (uint32_t)tile;
 }
 
-/* Places the frames of a file that does not place each frame: they follow each other along the normal. */
+/* Sets the position of a frame. If the file does not state a position for each frame, frames follow each
+ * other along the normal. */
 static void place_frame(const hl_dicom_header *header, size_t index, hl_dicom_frame *frame) {
   *frame = index < header->frames_told ? header->frames[index] : header->base;
   frame->index = (uint32_t)index;
@@ -167,12 +167,14 @@ static void place_frame(const hl_dicom_header *header, size_t index, hl_dicom_fr
   double distance = (double)slice * stated_step(header),
          volume = hl_dicom_vectors_volume(&header->vectors, index);
   if (!isnan(volume)) frame->temporal = volume;
-  /* PS3.3, C.8.8.3.2: if the first offset is 0, offsets count from the first frame's position */
+  /* PS3.3, C.8.8.3.2: offsets may be counted from the first frame's position, or be coordinates; both are
+   * made to begin at 0 */
   if (index < header->offset_count) distance = header->offsets[index] - header->offsets[0];
   move(frame, vec3_cross(vec3_of(frame->orientation), vec3_of(frame->orientation + 3)), distance);
 }
 
-/* Compares the size that the header promises with the file's length, before anything is allocated. */
+/* Checks, before anything is allocated, that the file is long enough for the pixels that its header
+ * promises. */
 static hl_status check_length(const hl_source *source, const hl_dicom_header *header, hl_error *error) {
   const hl_dicom_pixels *p = &header->pixels;
   uint64_t size = hl_source_size(source), frames = (uint64_t)header->frame_count, needed;
@@ -189,7 +191,7 @@ static hl_status check_length(const hl_source *source, const hl_dicom_header *he
                         (unsigned long long)needed, (unsigned long long)left);
 }
 
-/* The number of slices of a frame, which is more than one for a mosaic. */
+/* The number of slices in a frame. A mosaic has several. */
 static size_t slices_of_frame(const hl_dicom_header *header) {
   return header->pixels.tiles > 1 ? (size_t)header->mosaic.slices : 1;
 }
@@ -214,8 +216,7 @@ static hl_status add_frames(hl_dicom_set *set, const hl_dicom_header *header, si
   return HL_OK;
 }
 
-/* The padding value, converted to the pixels' own type (PS3.3, C.7.5.1.1.2), and the other end of the padding
- * range. */
+/* Finds the range of padding values, in the pixels' own type (PS3.3, C.7.5.1.1.2). */
 static void take_padding(const hl_dicom_header *header, double padding[2]) {
   for (int n = 0; n < 2; n++) {
     double value = header->padding[n];
@@ -232,7 +233,7 @@ static void take_padding(const hl_dicom_header *header, double padding[2]) {
   }
 }
 
-/* Adds a file to the set, and moves segments and palette out of the header. */
+/* Adds a file to the set, which takes over the header's segments and palette. */
 static hl_status add_file(hl_dicom_set *set, hl_dicom_header *header, size_t entry, hl_error *error) {
   hl_status status = make_room(set->context, (void **)&set->files, set->file_count, &set->file_capacity,
                                sizeof *set->files, error);
@@ -250,7 +251,7 @@ static hl_status add_file(hl_dicom_set *set, hl_dicom_header *header, size_t ent
                           .is_volume_space = header->is_volume_space,
                           .frames.are_times = header->vectors.are_times,
                           .frames.count = (size_t)header->frame_count};
-  /* Padding values stand for places where a picture shows nothing. In segmentations 0 stands for them. */
+  /* Padding values mark pixels outside of the picture. In segmentations such pixels are 0. */
   if (header->segments.kind == HL_DICOM_NO_SEGMENTS) take_padding(header, file->padding);
   else file->padding[0] = file->padding[1] = NAN;
   status = find_series(set, header, &file->series, error);

@@ -9,7 +9,7 @@
 typedef struct hl_dicom_file {
   uint32_t entry, series; /* index of the file in the bundle, and of its series in the set */
   hl_dicom_pixels pixels;
-  double padding[2]; /* the range of values that stand for nothing; NAN if there is none */
+  double padding[2]; /* the range of padding values, which mark pixels without data; NAN if there is none */
   double slice_spacing, thickness, window[2];
   bool is_volume_space; /* whether positions are in the space of an ultrasound volume, not of the patient */
   hl_dicom_segments segments; /* owned */
@@ -17,11 +17,11 @@ typedef struct hl_dicom_file {
   bool is_localizer, is_deflated;
   struct {
     size_t count;
-    bool is_backwards; /* whether frames that have no places of their own follow each other against the
-                        * normal */
-    bool are_times;    /* whether they follow each other in time */
-    uint64_t *begins;  /* owned; [count + 1]; positions of the frames' first fragments; null until they are
-                        * found, and in files of one frame or without fragments */
+    bool is_backwards; /* whether frames without stated positions follow each other in the direction opposite
+                        * to the normal */
+    bool are_times;    /* whether the frames follow each other in time */
+    uint64_t *begins;  /* owned; [count + 1]; positions of the frames' first fragments. Null until they are
+                        * found; always null for files of one frame or without fragments */
   } frames;
 } hl_dicom_file;
 
@@ -50,15 +50,15 @@ hl_status hl_dicom_set_read(hl_context *context, const hl_bundle *bundle, bool s
                             hl_error *error);
 void hl_dicom_set_release(hl_dicom_set *set);
 
-/* Finds the wanted series by its UID, number or description; if wanted is null, the series with most
- * voxels. */
+/* Finds the wanted series by its UID, number or description. If wanted is null, finds the series with the
+ * most voxels. */
 hl_status hl_dicom_series_choose(const hl_dicom_set *set, const char *wanted, size_t *chosen,
                                  hl_error *error);
 
 /* A line for lists of series: "3 CT \"Thorax\" 512 x 512 x 200". */
 const char *hl_dicom_series_text(const hl_dicom_series *series, char *text, size_t size);
 
-/* Opens a file for reading its elements, which are inflated if they are deflated. */
+/* Opens a file for reading its elements. If the elements are deflated, the source inflates them. */
 hl_status hl_dicom_file_open(const hl_dicom_set *set, const hl_dicom_file *file, hl_source **source,
                              hl_error *error);
 

@@ -28,7 +28,7 @@ typedef struct sorting {
   size_t count;
   vec3 row, column, normal;
   bool has_positions;
-  double tolerance; /* frames at most this far apart lie at the same position */
+  double tolerance; /* two frames count as lying at the same position if their distance is not greater */
   double *places;   /* owned; [place_count]: the frames' positions along the normal */
   size_t place_count;
 } sorting;
@@ -66,8 +66,8 @@ static bool same_grid(const sorting *s, const hl_dicom_frame *a, const hl_dicom_
   return true;
 }
 
-/* Keeps the largest set of frames that have one size and orientation. Localizers are left out unless the
- * series has nothing else. */
+/* Keeps the largest set of frames of the same size and orientation. Localizers are left out, unless the
+ * series consists of them. */
 static hl_status keep_majority(sorting *s, hl_error *error) {
   enum { CLASSES = 64 };
   size_t size[CLASSES] = {0}, classes = 0, best = 0;
@@ -106,8 +106,8 @@ static int compare(double a, double b) {
   return a < b ? -1 : a > b;
 }
 
-/* Compares frames at the same position, which belong to different volumes. They are compared by the
- * attributes in which such volumes differ, the most reliable attribute first. */
+/* Compares two frames at the same position, to find the order of the volumes to which they belong. The
+ * attributes that differ between volumes are compared in turn, the most reliable one first. */
 static int by_volume(const hl_dicom_frame *a, const hl_dicom_frame *b) {
   const double of_a[] = {a->temporal,     a->echo,         a->b_value,   a->diffusion[0],
                          a->diffusion[1], a->diffusion[2], a->inversion, a->flip,
@@ -146,8 +146,8 @@ static double pixel_spacing(const hl_dicom_frame *frame, int which) {
   return frame->spacing[which] > 0 && isfinite(frame->spacing[which]) ? frame->spacing[which] : 1;
 }
 
-/* The distance between slices that the file states. It is used for a single slice, or if positions are
- * missing. */
+/* The distance between slices as the file states it. It is used if there is a single slice, or if positions
+ * are missing. */
 static double stated_spacing(const sorting *s, bool *known) {
   const hl_dicom_file *file = file_of(s, s->frames[0].frame);
   *known = true;
@@ -157,7 +157,7 @@ static double stated_spacing(const sorting *s, bool *known) {
   return pixel_spacing(s->frames[0].frame, 0);
 }
 
-/* The axis of the patient along which the positions are spread most. */
+/* The axis of the patient along which the positions spread over the longest distance. */
 static int widest_axis(const sorting *s) {
   double low[3], high[3];
   int widest = 2;
@@ -173,9 +173,9 @@ static int widest_axis(const sorting *s) {
   return widest;
 }
 
-/* Chooses an orientation for slices that tell none: they are taken to be perpendicular to the axis along
- * which they follow each other, as slices usually are. Sagittal slices have rows from front to back,
- * coronal ones from right to left, and both have columns from head to feet. */
+/* Chooses an orientation for slices that state none. As usual, they are taken to be perpendicular to the axis
+ * along which they follow each other. The rows of sagittal slices then run from front to back, the rows of
+ * coronal slices from right to left, and the columns of both from head to feet. */
 static void assume_axes(sorting *s) {
   static const vec3 rows[3] = {{0, 1, 0}, {1, 0, 0}, {1, 0, 0}},
                     columns[3] = {{0, 0, -1}, {0, 0, -1}, {0, 1, 0}};
@@ -204,7 +204,7 @@ static void find_axes(sorting *s) {
   if (file_of(s, frame)->frames.is_backwards) s->normal = vec3_scale(s->normal, -1);
 }
 
-/* Whether the frames tell their places along the normal, and these places differ. */
+/* Whether all frames state their coordinate along the normal, and these coordinates differ. */
 static bool have_locations(const sorting *s) {
   bool differ = false;
   for (size_t n = 0; n < s->count; n++) {
@@ -214,7 +214,7 @@ static bool have_locations(const sorting *s) {
   return differ;
 }
 
-/* Whether there are several frames, all at the place of the first. */
+/* Whether there are several frames, which all have the same position. */
 static bool all_at_one_place(const sorting *s) {
   for (size_t n = 1; n < s->count; n++)
     for (int axis = 0; axis < 3; axis++)
@@ -222,8 +222,8 @@ static bool all_at_one_place(const sorting *s) {
   return s->count > 1;
 }
 
-/* Sorts the frames by their positions. Where positions are missing or all the same, sorts by their locations,
- * or else by their numbers. */
+/* Sorts the frames by their positions. If positions are missing or all the same, sorts by the stated
+ * locations, or without these by the frames' numbers. */
 static void sort(sorting *s) {
   bool known;
   if (s->has_positions && !(all_at_one_place(s) && have_locations(s))) {
@@ -259,7 +259,7 @@ static void sort(sorting *s) {
            known ? " mm" : " (a pixel's width)");
 }
 
-/* One past the last frame that lies at the same position as frame `begin`. */
+/* The index after the last frame that lies at the same position as frame `begin`. */
 static size_t end_of_place(const sorting *s, size_t begin) {
   size_t end = begin + 1;
   while (end < s->count && s->frames[end].distance - s->frames[begin].distance <= s->tolerance) end++;
@@ -291,8 +291,8 @@ static int by_volume_alone(const void *a, const void *b) {
   return by_volume(((const placed_frame *)a)->frame, ((const placed_frame *)b)->frame);
 }
 
-/* Gathers the frames of each position. Positions with fewer frames than usual are left out, and so are frames
- * beyond the usual number. */
+/* Lists the frames of each position. Positions that have fewer frames than most positions are left out, and
+ * so are a position's frames beyond this number. */
 static hl_status gather_places(sorting *s, hl_dicom_stack *stack, hl_error *error) {
   size_t times = usual_count(s), doubled = 0, incomplete = 0;
   if (times == 0) return hl_fail_memory(error, 1 << 14, "a list of slices");
@@ -324,7 +324,7 @@ static hl_status gather_places(sorting *s, hl_dicom_stack *stack, hl_error *erro
   return HL_OK;
 }
 
-/* Gathers the frames of each position by the segments that they show. */
+/* Lists the frames of each position, one for each segment. */
 static hl_status gather_segments(sorting *s, hl_dicom_stack *stack, hl_error *error) {
   const hl_dicom_segments *segments = &file_of(s, s->frames[0].frame)->segments;
   size_t unknown = 0, doubled = 0, count;
@@ -381,8 +381,9 @@ static double median_step(const sorting *s) {
   return median;
 }
 
-/* Whether all positions are whole multiples of one step away from the first. step: the step, approximately.
- * *slices: the number of steps plus one. */
+/* Whether positions are evenly spaced, where some may be missing: the distance of each from the first is a
+ * whole multiple of one step. step: the step, approximately. *slices: set to the number of slices without
+ * gaps. */
 static bool is_even(const sorting *s, double step, size_t *slices) {
   const double TOLERANCE = 0.05; /* in parts of a step */
   double span = s->places[s->place_count - 1] - s->places[0], steps = 0;
@@ -397,12 +398,12 @@ static bool is_even(const sorting *s, double step, size_t *slices) {
   return true;
 }
 
-/* Slices between two positions are interpolated where at most this many steps lie between them; else they are
- * empty. */
+/* Slices that lie between two positions are interpolated only if the distance of these positions is at most
+ * this many steps. Otherwise they are empty. */
 #define WIDEST_FILLED 3.5
 
-/* Puts slices at even distances from the first to the last position. Slices between frames of segments stay
- * empty: a segment is absent where it has no frame. */
+/* Places slices at even distances from the first to the last position. In segmentations, slices between
+ * positions stay empty, because a segment is absent where it has no frame. */
 static void spread(const sorting *s, size_t count, bool snap, hl_dicom_stack *stack) {
   double first = s->places[0], span = s->places[s->place_count - 1] - first;
   for (size_t n = 0, place = 0; n < count; n++) {
@@ -418,7 +419,7 @@ static void spread(const sorting *s, size_t count, bool snap, hl_dicom_stack *st
   }
 }
 
-/* Tells the user how slices were put at places where the file has none. count: the number of all slices. */
+/* Tells the user how slices were made where the file has none. count: the number of all slices. */
 static void tell_spacing(const sorting *s, const hl_dicom_stack *stack, bool even, size_t count) {
   char text[300], holes[100] = "";
   double step = count > 1 ? (s->places[s->place_count - 1] - s->places[0]) / (double)(count - 1) : 0;
@@ -465,7 +466,7 @@ static hl_status space_evenly(sorting *s, hl_dicom_stack *stack, hl_error *error
 
 static void put(vec3 v, double to[3]) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
 
-/* The frame that gives a place its position: the first frame at the place. */
+/* The first frame at a position, from which the position is taken. */
 static const hl_dicom_frame *frame_of_place(const hl_dicom_stack *stack, size_t place) {
   const hl_dicom_frame **frames = stack->frames + place * stack->times;
   size_t n = 0;
@@ -473,7 +474,7 @@ static const hl_dicom_frame *frame_of_place(const hl_dicom_stack *stack, size_t 
   return frames[n];
 }
 
-/* Warns if slices do not lie on the line from the first to the last slice. */
+/* Warns if positions do not lie on a straight line from the first to the last one. */
 static void check_line(const sorting *s, const hl_dicom_stack *stack) {
   size_t last = s->place_count - 1;
   double span = s->places[last] - s->places[0], worst = 0;

@@ -8,20 +8,21 @@
 #include "volume/formats/dicom/set.h"
 #include "volume/volume.h"
 
-/* A slice of the grid: at a position that has frames, or interpolated between two such positions. */
+/* A slice of the grid. It lies at a position that has frames, or is interpolated between two such
+ * positions. */
 typedef struct hl_dicom_slice {
-  size_t place;  /* index of the position at the slice or before it */
-  double weight; /* weight of the next position's frame; 0 if the slice lies at `place` */
-  bool empty;    /* whether the slice lies in a gap between two positions that nothing fills */
+  size_t place;  /* index of the position at the slice, or else of the last position before it */
+  double weight; /* weight of the frame at the next position; 0 if the slice lies at the position `place` */
+  bool empty;    /* whether the slice lies between two positions and is not interpolated */
 } hl_dicom_slice;
 
 typedef struct hl_dicom_stack {
   hl_context *context;
-  const hl_dicom_frame *
-      *frames; /* owned; [place_count][times]; for segments: null where a segment has no frame */
+  const hl_dicom_frame **frames; /* owned; [place_count][times]; for segmentations: null where a segment has
+                                  * no frame at the position */
   size_t place_count, times;
-  const hl_dicom_segments *segments; /* for a segmentation by frames, where `times` counts the segments; else
-                                      * null */
+  const hl_dicom_segments *segments; /* for a segmentation whose frames show one segment each: its segments,
+                                      * whose number is `times`; else null */
   size_t empty_count;                /* number of empty slices */
   hl_dicom_slice *slices;            /* owned; [grid.dimensions[2]] */
   hl_volume_description grid;        /* dimensions, origin, axes, space */

@@ -19,18 +19,18 @@ typedef struct hl_dicom_vectors {
   bool are_times; /* whether the frames follow each other in time, as in films of ultrasound or angiography */
 } hl_dicom_vectors;
 
-/* Takes an element at the top of a file. Elements that have nothing to do with vectors change nothing. */
+/* Stores what an element at the top level of a file says of vectors. Other elements change nothing. */
 hl_status hl_dicom_vectors_take(hl_dicom_reader *reader, const hl_dicom_element *element,
                                 hl_dicom_vectors *vectors, hl_error *error);
 void hl_dicom_vectors_release(hl_context *context, hl_dicom_vectors *vectors);
 
-/* The frame's slice, counted from 0. Where no slices are told, the result is the frame's own index, or 0 if
- * the frames are times. */
+/* The slice of a frame, counted from 0. If the file states no slices, the result is the frame's index, or 0
+ * if the frames are times. */
 size_t hl_dicom_vectors_slice(const hl_dicom_vectors *vectors, size_t frame);
-/* A number for the volume to which a frame belongs. It differs between volumes, and rises from each volume to
- * the next. NAN if no vector tells it. */
+/* A number that is the same for all frames of a volume, and greater for each later volume. NAN if no vector
+ * tells volumes apart. */
 double hl_dicom_vectors_volume(const hl_dicom_vectors *vectors, size_t frame);
-/* Whether the frames are projections from several sides, not slices. */
+/* Whether the frames are projections from several directions instead of slices. */
 bool hl_dicom_vectors_are_projections(const hl_dicom_vectors *vectors);
 
 #endif

@@ -1,8 +1,9 @@
 /* volume/formats/dicom/voxels.c - decodes slices on several threads, rescales their values, fills gaps.
  *
- * Where all slices have the same slope and intercept, voxels stay integers, and the two become the volume's
- * value_scale and value_offset. Where they differ, as in PET, values are computed and kept as floats. Voxels
- * of the padding value become NAN: if any slice has some, all integers become floats at the end. */
+ * If all slices have the same slope and intercept, voxels stay integers, and slope and intercept become the
+ * volume's value_scale and value_offset. If they differ, as in PET, values are computed and kept as floats.
+ * Voxels that have the padding value become NAN. If any slice has such voxels, all integers are converted to
+ * floats at the end. */
 #include "volume/formats/dicom/voxels.h"
 
 #include <math.h>
@@ -22,13 +23,13 @@
 typedef struct reading {
   const hl_dicom_set *set;
   const hl_dicom_stack *stack;
-  size_t time;   /* which of the frames at each place is taken */
+  size_t time;   /* index of the frame that is read among those at each position */
   int component; /* the sample to take, or HL_COMPONENT_MAGNITUDE */
   hl_voxel_type type;
   bool as_floats; /* whether values are computed as floats; otherwise stored values are kept */
   bool as_colors; /* whether values are colours (colors.h) */
-  bool is_plain;  /* whether the values of all slices are the files' numbers, of `type` */
-  /* Padding values are the same for all slices. Slope and intercept are set only where as_floats is false. */
+  bool is_plain;  /* whether the stored values are the files' own numbers, of `type`, in all slices */
+  /* `padding` is the same for all slices. `slope` and `intercept` are set only if as_floats is false. */
   struct {
     double slope, intercept, padding[2];
   } scale;
@@ -37,9 +38,10 @@ typedef struct reading {
   struct {
     hl_pool *pool;
     hl_dicom_workspace *spaces; /* owned; one workspace for each worker */
-    unsigned char **others;     /* owned; one slice for each worker, for filling gaps; made when needed */
+    unsigned char **others;     /* owned; for each worker, a slice that is needed when a gap is filled;
+                                 * allocated when first needed */
   } workers;
-  atomic_bool padded; /* whether a slice has voxels of the padding value */
+  atomic_bool padded; /* whether any slice has a voxel with the padding value */
 } reading;
 
 /* ---- which type ---- */
@@ -190,7 +192,7 @@ static hl_status fill_gap(reading *r, const hl_dicom_slice *slice, int worker, s
   return status;
 }
 
-/* Fills an empty slice with values that are not finite, or with black. */
+/* Fills an empty slice with NAN, or with black if voxels are not floats. */
 static void leave_empty(const reading *r, void *slice) {
   if (!r->as_floats) memset(slice, 0, r->slice_voxels * r->voxel_bytes);
   for (size_t n = 0; n < r->slice_voxels && r->as_floats; n++) ((float *)slice)[n] = NAN;
@@ -213,7 +215,7 @@ static hl_status read_one(void *data, size_t index, int worker, hl_error *error)
   return status;
 }
 
-/* Converts integers to floats in the same block, from the last to the first. Padding becomes NAN. */
+/* Converts integers to floats in the same memory, from the last to the first. Padding values become NAN. */
 static void widen(const reading *r, size_t count, void *voxels) {
   double bias = hl_voxel_type_bias(r->type);
   float *floats = voxels;
@@ -248,8 +250,8 @@ static hl_status make_threads(reading *r, size_t voxels, hl_error *error) {
                                                                 : hl_fail_memory(error, 1000, "threads");
 }
 
-/* Looks for padding in the middle slice. A volume with padding is read as floats from the start: turning all
- * its integers into floats afterwards would need memory for both at once. */
+/* Looks for padding in the middle slice. If there is some, the volume is read as floats from the start. To
+ * convert all of its integers afterwards would need memory for integers and floats at once. */
 static hl_status find_padding(reading *r, hl_error *error) {
   if (r->as_floats || r->as_colors || isnan(r->scale.padding[0])) return HL_OK;
   size_t middle = r->stack->place_count / 2, bytes = r->slice_voxels * r->voxel_bytes;
@@ -287,15 +289,16 @@ static bool any_padded(const reading *r) {
   return padded > 0;
 }
 
-/* Reads all slices. Integers of which some are padding become floats: voxels in memory are converted
- * afterwards (widen_padded()), others are read once more. */
+/* Reads all slices. If there is padding among integers, they must become floats. Voxels in memory are then
+ * converted by widen_padded() later; voxels that are not in memory are read once more. */
 static hl_status read_all(reading *r, hl_error *error) {
   hl_status status = find_padding(r, error);
   if (status == HL_OK) status = read_slices(r, error);
   if (status != HL_OK || r->as_floats || !hl_destination_is_apart(&r->to) || !any_padded(r)) return status;
   hl_destination_close(&r->to);
   for (int w = 0; w < hl_pool_threads(r->workers.pool); w++) {
-    hl_release(r->set->context, r->workers.others[w]); /* slices that fill gaps have another size now */
+    hl_release(r->set->context, r->workers.others[w]); /* the slices for filling gaps must be larger for
+                                                        * floats */
     r->workers.others[w] = NULL;
   }
   r->as_floats = true;
@@ -303,8 +306,8 @@ static hl_status read_all(reading *r, hl_error *error) {
   return read_slices(r, error);
 }
 
-/* Takes the window that the middle slice asks for (PS3.3, C.11.2.1.2: the window's centre lies half a value
- * lower). */
+/* Takes the window that the middle slice states (PS3.3, C.11.2.1.2, by which the middle of the window is its
+ * stated centre less one half). */
 static void take_window(const reading *r, double window[2]) {
   const hl_dicom_frame *frame = frame_at(r, r->stack->place_count / 2);
   const double *told = r->set->files[frame->file].window; /* centre and width */

@@ -43,8 +43,8 @@ static hl_status next_number(lammps_dump *dump, hl_error *error) {
   return HL_OK;
 }
 
-/* Reads the box of a step. kinds: the rest of the line "ITEM: BOX BOUNDS", which tells the kinds of the
- * borders. */
+/* Reads the box of a step. kinds: the rest of the line "ITEM: BOX BOUNDS", which states the kind of each
+ * border. */
 static hl_status read_box(lammps_dump *dump, const char *kinds, hl_error *error) {
   hl_particle_columns *columns = &dump->columns;
   bool triclinic = strstr(kinds, "xy") != NULL || strstr(kinds, "abc") != NULL,

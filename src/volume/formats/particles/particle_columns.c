@@ -152,7 +152,7 @@ static hl_status list_arrays(const hl_particle_columns *columns, hl_load_request
   return status;
 }
 
-/* The quantity with this number among the quantities. */
+/* The column of a quantity, counted among the quantities. */
 static const hl_particle_column *quantity(const hl_particle_columns *columns, size_t number) {
   for (int c = 0; c < columns->column_count; c++)
     if (columns->column[c].role == HL_COLUMN_QUANTITY && number-- == 0) return &columns->column[c];

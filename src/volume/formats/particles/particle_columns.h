@@ -1,9 +1,9 @@
-/* volume/formats/particles/particle_columns.h - particles as the rows of a text: what the readers of tables,
- * dumps of LAMMPS and XYZ files share.
+/* volume/formats/particles/particle_columns.h - collects particles that are rows of a text. The readers of
+ * tables, dumps of LAMMPS and XYZ files use it.
  *
- * A column is a coordinate, the mass, the smoothing length, or a quantity, as its name says. Columns whose
- * first entry is no number are left out. The file then has the arrays "log density", "density", and one for
- * each quantity, which is its mean weighted by mass. */
+ * The name of a column tells whether it is a coordinate, the mass, the smoothing length, or a quantity.
+ * Columns whose first entry is no number are left out. The file gets the arrays "log density" and "density",
+ * and an array for each quantity, which is the quantity's mean weighted by mass. */
 #ifndef HL_VOLUME_PARTICLE_COLUMNS_H
 #define HL_VOLUME_PARTICLE_COLUMNS_H
 
@@ -24,7 +24,7 @@ typedef enum hl_particle_role {
 typedef struct hl_particle_column {
   char name[HL_PARTICLE_NAME_BYTES]; /* printable */
   hl_particle_role role;
-  bool is_scaled; /* a coordinate from 0 to 1 along the box (LAMMPS xs, ys, zs) */
+  bool is_scaled; /* whether the column is a coordinate from 0 to 1 within the box (LAMMPS xs, ys, zs) */
   float *values;  /* owned; [room]; null for coordinates and columns that are not read */
 } hl_particle_column;
 
@@ -38,8 +38,8 @@ typedef struct hl_particle_columns {
   double period[3];          /* world; 0: not periodic along the axis */
 } hl_particle_columns;
 
-/* Splits a line at commas, semicolons, tabs and spaces, in place; quotes around a word are removed. Returns
- * the number of words; at most HL_PARTICLE_COLUMNS_MOST are found. */
+/* Splits a line into words, in place, at commas, semicolons, tabs and spaces. Removes quotes around words.
+ * Returns the number of words; further words than HL_PARTICLE_COLUMNS_MOST are ignored. */
 int hl_particle_words(char *line, char *words[HL_PARTICLE_COLUMNS_MOST]);
 
 /* What a column of this name is. */
@@ -51,7 +51,7 @@ void hl_particle_columns_add(hl_particle_columns *columns, const char *name);
 /* Whether there are x, y and z. */
 bool hl_particle_columns_are_places(const hl_particle_columns *columns);
 
-/* Adds a particle. line: the text, which is changed. number: the line's number, for errors. */
+/* Adds the particle of a line. The text of the line is changed. number: the line's number, for errors. */
 hl_status hl_particle_columns_row(hl_particle_columns *columns, char *line, const hl_stream *stream,
                                   int number, hl_error *error);
 
@@ -59,7 +59,7 @@ hl_status hl_particle_columns_row(hl_particle_columns *columns, char *line, cons
 hl_status hl_particle_columns_volume(const hl_particle_columns *columns, hl_load_request *request,
                                      const char *path, hl_volume **volume, hl_error *error);
 
-/* Forgets the particles, and keeps the columns' names and memory. */
+/* Removes all particles. Names of columns and memory are kept. */
 void hl_particle_columns_clear(hl_particle_columns *columns);
 void hl_particle_columns_release(hl_particle_columns *columns);
 

@@ -1,8 +1,8 @@
 /* volume/formats/particles/particles.c - volumes of particles: the check of the caller's arrays, and the
  * volume of their density.
  *
- * In: a description of particles, from a caller or from the reader of a file. Out: a volume of its density,
- * the logarithm of it, or the mean of a value. particles/particles.h spreads them. */
+ * In: a description of particles, from a caller or from the reader of a file. Out: a volume of the particles'
+ * density, of its logarithm, or of the mean of a value. particles/particles.h computes the field. */
 #include "volume/formats/particles/particles.h"
 
 #include <float.h>
@@ -17,8 +17,8 @@
 
 enum {
   SIDE = 512,            /* voxels along an axis at most, by default */
-  POINTS_A_PARTICLE = 64 /* most voxels for each particle, by default: kernels of 48 neighbours with h = 2
-                          * voxels need 6 for each particle, and more where particles cluster */
+  POINTS_A_PARTICLE = 64 /* greatest number of voxels for each particle, by default. Kernels of 48 neighbours
+                          * need 6 voxels for each particle if h = 2 voxels, and more if particles cluster */
 };
 #define LEAST_POINTS ((size_t)1 << 21)
 #define MOST_POINTS  ((size_t)1 << 31)
@@ -96,8 +96,8 @@ static hl_particle_input input_of(const hl_particles_description *d) {
   return input;
 }
 
-/* The greatest number of voxels of the volume. Half of the memory limit is for these voxels, and for what
- * is made beside them. */
+/* The greatest number of voxels of the volume. The voxels, and the fields that are made beside them, may take
+ * half of the memory limit. */
 static size_t most_points(const hl_context *context, const hl_particles_description *d, size_t count) {
   size_t fields = d->quantity == HL_PARTICLES_MEAN ? 3 : 2, most = MOST_POINTS;
   if (d->spacing == 0) {
@@ -108,7 +108,7 @@ static size_t most_points(const hl_context *context, const hl_particles_descript
   return limit > 0 && room < most ? (size_t)room : most;
 }
 
-/* Weights in the set's order: masses, or masses times values. */
+/* The particles' weights, in the set's order: masses, or masses times values. */
 static float *weights_of(hl_context *context, const hl_particles_description *d, const hl_particle_set *set,
                          bool with_values) {
   float *weights = hl_allocate(context, set->count, sizeof *weights);
@@ -137,8 +137,8 @@ static hl_status spread(const making *m, const hl_particle_plan *plan, bool with
   return status;
 }
 
-/* The density below which a voxel counts as empty: a tenth of the least density that any particle alone has
- * at its own place, m W(0) = m / (pi h^3). */
+/* The density below which a voxel counts as empty. A particle alone has the density m W(0) = m / (pi h^3) at
+ * its own place. The result is a tenth of the least such density. */
 static float empty_density(const hl_particles_description *d, const hl_particle_set *set) {
   double least = INFINITY;
   for (size_t n = 0; n < set->count; n++) {
@@ -161,8 +161,8 @@ typedef struct conversion {
 
 enum { NUMBERS_AT_ONCE = 1 << 16 };
 
-/* Turns densities into logarithms. The logarithm of a double, rounded to a float, is nearly everywhere the
- * same on all machines. */
+/* Replaces densities by their logarithms. They are computed in double and then rounded to floats, so that
+ * nearly all of them are the same on all machines. */
 static void take_logarithms(void *data, size_t index, int worker) {
   const conversion *c = data;
   (void)worker;
@@ -177,8 +177,8 @@ static void divide(void *data, size_t index, int worker) {
     c->field[n] = c->by[n] > 0 ? c->field[n] / c->by[n] : c->outside;
 }
 
-/* Converts the field from densities to the wanted quantity, on those levels that the volume keeps. density:
- * for a mean, the field of the density; else null. */
+/* Converts the field from densities to the wanted quantity, on all levels that become part of the volume.
+ * density: the field of the density if the quantity is a mean; else null. */
 static void convert(const making *m, hl_particle_field *field, const hl_particle_field *density) {
   bool in_bricks = field->plan->leaves != NULL;
   if (m->d->quantity == HL_PARTICLES_DENSITY) return;
@@ -240,10 +240,11 @@ static hl_status find_truth(const making *m, const hl_particle_plan *plan, hl_pa
 
 /* ---- the lattice, and whether the field becomes bricks ---- */
 
-/* Bricks are made where they need less memory than this part of an array of all voxels. The number is chosen,
- * not measured: values are found more slowly in bricks, so that bricks must save much memory. */
+/* The field becomes bricks if they take less memory than this fraction of an array of all voxels. The number
+ * is chosen, not measured. Bricks are sampled more slowly than voxels, so that they must save much memory. */
 #define BRICKS_PART 0.6
-/* Without a memory limit: the most bytes that bricks, and the fields of which they are made, may take. */
+/* The greatest number of bytes of bricks and of the fields from which they are made, if there is no memory
+ * limit. */
 #define BRICK_BYTES 1073741824.0
 
 static size_t fields_of(const hl_particles_description *d) {
@@ -256,9 +257,9 @@ static double voxel_bytes(const hl_particle_lattice *lattice) {
   return bytes;
 }
 
-/* Makes a plan of bricks. If memory has no room for them, the spacing grows, unless the caller wants a
- * certain spacing. *plan has no leaves if an array of voxels is better, or if bricks of the wanted spacing
- * have no room. */
+/* Plans a field in bricks. If the bricks take too much memory, the spacing is increased, unless the caller
+ * wants a certain spacing. *plan has no leaves if an array of voxels is better, or if bricks of the wanted
+ * spacing take too much memory. */
 static hl_status plan_bricks(const making *m, hl_particle_plan *plan) {
   const uint64_t limit = m->context->options.memory_limit;
   const double most = limit > 0 ? (double)limit / 2 : BRICK_BYTES;

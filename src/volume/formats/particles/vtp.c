@@ -1,8 +1,8 @@
 /* volume/formats/particles/vtp.c - the points of VTK's XML PolyData (.vtp) as particles.
  *
  * PolyData are particles if they have neither lines nor surfaces, and an array of masses or of smoothing
- * lengths at their points. All other PolyData are meshes (mesh/vtp.c). The other arrays at the points are
- * quantities; an array of vectors gives their lengths. */
+ * lengths at their points. All other PolyData are meshes (mesh/vtp.c). All other arrays at the points are
+ * quantities. Of an array of vectors, the lengths are taken. */
 #include <halflight/particles.h>
 #include <math.h>
 #include <string.h>
@@ -46,9 +46,9 @@ int hl_volume_reads_particles(hl_context *context, const char *path) {
 
 /* ---- arrays ---- */
 
-/* Names the columns by the arrays of the first piece. Coordinates are the points' alone. names:
- * [HL_PARTICLE_COLUMNS_MOST]; set to the arrays' names in the file, which the columns hold only as far as
- * they can be printed. */
+/* Makes a column of each array of the first piece. An array is never a coordinate, as the points have their
+ * own. names: [HL_PARTICLE_COLUMNS_MOST]; set to the arrays' names in the file. The columns' own names may
+ * differ, because they are printable. */
 static void name_columns(const hl_vtk_pieces *pieces, hl_particle_columns *columns, const char **names) {
   for (size_t n = 0; n < pieces->pieces[0].array_count; n++) {
     const hl_vtk_piece_array *array = &pieces->arrays[pieces->pieces[0].first_array + n];
@@ -64,7 +64,8 @@ static void name_columns(const hl_vtk_pieces *pieces, hl_particle_columns *colum
   }
 }
 
-/* Appends tuples to a column: a tuple of one component as its number, a tuple of several as its length. */
+/* Appends tuples to a column. A tuple of one component gives its number; a tuple of several gives its length
+ * as a vector. */
 static hl_status append(const hl_particle_columns *columns, hl_particle_column *column, const double *numbers,
                         size_t tuples, size_t components, hl_error *error) {
   float *values = hl_reallocate(columns->context, column->values, columns->count + tuples, sizeof *values);

@@ -2,8 +2,8 @@
  *
  * A frame is the number of atoms, a comment, and a line for each atom: its element, x, y and z. Extended XYZ
  * names in the comment the columns (Properties=species:S:1:pos:R:3:...) and the box (Lattice="ax ay az bx by
- * bz cx cy cz"). The box counts as periodic where it lies along the axes, and pbc, if it is there, says T for
- * the axis. */
+ * bz cx cy cz"). The box is periodic along an axis if it is parallel to the axes and the key pbc, if present,
+ * has T for this axis. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,8 +18,8 @@ static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) 
   return HL_OK;
 }
 
-/* Copies the value of a key in a comment: the text after "key=" up to a space, or between quotes; "" if the
- * key is not there. */
+/* Copies the value of a key from a comment. The value follows "key=" and ends at a space, or stands in
+ * quotes. It is "" if the comment lacks the key. */
 static void value_of(const char *comment, const char *key, char *value, size_t capacity) {
   size_t length = strlen(key);
   value[0] = 0;
@@ -34,7 +34,7 @@ static void value_of(const char *comment, const char *key, char *value, size_t c
   }
 }
 
-/* Names columns by "species:S:1:pos:R:3:charge:R:1". */
+/* Names the columns by a text such as "species:S:1:pos:R:3:charge:R:1". */
 static void name_columns(char *properties, hl_particle_columns *columns) {
   static const char axes[] = "xyz";
   for (char *field = properties; field != NULL && *field != 0;) {

@@ -1,4 +1,4 @@
-/* volume/formats/slices/slice_codecs.c - shared by the decoders of slices. */
+/* volume/formats/slices/slice_codecs.c - functions that the decoders of slices share. */
 #include "volume/formats/slices/slice_codecs.h"
 
 #include "core/error.h"

@@ -1,8 +1,9 @@
-/* volume/formats/slices/slice_codecs.h - the decoders of slice_picture.c, one for each kind of picture.
+/* volume/formats/slices/slice_codecs.h - the decoders that slice_picture.c uses, one for each kind of
+ * picture.
  *
- * Each decoder reads the shape, and then, if `samples` is not null, the pixels: [height][width][samples] of
- * the shape's type, native byte order, in a block that the caller releases, also after a failure. If the file
- * is too short for its shape, it is refused before anything is allocated. */
+ * Each decoder reads the shape. If `samples` is not null, it also reads the pixels, [height][width][samples]
+ * of the shape's type in native byte order. Their block is released by the caller, also after a failure. A
+ * file that is too short for its shape is refused before anything is allocated. */
 #ifndef HL_VOLUME_SLICE_CODECS_H
 #define HL_VOLUME_SLICE_CODECS_H
 
@@ -21,8 +22,8 @@ typedef struct hl_slice_file {
 typedef struct hl_slice_shape {
   size_t width, height, samples; /* samples: number of samples of a pixel */
   hl_voxel_type type;
-  bool colors, premultiplied; /* colors: red, green, blue, perhaps alpha; premultiplied: alpha is multiplied
-                               * into the colours */
+  bool colors, premultiplied; /* colors: whether samples are red, green, blue and perhaps alpha;
+                               * premultiplied: whether alpha is multiplied into the colours */
 } hl_slice_shape;
 
 hl_status hl_slice_read_png(const hl_slice_file *file, hl_slice_shape *shape, unsigned char **samples,
@@ -30,17 +31,17 @@ hl_status hl_slice_read_png(const hl_slice_file *file, hl_slice_shape *shape, un
 hl_status hl_slice_read_jpeg(const hl_slice_file *file, hl_slice_shape *shape, unsigned char **samples,
                              hl_error *error);
 
-/* Decodes one component of a TIFF file's first page. voxels: null to read only the shape. */
+/* Decodes one component of the first page of a TIFF file. If voxels is null, reads only the shape. */
 hl_status hl_slice_read_tiff(const hl_slice_file *file, hl_slice_shape *shape, int component, void *voxels,
                              hl_error *error);
 
-/* Whether a file's name is a name of bare voxels. */
+/* Whether a file has the name of a file of bare voxels. */
 bool hl_slice_is_raw(const char *name);
-/* Reads bare voxels. voxels: null to find only the shape. */
+/* Reads bare voxels. If voxels is null, finds only the shape. */
 hl_status hl_slice_read_raw(const hl_slice_file *file, hl_slice_shape *shape, void *voxels, hl_error *error);
 
-/* Compares the pixels that a header promises with bytes_most, the greatest number of decoded bytes. each:
- * bytes of a sample. */
+/* Refuses a picture whose header promises more pixels than the file can hold. bytes_most: the greatest number
+ * of bytes that the file can decode to. */
 hl_status hl_slice_check_size(const hl_slice_file *file, const hl_slice_shape *shape, size_t bytes_most,
                               hl_error *error);
 

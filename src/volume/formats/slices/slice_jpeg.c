@@ -17,11 +17,11 @@ hl_status hl_slice_read_jpeg(const hl_slice_file *file, hl_slice_shape *shape, u
 #include "core/memory.h"
 #include "volume/io/jpeg_fault.h"
 
-/* Runs the decoder. The caller must destroy the decoder afterwards, also if an error jumped out of this
- * call. */
+/* Runs the decoder. An error of libjpeg jumps out of this call. The caller must destroy the decoder in any
+ * case. */
 static hl_status run(struct jpeg_decompress_struct *info, const hl_slice_file *file, hl_slice_shape *shape,
                      unsigned char **samples, hl_error *error) {
-  enum { PIXELS_OF_BYTE = 8 * 64 }; /* a block of 8 x 8 pixels takes at least a bit */
+  enum { PIXELS_OF_BYTE = 8 * 64 }; /* each block of 8 x 8 pixels takes at least one bit */
   jpeg_mem_src(info, file->bytes, file->length);
   jpeg_read_header(info, TRUE);
   bool grey = info->num_components == 1;

@@ -34,7 +34,7 @@ static hl_status fail_unknown(const hl_slice_file *file, hl_error *error) {
   return hl_fail(error, HL_ERROR_INPUT, "%s: neither a TIFF, PNG nor JPEG picture", file->path);
 }
 
-/* Reads a PNG or JPEG file. samples: null to read only its shape. */
+/* Reads a PNG or JPEG file. If samples is null, reads only its shape. */
 static hl_status read(const hl_slice_file *file, hl_slice_shape *shape, unsigned char **samples,
                       hl_error *error) {
   hl_status status;
@@ -60,8 +60,8 @@ static double sample_at(const hl_slice_shape *shape, const unsigned char *sample
   return wide;
 }
 
-/* Stores a component of a picture. voxels: for a component, stored values of the shape's type, which is
- * unsigned; for a magnitude, floats; or else colours. */
+/* Stores what `component` chooses of a picture. voxels: for an index, stored values of the shape's type,
+ * which is unsigned; for a magnitude, floats; for colours, colours. */
 static void take_component(const hl_slice_shape *shape, const unsigned char *samples, int component,
                            void *voxels) {
   size_t count = shape->width * shape->height, step = shape->samples,

@@ -5,14 +5,14 @@
 
 #include "volume/formats/slices/slice_codecs.h"
 
-/* Whether a file's name promises a picture that can be a slice. */
+/* Whether a file's name is that of a picture that can be a slice. */
 bool hl_slice_is_named(const char *name);
 
 /* Reads a picture's header. Refuses a picture for which the file is too short. */
 hl_status hl_slice_measure(const hl_slice_file *file, hl_slice_shape *shape, hl_error *error);
 
-/* Decodes a picture's component, or an HL_COMPONENT_ value, into width x height stored voxels, or colours
- * (colors.h). The picture's own shape must equal `shape`. */
+/* Decodes a picture into width x height stored voxels, or into colours (colors.h). component: an index or an
+ * HL_COMPONENT_ value. The picture's own shape must equal `shape`. */
 hl_status hl_slice_decode(const hl_slice_file *file, const hl_slice_shape *shape, int component, void *voxels,
                           hl_error *error);
 

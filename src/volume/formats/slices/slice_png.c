@@ -46,7 +46,8 @@ static void on_read(png_structp png, png_bytep to, size_t length) {
   s->at += length;
 }
 
-/* Fails through png_error(), as libpng does itself, so that all failures are handled in one place. */
+/* Ends decoding by a call of png_error(), which libpng itself calls on failures. So all failures are handled
+ * in one place. */
 static void stop(png_slice *s, hl_status status) {
   s->status = status;
   png_error(s->png, "stopped");
@@ -54,7 +55,7 @@ static void stop(png_slice *s, hl_status status) {
 
 static void read_shape(png_slice *s) {
   const uint16_t one = 1;
-  enum { DEFLATE_MOST = 1032 }; /* greatest number of bytes that one byte of deflated data can become */
+  enum { DEFLATE_MOST = 1032 }; /* greatest number of bytes that one deflated byte can unpack to */
   png_set_user_limits(s->png, INT32_MAX, INT32_MAX);
   png_set_keep_unknown_chunks(s->png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
   png_read_info(s->png, s->info);

@@ -11,7 +11,8 @@ bool hl_slice_is_raw(const char *name) {
   return hl_text_ends(name, ".raw") || hl_text_ends(name, ".bin") || hl_text_ends(name, ".img");
 }
 
-/* Searches the names of the file and of its folders, beginning with the file's. */
+/* Searches for size and type in the name of the file, and then in the names of its folders, from the
+ * innermost on. */
 static bool find_name(const char *path, hl_raw_slice *slice) {
   for (const char *end = path + strlen(path), *begin; end > path; end = begin - (begin > path)) {
     begin = end;

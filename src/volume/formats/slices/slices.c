@@ -1,9 +1,9 @@
-/* volume/formats/slices/slices.c - folders and zip archives of numbered pictures, or files of bare voxels:
- * each is a slice, in the order of the numbers in the names.
+/* volume/formats/slices/slices.c - folders and zip archives of numbered files. Each file is a slice: a
+ * picture or bare voxels. The numbers in the names give the order.
  *
- * Names of one series differ in their last number alone: "scan_007.tif". If there are several series, the
- * longest is taken. A series of TIFF files that are volumes of their own (several pages, OME-TIFF) is a
- * series of time steps. */
+ * The names of a series differ only in their last number, as in "scan_007.tif". Of several series, the
+ * longest is taken. If the files are TIFF files that are volumes of their own (several pages, OME-TIFF), they
+ * are time steps instead of slices. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,11 +22,12 @@
 #include "volume/io/text.h"
 
 enum {
-  PARALLEL_BYTES = 1 << 20, /* smaller volumes are read sooner than threads start */
+  PARALLEL_BYTES = 1 << 20, /* smaller volumes are read by one thread, which takes less time than starting
+                             * others */
   FILE_BYTES_MOST = 1 << 30 /* greatest length of a picture's file */
 };
 
-/* A picture's name, cut around its last number. */
+/* A picture's name, and the place of its last number. */
 typedef struct numbered_name {
   const hl_bundle_entry *entry;
   size_t number_at, number_end;
@@ -37,7 +38,7 @@ typedef struct slices_reading {
   hl_load_request *request;
   const hl_bundle *bundle;
   numbered_name *names; /* owned; [count]; the names of all series */
-  size_t first, count;  /* first and number of the chosen series' names */
+  size_t first, count;  /* index of the first name of the chosen series; number of its names */
   hl_slice_shape shape;
   int component;
   hl_destination to;
@@ -47,13 +48,13 @@ typedef struct slices_reading {
 
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/* Finds the last number of a file's own name. False if there is none, or if it is not the number of a
+/* Finds the last number in a file's own name. Returns false if there is none, or if the file cannot be a
  * slice. */
 static bool cut_name(const hl_bundle_entry *entry, numbered_name *name) {
   const char *slash = strrchr(entry->name, '/'), *base = slash == NULL ? entry->name : slash + 1;
   const char *dot = strrchr(base, '.'), *end = dot == NULL ? base + strlen(base) : dot;
-  hl_raw_slice raw; /* the size and the type of bare voxels; the numbers in them are not the number of a
-                     * slice */
+  hl_raw_slice raw; /* size and type of bare voxels in the name; the numbers in them do not count as the
+                     * slice's number */
   hl_payload whole;
   if (hl_slice_is_raw(base) && hl_raw_name(base, &whole) && whole.grid.dimensions[2] != 1) return false;
   if (hl_slice_is_raw(base) && hl_raw_slice_name(base, strlen(base), &raw)) {
@@ -130,8 +131,8 @@ static void tell_gaps(const slices_reading *r) {
 
 /* ---- files ---- */
 
-/* Reads a picture's file. file->bytes is owned by the caller, also after a failure. path: [size]; space for
- * the file's name. */
+/* Reads a picture's file into memory. file->bytes is owned by the caller, also after a failure. path: [size];
+ * memory for the file's name. */
 static hl_status read_file(const slices_reading *r, size_t slice, bool quiet, char *path, size_t size,
                            hl_slice_file *file, hl_error *error) {
   const hl_bundle_entry *entry = name_of(r, slice)->entry;
@@ -169,8 +170,8 @@ static hl_status read_slice(void *data, size_t slice, int worker, hl_error *erro
   return status;
 }
 
-/* Compares the size that each picture promises with its file's length, before anything is allocated for the
- * volume. */
+/* Checks, before the volume's memory is allocated, that each picture's file is long enough for the size that
+ * its header promises. */
 static hl_status measure(slices_reading *r, hl_slice_stack *stack, hl_error *error) {
   hl_slice_file file;
   char path[PATH_BYTES];
@@ -183,7 +184,9 @@ static hl_status measure(slices_reading *r, hl_slice_stack *stack, hl_error *err
     if (hl_cancelled(file.context))
       return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", r->bundle->path);
     uint64_t size = name_of(r, n)->entry->size, least = name_of(r, 0)->entry->size;
-    if (size >= least / 64) continue; /* files not much shorter than the first picture's need no check */
+    if (size >= least / 64)
+      continue; /* a file that is not much shorter than that of the first picture needs
+                 * no check */
     status = read_file(r, n, true, path, sizeof path, &file, error);
     if (status == HL_OK) status = hl_slice_measure(&file, &shape, error);
     hl_release(file.context, (void *)file.bytes);
@@ -193,8 +196,8 @@ static hl_status measure(slices_reading *r, hl_slice_stack *stack, hl_error *err
 
 /* ---- the volume ---- */
 
-/* Finds whether the middle slice's three colours are equal, so that the pictures are grey, stored as
- * colours. */
+/* Finds whether the pictures are grey although they are stored in colours: whether the three colours of the
+ * middle slice are equal. */
 static hl_status find_grey(slices_reading *r, bool *is_grey, hl_error *error) {
   hl_context *context = r->request->context;
   size_t bytes = r->shape.width * r->shape.height * hl_storage_bytes(hl_voxel_type_storage(r->shape.type));
@@ -254,7 +257,7 @@ static hl_status load_slices(slices_reading *r, hl_volume **volume, hl_error *er
                 : hl_destination_adopt(&r->to, &grid, volume, error);
 }
 
-/* Reads a TIFF file of an archive as a volume. The file is unpacked into memory. */
+/* Reads a TIFF file of an archive as a volume, after unpacking it into memory. */
 static hl_status load_packed(slices_reading *r, size_t slice, hl_volume **volume, hl_error *error) {
   hl_stream *stream = NULL;
   hl_slice_file file;
@@ -268,7 +271,7 @@ static hl_status load_packed(slices_reading *r, size_t slice, hl_volume **volume
   return status;
 }
 
-/* Reads the TIFF file of a slice as a volume. */
+/* Reads the TIFF file of a time step as a volume. */
 static hl_status load_file(slices_reading *r, size_t slice, hl_volume **volume, hl_error *error) {
   hl_stream *stream = NULL;
   if (r->bundle->is_archive) return load_packed(r, slice, volume, error);
@@ -281,7 +284,8 @@ static hl_status load_file(slices_reading *r, size_t slice, hl_volume **volume, 
   return status;
 }
 
-/* Loads files that are volumes of their own, as time steps. One file of an OME-TIFF leads to all others. */
+/* Loads one of the TIFF files that are volumes of their own, as time steps. A file of an OME-TIFF names all
+ * other files. */
 static hl_status load_stack(slices_reading *r, hl_slice_stack stack, hl_volume **volume, hl_error *error) {
   hl_load_request *request = r->request;
   if (stack == HL_SLICE_OF_OME) return load_file(r, 0, volume, error);

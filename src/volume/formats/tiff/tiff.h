@@ -6,12 +6,12 @@
 #include "volume/formats/format.h"
 #include "volume/io/bundle.h"
 
-/* Loads a TIFF file. archive: holds the stream's file and the other files of its volume; null if these are in
- * the file's folder. */
+/* Loads a TIFF file. archive: the archive that contains the stream's file and the other files of its volume;
+ * null if they are in a folder. */
 hl_status hl_tiff_load(hl_stream **stream, const hl_bundle *archive, hl_load_request *request,
                        hl_volume **volume, hl_error *error);
 
-/* "libtiff" in builds without it, else null. */
+/* Returns "libtiff" in builds without it, else null. */
 const char *hl_tiff_missing(void);
 
 #endif

@@ -112,8 +112,8 @@ hl_status tiff_file_open(hl_context *context, const char *path, const void *byte
       options, limit > 0 && limit < LARGEST_ALLOCATION ? (tmsize_t)limit : LARGEST_ALLOCATION);
   TIFFOpenOptionsSetErrorHandlerExtR(options, on_error, file);
   TIFFOpenOptionsSetWarningHandlerExtR(options, on_warning, file);
-  /* flags of libtiff: m: the file is not mapped into memory; c: strips stay as they are; O: the positions
-   * of strips are read when they are needed */
+  /* flags of libtiff: m: the file is not mapped into memory; c: strips are not divided; O: the positions of
+   * strips are read only when they are needed */
   file->tiff = TIFFClientOpenExt(path, "rmcO", file, read_bytes, write_nothing, seek, close_nothing, size_of,
                                  NULL, NULL, options);
   TIFFOpenOptionsFree(options);
@@ -132,8 +132,9 @@ hl_status tiff_file_fail(const tiff_file *file, const char *what, hl_error *erro
                  file->message);
 }
 
-/* Finds how many bytes a directory takes, which follows from its number of entries. Refuses more entries than
- * any program writes, because libtiff's time grows with the square of their number. */
+/* Finds how many bytes a directory takes. This follows from its number of entries. A directory with more
+ * entries than any program writes is refused, because libtiff's time grows with the square of their
+ * number. */
 static hl_status measure_directory(tiff_file *file, uint64_t offset, uint64_t *bytes, hl_error *error) {
   enum { ENTRIES_MOST = 512 };
   unsigned char head[8] = {0};
@@ -173,7 +174,7 @@ hl_status tiff_file_go(tiff_file *file, uint64_t offset, int level, hl_error *er
 
 /* ---- pages ---- */
 
-/* The voxel type to which samples of this many bits are unpacked; 0 if there is none. */
+/* The voxel type to which samples of this format and number of bits are unpacked; 0 if there is none. */
 static hl_voxel_type type_of(unsigned format, unsigned bits) {
   bool is_signed = format == SAMPLEFORMAT_INT;
   if (format == SAMPLEFORMAT_IEEEFP)
@@ -288,8 +289,8 @@ uint64_t tiff_file_plain(tiff_file *file, const tiff_shape *shape, uint64_t *byt
 bool tiff_file_can_hold(tiff_file *file, const tiff_shape *shape) {
   uint16_t compression = COMPRESSION_NONE;
   TIFFGetFieldDefaulted(file->tiff, TIFFTAG_COMPRESSION, &compression);
-  /* the greatest number of bytes to which one compressed byte can unpack: 1032 for deflate (zlib's
-   * documentation), 4096 for LZW with codes of 12 bits */
+  /* the greatest number of bytes to which one compressed byte can unpack. Deflate: 1032 (zlib's
+   * documentation). LZW: a code of 12 bits, which are 1.5 bytes, stands for at most 4096 bytes */
   double most = compression == COMPRESSION_NONE                                                  ? 1
                 : compression == COMPRESSION_PACKBITS                                            ? 64
                 : compression == COMPRESSION_LZW                                                 ? 4096 / 1.5
@@ -298,14 +299,14 @@ bool tiff_file_can_hold(tiff_file *file, const tiff_shape *shape) {
   double pixels = (double)shape->width * shape->height * shape->depth;
   double bytes = pixels * shape->components * shape->bits / 8;
   if (bytes <= (double)file->size * most) return true;
-  /* A chunk of 0 bytes is absent, as the file is sparse. */
+  /* If the first chunk has 0 bytes, it is absent: the file is sparse. */
   return TIFFGetStrileByteCount(file->tiff, 0) == 0 && bytes <= (double)file->size * 65536;
 }
 
 /* ---- voxels ---- */
 
-/* Unpacks `count` samples that are stored bit after bit, the highest bit first, to samples of the voxel
- * type. */
+/* Unpacks `count` samples to samples of the voxel type. The samples are stored without gaps between their
+ * bits, the highest bit first. */
 static void unpack_bits(const unsigned char *source, size_t count, const tiff_shape *shape,
                         unsigned char *samples) {
   size_t bytes = hl_voxel_type_bytes(shape->type), place = 0;
@@ -344,14 +345,15 @@ static void unpack_24(const unsigned char *source, size_t count, bool is_signed,
   }
 }
 
-/* A page that is being decoded, chunk by chunk. */
+/* The state of decoding a page, chunk by chunk. */
 typedef struct page_reading {
   tiff_file *file;
   const tiff_shape *shape;
   int component; /* index of the wanted component, or an HL_COMPONENT_ value */
   uint32_t chunk_width, chunk_height, chunk_depth;
   bool tiled;
-  size_t row_bytes, chunk_bytes; /* bytes of a row; bytes of those rows of a chunk that lie in the page */
+  size_t row_bytes, chunk_bytes; /* bytes of a row of a chunk; bytes of all rows of a chunk that lie in the
+                                  * page */
   unsigned char *chunk;          /* owned; [chunk_bytes] */
   unsigned char *samples;        /* owned; a row of samples of the voxel type */
   unsigned char *picked;         /* owned; a row of the wanted component */
@@ -369,7 +371,8 @@ static double sample_value(hl_voxel_type type, const void *stored) {
   }
 }
 
-/* Takes the component `index` of a row: stores it, stores it as a colour, or adds it to the magnitude. */
+/* Stores component `index` of a row of samples: as stored values, as part of a colour, or as part of a
+ * magnitude. */
 static void take_component(page_reading *r, const unsigned char *samples, unsigned step, unsigned index,
                            size_t count, size_t first) {
   hl_voxel_type type = r->shape->type;
@@ -397,7 +400,8 @@ static void take_component(page_reading *r, const unsigned char *samples, unsign
   }
 }
 
-/* Takes a row of a decoded chunk. plane: the component of the chunk, if the chunk holds only one. */
+/* Unpacks a row of a decoded chunk, and takes from it what is wanted. plane: the component of the chunk, if
+ * the chunk holds only one component. */
 static void take_row(page_reading *r, const unsigned char *row, unsigned plane, size_t count, size_t first) {
   const tiff_shape *shape = r->shape;
   unsigned each = shape->planar ? 1 : shape->components;
@@ -419,8 +423,8 @@ static void take_row(page_reading *r, const unsigned char *row, unsigned plane, 
   }
 }
 
-/* Decodes a tile of several slices, uncompressed or deflated. libtiff would treat it as a tile of one
- * slice. */
+/* Decodes a tile that has several slices. It must be uncompressed or deflated. libtiff cannot do this, as it
+ * would treat the tile as one slice. */
 static hl_status decode_deep_tile(page_reading *r, uint32_t index, uint64_t stored, hl_error *error) {
   tiff_file *file = r->file;
   hl_context *context = file->context;
@@ -449,7 +453,8 @@ static hl_status decode_deep_tile(page_reading *r, uint32_t index, uint64_t stor
   return status == HL_OK && !sound ? tiff_file_fail(file, "a damaged tile", error) : status;
 }
 
-/* Decodes the first rows of chunk `index`. Samples that the file does not contain are 0. */
+/* Decodes the first `rows` rows of chunk `index`. The samples of a chunk that the file does not contain are
+ * 0. */
 static hl_status decode(page_reading *r, uint32_t index, uint32_t rows, hl_error *error) {
   tiff_file *file = r->file;
   file->message[0] = 0;
@@ -476,7 +481,7 @@ static hl_status read_chunk(page_reading *r, unsigned plane, uint32_t x, uint32_
   uint32_t slice = r->target->slice;
   uint32_t index = r->tiled ? TIFFComputeTile(tiff, x, y, slice, sample) : TIFFComputeStrip(tiff, y, sample);
   hl_status status = decode(r, index, rows, error);
-  /* the bytes of the tile's slices before this one */
+  /* number of bytes of the slices before this one in the tile */
   size_t before = (size_t)(slice % r->chunk_depth) * r->chunk_height * r->row_bytes;
   for (uint32_t row = 0; status == HL_OK && row < rows; row++)
     take_row(r, r->chunk + before + row * r->row_bytes, plane, columns, (size_t)(y + row) * shape->width + x);
@@ -499,12 +504,13 @@ static hl_status read_chunks(page_reading *r, hl_error *error) {
   return status;
 }
 
-/* Tiles may be larger than a page. A tile is refused if it is more than TILE_IN_PAGES times as large and
- * larger than a megabyte: hundreds of tiny pages in a small file would take seconds. */
+/* A tile may be larger than its page, but it is refused if it is more than TILE_IN_PAGES times as wide and
+ * larger than a megabyte. A small file could otherwise have hundreds of tiny pages whose tiles take
+ * seconds. */
 enum { TILE_IN_PAGES = 1024, SMALL_TILE_BYTES = 1 << 20 };
 
-/* Finds the sizes of the page's chunks. Only rows that lie in the page are decoded. Fails if libtiff computes
- * another length for the rows of a chunk. */
+/* Finds the sizes of the page's chunks. Of chunks that reach beyond the page, only the rows in the page
+ * count. Fails if libtiff computes another length for a chunk's rows. */
 static hl_status measure_chunks(page_reading *r, hl_error *error) {
   const tiff_shape *shape = r->shape;
   TIFF *tiff = r->file->tiff;
@@ -542,7 +548,7 @@ static hl_status measure_chunks(page_reading *r, hl_error *error) {
   return HL_OK;
 }
 
-/* Reads pixels whose rows follow each other in the file. */
+/* Reads the pixels of a page without libtiff, if its rows follow each other in the file. */
 static hl_status read_plain(page_reading *r, hl_error *error) {
   const tiff_shape *shape = r->shape;
   size_t size = hl_voxel_type_bytes(shape->type), samples = (size_t)shape->width * shape->components;

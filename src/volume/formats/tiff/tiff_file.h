@@ -10,7 +10,7 @@
 
 #include "volume/exact.h"
 
-/* What a directory says of its page's voxels. */
+/* What a directory states about the voxels of its page. */
 typedef struct tiff_shape {
   uint32_t width, height, depth; /* depth: number of slices of a page (ImageDepth) */
   hl_voxel_type type;
@@ -30,13 +30,13 @@ typedef struct tiff_file {
   uint64_t size, at;
   int descriptor; /* -1 if there is none */
   TIFF *tiff;
-  char message[300]; /* the first error of libtiff since this was cleared */
+  char message[300]; /* the first error of libtiff since the caller cleared this text */
   int warnings;      /* number of warnings logged so far; set it to TIFF_NO_WARNINGS before opening to log
                       * none */
 } tiff_file;
 
-/* Opens a file. bytes: the content, or null. quiet: whether the context's `reads` callback is not called, as
- * from other threads. Close *file also after a failure. */
+/* Opens a file. bytes: the file's content; null if the file is to be read. quiet: whether the context's
+ * `reads` callback is not called, as on threads other than the caller's. Close *file also after a failure. */
 hl_status tiff_file_open(hl_context *context, const char *path, const void *bytes, size_t byte_count,
                          bool quiet, tiff_file *file, hl_error *error);
 void tiff_file_close(tiff_file *file);
@@ -44,36 +44,36 @@ void tiff_file_close(tiff_file *file);
 /* Fails with libtiff's own message. */
 hl_status tiff_file_fail(const tiff_file *file, const char *what, hl_error *error);
 
-/* Makes the directory at an offset current. level: the number of a reduced picture; 0 for the directory
- * itself. */
+/* Goes to a directory. level: the number of one of its reduced pictures, to which the function goes instead;
+ * 0 for the directory itself. */
 hl_status tiff_file_go(tiff_file *file, uint64_t offset, int level, hl_error *error);
 
-/* Finds the current directory's shape. Fails if its kind of picture cannot be read. */
+/* Finds the shape of the current directory's page. Fails if pictures of its kind cannot be read. */
 hl_status tiff_file_shape(tiff_file *file, tiff_shape *shape, hl_error *error);
 bool tiff_shapes_equal(const tiff_shape *a, const tiff_shape *b);
 
 /* Finds the offsets of all directories; they are owned by the caller (hl_release). */
 hl_status tiff_file_pages(tiff_file *file, uint64_t **offsets, size_t *count, hl_error *error);
 
-/* The position in the file of the current directory's first pixel, if all pixels are uncompressed, follow
- * each other and have samples of whole bytes; else 0. *bytes: the size of a slice. */
+/* The position in the file of the current page's first pixel; 0 unless all pixels are uncompressed, follow
+ * each other, and have samples of whole bytes. *bytes: set to the size of a slice. */
 uint64_t tiff_file_plain(tiff_file *file, const tiff_shape *shape, uint64_t *bytes);
 
-/* Whether the current directory's chunks have enough bytes for a page of its shape, at the best ratio that
- * its compression can reach. */
+/* Whether the file is long enough for the current page, if its compression has reached the greatest possible
+ * ratio. */
 bool tiff_file_can_hold(tiff_file *file, const tiff_shape *shape);
 
-/* The destination of a page's voxels. */
+/* Where the voxels of a page are put, and how they are read. */
 typedef struct tiff_target {
   void *voxels;    /* the caller's; room for width x height stored voxels, or colours (colors.h) */
   hl_exact *exact; /* notes the page's numbers; may be null */
   size_t first;    /* the number of the page's first voxel in the volume */
-  uint32_t slice;  /* for a page of several slices: the number of the slice */
+  uint32_t slice;  /* for a page of several slices: the index of the slice to read */
   uint64_t plain;  /* position of the page's pixels in the file, if their rows follow each other; 0 if libtiff
-                    * must  find them */
+                    * is to find them */
 } tiff_target;
 
-/* Decodes a component of the current directory's page, or an HL_COMPONENT_ value. */
+/* Decodes the current page. component: an index or an HL_COMPONENT_ value. */
 hl_status tiff_file_read(tiff_file *file, const tiff_shape *shape, int component, const tiff_target *target,
                          hl_error *error);
 

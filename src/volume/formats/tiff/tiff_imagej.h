@@ -1,5 +1,5 @@
-/* volume/formats/tiff/tiff_imagej.h - reads the colours and windows of channels, which ImageJ keeps in a tag
- * of its own. */
+/* volume/formats/tiff/tiff_imagej.h - reads the colours and the windows of channels from a private tag of
+ * ImageJ. */
 #ifndef HL_VOLUME_TIFF_IMAGEJ_H
 #define HL_VOLUME_TIFF_IMAGEJ_H
 
@@ -8,9 +8,9 @@
 
 enum { TIFF_IMAGEJ_CHANNELS_MOST = 64 };
 
-/* Reads the channels of the file's current page, in order, without names. channels:
- * [TIFF_IMAGEJ_CHANNELS_MOST]. Returns the number of channels; 0 if the page has no such tag, or a damaged
- * one. */
+/* Reads the colours and windows of the channels, in order, from the current page. Names are left out.
+ * channels: [TIFF_IMAGEJ_CHANNELS_MOST]. Returns the number of channels; 0 if the page lacks the tag, or if
+ * the tag is damaged. */
 size_t tiff_imagej_channels(const tiff_file *file, hl_channel *channels);
 
 #endif

@@ -1,7 +1,7 @@
-/* volume/formats/tiff/tiff_load.c - the volume of a TIFF file's pages.
+/* volume/formats/tiff/tiff_load.c - makes a volume of the pages of a TIFF file.
  *
- * libtiff decodes the pages (tiff_file.h), and tiff_plan.h finds their order. Slices are decoded in parallel,
- * by each thread with a tiff_file of its own. */
+ * libtiff decodes the pages (tiff_file.h), and tiff_plan.h finds their order. Slices are decoded in parallel.
+ * Each thread has a tiff_file of its own. */
 #include "volume/formats/tiff/tiff.h"
 
 #include <math.h>
@@ -18,15 +18,16 @@
 #include "volume/io/parallel.h"
 
 enum {
-  PARALLEL_BYTES = 1 << 20, /* smaller volumes are read before further threads would have started */
+  PARALLEL_BYTES = 1 << 20, /* smaller volumes are read by one thread, which takes less time than starting
+                             * others */
 };
 
 /* A file, and the offsets of its directories. */
 typedef struct stack_file {
   char *path;                  /* owned */
   const unsigned char *memory; /* [memory_size]; the file's content; null if the file is read */
-  unsigned char *unpacked; /* owned; equals `memory` if the content was read here, from a pipe or an archive;
-                            * else null */
+  unsigned char *unpacked;     /* owned; the same as `memory` if the content was read here from a pipe or an
+                                * archive; else null */
   size_t memory_size;
   uint64_t *offsets; /* owned; [count] */
   size_t count;
@@ -35,13 +36,13 @@ typedef struct stack_file {
 typedef struct stack_reading {
   hl_context *context;
   hl_load_request *request;
-  const hl_bundle *archive; /* holds the files; null if they are in a folder */
+  const hl_bundle *archive; /* the archive that contains the files; null if they are in a folder */
   tiff_plan plan;
   stack_file *files; /* owned; [plan.file_count] */
   int level;
-  uint64_t plain, plain_bytes; /* position of the first slice's pixels, and bytes of a slice, if the slices
-                                * follow each other uncompressed; both 0 if libtiff decodes each slice from a
-                                * page */
+  uint64_t plain, plain_bytes; /* if all slices are uncompressed and follow each other: position of the first
+                                * slice's pixels, and bytes of a slice. Both are 0 if libtiff is to decode
+                                * each slice from a page */
   tiff_shape shape;            /* shape of each slice, at the level */
   uint32_t width, height;      /* size at level 0 */
   int component;
@@ -49,7 +50,8 @@ typedef struct stack_reading {
   struct {
     hl_pool *pool;
     tiff_file *open;  /* owned; [threads]; the file that each thread has open */
-    uint32_t *opened; /* owned; [threads]; the index of that file; UINT32_MAX if there is none */
+    uint32_t *opened; /* owned; [threads]; the index of the file that each thread has open; UINT32_MAX if
+                       * there is none */
   } threads;
 } stack_reading;
 
@@ -63,8 +65,7 @@ static void read_resolution(tiff_file *file, double resolution[2]) {
   resolution[1] = isfinite((double)y) && y > 0 ? (double)y : 0;
 }
 
-/* Leaves out pages whose shape differs from the first page's, and pages that are reduced pictures of
- * others. */
+/* Drops pages whose shape is not that of the first page, and pages that are reduced pictures of others. */
 static hl_status drop_other_pages(tiff_file *file, const tiff_shape *first, stack_file *stack,
                                   hl_error *error) {
   size_t kept = 0, others = 0;
@@ -89,14 +90,14 @@ static hl_status drop_other_pages(tiff_file *file, const tiff_shape *first, stac
   return status;
 }
 
-/* The number of reduced resolutions that every page has. */
+/* The number of resolutions of the current page, its reduced pictures included. */
 static size_t count_levels(tiff_file *file) {
   uint16_t count = 0;
   uint64_t *offsets = NULL;
   return TIFFGetField(file->tiff, TIFFTAG_SUBIFD, &count, &offsets) ? (size_t)count + 1 : 1;
 }
 
-/* Sets the level and the shape of pages at this level. */
+/* Chooses the level, and sets the shape that pages have at this level. */
 static hl_status choose_level(stack_reading *r, tiff_file *file, uint64_t offset, size_t count,
                               hl_error *error) {
   hl_level_size *sizes = hl_allocate_zeroed(r->context, count, sizeof *sizes);
@@ -126,9 +127,9 @@ static hl_status check_size(const stack_reading *r, tiff_file *file, hl_error *e
       (unsigned long long)file->size);
 }
 
-/* Finds whether the first page's pixels are followed by the pixels of more slices than the file has pages.
- * ImageJ writes files above 4 GB this way, and tifffile on request. So do the slices of a page lie, unless
- * they are tiled. *pages: set to the number of all slices. */
+/* Finds whether the pixels of all slices follow those of the first page, although the file has a page for
+ * only one of them. ImageJ writes files above 4 GB in this way, and tifffile can. The slices of a deep page
+ * lie in the same way, unless they are tiled. *pages: set to the number of all slices. */
 static hl_status find_plain(stack_reading *r, tiff_file *file, const tiff_shape *shape,
                             const char *description, const stack_file *stack, size_t *pages,
                             hl_error *error) {
@@ -158,7 +159,8 @@ static hl_status find_plain(stack_reading *r, tiff_file *file, const tiff_shape 
   return HL_OK;
 }
 
-/* Takes ImageJ's colours and windows of channels, if their number is the number of channels. */
+/* Takes the colours and windows of channels that ImageJ has stored, if it has stored them for all
+ * channels. */
 static hl_status take_imagej(stack_reading *r, const hl_channel *channels, size_t count, hl_error *error) {
   if (count == 0 || count != r->request->selection.channels) return HL_OK;
   hl_status status = hl_channels_make(r->request, error);
@@ -166,7 +168,7 @@ static hl_status take_imagej(stack_reading *r, const hl_channel *channels, size_
   return status;
 }
 
-/* Reads the first file. stack: the file, which becomes the first of the reading. */
+/* Reads the first file's pages, and plans the volume. stack: the first file, which becomes r->files[0]. */
 static hl_status read_first(stack_reading *r, tiff_file *file, stack_file *stack, hl_error *error) {
   tiff_shape first;
   char *description = NULL, *copy = NULL;
@@ -207,7 +209,7 @@ static hl_status read_first(stack_reading *r, tiff_file *file, stack_file *stack
 
 /* ---- the other files ---- */
 
-/* Unpacks another file of the archive into memory. */
+/* Unpacks a file of the archive, other than the first, into memory. */
 static hl_status unpack(stack_reading *r, stack_file *stack, hl_error *error) {
   const char *name = stack->path + strlen(r->archive->path) + 1;
   hl_source *source = NULL;
@@ -237,7 +239,7 @@ static hl_status find_pages(stack_reading *r, size_t index, hl_error *error) {
   return status;
 }
 
-/* Checks that the file has the page of every slice. */
+/* Checks that each slice's page exists in its file. */
 static hl_status check_slices(const stack_reading *r, hl_error *error) {
   for (size_t z = 0; z < r->plan.slice_count; z++) {
     const tiff_slice *slice = &r->plan.slices[z];
@@ -265,7 +267,8 @@ static hl_status decode_slice(stack_reading *r, size_t z, int worker, void *voxe
   if (r->threads.opened[worker] != slice->file) {
     tiff_file_close(file);
     r->threads.opened[worker] = slice->file;
-    file->warnings = TIFF_NO_WARNINGS; /* warnings were logged when the pages were looked for */
+    file->warnings = TIFF_NO_WARNINGS; /* the same warnings were logged when the file was opened for the first
+                                        * time */
     status = tiff_file_open(r->context, stack->path, stack->memory, stack->memory_size, true, file, error);
     if (status != HL_OK) r->threads.opened[worker] = UINT32_MAX;
   }
@@ -328,7 +331,8 @@ static hl_status read_slices(stack_reading *r, hl_error *error) {
 
 /* ---- the volume ---- */
 
-/* Describes the grid. An axis without a stated spacing takes the spacing of the first axis that has one. */
+/* Describes the grid. An axis for which no spacing is stated gets the spacing of the first axis that has
+ * one. */
 static void describe(const stack_reading *r, hl_payload *payload) {
   hl_volume_description *grid = &payload->grid;
   double known = 1;
@@ -383,7 +387,7 @@ static void release(stack_reading *r) {
   tiff_plan_release(&r->plan);
 }
 
-/* Takes the first file's content into memory, if the stream is not a plain file. */
+/* Reads the first file's content into memory, unless the stream is a plain file or memory already. */
 static hl_status take_first(hl_stream *stream, stack_file *first, hl_error *error) {
   first->path = hl_copy_text(stream->context, stream->path);
   if (first->path == NULL) return hl_fail_memory(error, strlen(stream->path), stream->path);

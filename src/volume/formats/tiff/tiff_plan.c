@@ -1,9 +1,9 @@
 /* volume/formats/tiff/tiff_plan.c - the order of a TIFF file's pages.
  *
- * OME-XML: the schema of 2016-06 of the Open Microscopy Environment: Pixels has the sizes and the order of
- * dimensions, and TiffData says which page of which file holds a plane. ImageJ: the description of the first
- * page has lines "name=value", as ij.io.FileSaver writes them; planes follow each other as channel, slice,
- * frame. */
+ * OME-XML follows the schema of 2016-06 of the Open Microscopy Environment. The element Pixels has the sizes
+ * and the order of dimensions. The elements TiffData say which page of which file holds a plane. In files of
+ * ImageJ, the description of the first page has lines "name=value", as ij.io.FileSaver writes them. Their
+ * planes are ordered by channel, slice and frame, of which the channel changes fastest. */
 #include "volume/formats/tiff/tiff_plan.h"
 
 #include <math.h>
@@ -31,9 +31,9 @@ static hl_status make_slices(tiff_plan *plan, size_t count, const char *path, hl
   return plan->slices != NULL ? HL_OK : hl_fail_memory(error, count * sizeof *plan->slices, path);
 }
 
-/* Adds a file. The name is null for the first file itself. */
+/* Adds a file to the plan. name: null for the first file. */
 static hl_status add_file(tiff_plan *plan, const char *name, uint32_t *index, hl_error *error) {
-  /* the search begins at the end, as the file is mostly the one added last */
+  /* the search begins at the end, as most planes are in the file that was added last */
   for (size_t n = plan->file_count; name != NULL && n-- > 1;)
     if (strcmp(plan->files[n], name) == 0) {
       *index = (uint32_t)n;
@@ -42,7 +42,7 @@ static hl_status add_file(tiff_plan *plan, const char *name, uint32_t *index, hl
   if (plan->file_count >= FILES_MOST)
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "a volume of more than %d files: save it as one",
                    (int)FILES_MOST);
-  /* The list is full when its length is a power of two. */
+  /* The list grows when its length is a power of two, as it is full then. */
   if ((plan->file_count & (plan->file_count - 1)) == 0) {
     size_t wanted = plan->file_count == 0 ? 1 : 2 * plan->file_count;
     char **larger = hl_reallocate(plan->context, plan->files, wanted, sizeof *larger);
@@ -64,12 +64,12 @@ typedef struct ome_reader {
   const char *path;
   size_t pages, components; /* pages and components of the first file */
   size_t size[3];           /* numbers of planes along Z, C, T */
-  char order[3];            /* "ZCT" in some order; the first changes fastest */
+  char order[3];            /* "ZCT" in the file's order; the first one changes fastest */
   bool in_pixels, done, is_planned;
   /* The current TiffData. */
   struct {
-    bool is_open, whole; /* is_open: whether the element's planes are still to be placed; whole: whether the
-                          * element goes on to the last plane */
+    bool is_open, whole; /* is_open: whether the planes of the element have not been placed yet; whole:
+                          * whether the element holds all further planes up to the last */
     size_t first[3], count, page;
   } element;
   size_t placed; /* number of planes placed by all elements */
@@ -82,15 +82,15 @@ static bool has_name(const hl_xml_tag *tag, const char *name) {
   return strcmp(colon != NULL ? colon + 1 : tag->name, name) == 0;
 }
 
-/* The value of an attribute that is a whole number, or `other` if it is absent. */
+/* Reads an attribute that is a whole number; *number becomes `other` if the attribute is absent. */
 static bool read_number(const hl_xml_tag *tag, const char *name, size_t other, size_t *number) {
   const char *text = hl_xml_attribute(tag, name);
   *number = other;
   return text == NULL || (hl_text_sizes(text, number, 1) == 1 && *number <= SIZE_MOST);
 }
 
-/* The length of a voxel; 0 if not stated. *unit: the micrometres of its unit; 0 if it is no unit of length,
- * such as "pixel". */
+/* The length of a voxel along an axis; 0 if not stated. *unit: set to the length of its unit in micrometres,
+ * or to 0 if it is no unit of length, such as "pixel". */
 static double read_length(const hl_xml_tag *tag, char axis, double *unit) {
   char name[] = "PhysicalSizeX", unit_name[] = "PhysicalSizeXUnit";
   name[sizeof name - 2] = axis;
@@ -103,8 +103,8 @@ static double read_length(const hl_xml_tag *tag, char axis, double *unit) {
   return value;
 }
 
-/* Converts lengths to micrometres if each stated length has a known unit; otherwise leaves the numbers as
- * they are. */
+/* Reads the lengths of voxels. They become micrometres if every stated length has a known unit; otherwise the
+ * numbers are kept as they are. */
 static void read_lengths(ome_reader *ome, const hl_xml_tag *tag) {
   double unit[3], *spacing = ome->plan->spacing;
   bool known = true;
@@ -132,7 +132,7 @@ static hl_status read_pixels(ome_reader *ome, const hl_xml_tag *tag, hl_error *e
   if (order != NULL && strlen(order) == 5 && strchr(order + 2, 'Z') != NULL &&
       strchr(order + 2, 'C') != NULL && strchr(order + 2, 'T') != NULL)
     memcpy(ome->order, order + 2, 3);
-  /* colours are the samples of a pixel, so that one page holds the planes of all of them */
+  /* the samples of a pixel are colours, and count as channels in the file: one page holds as many planes */
   if (ome->components > 1 && ome->size[1] % ome->components == 0) ome->size[1] /= ome->components;
   read_lengths(ome, tag);
   ome->in_pixels = true;
@@ -150,7 +150,7 @@ static hl_status begin_slices(ome_reader *ome, hl_error *error) {
   return status == HL_OK ? make_slices(ome->plan, ome->size[0], ome->path, error) : status;
 }
 
-/* Places the planes that a TiffData element names. */
+/* Finds the slices that a TiffData element's pages hold. */
 static hl_status place_planes(ome_reader *ome, hl_error *error) {
   size_t at[3], total = ome->size[0] * ome->size[1] * ome->size[2], place = 0, factor = 1;
   uint32_t file = 0;
@@ -197,20 +197,20 @@ static hl_status begin_planes(ome_reader *ome, const hl_xml_tag *tag, hl_error *
   return tag->is_end ? place_planes(ome, error) : HL_OK;
 }
 
-/* Reads the name of a file beside the first one. Names with a path are refused, as they could lead
- * anywhere. */
+/* Reads the name of a further file, which must lie beside the first one. Names with a path are refused, as
+ * they could lead anywhere. */
 static hl_status read_file(ome_reader *ome, const hl_xml_tag *tag, hl_error *error) {
   const char *name = hl_xml_attribute(tag, "FileName"), *slash = strrchr(ome->path, '/');
   if (name == NULL) return HL_OK;
   if (strchr(name, '/') != NULL || strlen(name) >= sizeof ome->file || name[0] == 0)
     return fail_ome(ome, "names a file that is not beside it", error);
-  /* the first file may also name itself: then `file` stays empty */
+  /* if the name is that of the first file itself, `file` stays empty */
   if (strcmp(name, slash != NULL ? slash + 1 : ome->path) != 0) strcpy(ome->file, name);
   return HL_OK;
 }
 
-/* Reads the name and the colour of a channel. Red, green, blue and alpha go from the highest to the lowest
- * byte of a number of 32 bits. */
+/* Reads the name and the colour of a channel. A colour is a number of 32 bits, whose bytes are red, green,
+ * blue and alpha from the highest to the lowest. */
 static hl_status read_channel(ome_reader *ome, const hl_xml_tag *tag, hl_error *error) {
   const char *name = hl_xml_attribute(tag, "Name"), *color = hl_xml_attribute(tag, "Color");
   double value;
@@ -239,7 +239,8 @@ static hl_status read_tag(ome_reader *ome, const hl_xml_tag *tag, hl_error *erro
   return HL_OK;
 }
 
-/* Ends the plan. If TiffData is absent or incomplete, the planes are taken to be the pages in their order. */
+/* Completes the plan at the end of the XML. If no TiffData says where the planes are, page n is taken to hold
+ * plane n. */
 static hl_status finish_ome(ome_reader *ome, hl_error *error) {
   if (!ome->in_pixels) return fail_ome(ome, "has no Pixels: is it a companion of another file?", error);
   hl_status status = begin_slices(ome, error);
@@ -284,7 +285,7 @@ static hl_status plan_ome(hl_load_request *request, const char *path, const char
 
 /* ---- ImageJ, and pages alone ---- */
 
-/* The number after "name=" at the start of a line, or `other` if there is none. */
+/* The number in the description's line "name=NUMBER"; `other` if there is no such line. */
 static double find_number(const char *description, const char *name, double other) {
   size_t length = strlen(name);
   for (const char *line = description; line != NULL; line = strchr(line, '\n')) {
@@ -304,7 +305,7 @@ static size_t find_count(const char *description, const char *name) {
 
 enum { UNIT_BYTES = 64 };
 
-/* Finds the text after "name=" at the start of a line; "" if there is none. */
+/* Copies the text from the description's line "name=TEXT"; "" if there is no such line. */
 static void find_text(const char *description, const char *name, char text[UNIT_BYTES]) {
   size_t length = strlen(name);
   text[0] = 0;
@@ -323,8 +324,9 @@ static bool is_imagej(const char *description) {
   return description != NULL && strncmp(description, "ImageJ=", 7) == 0;
 }
 
-/* Takes lengths from ImageJ, which tells the resolution of x and y, the distance of slices, and the unit of
- * x, with other units where they differ. Lengths become micrometres if all units are known. */
+/* Takes the lengths of voxels from ImageJ's description and the page's resolution. The resolution gives x and
+ * y, the description the distance of slices and the units. The unit of y or z is stated only if it differs
+ * from that of x. Lengths become micrometres if all units are known. */
 static void take_imagej_lengths(hl_load_request *request, const char *description, const double resolution[2],
                                 tiff_plan *plan) {
   static const char *const names[] = {"unit", "yunit", "zunit"};
@@ -343,8 +345,8 @@ static void take_imagej_lengths(hl_load_request *request, const char *descriptio
 
 /* ---- tifffile's series: a JSON object with the array's shape, and perhaps the letters of its axes ---- */
 
-/* An axis of a series (times, channels or slices): its size, and the number of pages from one index to the
- * next. */
+/* An axis of a series: its size, and the number of pages between neighbouring indices. The axes are times,
+ * channels and slices. */
 typedef struct series_axis {
   size_t count, step;
 } series_axis;
@@ -354,15 +356,15 @@ typedef struct series_sizes {
 
 enum { SHAPE_MOST = 12 };
 
-/* Names axes that have no letters. The last axis before y and x is z, the axis before z is the time, and
- * the axis before that the channel. */
+/* Gives letters to axes that have none. Counted from the end, before y and x, the axes are z, time and
+ * channel. */
 static void name_axes(size_t count, char letters[SHAPE_MOST]) {
   static const char usual[] = "CTZ";
   for (size_t n = 0; n < count; n++) letters[n] = count - n <= 3 ? usual[3 - (count - n)] : 'Q';
 }
 
-/* Sorts the leading axes of a shape. False unless they are times, channels and slices, each once; axes of
- * other letters that lie beside each other are slices together. */
+/* Finds which of a shape's axes before y and x are times, channels and slices. Returns false if one of these
+ * comes more than once. Axes of other letters are slices; neighbouring ones of them are merged. */
 static bool sort_axes(const size_t *shape, const char *letters, size_t count, series_sizes *sizes) {
   size_t step = 1;
   const series_axis *before = NULL;
@@ -382,8 +384,8 @@ static bool sort_axes(const size_t *shape, const char *letters, size_t count, se
   return true;
 }
 
-/* Reads the description. False if it describes no series, or a series that cannot be read. samples: number
- * of samples of a pixel. */
+/* Reads the description that tifffile writes. Returns false if it describes no series, or one that cannot be
+ * read. samples: number of samples of a pixel. */
 static bool read_series(const char *description, size_t samples, series_sizes *sizes) {
   size_t shape[SHAPE_MOST], count = 0;
   char letters[SHAPE_MOST];

@@ -17,22 +17,22 @@ typedef struct tiff_plan {
   tiff_slice *slices; /* owned; [slice_count]; the pages of the slices along z, at the chosen time step and
                        * channel */
   size_t slice_count;
-  char **files; /* owned; [file_count]; names of files beside the first one; files[0] is null and stands for
-                 * the first file */
+  char **files; /* owned; [file_count]; names of the files, which lie beside the first one; files[0] is null,
+                 * and stands for the first file */
   size_t file_count;
   double spacing[3]; /* 0 if not told */
-  bool is_told;      /* whether OME-XML or ImageJ's description states the order; otherwise it is the order of
-                      * the pages */
+  bool is_told;      /* whether a description (OME-XML, or ImageJ's) states the order of pages; otherwise
+                      * slices are in the order of pages */
 } tiff_plan;
 
-/* Makes the plan. description: the first page's, or null. pages: number of slices of all pages of the first
- * file. components: samples of a pixel. depth: slices of a page. resolution: pixels per unit along x and y of
- * the first page; 0 if not told. Release the plan also after a failure. */
+/* Makes the plan. description: the text in the first page; null if there is none. pages: number of slices in
+ * all pages of the first file. components: samples of a pixel. depth: slices of a page. resolution: pixels
+ * per unit along x and y in the first page; 0 if not told. Release the plan also after a failure. */
 hl_status tiff_plan_make(hl_load_request *request, const char *path, const char *description, size_t pages,
                          size_t components, size_t depth, const double resolution[2], tiff_plan *plan,
                          hl_error *error);
 
-/* The number of pictures that ImageJ's or tifffile's description promises; 0 if none is told. */
+/* The number of pictures that a description by ImageJ or tifffile promises; 0 if it promises none. */
 size_t tiff_plan_pages(const char *description, size_t components);
 
 void tiff_plan_release(tiff_plan *plan);

@@ -1,5 +1,4 @@
-/* volume/formats/vdb/nanovdb.c - NanoVDB: reads sparse grids of smoke, fire and level sets as dense volumes.
- */
+/* volume/formats/vdb/nanovdb.c - NanoVDB: reads sparse grids of smoke, fire and level sets. */
 #include "volume/formats/vdb/nanovdb.h"
 
 #include <string.h>

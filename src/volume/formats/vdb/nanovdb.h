@@ -7,7 +7,7 @@
 
 hl_status hl_nanovdb_load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
 
-/* "PNanoVDB.h" in builds without it, else null. */
+/* Returns "PNanoVDB.h" in builds without it, else null. */
 const char *hl_nanovdb_missing(void);
 
 #endif

@@ -1,9 +1,9 @@
 /* volume/formats/vdb/nanovdb_bricks.c - see nanovdb_bricks.h.
  *
- * In: a grid's tree. Out: bricks of level 0, of 32^3 cells. If all coefficients of a brick, margins included,
- * are one number, the brick becomes a constant, which changes no bit of the field. Each brick is read twice:
- * first to learn which bricks are constants. Beyond the box of active voxels, the values at the box's faces
- * continue, as in a dense volume. */
+ * In: a grid's tree. Out: bricks of level 0, of 32^3 cells. A brick whose coefficients, with its margins, are
+ * all the same number becomes a constant. This changes no bit of the field. Each brick is read twice, the
+ * first time only to find which bricks are constants. Beyond the box of active voxels, the field keeps its
+ * values at the box's faces, as in a dense volume. */
 #include "volume/formats/vdb/nanovdb_bricks.h"
 
 #include <math.h>
@@ -15,7 +15,8 @@
 
 enum { SHIFT = 5, SIDE = 1 << SHIFT, WIDTH = SIDE + BRICK_MARGIN, COEFFICIENTS = WIDTH * WIDTH * WIDTH };
 
-/* The most bricks in the box of active voxels. A damaged or hostile file may state a box of any size. */
+/* The greatest number of bricks in the box of active voxels, because a damaged or hostile file may state a
+ * box of any size. */
 enum { MOST_BRICKS = 1 << 22 };
 /* Bricks are made only if they take fewer bytes than this fraction of the dense volume's bytes, because
  * bricks are sampled more slowly. */
@@ -28,12 +29,12 @@ typedef struct brick_reader {
   float *scratch; /* owned; [threads][2][COEFFICIENTS] */
 } brick_reader;
 
-/* Reads a brick's coefficients: first the part within the box of active voxels, into `box`. Beyond the faces,
- * the values at the faces continue. */
+/* Reads the coefficients of a brick. Its part in the box of active voxels is read into `box`, which is
+ * scratch memory. Coefficients beyond the box's faces are those at the faces. */
 static hl_status read_brick(const brick_reader *r, size_t number, float *box, float *brick, hl_error *error) {
   const hl_bricks *bricks = r->bricks;
   int64_t first[3];
-  size_t low[3], count[3], at[3][WIDTH]; /* at: for each coefficient along an axis, its place in `box` */
+  size_t low[3], count[3], at[3][WIDTH]; /* at: for each coefficient along an axis, its index in `box` */
   for (int a = 0; a < 3; a++) {
     int64_t block = (int64_t)(number % bricks->directory_size[a]), last = (int64_t)r->size[a] - 1;
     number /= bricks->directory_size[a];
@@ -78,7 +79,7 @@ static hl_status keep_brick(void *data, size_t number, int worker, hl_error *err
   return slot < 0 ? HL_OK : read_brick(r, number, box, r->bricks->pool + (size_t)slot * COEFFICIENTS, error);
 }
 
-/* Numbers the bricks that are not constant; false if the dense box takes less memory. */
+/* Gives slots of the pool to the bricks that are not constant. False if a dense volume is better. */
 static bool number_slots(hl_bricks *bricks, const size_t size[3], size_t entries) {
   for (size_t n = 0; n < entries; n++)
     if (bricks->directory[n].slot >= 0) bricks->directory[n].slot = (int32_t)bricks->slots++;
@@ -94,8 +95,8 @@ hl_status nanovdb_bricks_read(const nanovdb_grid *grid, const hl_volume_descript
   size_t entries = 1;
   *bricks = (hl_bricks){.shift = SHIFT, .levels = 1};
   for (int a = 0; a < 3; a++) {
-    /* with this origin the grid's coordinates are those of the voxels (grid/grid.h), so that pictures have
-     * the same bytes as a dense volume's */
+    /* with this origin, coordinates in the lattice are those that a dense volume's voxels have in the
+     * renderer's grid (grid/grid.h), so that pictures have the same bytes */
     bricks->origin[a] = 1;
     bricks->dimension[a] = description->dimensions[a] + 2;
     bricks->directory_size[a] = (bricks->dimension[a] + SIDE - 1) / SIDE;

@@ -1,5 +1,5 @@
-/* volume/formats/vdb/nanovdb_grid.c - walks through a NanoVDB tree on all threads. A part of the work is one
- * lower node (128^3 voxels).
+/* volume/formats/vdb/nanovdb_grid.c - walks through a NanoVDB tree on all threads. Each part of the work is
+ * one lower node, which has 128^3 voxels.
  *
  * In index space x runs along the volume's i, y along j, z along k; in a leaf z runs fastest. */
 #define PNANOVDB_C
@@ -18,8 +18,8 @@ enum {
   LEAF = 8,
   LOWER = 128,
   LEAF_VOXELS = LEAF * LEAF * LEAF,
-  TILES_MOST = 4096, /* greatest number of tiles of a root: regions of 4096^3 voxels, which are examined one
-                      * by one */
+  TILES_MOST = 4096, /* greatest number of tiles of a root, which are examined one by one; a tile has 4096^3
+                      * voxels */
   FPN_LOG_BITS_MOST = 4,
   PARALLEL_VOXELS = 1 << 20
 };
@@ -29,10 +29,10 @@ typedef struct walk {
   pnanovdb_buf_t memory;
   pnanovdb_root_handle_t root;
   int64_t low[3], size[3]; /* the box of active voxels */
-  int64_t first[3];        /* coordinates of the first lower node that the box meets; `count` is the number of
-                            * these nodes along each axis */
+  int64_t first[3];        /* the first lower node that meets the box; `count` is the number of such nodes
+                            * along each axis */
   size_t count[3];
-  hl_voxel_type type;  /* type of the values as they are staged, before they are stored in the volume */
+  hl_voxel_type type;  /* type of the staged values, from which the volume's stored values are made */
   size_t bytes;        /* bytes of such a value */
   size_t stored_bytes; /* bytes of a voxel of the volume */
   unsigned char *voxels;
@@ -85,7 +85,8 @@ static void find_lower_nodes(walk *w) {
   }
 }
 
-/* Reads the box, and how many lower nodes it meets. Fails if the box is empty or a side is beyond 32 bits. */
+/* Reads the box of active voxels, and finds which lower nodes meet it. Fails if the box is empty, or if a
+ * side needs more than 32 bits. */
 static hl_status read_box(walk *w, hl_error *error) {
   pnanovdb_coord_t low = pnanovdb_root_get_bbox_min(w->memory, w->root),
                    high = pnanovdb_root_get_bbox_max(w->memory, w->root);
@@ -116,8 +117,8 @@ static hl_status check_root(const walk *w, hl_error *error) {
   return HL_OK;
 }
 
-/* Places the grid by the map of index space: world = matrix * index + vector. Voxels are centred at whole
- * indices. */
+/* Sets the volume's axes and origin by the grid's map: world = matrix * index + vector. Voxel centres have
+ * whole indices. */
 static void place(const walk *w, hl_volume_description *description) {
   const pnanovdb_grid_handle_t handle = {pnanovdb_address_null()};
   pnanovdb_map_handle_t map = pnanovdb_grid_get_map(w->memory, handle);
@@ -152,7 +153,7 @@ hl_status nanovdb_grid_describe(const nanovdb_grid *grid, hl_volume_description 
 
 /* ---- values ---- */
 
-/* Takes a component of the value at an address, or its magnitude, as a value of the staged type. */
+/* Stages one value of the grid: its wanted component, or its magnitude, as a value of the staged type. */
 static void take_value(const walk *w, const unsigned char *from, unsigned char *to) {
   const nanovdb_grid *grid = w->grid;
   if (grid->component != HL_COMPONENT_MAGNITUDE) {
@@ -174,7 +175,7 @@ static void take_value(const walk *w, const unsigned char *from, unsigned char *
   memcpy(to, &magnitude, sizeof magnitude);
 }
 
-/* The bytes of `count` values from an address on; null outside the grid. */
+/* Finds the bytes of `count` values at an address; null if they are not all within the grid's memory. */
 static const unsigned char *values_at(const walk *w, pnanovdb_address_t address, size_t count,
                                       size_t *stride) {
   *stride = kinds[w->grid->kind].components * hl_voxel_type_bytes(kinds[w->grid->kind].type);
@@ -187,7 +188,7 @@ static bool is_quantised(uint32_t kind) {
          kind == PNANOVDB_GRID_TYPE_FP16 || kind == PNANOVDB_GRID_TYPE_FPN;
 }
 
-/* The exponent n of 2^n, which is the number of bits of a value in a leaf of a quantised kind. */
+/* The logarithm to base 2 of the number of bits of a value, in a leaf of a quantised kind. */
 static uint32_t log_bits(const walk *w, pnanovdb_leaf_handle_t leaf) {
   switch (w->grid->kind) {
     case PNANOVDB_GRID_TYPE_FP4: return 2;
@@ -209,8 +210,9 @@ static bool stage_quantised(const walk *w, pnanovdb_leaf_handle_t leaf, unsigned
   return true;
 }
 
-/* Stages the values of bits. The values of a mask are its active voxels. The values of a boolean leaf follow
- * the mask of active voxels, as NanoVDB.h lays them out; PNanoVDB.h has another offset. */
+/* Stages the values of a leaf whose values are bits. In a mask, a value is whether the voxel is active. In a
+ * grid of booleans, the values follow the leaf's mask of active voxels. This is the layout of NanoVDB.h; the
+ * offset in PNanoVDB.h is another. */
 static void stage_bits(const walk *w, pnanovdb_leaf_handle_t leaf, unsigned char *stage) {
   enum { MASK_BYTES = 64 };
   bool active = w->grid->kind == PNANOVDB_GRID_TYPE_MASK;
@@ -220,7 +222,8 @@ static void stage_bits(const walk *w, pnanovdb_leaf_handle_t leaf, unsigned char
     stage[n] = pnanovdb_read_uint32(w->memory, pnanovdb_address_offset(bits, 4 * (n >> 5))) >> (n & 31) & 1;
 }
 
-/* Stages the 512 values of a leaf in the leaf's order. False if the leaf lies outside the grid. */
+/* Stages the 512 values of a leaf, in the leaf's order. Returns false if the leaf is not within the grid's
+ * memory. */
 static bool stage_leaf(const walk *w, pnanovdb_leaf_handle_t leaf, unsigned char *stage) {
   uint32_t kind = w->grid->kind;
   if (leaf.address.byte_offset > w->grid->size) return false;
@@ -237,7 +240,8 @@ static bool stage_leaf(const walk *w, pnanovdb_leaf_handle_t leaf, unsigned char
   return values != NULL;
 }
 
-/* The value that a tile has everywhere. For a mask, `state` says whether a tile is active. */
+/* Stages the value that all voxels of a tile have. state: whether the tile is active, which is the value in a
+ * mask. */
 static bool tile_value(const walk *w, pnanovdb_address_t address, bool state, unsigned char value[8]) {
   size_t stride;
   memset(value, 0, 8);
@@ -253,8 +257,9 @@ static bool tile_value(const walk *w, pnanovdb_address_t address, bool state, un
 
 /* ---- boxes of voxels ---- */
 
-/* Clips the cube that begins at `begin` and is `side` long to the volume's box. from, to: set to the cube's
- * indices in the volume; `to` is past the end. False if they do not meet. */
+/* Finds the part of a cube that lies in the volume's box. The cube begins at `begin`, and has edges of `side`
+ * voxels. from, to: set to the part's indices in the volume; `to` is one past the end. Returns false if the
+ * part is empty. */
 static bool clip(const walk *w, const int64_t begin[3], int64_t side, int64_t from[3], int64_t to[3]) {
   bool any = true;
   for (int a = 0; a < 3; a++) {
@@ -330,7 +335,7 @@ static bool put_lower(const walk *w, pnanovdb_lower_handle_t lower, const int64_
   return sound;
 }
 
-/* Stores the 128^3 voxels from `begin` on. They lie in one tile of the root, or in none. */
+/* Stores the 128^3 voxels from `begin` on. They all lie in the same tile of the root, or all in none. */
 static bool put_region(const walk *w, const int64_t begin[3]) {
   uint32_t kind = w->grid->kind;
   const pnanovdb_coord_t place = {(int32_t)begin[0], (int32_t)begin[1], (int32_t)begin[2]};

@@ -18,22 +18,23 @@ typedef struct nanovdb_grid {
   int component; /* component of vectors and colours, or HL_COMPONENT_MAGNITUDE */
 } nanovdb_grid;
 
-/* The type and the number of components of the voxels of a kind of grid. The type is 0 if the kind is not
- * read. */
+/* Finds the type and the number of components of a kind of grid. The type is 0 if grids of this kind cannot
+ * be read. */
 void nanovdb_kind(uint32_t kind, hl_voxel_type *type, size_t *components);
 
-/* Checks the block, and sets the description's dimensions, origin and axes to the box of the active
- * voxels. */
+/* Checks the grid's memory, and sets the description's dimensions, origin and axes to those of the box of
+ * active voxels. */
 hl_status nanovdb_grid_describe(const nanovdb_grid *grid, hl_volume_description *description,
                                 hl_error *error);
 
-/* Fills the voxels [k][j][i] of the box of a grid's active voxels in stored form, and notes their numbers.
- * type: the volume's type. */
+/* Reads all voxels [k][j][i] of the box of active voxels, in stored form. description: of this box, with the
+ * volume's type. exact: notes the voxels' numbers. */
 hl_status nanovdb_grid_read(const nanovdb_grid *grid, const hl_volume_description *description, void *voxels,
                             hl_exact *exact, hl_error *error);
 
 /* Reads the voxels [k][j][i] of a part of the box of active voxels as 32-bit floats; the grid's values must
- * have this type. first, size: the part's place and size in the indices of the box. */
+ * have this type. first, size: the part's first voxel and its size, where the box's first voxel is
+ * (0,0,0). */
 hl_status nanovdb_grid_read_box(const nanovdb_grid *grid, const size_t first[3], const size_t size[3],
                                 float *voxels, hl_error *error);
 

@@ -1,4 +1,5 @@
-/* volume/formats/vdb/nanovdb_load.c - the segments and grids of a NanoVDB file; one grid becomes the volume.
+/* volume/formats/vdb/nanovdb_load.c - reads the segments and grids of a NanoVDB file. One grid becomes the
+ * volume.
  *
  * Source: nanovdb/util/IO.h of OpenVDB 10. A segment consists of a header of 16 bytes (mark, version, number
  * of grids, codec), 176 bytes of facts and a name for each grid, and then the grids. All numbers are
@@ -27,7 +28,7 @@ enum {
   AT_NAME_BYTES = 136,
   AT_CODEC = 168,
   NAME_BYTES_MOST = 4096,
-  CHUNK_BYTES = 1 << 30, /* a grid that Blosc has packed consists of pieces of this many unpacked bytes */
+  CHUNK_BYTES = 1 << 30, /* Blosc packs a grid in pieces of this many bytes */
 };
 
 typedef enum nanovdb_codec { CODEC_NONE = 0, CODEC_ZIP = 1, CODEC_BLOSC = 2 } nanovdb_codec;
@@ -41,7 +42,7 @@ typedef struct grid_entry {
 typedef struct grid_list {
   hl_source *source;
   const char *path;
-  grid_entry *entries; /* owned; [HL_ARRAYS_MOST], the first `count` are known */
+  grid_entry *entries; /* owned; [HL_ARRAYS_MOST], of which the first `count` are set */
   size_t count;
   int density; /* index of the grid with the name "density"; -1 if there is none */
 } grid_list;
@@ -89,7 +90,8 @@ static hl_status read_facts(grid_list *list, hl_load_request *request, uint64_t 
   return status == HL_OK ? hl_arrays_add(request, name, components, type, false, error) : status;
 }
 
-/* Reads a segment. Its grids lie one after the other behind all of its facts. */
+/* Reads the facts and names of a segment's grids. The grids themselves follow one after the other behind all
+ * facts. */
 static hl_status read_segment(grid_list *list, hl_load_request *request, uint64_t *at, hl_error *error) {
   unsigned char header[HEADER_BYTES];
   hl_status status = read_exactly(list, *at, header, sizeof header, error);
@@ -133,7 +135,8 @@ static hl_status read_list(grid_list *list, hl_load_request *request, hl_error *
 
 /* ---- the grid's own memory ---- */
 
-/* Reads the next packed piece: its length in 8 bytes, then its bytes. *packed is owned by the caller. */
+/* Reads the next packed piece: eight bytes with its length, and then its bytes. *packed is owned by the
+ * caller. */
 static hl_status read_piece(const grid_list *list, uint64_t *at, uint64_t end, unsigned char **packed,
                             size_t *length, hl_error *error) {
   unsigned char count[8];
@@ -159,8 +162,8 @@ static hl_status fail_packed(const grid_list *list, hl_error *error) {
                  list->path);
 }
 
-/* Unpacks a grid piece by piece into *bytes, which is allocated as soon as the first piece promises the
- * required size. */
+/* Unpacks a grid, piece by piece, into *bytes. This memory is allocated only after the first piece has
+ * promised the right size. */
 static hl_status unpack(const grid_list *list, const grid_entry *entry, unsigned char **bytes,
                         hl_error *error) {
   hl_context *context = hl_source_context(list->source);
@@ -203,7 +206,8 @@ static hl_status read_grid(const grid_list *list, const grid_entry *entry, unsig
 
 /* ---- the volume ---- */
 
-/* Allocates the volume. Sparse data may be far larger as a volume, so that an error says how large. */
+/* Allocates the volume's voxels. A dense volume may take far more memory than its sparse grid; the error says
+ * how much. */
 static hl_status allocate(const grid_list *list, const grid_entry *entry, const hl_volume_description *grid,
                           void **voxels, hl_error *error) {
   hl_context *context = hl_source_context(list->source);

@@ -16,12 +16,12 @@ static hl_status fail_unconverted(const char *path, hl_error *error) {
                  path);
 }
 
-/* Reads the converted file, under the name of the original file. */
+/* Has the file converted, and reads the result under the original file's name. */
 static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   const hl_context_options *options = &request->context->options;
   const char *path = (*stream)->path;
-  /* the open file has a path by its descriptor; to the program, `path` would name another file if the context
-   * is confined */
+  /* a path to the open file through its descriptor. If the context is confined, the other program would find
+   * another file, or none, at `path` */
   char opened[40];
   const void *bytes = NULL;
   size_t byte_count = 0;

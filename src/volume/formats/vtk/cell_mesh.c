@@ -13,9 +13,9 @@
 
 enum { TYPES = 82 };
 
-/* Which points of a cell are a hexahedron's corners. */
+/* Which points of a cell become corners of a hexahedron or a tetrahedron. */
 typedef struct cell_kind {
-  signed char points;                  /* least number of points; 0: the type is not read */
+  signed char points;                  /* least number of points of such a cell; 0 if the type is not read */
   bool is_curved, is_flat;             /* is_flat: a vertex, line or face */
   signed char corner[HL_CELL_CORNERS]; /* -1: none, of tetrahedra */
 } cell_kind;
@@ -162,7 +162,7 @@ static double component_of(const double *values, size_t components, int componen
   return sqrt(sum);
 }
 
-/* Gives each point of the piece the mean of the cells around it. */
+/* Sets the value of each of the piece's points to the mean of the cells around the point. */
 static hl_status spread(hl_cell_mesh *mesh, const double *values, size_t count, size_t components,
                         int component, hl_error *error) {
   size_t points = mesh->point_count - mesh->first_point;

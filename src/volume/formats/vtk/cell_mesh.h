@@ -13,24 +13,25 @@ typedef struct hl_cell_mesh {
   double *points;      /* owned; [point_count][3] */
   float *values;       /* owned; [point_count]; NaN until they are set */
   hl_cell *cells;      /* owned; [cell_count]; those with a volume */
-  size_t *sources;     /* owned; [cell_count]; for each cell, the number of the piece's cell from which it
+  size_t *sources;     /* owned; [cell_count]; for each cell, the index of the cell in its piece from which it
                         * was made */
   size_t point_count, cell_count, cell_room;
-  size_t first_point, first_cell;    /* numbers of the first point and the first cell of the piece that was
-                                      * begun last */
-  size_t left_out, flat, simplified; /* numbers of cells that were left out because of their kind, cells
-                                      * that enclose no volume, and cells whose edges were curved */
+  size_t first_point, first_cell;    /* indices of the first point and the first cell of the current piece */
+  size_t left_out, flat, simplified; /* left_out: number of cells of kinds that are not read; flat: number of
+                                      * cells without a volume; simplified: number of cells whose curved edges
+                                      * became straight */
 } hl_cell_mesh;
 
-/* Chooses the array and the component of a grid of cells, whose arrays are listed. active: the array that the
- * file calls active; -1: none. path: starts error lines. */
+/* Chooses the array and the component to read, for a grid of cells whose arrays are listed in the request.
+ * active: index of the array that the file calls active; -1 if there is none. path: starts error lines. */
 hl_status hl_cell_mesh_choose(hl_load_request *request, const char *path, int active, hl_error *error);
 
 /* Begins a piece with `count` points, whose coordinates are copied. points: [count][3]. */
 hl_status hl_cell_mesh_begin_piece(hl_cell_mesh *mesh, const double *points, size_t count, hl_error *error);
 
-/* Adds the piece's cells. types: VTK's numbers, [count]; ends: the end of each cell's corners, [count];
- * corners: numbers of the piece's points, counted from 0, [corner_count]. */
+/* Adds the piece's cells. types: [count]; VTK's numbers of the cells' types. corners: [corner_count]; indices
+ * of the piece's points, from 0, cell after cell. ends: [count]; for each cell, the index in `corners` after
+ * its last one. */
 hl_status hl_cell_mesh_add_cells(hl_cell_mesh *mesh, const double *types, const double *ends, size_t count,
                                  const double *corners, size_t corner_count, hl_error *error);
 
@@ -38,16 +39,16 @@ hl_status hl_cell_mesh_add_cells(hl_cell_mesh *mesh, const double *types, const 
 hl_status hl_cell_mesh_add_grid(hl_cell_mesh *mesh, const size_t size[3], hl_error *error);
 
 /* Sets the piece's values. values: [count][components]; component: an index, or HL_COMPONENT_MAGNITUDE.
- * of_cells: there is one value for each of the piece's cells, and a point gets the mean of the cells around
- * it. */
+ * of_cells: whether values belong to the piece's cells instead of its points; then a point gets the mean of
+ * the cells around it. */
 hl_status hl_cell_mesh_set_values(hl_cell_mesh *mesh, const double *values, size_t count, size_t components,
                                   int component, bool of_cells, hl_error *error);
 
-/* Makes the volume, and tells in warnings what was left out. */
+/* Makes the volume, and warns about cells that were left out or simplified. */
 hl_status hl_cell_mesh_finish(hl_cell_mesh *mesh, hl_volume **volume, hl_error *error);
 void hl_cell_mesh_release(hl_cell_mesh *mesh);
 
-/* Whether a number of VTK's stands for a kind of cell that encloses a volume and can be read. */
+/* Whether VTK's number of a cell type stands for cells that enclose a volume and can be read. */
 bool hl_cell_kind_is_read(double type);
 
 #endif

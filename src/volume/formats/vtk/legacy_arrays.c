@@ -47,7 +47,7 @@ hl_status hl_legacy_vtk_type(const hl_legacy_vtk *file, const char *name, hl_vox
       {"unsigned_short", HL_VOXEL_U16},
       {"short", HL_VOXEL_I16},
       {"unsigned_int", HL_VOXEL_U32},
-      {"int|vtkIdType", HL_VOXEL_I32}, /* VTK writes its indices as int, however wide they are in memory */
+      {"int|vtkIdType", HL_VOXEL_I32}, /* VTK writes indices as int, whatever their size in memory is */
       {"unsigned_long|vtktypeuint64", HL_VOXEL_U64},
       {"long|vtktypeint64", HL_VOXEL_I64},
       {"float", HL_VOXEL_F32},
@@ -82,7 +82,7 @@ static hl_status skip_values(hl_legacy_vtk *file, size_t count, size_t value_byt
 /* The most values that an array may have. */
 static const size_t VALUES_MOST = SIZE_MAX / 8;
 
-/* Passes an array to the file's reader. Its type and size are not yet checked. */
+/* Checks the type and the size of an array, and passes it to the file's `meet` function. */
 static hl_status meet(hl_legacy_vtk *file, hl_legacy_array array, const char *type_name, hl_error *error) {
   size_t values;
   hl_status status = hl_legacy_vtk_type(file, type_name, &array.type, error);
@@ -98,7 +98,8 @@ hl_status hl_legacy_vtk_skip_array(hl_legacy_vtk *file, const hl_legacy_array *a
   return skip_values(file, array->tuples * array->components, hl_voxel_type_bytes(array->type), error);
 }
 
-/* Reads "SCALARS name type [components]" and "LOOKUP_TABLE name", which some old files lack. */
+/* Reads the line "SCALARS name type [components]" and the line "LOOKUP_TABLE name" after it, which some old
+ * files lack. */
 static hl_status read_scalars(hl_legacy_vtk *file, const char *arguments, hl_error *error) {
   char name[WORD_BYTES], type[WORD_BYTES], line[HL_LINE_BYTES];
   const char *cursor = arguments;
@@ -121,7 +122,8 @@ static hl_status read_scalars(hl_legacy_vtk *file, const char *arguments, hl_err
              : status;
 }
 
-/* Reads "VECTORS name type" and other keywords with a fixed number of components. */
+/* Reads a line "VECTORS name type", or the same with another keyword that has a fixed number of
+ * components. */
 static hl_status read_vectors(hl_legacy_vtk *file, const char *kind, size_t components, const char *arguments,
                               hl_error *error) {
   char name[WORD_BYTES], type[WORD_BYTES];
@@ -149,7 +151,8 @@ static hl_status read_coordinates(hl_legacy_vtk *file, const char *arguments, hl
       type, error);
 }
 
-/* Skips "LOOKUP_TABLE name size", which has four bytes, or numbers, for each colour. */
+/* Skips "LOOKUP_TABLE name size" and its colours, each of which is four bytes or, in a text file, four
+ * numbers. */
 static hl_status skip_table(hl_legacy_vtk *file, const char *arguments, hl_error *error) {
   char name[WORD_BYTES];
   const char *cursor = arguments;
@@ -160,8 +163,8 @@ static hl_status skip_table(hl_legacy_vtk *file, const char *arguments, hl_error
   return skip_values(file, 4 * colors, 1, error);
 }
 
-/* Reads "COLOR_SCALARS name components", which VTK writes for 8 bit scalars: bytes, or fractions of 255 as
- * text. */
+/* Reads "COLOR_SCALARS name components", which VTK writes for scalars of 8 bits: as bytes, or in a text file
+ * as values divided by 255. */
 static hl_status read_color_scalars(hl_legacy_vtk *file, const char *arguments, hl_error *error) {
   char name[WORD_BYTES];
   const char *cursor = arguments;
@@ -178,7 +181,7 @@ static hl_status read_color_scalars(hl_legacy_vtk *file, const char *arguments, 
               "unsigned_char", error);
 }
 
-/* Skips the lines that newer files add after an array, up to an empty one. */
+/* Skips the metadata that newer files add after an array. They end with an empty line. */
 static hl_status skip_metadata(hl_legacy_vtk *file, hl_error *error) {
   char line[HL_LINE_BYTES];
   bool ended;
@@ -188,8 +191,8 @@ static hl_status skip_metadata(hl_legacy_vtk *file, hl_error *error) {
   return status;
 }
 
-/* Skips a text of a binary file. The text's length comes first: it takes one, two, four or eight bytes, which
- * its first two bits tell. Then come the letters (vtkDataWriter). */
+/* Skips a text in a binary file. It begins with its length, in one, two, four or eight bytes; the first two
+ * bits say in how many. Then its characters follow (vtkDataWriter). */
 static hl_status skip_binary_string(hl_legacy_vtk *file, hl_error *error) {
   static const size_t more[4] = {7, 3, 1, 0}; /* number of bytes of the length after the first */
   unsigned char first, rest[7];
@@ -200,7 +203,8 @@ static hl_status skip_binary_string(hl_legacy_vtk *file, hl_error *error) {
   return status == HL_OK ? hl_stream_skip(file->stream, length, error) : status;
 }
 
-/* Skips arrays of texts, each of which has a line of its own in a text file, and arrays of bits. */
+/* Skips the values of an array of bits, or of an array of texts. In a text file, each text has a line of its
+ * own. */
 static hl_status skip_other(hl_legacy_vtk *file, const char *type, size_t values, hl_error *error) {
   char line[HL_LINE_BYTES];
   bool ended = false;
@@ -213,7 +217,8 @@ static hl_status skip_other(hl_legacy_vtk *file, const char *type, size_t values
   return status;
 }
 
-/* Reads "FIELD name n", which is followed n times by "name components tuples type" and the values. */
+/* Reads "FIELD name n" and the n arrays that follow. Each of them is a line "name components tuples type" and
+ * its values. */
 static hl_status read_fields(hl_legacy_vtk *file, const char *arguments, hl_error *error) {
   char word[WORD_BYTES], line[HL_LINE_BYTES];
   const char *cursor = arguments;
@@ -225,7 +230,7 @@ static hl_status read_fields(hl_legacy_vtk *file, const char *arguments, hl_erro
     hl_status status = hl_legacy_vtk_line(file, line, &ended, error);
     if (status != HL_OK || ended) return status;
     cursor = line;
-    /* A line without a word is the end of the line of values. */
+    /* An empty line is only the end of the line with the values before. */
     if (!hl_text_word(&cursor, word, sizeof word)) continue;
     if (hl_text_equal(word, "METADATA")) {
       status = skip_metadata(file, error);

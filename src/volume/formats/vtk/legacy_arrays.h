@@ -9,12 +9,14 @@
 enum { HL_LEGACY_WORD_BYTES = 256 };
 
 typedef struct hl_legacy_array {
-  const char *kind, *name; /* kind: the keyword, such as SCALARS, COLOR_SCALARS or NORMALS, or FIELD */
+  const char *kind, *name; /* kind: the keyword that begins the array, such as SCALARS, COLOR_SCALARS, NORMALS
+                            * or FIELD */
   hl_voxel_type type;
   size_t components, tuples;
-  bool of_points;   /* whether the array stands under POINT_DATA, not CELL_DATA */
-  bool of_neither;  /* whether the array stands before POINT_DATA and CELL_DATA: it belongs to the file */
-  bool is_fraction; /* whether 0 to 1 in a text stand for 0 to 255 */
+  bool of_points;   /* whether the array belongs to POINT_DATA */
+  bool of_neither;  /* whether the array stands before POINT_DATA and CELL_DATA, so that it belongs to the
+                     * file itself */
+  bool is_fraction; /* whether a text has fractions from 0 to 1, which stand for 0 to 255 */
 } hl_legacy_array;
 
 typedef struct hl_legacy_vtk hl_legacy_vtk;
@@ -22,16 +24,18 @@ typedef struct hl_legacy_vtk hl_legacy_vtk;
 /* A file that is being read. */
 struct hl_legacy_vtk {
   hl_stream *stream;               /* borrowed */
-  int line;                        /* number of the line that was read last; binary values do not count */
+  int line;                        /* number of the last line that was read; lines within binary values do not
+                                    * count */
   bool text;                       /* whether the file is ASCII; otherwise it is BINARY, big-endian */
-  bool in_point_data, has_section; /* has_section: POINT_DATA or CELL_DATA has come */
-  size_t tuples;                   /* number of values in each array of the POINT_DATA or CELL_DATA section */
-  bool found;                      /* set by `meet` to stop reading: the stream is then at the values that
-                                    * were looked for */
-  /* Called when the values of an array come next. Reads the values, skips them by hl_legacy_vtk_skip(), or
-   * sets file->found. */
+  bool in_point_data, has_section; /* has_section: whether a line POINT_DATA or CELL_DATA has been read */
+  size_t tuples;                   /* number of tuples of each array in the current section, POINT_DATA or
+                                    * CELL_DATA */
+  bool found;                      /* set by `meet` to end reading. The stream is then at the values of the
+                                    * array */
+  /* Called for each array, when its values come next. The function reads the values, skips them by
+   * hl_legacy_vtk_skip(), or sets file->found. */
   hl_status (*meet)(hl_legacy_vtk *file, const hl_legacy_array *array, hl_error *error);
-  /* Reads any other keyword, which describes a data set's geometry. */
+  /* Called for all other keywords, which describe a data set's geometry. */
   hl_status (*keyword)(hl_legacy_vtk *file, const char *keyword, const char *arguments, hl_error *error);
 };
 
@@ -47,7 +51,7 @@ hl_status hl_legacy_vtk_line(hl_legacy_vtk *file, char line[HL_LINE_BYTES], bool
 hl_status hl_legacy_vtk_fail(const hl_legacy_vtk *file, const char *message, const char *text,
                              hl_error *error);
 
-/* Finds a type by its name in the file. Fails if it is no type of numbers. */
+/* Finds a type by its name in the file. Fails if the name is not that of a type of numbers. */
 hl_status hl_legacy_vtk_type(const hl_legacy_vtk *file, const char *name, hl_voxel_type *type,
                              hl_error *error);
 

@@ -1,9 +1,9 @@
 /* volume/formats/vtk/legacy_cells.c - see legacy_cells.h.
  *
  * A first pass reads the geometry and lists the arrays under POINT_DATA and CELL_DATA. A second pass goes to
- * the values of the chosen array. Cells come as one list of counts and points (before version 5.1 of the
- * format), or as OFFSETS and CONNECTIVITY. Source: VTK's file formats, "Legacy File Formats", and
- * vtkDataWriter. */
+ * the values of the chosen array. Before version 5.1 of the format, the cells are one list of counts and
+ * points. Later they are two lists, OFFSETS and CONNECTIVITY. Source: VTK's file formats, "Legacy File
+ * Formats", and vtkDataWriter. */
 #include "volume/formats/vtk/legacy_cells.h"
 
 #include <string.h>
@@ -22,18 +22,20 @@ typedef struct number_list {
 } number_list;
 
 typedef struct cells_file {
-  hl_legacy_vtk file; /* must come first: callbacks find the rest by the address of this member */
+  hl_legacy_vtk file; /* must be the first member: callbacks get its address, and use it as the address of the
+                       * whole struct */
   hl_load_request *request;
   bool is_curvilinear;
   size_t size[3]; /* points of a curvilinear grid along i, j, k */
   number_list points, types;
-  number_list list;             /* in a file before version 5.1: count, points, count, points, ... */
-  number_list offsets, corners; /* in a file of version 5.1 or newer; the first offset is 0 */
-  size_t offset_count, room;    /* the numbers of offsets and of corners that the line CELLS states in a
-                                 * newer file */
+  number_list list;             /* the cells of a file before version 5.1: count, points, count, points,
+                                 * ... */
+  number_list offsets, corners; /* the cells of a file of version 5.1 or newer; the first offset is 0 */
+  size_t offset_count, room;    /* numbers of offsets and of corners, as the line CELLS of a newer file states
+                                 * them */
   bool lists;                   /* in the first pass: arrays are listed */
-  size_t arrays;                /* number of arrays so far that can hold the volume */
-  hl_legacy_array chosen;       /* in the second pass; its texts are not kept */
+  size_t arrays;                /* number of arrays met so far in this pass that can hold the volume */
+  hl_legacy_array chosen;       /* the chosen array, in the second pass; its texts are not valid */
 } cells_file;
 
 bool hl_legacy_is_of_cells(const char *kind) {
@@ -42,7 +44,7 @@ bool hl_legacy_is_of_cells(const char *kind) {
 
 /* ---- geometry ---- */
 
-/* Reads a list of numbers, which replaces the list of an earlier pass. */
+/* Reads a list of numbers. If an earlier pass has read the list already, it is replaced. */
 static hl_status read_list(cells_file *cells, const char *type_name, size_t count, number_list *list,
                            hl_error *error) {
   hl_number_code code = {.text = cells->file.text, .big_endian = true};
@@ -115,8 +117,8 @@ static hl_status read_keyword(hl_legacy_vtk *file, const char *keyword, const ch
 
 /* ---- arrays ---- */
 
-/* Called when the values of an array come next. Arrays of the file itself, and colours, do not count as
- * values. */
+/* The `meet` function, called for each array. Arrays that belong to the file itself, and colours, cannot hold
+ * the volume. */
 static hl_status meet_array(hl_legacy_vtk *file, const hl_legacy_array *array, hl_error *error) {
   cells_file *cells = (cells_file *)file;
   const bool usable = !array->of_neither && !array->is_fraction;
@@ -136,7 +138,7 @@ static hl_status meet_array(hl_legacy_vtk *file, const hl_legacy_array *array, h
 
 /* ---- the mesh ---- */
 
-/* Splits a list of counts and points into the cells' ends and corners. */
+/* Converts an older file's list of counts and points to lists of the cells' ends and corners. */
 static hl_status split_list(cells_file *cells, hl_error *error) {
   const number_list *list = &cells->list;
   hl_context *context = cells->request->context;
@@ -222,7 +224,7 @@ static hl_status make_volume(cells_file *cells, hl_volume **volume, hl_error *er
 
 /* ---- the whole ---- */
 
-/* Reads the file from its start, in the first or the second pass. */
+/* Reads the file from its start. lists: whether this is the first pass, which lists the arrays. */
 static hl_status read_pass(hl_stream **stream, cells_file *cells, bool lists, hl_error *error) {
   hl_status status = hl_stream_restart(stream, error);
   if (status == HL_OK) status = hl_stream_unpack(stream, error);

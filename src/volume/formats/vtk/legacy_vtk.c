@@ -4,8 +4,8 @@
  * After three lines (mark, title, ASCII or BINARY) come keywords. A first pass lists the arrays under
  * POINT_DATA and CELL_DATA (SCALARS, COLOR_SCALARS, VECTORS, NORMALS, TENSORS, TEXTURE_COORDINATES and the
  * arrays of a FIELD), up to the first unknown keyword; a second pass stops at the values of the chosen array.
- * A pipe cannot be read twice, and is read only up to the first array of one component or with the wanted
- * name. */
+ * A pipe cannot be read twice. It is read only once, up to the array with the wanted name or, without a name,
+ * up to the first array of one component. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -19,20 +19,22 @@
 #include "volume/io/text.h"
 
 typedef struct vtk_header {
-  hl_legacy_vtk file; /* must come first: callbacks find the header by the address of this member */
+  hl_legacy_vtk file; /* must be the first member: callbacks get its address, and use it as the address of the
+                       * whole struct */
   hl_payload payload;
   bool has_dimensions, is_rectilinear, is_of_cells;
   double *coordinates[3]; /* owned; the coordinates of a rectilinear grid; null for other grids */
   size_t counts[3];
-  size_t tuples; /* number of values of the volume's array, once it is found */
+  size_t tuples; /* number of tuples of the volume's array, set when it is found */
   hl_load_request *request;
-  bool of_cells; /* whether the volume's array has a value for each cell, instead of each point */
+  bool of_cells; /* whether the volume's array has values for cells instead of points */
   bool lists;    /* in the first pass: arrays are listed */
-  bool once;     /* whether the file can be read only once: reading then stops at the first suitable array */
-  size_t arrays; /* number of arrays so far that can hold the volume */
+  bool once;     /* whether the file can be read only once. Then the first pass already stops at the first
+                  * suitable array */
+  size_t arrays; /* number of arrays met so far in this pass that can hold the volume */
 } vtk_header;
 
-/* Whether this pass stops at the array with this number. */
+/* Whether this pass stops at the array with the index `index`. */
 static bool is_wanted(const vtk_header *header, const hl_legacy_array *array, size_t index) {
   const hl_load_request *request = header->request;
   if (!header->lists) return index == request->chosen;
@@ -40,13 +42,13 @@ static bool is_wanted(const vtk_header *header, const hl_legacy_array *array, si
   return request->array != NULL ? strcmp(request->array, array->name) == 0 : array->components == 1;
 }
 
-/* Called when the values of an array come next. Stops there if it is the volume's array. */
+/* The `meet` function, called for each array. It stops reading at the volume's array. */
 static hl_status meet_array(hl_legacy_vtk *file, const hl_legacy_array *array, hl_error *error) {
   vtk_header *header = (vtk_header *)file;
   size_t index = header->arrays;
   hl_status status = HL_OK;
   const size_t *n = header->payload.grid.dimensions;
-  /* an array of the file itself belongs to the points if it has a value for each */
+  /* an array of the file itself can hold the volume if it has a value for each point */
   bool usable = !array->of_neither || (header->has_dimensions && array->tuples > 1 &&
                                        (double)array->tuples == (double)n[0] * (double)n[1] * (double)n[2]);
   bool of_cells = !array->of_points && !array->of_neither;
@@ -103,7 +105,7 @@ static hl_status read_coordinates(vtk_header *header, int axis, const char *argu
                          : status;
 }
 
-/* Reads a keyword of structured points or a rectilinear grid. */
+/* Reads a keyword that describes structured points or a rectilinear grid. */
 static hl_status read_keyword(hl_legacy_vtk *file, const char *keyword, const char *arguments,
                               hl_error *error) {
   char shown[HL_PRINTABLE_BYTES];
@@ -147,7 +149,7 @@ static void release(vtk_header *header) {
   }
 }
 
-/* Whether the wanted array was found before the error. */
+/* Whether an error can be ignored, as a suitable array was listed before it. */
 static bool is_enough(const hl_load_request *request, hl_status status) {
   if (status != HL_ERROR_INPUT && status != HL_ERROR_UNSUPPORTED) return false;
   for (size_t n = 0; n < request->array_count; n++)
@@ -157,7 +159,7 @@ static bool is_enough(const hl_load_request *request, hl_status status) {
   return false;
 }
 
-/* Goes to the values of the chosen array. Errors after them in the file are ignored. */
+/* Finds the chosen array, and goes to its values. Errors in the file after these values are ignored. */
 static hl_status find_volume(hl_stream **stream, hl_load_request *request, vtk_header *header,
                              hl_error *error) {
   *header = begin(*stream, request, true);
@@ -181,8 +183,8 @@ static hl_status find_volume(hl_stream **stream, hl_load_request *request, vtk_h
   return hl_legacy_vtk_read(&header->file, error);
 }
 
-/* Moves the grid to the cells, which lie between the points: along each axis with several points there is
- * one cell fewer than points, and the first cell lies half a step further. */
+/* Changes the grid of points to the grid of the cells between them. Along each axis with several points there
+ * is one cell fewer than points, and the first cell lies half a step further. */
 static void move_to_cells(hl_volume_description *grid) {
   for (int axis = 0; axis < 3; axis++) {
     if (grid->dimensions[axis] < 2) continue;

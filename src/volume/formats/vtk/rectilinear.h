@@ -5,11 +5,12 @@
 
 #include "volume/volume.h"
 
-/* Places a volume by the coordinates of its points along x, y and z. counts: the number of coordinates
- * along each axis. The volume must have been read as if its steps were 1. of_cells: the volume's values
- * belong to the cells between the points. If the points are evenly spaced, to a thousandth of a step, only
- * the volume's place changes. Otherwise its values are resampled: linearly between points, or as the value
- * of the cell at the place. *volume is replaced, and released on failure. */
+/* Places a volume by the coordinates of its points along x, y and z. counts: the number of coordinates along
+ * each axis. The volume must have been read with steps of 1. of_cells: whether the volume's values belong to
+ * the cells between the points. If the points are evenly spaced, to a thousandth of a step, only the volume's
+ * place changes. Otherwise its values are resampled on an even grid: values at points are interpolated
+ * linearly, and a new voxel gets the value of the cell in which it lies. *volume is replaced, and released on
+ * failure. */
 hl_status hl_rectilinear_place(hl_volume **volume, double *const coordinates[3], const size_t counts[3],
                                bool of_cells, const char *path, hl_error *error);
 

@@ -2,7 +2,7 @@
  * file of its own.
  *
  * The list names files relative to its folder. A box is six numbers, the first and the last cell of its level
- * along x, y and z. A level's cells are as fine as its spacing says; the first level's boxes are the domain.
+ * along x, y and z. The size of a level's cells is its spacing. The boxes of the first level are the domain.
  */
 #include <math.h>
 #include <string.h>
@@ -29,9 +29,8 @@ typedef struct amr_list {
   hl_load_request *request;
   hl_vtk_xml xml;
   double origin[3];
-  double spacing[HL_AMR_LEVELS_MOST][3]; /* spacing of each level; 0 for a level that the list does not
-                                          * describe */
-  int level;                             /* level of the Block whose tag is open; -1 if none is open */
+  double spacing[HL_AMR_LEVELS_MOST][3]; /* spacing of each level; 0 if the list does not state it */
+  int level;                             /* level of the current element Block; -1 outside of such elements */
   int levels;
   amr_box *boxes; /* owned; [box_count] */
   size_t box_count, box_room;
@@ -170,7 +169,8 @@ static hl_status add_voxels(amr_list *list, hl_amr *amr, const amr_box *box, con
   return status;
 }
 
-/* Reads a box's file. The lists and choices of the first file hold for all files. */
+/* Reads the file of a box. The array and the component that were chosen in the first file are read from all
+ * files. */
 static hl_status read_box(amr_list *list, hl_amr *amr, size_t index, hl_error *error) {
   hl_load_request *request = list->request;
   hl_load_request part = {.context = request->context,

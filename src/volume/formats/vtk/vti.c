@@ -1,11 +1,10 @@
 /* volume/formats/vtk/vti.c - VTK XML image data (.vti), rectilinear grids (.vtr), and image data in several
- * files
- * (.pvti): ascii, base64 and appended arrays, plain or in compressed blocks.
+ * files (.pvti): ascii, base64 and appended arrays, plain or in compressed blocks.
  *
  * A first pass over the tags lists the arrays of the first piece. The volume is the array that the caller
- * named; without a name the active scalars, else the first array of one component at points, else at cells. A
- * second pass goes to the values, piece by piece. World: Origin + Direction * (Spacing * index), where
- * indices count from the extent's start. */
+ * named. Without a name it is the array of the active scalars, else the first array of one component at
+ * points, else the first one at cells. A second pass goes to the values, piece by piece. World: Origin +
+ * Direction * (Spacing * index), where the first point has the extent's first index. */
 #include <math.h>
 #include <string.h>
 
@@ -24,10 +23,10 @@ static const char *const kind_names[] = {"ImageData", "RectilinearGrid", "PImage
 
 enum { PIECES_MOST = 65536, ENTRIES_MOST = 1 << 20 };
 
-/* A piece of the whole volume: its place and, if there are several files, its file. */
+/* A piece of the whole volume: its extent and, if the volume consists of several files, its file. */
 typedef struct vti_piece {
   double extent[6];
-  char *source; /* owned; null if the piece is in the same file */
+  char *source; /* owned; name of the piece's file; null if the piece is in this file */
 } vti_piece;
 
 /* An array of a piece. */
@@ -51,10 +50,12 @@ typedef struct vti_header {
   vti_piece *pieces;  /* owned; [piece_count] */
   vti_entry *entries; /* owned; [entry_count]; the arrays of all pieces */
   size_t piece_count, piece_room, entry_count, entry_room;
-  bool is_whole; /* whether the section's last tag or the appended data have been seen */
+  bool is_whole; /* whether the last tag of the section, or the appended data, have been read: no array is
+                  * missing */
   section section;
   char active[HL_VTK_NAME_BYTES];  /* name of the section's active scalars */
-  int active_points, active_cells; /* index of the active scalars; -1 if there are none */
+  int active_points, active_cells; /* indices of the active scalars at points and at cells; -1 if there are
+                                    * none */
   hl_load_request *request;        /* lists the same arrays */
 } vti_header;
 
@@ -65,7 +66,8 @@ static hl_status read_numbers(const vti_header *header, const hl_xml_tag *tag, c
   return hl_vtk_xml_refuse(&header->xml, HL_ERROR_INPUT, name, value, error);
 }
 
-/* Reads an extent. An absent extent leaves *extent alone. An extent may be empty: last < first. */
+/* Reads an extent. If it is absent, `extent` is not changed. An extent may be empty, which means that a last
+ * index is less than the first. */
 static hl_status read_extent(vti_header *header, const hl_xml_tag *tag, const char *name, double extent[6],
                              bool may_be_empty, hl_error *error) {
   const char *value = hl_xml_attribute(tag, name);
@@ -149,7 +151,7 @@ static hl_status read_array_tag(vti_header *header, const hl_xml_tag *tag, hl_er
   *entry = (vti_entry){
       .piece = header->piece_count > 0 ? header->piece_count - 1 : 0, .cells = cells, .array = array};
   if (name != NULL && strlen(name) < sizeof entry->name) strcpy(entry->name, name);
-  if (entry->piece > 0) return HL_OK; /* only the arrays of the first piece are listed */
+  if (entry->piece > 0) return HL_OK; /* only arrays of the first piece are listed in the request */
   if (stated != NULL && (hl_text_sizes(stated, &components, 1) != 1 || components == 0))
     return hl_vtk_xml_refuse(&header->xml, HL_ERROR_INPUT, "NumberOfComponents", stated, error);
   hl_vtk_xml_find_type(array.type, &type);
@@ -205,8 +207,9 @@ static void make_grid(const vti_header *header, const double extent[6], bool cel
   }
 }
 
-/* The index of the active scalars at points, if there are any. Otherwise the index of the active scalars at
- * cells, but only if no array at points has one component; else -1. */
+/* The index of the array that is read by default. It is the active scalars at points, if there are any. If
+ * not, it is the active scalars at cells, unless there is an array of one component at points. Otherwise it
+ * is -1. */
 static int active_array(const vti_header *header) {
   if (header->active_points >= 0) return header->active_points;
   for (size_t n = 0; n < header->request->array_count; n++)
@@ -234,7 +237,7 @@ static bool is_empty(const vti_piece *piece) {
   return e[1] < e[0] || e[3] < e[2] || e[5] < e[4];
 }
 
-/* The chosen array of a piece; null if the piece lacks it. */
+/* Finds the chosen array in a piece; null if the piece lacks it. */
 static const vti_entry *entry_of(const vti_header *header, size_t piece) {
   const hl_array_entry *chosen = &header->request->arrays[header->request->chosen];
   for (size_t n = 0; n < header->entry_count; n++) {
@@ -268,10 +271,10 @@ static hl_status describe(const vti_header *header, const vti_piece *piece, cons
              : status;
 }
 
-/* Goes to the chosen array of a piece and reads it as a volume. */
+/* Reads a piece's chosen array as a volume of its own. */
 static hl_status read_piece(hl_stream **stream, vti_header *header, size_t index, hl_volume **volume,
                             hl_error *error) {
-  header->xml.stream = *stream; /* reading the array before may have opened the stream anew */
+  header->xml.stream = *stream; /* the stream may have been replaced when the piece before was read */
   const vti_entry *entry = entry_of(header, index);
   hl_payload payload;
   if (entry == NULL)
@@ -284,16 +287,16 @@ static hl_status read_piece(hl_stream **stream, vti_header *header, size_t index
                          : status;
 }
 
-/* The first voxel of a piece within the whole. */
+/* Finds the index in the whole volume of a piece's first voxel. */
 static void place_of(const vti_header *header, const vti_piece *piece, size_t first[3]) {
   for (int axis = 0; axis < 3; axis++) {
     double before = piece->extent[2 * axis] - header->grid.extent[2 * axis];
-    first[axis] = before >= 0 ? (size_t)before : SIZE_MAX; /* SIZE_MAX, if the piece begins before the whole
-                                                            * volume: it does not fit */
+    first[axis] = before >= 0 ? (size_t)before : SIZE_MAX; /* a piece that begins before the whole volume gets
+                                                            * SIZE_MAX, so that it is refused */
   }
 }
 
-/* Reads all pieces of the file, and puts each at its place. */
+/* Reads all pieces of this file, and copies each to its place in the whole volume. */
 static hl_status read_pieces(hl_stream **stream, vti_header *header, hl_volume **volume, hl_error *error) {
   const vti_piece whole = {.extent = {header->grid.extent[0], header->grid.extent[1], header->grid.extent[2],
                                       header->grid.extent[3], header->grid.extent[4],
@@ -311,8 +314,8 @@ static hl_status read_pieces(hl_stream **stream, vti_header *header, hl_volume *
     if (is_empty(&header->pieces[n])) continue;
     place_of(header, &header->pieces[n], first);
     status = read_piece(stream, header, n, &piece, error);
-    /* memory for the whole volume is taken only after a first piece was read, because a header can promise
-     * any size */
+    /* memory for the whole volume is allocated only after a first piece was read, because a header can
+     * promise any size */
     if (status == HL_OK && pieces.to.context == NULL)
       status = hl_pieces_begin(header->request->context, &grid, (*stream)->path, &pieces, error);
     if (status == HL_OK) pieces.to.path = (*stream)->path; /* the path of the stream that is open now */
@@ -326,7 +329,7 @@ static hl_status read_pieces(hl_stream **stream, vti_header *header, hl_volume *
   return status;
 }
 
-/* Reads the coordinates of a rectilinear grid, and places the volume by them. */
+/* Reads the coordinates of a rectilinear grid, and changes the volume's place accordingly. */
 static hl_status place_rectilinear(hl_stream **stream, vti_header *header, hl_volume **volume,
                                    hl_error *error) {
   hl_context *context = header->request->context;
@@ -365,8 +368,7 @@ static hl_status place_rectilinear(hl_stream **stream, vti_header *header, hl_vo
 static hl_status load_image(hl_stream **stream, hl_load_request *request, bool nested, hl_volume **volume,
                             hl_error *error);
 
-/* Reads the volume of one file of several. part: the request for this file; its lists are owned by the
- * caller. */
+/* Reads one of several files as a volume. part: the request for this file; the caller owns its lists. */
 static hl_status read_part(const vti_header *header, size_t index, hl_load_request *part, hl_volume **volume,
                            hl_error *error) {
   hl_stream *stream = NULL;
@@ -378,8 +380,8 @@ static hl_status read_part(const vti_header *header, size_t index, hl_load_reque
   return status;
 }
 
-/* The grid of the whole volume. Its type is that of the first file's volume. of_cells: whether the first
- * file's values belong to cells. */
+/* The grid of the whole volume, if it consists of several files. It has the type of the first file's volume.
+ * of_cells: whether the first file's values belong to cells. */
 static hl_volume_description grid_of_parts(const vti_header *header, const hl_volume *part, bool of_cells) {
   hl_volume_description grid;
   hl_volume_description_defaults(&grid);
@@ -412,7 +414,8 @@ static hl_status read_parts(const vti_header *header, hl_volume **volume, hl_err
     size_t at[3];
     part.array = first ? request->array : request->arrays[request->chosen].name;
     status = read_part(header, n, &part, &piece, error);
-    if (status == HL_OK && first) { /* lists and choices of the first file hold for all files */
+    if (status == HL_OK && first) { /* the array and the component that were chosen in the first file are read
+                                     * from all files */
       request->arrays = part.arrays;
       request->array_count = part.array_count;
       request->chosen = part.chosen;
@@ -439,8 +442,8 @@ static hl_status read_parts(const vti_header *header, hl_volume **volume, hl_err
 
 /* ---- the whole ---- */
 
-/* Completes the pieces. The extent of a single piece is its own. A file without a Piece has a single piece,
- * the whole extent. */
+/* Completes the list of pieces. A file without any Piece gets one, which has the whole extent. If there is
+ * one piece, the whole extent becomes that of the piece. */
 static hl_status finish_pieces(vti_header *header, hl_error *error) {
   if (header->piece_count == 0 && header->grid.has_extent) {
     hl_status status = grow(header, (void **)&header->pieces, 0, &header->piece_room, sizeof *header->pieces,

@@ -9,14 +9,14 @@
 #include "volume/io/numbers.h"
 #include "volume/io/text.h"
 
-/* Further arrays of a piece are ignored. A file with more than MOST_PIECES pieces is refused. */
+/* MOST_ARRAYS: further arrays of a piece are ignored. MOST_PIECES: a file with more pieces is refused. */
 enum { MOST_ARRAYS = 1024, MOST_PIECES = 4096 };
 
 static const char *const section_names[HL_VTK_NO_SECTION] = {"Points", "Cells", "PointData", "CellData"};
 
 /* ---- tags ---- */
 
-/* Reads a curvilinear piece's extent "x0 x1 y0 y1 z0 z1" of points. */
+/* Reads the extent of a curvilinear piece, "x0 x1 y0 y1 z0 z1", which counts points. */
 static hl_status read_extent(const hl_vtk_pieces *file, const hl_xml_tag *tag, hl_vtk_piece *piece,
                              hl_error *error) {
   const char *value = hl_xml_attribute(tag, "Extent");
@@ -38,7 +38,7 @@ static hl_status read_extent(const hl_vtk_pieces *file, const hl_xml_tag *tag, h
   return HL_OK;
 }
 
-/* Reads how many points, cells and, in PolyData, lines and surfaces a piece has. */
+/* Reads the numbers of a piece's points and cells and, in PolyData, of its lines and surfaces. */
 static hl_status read_counts(const hl_vtk_pieces *file, const hl_xml_tag *tag, hl_vtk_piece *piece,
                              hl_error *error) {
   static const char *const names[] = {"NumberOfLines", "NumberOfPolys", "NumberOfStrips"};
@@ -52,8 +52,8 @@ static hl_status read_counts(const hl_vtk_pieces *file, const hl_xml_tag *tag, h
   return status;
 }
 
-/* Reads the tag of a piece. Pieces without points are ignored: programs that write in parallel leave such
- * pieces. */
+/* Reads the tag of a piece. Pieces without points, which programs that write in parallel leave behind, are
+ * ignored. */
 static hl_status read_piece_tag(hl_vtk_pieces *file, const hl_xml_tag *tag, hl_error *error) {
   hl_vtk_piece piece = {.first_array = file->array_count};
   hl_status status = strcmp(file->types[file->type], "StructuredGrid") == 0

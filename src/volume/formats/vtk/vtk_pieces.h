@@ -1,5 +1,5 @@
-/* volume/formats/vtk/vtk_pieces.h - the pieces of VTK's XML files of points: unstructured and curvilinear
- * grids, and PolyData. A pass over the tags lists the pieces and their arrays. */
+/* volume/formats/vtk/vtk_pieces.h - reads the pieces of those XML files of VTK that have points: unstructured
+ * and curvilinear grids, and PolyData. A pass over the tags lists the pieces and their arrays. */
 #ifndef HL_VOLUME_VTK_PIECES_H
 #define HL_VOLUME_VTK_PIECES_H
 
@@ -19,7 +19,7 @@ typedef struct hl_vtk_piece_array {
   hl_vtk_section section;
   char name[HL_VTK_NAME_BYTES];
   size_t components; /* at least 1 */
-  bool is_active;    /* whether it is the active scalars of its section */
+  bool is_active;    /* whether the array is the active scalars of its section */
 } hl_vtk_piece_array;
 
 typedef struct hl_vtk_piece {
@@ -42,17 +42,18 @@ typedef struct hl_vtk_pieces {
   bool in_piece;
 } hl_vtk_pieces;
 
-/* Reads the tags. context, types, type_count and xml.stream must be set, all else zero. Release the pieces
- * also after a failure. */
+/* Reads all tags of a file. The members context, types, type_count and xml.stream must be set, and all others
+ * must be zero. Release the pieces also after a failure. */
 hl_status hl_vtk_pieces_read(hl_vtk_pieces *pieces, hl_error *error);
 void hl_vtk_pieces_release(hl_vtk_pieces *pieces);
 
-/* The first array with this name in a piece's section; null if there is none. name: null for any. */
+/* The first array with this name in a piece's section; null if there is none. name: if null, any array is
+ * found. */
 const hl_vtk_piece_array *hl_vtk_pieces_find(const hl_vtk_pieces *pieces, const hl_vtk_piece *piece,
                                              hl_vtk_section section, const char *name);
 
-/* Reads `tuples` tuples of an array; *numbers is owned by the caller. *stream: the file's, which is opened
- * anew. */
+/* Reads `tuples` tuples of an array; *numbers is owned by the caller. *stream: the file's stream, which is
+ * replaced by a newly opened one. */
 hl_status hl_vtk_pieces_numbers(hl_stream **stream, hl_vtk_pieces *pieces, const hl_vtk_piece_array *array,
                                 size_t tuples, double **numbers, hl_error *error);
 

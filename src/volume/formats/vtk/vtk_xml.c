@@ -1,4 +1,4 @@
-/* volume/formats/vtk/vtk_xml.c - shared by the readers of all of VTK's XML files. */
+/* volume/formats/vtk/vtk_xml.c - functions that all readers of VTK's XML files share. */
 #include "volume/formats/vtk/vtk_xml.h"
 
 #include <stdio.h>
@@ -166,7 +166,7 @@ hl_status hl_vtk_xml_type(const hl_vtk_xml *xml, const char *name, hl_voxel_type
                            error);
 }
 
-/* Opens the file again and skips to the first byte of the array's encoded values. */
+/* Opens the file again, and skips everything before the encoded values of an array. */
 static hl_status go_to_array(hl_stream **stream, const hl_vtk_xml *xml, const hl_vtk_array *array,
                              hl_error *error) {
   uint64_t place = array->place;
@@ -184,7 +184,7 @@ static hl_status go_to_array(hl_stream **stream, const hl_vtk_xml *xml, const hl
   return status == HL_OK ? hl_stream_skip(*stream, place, error) : status;
 }
 
-/* Reads the byte count in front of uncompressed values. */
+/* Reads the number of bytes that stands before uncompressed values. */
 static hl_status read_length(hl_stream *stream, const hl_vtk_xml *xml, uint64_t promised, hl_error *error) {
   unsigned char bytes[8];
   hl_status status = hl_stream_read_all(stream, bytes, xml->header_bytes, error);

@@ -1,5 +1,5 @@
-/* volume/formats/vtk/vtk_xml.h - shared by the readers of all of VTK's XML files: the first tag, the places
- * of the values of arrays, and their encoding. */
+/* volume/formats/vtk/vtk_xml.h - functions that all readers of VTK's XML files share. They read the first
+ * tag, and find the place and the encoding of an array's values. */
 #ifndef HL_VOLUME_VTK_XML_H
 #define HL_VOLUME_VTK_XML_H
 
@@ -13,8 +13,8 @@ typedef struct hl_vtk_xml {
   hl_stream *stream; /* borrowed; the tags are read from it */
   bool big_endian;
   hl_vtk_packing packing; /* packing of binary values */
-  size_t header_bytes;    /* bytes of each integer before binary values; 0 if the first tag has not been
-                           * read */
+  size_t header_bytes;    /* size in bytes of the integers that stand before binary values; 0 until the first
+                           * tag has been read */
   uint64_t appended;      /* position in the file of the appended data's first byte; 0 if there are none */
   bool appended_is_base64;
 } hl_vtk_xml;
@@ -25,18 +25,18 @@ typedef enum hl_vtk_encoding { HL_VTK_ASCII, HL_VTK_BINARY, HL_VTK_APPENDED } hl
 typedef struct hl_vtk_array {
   char type[HL_VTK_NAME_BYTES];
   hl_vtk_encoding encoding;
-  uint64_t place; /* position of the values: in the file for inline values, in the appended data for appended
-                   * ones */
+  uint64_t place; /* position of the values: for inline values in the file, for appended values in the
+                   * appended data */
 } hl_vtk_array;
 
-/* Whether a file that starts with these bytes is an XML file, VTK's or any other. */
+/* Whether a file that starts with these bytes is an XML file, of VTK or any other kind. */
 bool hl_vtk_xml_has_content(const unsigned char *bytes, size_t length);
 
-/* Whether a file that starts with these bytes is an XML file that names one of VTK's types there. types:
- * [count], as "ImageData". */
+/* Whether these bytes, with which a file starts, are XML and name one of these types of VTK. types: [count],
+ * such as "ImageData". */
 bool hl_vtk_xml_is_of(const unsigned char *bytes, size_t length, const char *const types[], size_t count);
 
-/* Reads the tags up to the appended data or to the file's end, and hands each to the function. */
+/* Reads the tags up to the appended data, or to the file's end, and calls the function for each of them. */
 typedef hl_status hl_vtk_xml_tag_fn(void *data, const hl_xml_tag *tag, hl_error *error);
 hl_status hl_vtk_xml_read_tags(hl_vtk_xml *xml, hl_vtk_xml_tag_fn *read_tag, void *data, hl_error *error);
 
@@ -44,34 +44,35 @@ hl_status hl_vtk_xml_read_tags(hl_vtk_xml *xml, hl_vtk_xml_tag_fn *read_tag, voi
 hl_status hl_vtk_xml_count(const hl_vtk_xml *xml, const hl_xml_tag *tag, const char *name, size_t *count,
                            hl_error *error);
 
-/* Copies a name; a name that is null or too long becomes an empty one. */
+/* Copies a name. If it is null or too long, the copy is empty. */
 void hl_vtk_xml_copy_name(char to[HL_VTK_NAME_BYTES], const char *name);
 
-/* Makes room for one more element of a list of `count`. *list: owned, [*room] elements of `size` bytes. */
+/* Makes room for one more element of a list that has `count`. *list: owned, [*room] elements of `size`
+ * bytes. */
 hl_status hl_vtk_xml_grow(hl_context *context, const hl_vtk_xml *xml, void **list, size_t count, size_t *room,
                           size_t size, hl_error *error);
 
-/* Fails because of a value that is impossible, or that cannot be read (HL_ERROR_UNSUPPORTED). */
+/* Fails because of a value that is impossible, or (HL_ERROR_UNSUPPORTED) not supported. */
 hl_status hl_vtk_xml_refuse(const hl_vtk_xml *xml, hl_status code, const char *what, const char *value,
                             hl_error *error);
 
-/* Reads <VTKFile>, which must have the type `wanted`. */
+/* Reads the tag <VTKFile>, whose type must be `wanted`. */
 hl_status hl_vtk_xml_file_tag(hl_vtk_xml *xml, const hl_xml_tag *tag, const char *wanted, hl_error *error);
 
-/* Reads <DataArray>: the place of the values and their encoding. */
+/* Reads the tag <DataArray>, which says where an array's values are and how they are encoded. */
 hl_status hl_vtk_xml_array_tag(const hl_vtk_xml *xml, const hl_xml_tag *tag, hl_vtk_array *array,
                                hl_error *error);
 
-/* Reads <AppendedData>, up to the first byte of its arrays. */
+/* Reads the tag <AppendedData>, and goes to the first byte of the arrays in it. */
 hl_status hl_vtk_xml_appended_tag(hl_vtk_xml *xml, const hl_xml_tag *tag, hl_error *error);
 
-/* Finds a type by its name in the file. False if there is no such type of numbers. */
+/* Finds a type by its name in the file. Returns false if the name is not that of a type of numbers. */
 bool hl_vtk_xml_find_type(const char *name, hl_voxel_type *type);
-/* Finds a type like hl_vtk_xml_find_type(). Fails if there is none. */
+/* Does what hl_vtk_xml_find_type() does, but fails if there is no such type. */
 hl_status hl_vtk_xml_type(const hl_vtk_xml *xml, const char *name, hl_voxel_type *type, hl_error *error);
 
-/* Replaces *stream by the same file, opened again, at the array's values, with the decoders of their encoding
- * on top. promised: the number of bytes that binary values must have. */
+/* Opens the file of *stream again, goes to an array's values, and pushes the decoders of their encoding.
+ * *stream is replaced. promised: the number of bytes that binary values must have. */
 hl_status hl_vtk_xml_open_array(hl_stream **stream, const hl_vtk_xml *xml, const hl_vtk_array *array,
                                 uint64_t promised, hl_error *error);
 

@@ -22,11 +22,10 @@ enum { TYPES = sizeof types / sizeof *types };
 typedef struct grid_file {
   hl_load_request *request;
   hl_vtk_pieces pieces;
-  int chosen_active; /* index of the active scalars among the arrays listed in the request; -1 if there are
-                      * none */
+  int chosen_active; /* index of the active scalars in the request's list of arrays; -1 if there are none */
 } grid_file;
 
-/* Lists the arrays of values of the first piece in the request. */
+/* Lists in the request those arrays of the first piece that hold values of points or cells. */
 static hl_status list_arrays(grid_file *file, hl_error *error) {
   hl_status status = HL_OK;
   const hl_vtk_pieces *pieces = &file->pieces;
@@ -155,7 +154,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
 
 /* ---- which grids are volumes ---- */
 
-/* Whether a piece has a cell with a volume. */
+/* Finds whether any cell of a piece encloses a volume. */
 static hl_status find_cell(hl_stream **stream, grid_file *file, const hl_vtk_piece *piece, bool *found,
                            hl_error *error) {
   const hl_vtk_piece_array *of_types = hl_vtk_pieces_find(&file->pieces, piece, HL_VTK_CELLS, "types");

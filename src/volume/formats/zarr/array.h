@@ -15,38 +15,39 @@ typedef enum hl_zarr_compressor {
   HL_ZARR_DEFLATE, /* zlib or gzip */
   HL_ZARR_ZSTD,
   HL_ZARR_BLOSC,
-  HL_ZARR_LZ4, /* the size of the unpacked block, in four bytes, and then a block of LZ4 */
+  HL_ZARR_LZ4, /* a block of LZ4; before it stands the size of the unpacked block, in four bytes */
   HL_ZARR_BZIP2,
   HL_ZARR_XZ
 } hl_zarr_compressor;
 
-/* The kinds of filters, which changed a chunk's bytes before the bytes were packed. */
+/* The kinds of filters. Filters change the values or the bytes of a chunk before it is packed. */
 typedef enum hl_zarr_filter_kind {
-  HL_ZARR_SHUFFLE, /* the bytes of all elements were reordered: first the first bytes of all elements, then
-                    * the second bytes, and so on */
-  HL_ZARR_DELTA,   /* differences of neighbours are stored */
+  HL_ZARR_SHUFFLE, /* the bytes were reordered: first the first bytes of all elements, then their second
+                    * bytes, and so on */
+  HL_ZARR_DELTA,   /* the differences of neighbouring values were stored */
   HL_ZARR_OFFSET   /* FixedScaleOffset: (value - offset) * scale was stored, rounded */
 } hl_zarr_filter_kind;
 
 typedef struct hl_zarr_filter {
   hl_zarr_filter_kind kind;
   size_t element;         /* bytes of an element, for shuffling */
-  hl_voxel_type from, to; /* type of a chunk's values before and after the filter is undone */
+  hl_voxel_type from, to; /* types of the values: `from` as they are stored, `to` after the filter is
+                           * undone */
   double scale, offset;
 } hl_zarr_filter;
 
 enum { HL_ZARR_FILTERS_MOST = 4 };
 
-/* The coding of a chunk's voxels as bytes. */
+/* How the voxels of a chunk are coded as bytes. */
 typedef struct hl_zarr_codecs {
-  int order[HL_ZARR_AXES_MOST]; /* the array's axes in the order in which they lie in a chunk, the slowest
+  int order[HL_ZARR_AXES_MOST]; /* the array's axes in the order of a chunk's voxels, the slowest axis
                                  * first */
   bool big_endian;
   hl_zarr_compressor compressor;
   hl_zarr_filter filters[HL_ZARR_FILTERS_MOST]; /* the filters in the order in which they were applied */
   int filter_count;
   int inner_checks,
-      outer_checks; /* number of CRC32C sums (4 bytes each) after the voxels, and after the packed bytes */
+      outer_checks; /* number of CRC32C sums, of 4 bytes each: after the voxels, and after the packed bytes */
 } hl_zarr_codecs;
 
 typedef struct hl_zarr_array {
@@ -59,9 +60,9 @@ typedef struct hl_zarr_array {
   size_t chunk_bytes;    /* bytes of a chunk's voxels */
   unsigned char fill[8]; /* the value of voxels in missing chunks, native byte order */
   hl_zarr_codecs codecs;
-  char separator;        /* separator in the names of chunks: '.' or '/' */
-  bool separator_untold; /* version 2: whether the separator is not stated; then chunks that are missing under
-                          * names with '.' are looked for under names with '/' */
+  char separator;        /* separator of the numbers in the names of chunks: '.' or '/' */
+  bool separator_untold; /* in version 2: whether the metadata do not state the separator. Then a chunk that
+                          * is missing under its name with '.' is looked for under its name with '/' */
   bool has_prefix;       /* whether names of chunks begin with "c" */
   struct {
     bool are_used;                    /* whether files are shards, which hold several chunks */

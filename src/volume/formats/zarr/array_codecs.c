@@ -41,7 +41,8 @@ hl_status hl_zarr_type_3(const hl_zarr_reading *r, const char *name) {
 /* ---- fill values ---- */
 
 static void store_integer(hl_voxel_type type, int64_t value, unsigned char fill[8]) {
-  /* the low bytes of a number in two's complement are right for signed and for unsigned types */
+  /* the low bytes of the number in two's complement are the stored number, whether the type is signed or
+   * not */
   uint8_t byte = (uint8_t)value;
   uint16_t word = (uint16_t)value;
   uint32_t wide = (uint32_t)value;
@@ -53,8 +54,8 @@ static void store_integer(hl_voxel_type type, int64_t value, unsigned char fill[
   }
 }
 
-/* The binary16 of a double. The fraction is cut, which is exact for fill values that such an array can
- * hold. */
+/* Converts a double to binary16. Further bits of the fraction are cut off; fill values of such an array have
+ * none. */
 static uint16_t half_of(double value) {
   int exponent;
   uint16_t sign = signbit(value) ? 0x8000 : 0;
@@ -74,7 +75,8 @@ static void store_real(hl_voxel_type type, double value, unsigned char fill[8]) 
   else memcpy(fill, &value, sizeof value);
 }
 
-/* Stores the number that a text stands for: "NaN", "Infinity", "-Infinity", or the bits as "0x7fc00000". */
+/* Stores a number that is written as a text: a decimal number, "NaN", "Infinity", "-Infinity", or its bits,
+ * such as "0x7fc00000". */
 static bool store_text(hl_voxel_type type, const char *text, unsigned char fill[8]) {
   double value;
   if (hl_text_number(text, strlen(text), &value)) {
@@ -156,7 +158,8 @@ static hl_status fail_filter(const hl_zarr_reading *r, const char *name) {
       hl_text_printable(shown, name != NULL ? name : "?"));
 }
 
-/* The type that a filter names, little-endian or of single bytes; `other` if it names none. */
+/* Finds the type that a filter states for `key`, or `other` if it states none. The type must be little-endian
+ * or of single bytes. */
 static bool filter_type(const json_t *filter, const char *key, hl_voxel_type other, hl_voxel_type *type) {
   hl_zarr_array array = {.rank = 0};
   hl_error unused = {0};
@@ -178,7 +181,7 @@ hl_status hl_zarr_filters_2(const hl_zarr_reading *r, const json_t *list) {
     hl_voxel_type own = r->array->type;
     if (name != NULL && hl_text_is_one_of(name, "quantize|bitround")) {
       if (!filter_type(entry, "astype", own, &filter.to) || filter.to != own) return fail_filter(r, name);
-      continue; /* this filter only rounded values before they were stored; it need not be undone */
+      continue; /* this filter rounded values before they were stored, which cannot and need not be undone */
     }
     if (name == NULL || codecs->filter_count == HL_ZARR_FILTERS_MOST || codecs->big_endian)
       return fail_filter(r, name);
@@ -204,7 +207,8 @@ hl_status hl_zarr_filters_2(const hl_zarr_reading *r, const json_t *list) {
   return HL_OK;
 }
 
-/* Takes a transposition. "order" is a permutation: stored axis n is axis order[n] of the array. */
+/* Takes the codec of a transposition. "order" is a permutation: stored axis n is axis order[n] of the
+ * array. */
 static hl_status take_transpose(const hl_zarr_reading *r, const json_t *configuration,
                                 hl_zarr_codecs *codecs) {
   const json_t *order = json_object_get(configuration, "order");

@@ -19,11 +19,12 @@ typedef struct hl_zarr_reading {
 hl_status hl_zarr_type_2(const hl_zarr_reading *r, const char *name);
 /* Takes a type of version 3, such as "uint16". */
 hl_status hl_zarr_type_3(const hl_zarr_reading *r, const char *name);
-/* Takes the filters of version 2. The filter that was applied last is undone first. */
+/* Takes the filters of version 2, in the order in which they were applied. They are undone in the opposite
+ * order. */
 hl_status hl_zarr_filters_2(const hl_zarr_reading *r, const json_t *list);
 hl_status hl_zarr_compressor_2(const hl_zarr_reading *r, const json_t *compressor);
 hl_status hl_zarr_codecs_3(const hl_zarr_reading *r, const json_t *list, hl_zarr_codecs *codecs);
-/* Takes the fill value. A value of null stands for 0. */
+/* Takes the fill value. If it is null, the fill value is 0. */
 hl_status hl_zarr_fill_value(const hl_zarr_reading *r, const json_t *value);
 
 #endif

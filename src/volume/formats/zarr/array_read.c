@@ -1,5 +1,5 @@
-/* volume/formats/zarr/array_read.c - reads and checks the metadata of a Zarr array (array_codecs.c: its
- * codecs and values). */
+/* volume/formats/zarr/array_read.c - reads and checks the metadata of a Zarr array (for types, fill values
+ * and codecs see array_codecs.c). */
 #include "volume/formats/zarr/array_read.h"
 
 #include <string.h>
@@ -99,8 +99,8 @@ static hl_status read_chunk_names(const hl_zarr_reading *r, const json_t *encodi
   return read_separator(r, configured(encoding, "separator"), plain ? '/' : '.');
 }
 
-/* Reads the codec of a sharded array. There, each chunk of the chunk grid is a shard: a file that holds
- * several inner chunks. */
+/* Reads the codec of a sharded array. Each chunk of the array's chunk grid is then a shard, which is a file
+ * with several inner chunks. */
 static hl_status read_shards(const hl_zarr_reading *r, const json_t *codec) {
   hl_zarr_array *array = r->array;
   uint64_t outer[HL_ZARR_AXES_MOST];
@@ -164,7 +164,7 @@ static hl_status read_version_3(const hl_zarr_reading *r, const json_t *node) {
 
 /* ---- the whole ---- */
 
-/* Reads the axes' names from an attribute, where xarray writes them in version 2. */
+/* Reads the names of the axes from the attribute into which xarray writes them in version 2. */
 static hl_status read_attributed_names(const hl_zarr_reading *r) {
   json_t *attributes;
   hl_status status = hl_zarr_metadata_read(r->bundle, r->array->folder, ".zattrs", &attributes, r->error);

@@ -1,7 +1,7 @@
 /* volume/formats/zarr/chunk.c - converts a chunk's bytes in a file to its voxels: checksums, codecs, filters.
  *
  * The size of an unpacked chunk is known from the metadata, and data that unpack to another size are refused.
- * Where packed data state their unpacked size, it is compared before any memory is taken. */
+ * If packed data state their unpacked size, it is checked before any memory is allocated. */
 #include "volume/formats/zarr/chunk.h"
 
 #include <math.h>
@@ -96,7 +96,7 @@ static hl_status unpack_zstd(hl_zarr_unpacker *u, packed_bytes packed, hl_error 
 }
 #endif
 
-/* Unpacks LZ4, bzip2 and xz. The unpacked size, in four bytes, stands before a block of LZ4. */
+/* Unpacks LZ4, bzip2 or xz. A block of LZ4 has its unpacked size, in four bytes, before it. */
 static hl_status unpack_other(hl_zarr_unpacker *u, packed_bytes packed, hl_error *error) {
   hl_zarr_compressor kind = u->array->codecs.compressor;
   bool lz4 = kind == HL_ZARR_LZ4, sound = !lz4 || packed.length >= 4;
@@ -147,8 +147,8 @@ static double number_of(hl_voxel_type type, const unsigned char *bytes) {
     memcpy(bytes, &number, sizeof number); \
   } while (0)
 
-/* Stores a number as bytes of a type, the least significant byte first. Whole numbers wrap around at the
- * type's range, as their sums do. */
+/* Stores a number as bytes of a type, the least significant byte first. Whole numbers wrap around at the ends
+ * of the type's range, as the sums of differences do. */
 static void put_number(hl_voxel_type type, double value, unsigned char *bytes) {
   bool whole = type != HL_VOXEL_F32 && type != HL_VOXEL_F64;
   if (whole && !(fabs(value) < 0x1p62)) value = 0;
@@ -163,7 +163,7 @@ static void put_number(hl_voxel_type type, double value, unsigned char *bytes) {
   }
 }
 
-/* The whole number that bytes of a type stand for, with its sign extended. */
+/* Reads a whole number from bytes of a type. If the type is signed, the sign is extended. */
 static int64_t whole_of(hl_voxel_type type, const unsigned char *bytes) {
   uint64_t bits = 0;
   size_t count = hl_voxel_type_bytes(type);
@@ -173,8 +173,8 @@ static int64_t whole_of(hl_voxel_type type, const unsigned char *bytes) {
   return (int64_t)bits;
 }
 
-/* Undoes the differences of neighbours by adding them up. For whole numbers the sums are exact, modulo the
- * type's range. */
+/* Replaces stored differences of neighbours by the values, which are the sums of the differences. For whole
+ * numbers the sums are exact, modulo the type's range. */
 static void undo_delta(const hl_zarr_filter *filter, const unsigned char *from, size_t count,
                        unsigned char *to) {
   size_t step = hl_voxel_type_bytes(filter->from), wide = hl_voxel_type_bytes(filter->to);
@@ -209,7 +209,7 @@ static void undo(const hl_zarr_filter *filter, const unsigned char *from, size_t
   }
 }
 
-/* The bytes of a chunk before its filters are undone. */
+/* The number of bytes of a chunk before its filters are undone. */
 static size_t filtered_bytes(const hl_zarr_array *array) {
   size_t bytes = array->chunk_bytes, count = bytes / hl_voxel_type_bytes(array->type);
   for (int n = 0; n < array->codecs.filter_count; n++)
@@ -218,7 +218,8 @@ static size_t filtered_bytes(const hl_zarr_array *array) {
   return bytes;
 }
 
-/* Undoes the filters, the last first. *voxels is replaced by the unpacker's own memory. */
+/* Undoes the filters, beginning with the one that was applied last. *voxels is set to the unpacker's own
+ * memory. */
 static hl_status undo_filters(hl_zarr_unpacker *u, const unsigned char **voxels, hl_error *error) {
   const hl_zarr_array *array = u->array;
   const hl_zarr_codecs *codecs = &array->codecs;
@@ -263,7 +264,7 @@ static size_t unpacked_bytes(const hl_zarr_array *array) {
 }
 
 uint64_t hl_zarr_chunk_most(const hl_zarr_array *array) {
-  enum { SLACK = 1 << 20 }; /* packing makes no data larger by more than this */
+  enum { SLACK = 1 << 20 }; /* no codec makes incompressible data larger by more than this number of bytes */
   uint64_t unpacked = unpacked_bytes(array);
   return array->codecs.compressor == HL_ZARR_RAW ? unpacked : 2 * unpacked + SLACK;
 }

@@ -4,8 +4,8 @@
 
 #include "volume/formats/zarr/array.h"
 
-/* A thread's memory for one chunk, packed and unpacked. Before its first use the first three members must be
- * set, and all others must be zero. */
+/* The memory in which one thread reads and unpacks chunks. Before the first use the first three members must
+ * be set, and all others must be zero. */
 typedef struct hl_zarr_unpacker {
   hl_context *context;
   const char *path; /* for error lines */
@@ -13,7 +13,8 @@ typedef struct hl_zarr_unpacker {
   unsigned char *packed; /* owned; [capacity] */
   size_t capacity;
   size_t unpacked;         /* number of bytes that a chunk unpacks to */
-  unsigned char *filtered; /* owned; two chunks whose filters are undone; null if there are no filters */
+  unsigned char *filtered; /* owned; room for two states of a chunk, before and after a filter is undone; null
+                            * if there are no filters */
   unsigned char *voxels;   /* owned; [array->chunk_bytes], followed by a checksum */
   void *zstd;              /* owned; zstd's own memory */
 } hl_zarr_unpacker;
@@ -23,8 +24,8 @@ uint64_t hl_zarr_chunk_most(const hl_zarr_array *array);
 
 void hl_zarr_unpacker_release(hl_zarr_unpacker *unpacker);
 
-/* Reads `length` bytes of the source from `offset` on and unpacks them. *voxels: [array->chunk_bytes], valid
- * until the next call. */
+/* Reads and unpacks the chunk of `length` bytes at `offset` of the source. *voxels: [array->chunk_bytes],
+ * valid until the next call. */
 hl_status hl_zarr_chunk_read(hl_zarr_unpacker *unpacker, hl_source *source, uint64_t offset, uint64_t length,
                              const unsigned char **voxels, hl_error *error);
 

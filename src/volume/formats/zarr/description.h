@@ -4,16 +4,16 @@
 
 #include "volume/formats/zarr/metadata.h"
 
-/* Reads names, colours and windows of channels, from the attribute "omero", which says how a viewer should
- * show them. The request's selection must be made. */
+/* Reads names, colours and windows of channels from the attribute "omero", which says how a viewer should
+ * show them. request->selection must be set. */
 hl_status hl_zarr_describe_channels(const json_t *ome, hl_load_request *request, hl_error *error);
 
-/* Reads the labels of an image of labels: their colours, and their names from the property "class", "name" or
- * "label". */
+/* Reads what an image of labels states about its labels: their colours, and their names, which are the
+ * properties "class", "name" or "label". */
 hl_status hl_zarr_name_labels(const json_t *ome, hl_volume *volume, hl_error *error);
 
-/* Lists the images of labels in the group "labels" of an image's group. A group that cannot be read lists
- * none. */
+/* Lists the images of labels that belong to an image: those in the group "labels" of the image's group. If
+ * that group cannot be read, the list is empty. */
 hl_status hl_zarr_list_label_maps(const hl_bundle *bundle, const char *folder, hl_volume *volume,
                                   hl_error *error);
 

@@ -33,8 +33,8 @@ static hl_zarr_axis axis_of_name(const char *name) {
   return HL_ZARR_OTHER;
 }
 
-/* Names axes that have no names. The last three are z, y and x; the axis before them is the channel, and
- * the axis before that the time. */
+/* Gives kinds to axes without known names. Counted from the last one, the axes are x, y, z, channel and
+ * time. */
 static void take_places(int rank, hl_zarr_axis *axis) {
   static const hl_zarr_axis from_end[] = {HL_ZARR_X, HL_ZARR_Y, HL_ZARR_Z, HL_ZARR_CHANNEL, HL_ZARR_TIME};
   for (int n = 0; n < rank; n++) axis[rank - 1 - n] = n < HL_ZARR_OTHER ? from_end[n] : HL_ZARR_OTHER;
@@ -48,8 +48,8 @@ static bool names_are_known(int rank, const hl_zarr_axis *axis) {
   return seen[HL_ZARR_X] == 1 && seen[HL_ZARR_Y] == 1;
 }
 
-/* Reads the axes. unit: set to the factors by which lengths along the axes become micrometres, or all to 1
- * unless each axis of space has a known unit. Returns whether each has one. */
+/* Reads the axes. unit: set to the factors by which lengths become micrometres, if all axes of space have
+ * known units; otherwise all set to 1. Returns whether they all have known units. */
 static bool read_axes(const json_t *axes, int rank, hl_zarr_axis *axis, double unit[3]) {
   bool told = json_array_size(axes) == (size_t)rank, all = true;
   for (int n = 0; n < rank && told; n++) {
@@ -71,7 +71,7 @@ static bool read_axes(const json_t *axes, int rank, hl_zarr_axis *axis, double u
 
 /* ---- transformations ---- */
 
-/* Applies scales and translations, one after the other: x -> scale x + translation. */
+/* Applies a list of scales and translations to a level, one after the other: x -> scale x + translation. */
 static hl_status apply(const hl_bundle *bundle, const char *folder, const json_t *transformations, int rank,
                        hl_zarr_level *level, hl_error *error) {
   for (size_t t = 0; t < json_array_size(transformations); t++) {
@@ -95,8 +95,8 @@ static hl_status apply(const hl_bundle *bundle, const char *folder, const json_t
   return HL_OK;
 }
 
-/* Scales levels by their shapes. Before version 0.4 no level states its scale, and all levels are assumed to
- * cover the same space. */
+/* Finds the scales of levels from their shapes, for versions before 0.4, in which no level states its scale.
+ * All levels are assumed to cover the same space. */
 static void scale_by_shape(hl_zarr_image *image) {
   for (int n = 1; n < image->level_count; n++)
     for (int axis = 0; axis < image->levels[0].array.rank; axis++) {
@@ -122,8 +122,8 @@ static hl_status read_level(const hl_bundle *bundle, const char *folder, const j
              : status;
 }
 
-/* Brings the metadata of all levels from a server, at once. Levels without a proper path are left to
- * read_level(). */
+/* Fetches the metadata of all levels from a server, in one request. Levels whose path is invalid are left
+ * out; read_level() reports them. */
 static hl_status bring_levels(const hl_bundle *bundle, const char *folder, const json_t *datasets,
                               hl_error *error) {
   char folders[HL_ZARR_LEVELS_MOST][HL_ZARR_PATH_BYTES];

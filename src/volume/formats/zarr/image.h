@@ -1,4 +1,5 @@
-/* volume/formats/zarr/image.h - OME-Zarr's metadata of an image: axes, units, and the levels of its pyramid.
+/* volume/formats/zarr/image.h - reads OME-Zarr's metadata of an image: axes, units, and the levels of its
+ * resolution pyramid.
  *
  * Source: the OME-NGFF specification, versions 0.4 (in `.zattrs`) and 0.5 (in `zarr.json` under "ome"):
  * "multiscales", "axes" and "coordinateTransformations"; images of 0.1 to 0.3 have no transformations. */
@@ -22,7 +23,7 @@ typedef enum hl_zarr_axis {
 
 typedef struct hl_zarr_level {
   hl_zarr_array array;
-  /* scale and translation along the array's axes; in micrometres where the file states units */
+  /* scale and translation along the array's axes, in micrometres if the file states units */
   double scale[HL_ZARR_AXES_MOST], translation[HL_ZARR_AXES_MOST];
 } hl_zarr_level;
 
@@ -35,13 +36,13 @@ typedef struct hl_zarr_image {
   char name[HL_PRINTABLE_BYTES];
 } hl_zarr_image;
 
-/* Reads an image. ome: the attributes with "multiscales" of the group in `folder`. Release *image also after
- * a failure. */
+/* Reads the metadata of an image. ome: the attributes of the group in `folder`, with "multiscales". Release
+ * *image also after a failure. */
 hl_status hl_zarr_image_read(const hl_bundle *bundle, const char *folder, const json_t *ome,
                              hl_zarr_image *image, hl_error *error);
 
-/* Describes an array without OME-Zarr's metadata. Its axes follow from their names, else the last three are
- * z, y, x. */
+/* Describes an array that has no metadata of OME-Zarr. The names of its axes tell their kinds. Without known
+ * names, the last three axes are z, y, x. */
 hl_status hl_zarr_image_of_array(const hl_bundle *bundle, const hl_zarr_array *array, hl_zarr_image *image,
                                  hl_error *error);
 void hl_zarr_image_release(hl_zarr_image *image);

@@ -8,8 +8,8 @@
 
 enum { HL_ZARR_PATH_BYTES = 512, HL_ZARR_METADATA_BYTES_MOST = 4 << 20 };
 
-/* Fetches all metadata of the groups or arrays in `count` folders at once, if the bundle is a store on a
- * server. Does nothing for other bundles. */
+/* Fetches the metadata files of the groups or arrays in `count` folders, in one request, if the bundle is a
+ * store on a server. Does nothing for other bundles. */
 hl_status hl_zarr_metadata_bring(const hl_bundle *bundle, const char (*folders)[HL_ZARR_PATH_BYTES],
                                  size_t count, hl_error *error);
 
@@ -18,13 +18,13 @@ hl_status hl_zarr_metadata_bring(const hl_bundle *bundle, const char (*folders)[
 hl_status hl_zarr_metadata_read(const hl_bundle *bundle, const char *folder, const char *name,
                                 json_t **object, hl_error *error);
 
-/* Reads the attributes of the group or array in `folder`, from `zarr.json` or `.zattrs`; null if there are
- * none. */
+/* Reads the attributes of the group or array in `folder`, from `zarr.json` or `.zattrs`. *attributes is null
+ * if there are none. */
 hl_status hl_zarr_attributes_read(const hl_bundle *bundle, const char *folder, json_t **attributes,
                                   hl_error *error);
 
-/* OME-Zarr's part of the attributes: the member "ome" in version 0.5, all attributes in version 0.4.
- * Borrowed. */
+/* The attributes that belong to OME-Zarr, borrowed: in version 0.5 the member "ome", in version 0.4 all
+ * attributes. */
 const json_t *hl_zarr_ome(const json_t *attributes);
 
 /* Fails with "PATH/FOLDER...: WHAT". */
@@ -32,8 +32,8 @@ __attribute__((format(printf, 5, 6))) hl_status hl_zarr_fail(const hl_bundle *bu
                                                              hl_error *error, hl_status code,
                                                              const char *format, ...);
 
-/* Writes folder + name + '/' into `joined`. False if that is too long or leads out of the folder ("..", "/").
- * The names "." and "" stand for the folder itself. */
+/* Writes folder + name + '/' into `joined`. Returns false if the result is too long, or if the name leads out
+ * of the folder ("..", "/"). The names "." and "" stand for the folder itself. */
 bool hl_zarr_join(char joined[HL_ZARR_PATH_BYTES], const char *folder, const char *name);
 
 #endif

@@ -53,8 +53,8 @@ static hl_status list_numbered(const hl_bundle *bundle, const char *base, hl_loa
   return status;
 }
 
-/* Lists the paths of an array of objects. list: the array, whose objects have a "path". tail: appended to
- * each path. */
+/* Lists the images of an array of objects, such as the fields of a well. list: the array; each object's
+ * "path", followed by `tail`, is the path of an image. */
 static hl_status list_paths(const hl_bundle *bundle, const char *base, const json_t *list, const char *tail,
                             hl_load_request *request, hl_error *error) {
   hl_status status = HL_OK;

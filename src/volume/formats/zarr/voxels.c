@@ -1,7 +1,7 @@
 /* volume/formats/zarr/voxels.c - reads chunks on all threads and puts their voxels in their places.
  *
- * A part of the work is one chunk. The chunk's file may be a shard, which holds several chunks; parts of the
- * same shard follow each other. A missing chunk holds the fill value. */
+ * Each part of the work is one chunk. The chunk's file may be a shard, which holds several chunks. The parts
+ * of a shard have consecutive numbers. A missing chunk holds the fill value. */
 #include "volume/formats/zarr/voxels.h"
 
 #include <stdatomic.h>
@@ -15,41 +15,42 @@
 #include "volume/io/parallel.h"
 
 enum {
-  PARALLEL_VOXELS = 1 << 20, /* smaller volumes are read sooner than threads start */
+  PARALLEL_VOXELS = 1 << 20, /* smaller volumes are read by one thread, which takes less time than starting
+                              * others */
   PARTS_MOST = 1 << 26,
   KEY_BYTES = HL_ZARR_PATH_BYTES + HL_ZARR_AXES_MOST * 21 + 8
 };
 
 static const bool native_is_big_endian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
 
-/* A thread's memory for a chunk, and the shard that the thread read last. */
+/* What one thread holds: memory for a chunk, and the file that it has read last, which may be a shard. */
 typedef struct worker {
   hl_zarr_unpacker unpacker;
   char key[KEY_BYTES];  /* name of the open file; "" if there is none */
   hl_source *source;    /* owned; null if the file does not exist */
-  unsigned char *index; /* owned; [16 * chunks_in_shard], followed by a checksum; the shard's index */
-  void *row; /* owned; a row of a chunk, in stored form, on its way to pages or to a rank's slices; null if
-              * all voxels are in memory */
+  unsigned char *index; /* owned; the shard's index: [16 * chunks_in_shard], followed by a checksum */
+  void *row; /* owned; memory for a row of a chunk in stored form, if voxels must be copied to pages or to a
+              * rank's slices; null if all voxels are in memory */
 } worker;
 
 typedef struct reading {
   const hl_bundle *bundle;
   const hl_zarr_array *array;
   const hl_zarr_choice *choice;
-  hl_destination *to;          /* borrowed */
-  size_t stored_bytes;         /* bytes of a voxel */
-  uint64_t size[3];            /* size of the volume */
-  uint64_t files[3], inner[3]; /* along i, j, k: number of files, and number of chunks in each file */
-  uint64_t parts;              /* number of all parts */
-  uint64_t first;              /* number of the first part of the files that are being read */
-  size_t
-      stride[HL_ZARR_AXES_MOST]; /* along the array's axes: bytes from a voxel to the next one in a chunk */
-  unsigned char fill[4];         /* the fill value in stored form */
-  worker *workers;               /* owned; [threads] */
-  atomic_size_t found;           /* number of chunks that exist */
+  hl_destination *to;               /* borrowed */
+  size_t stored_bytes;              /* bytes of a voxel */
+  uint64_t size[3];                 /* size of the volume */
+  uint64_t files[3], inner[3];      /* along i, j, k: number of files, and number of chunks in each file */
+  uint64_t parts;                   /* number of all parts */
+  uint64_t first;                   /* number of the first part of the files that are being read at present */
+  size_t stride[HL_ZARR_AXES_MOST]; /* number of bytes from a voxel of a chunk to the next one, along each of
+                                     * the array's axes */
+  unsigned char fill[4];            /* the fill value in stored form */
+  worker *workers;                  /* owned; [threads] */
+  atomic_size_t found;              /* number of chunks that exist */
 } reading;
 
-/* The place of a part, in chunks and in voxels. */
+/* Where a part lies: its chunk in the array, and its voxels in the volume. */
 typedef struct part {
   uint64_t file[HL_ZARR_AXES_MOST];  /* coordinates of the part's file */
   uint64_t inner[HL_ZARR_AXES_MOST]; /* index of the chunk within its file */
@@ -131,8 +132,8 @@ static void fill_row(const reading *r, void *row, size_t first, size_t count) {
   }
 }
 
-/* Reads voxels that lie `step` bytes apart and stores them from number `first` on. They pass through a small
- * buffer unless they lie side by side. */
+/* Stores `count` voxels of a chunk, which lie `step` bytes apart, from voxel number `first` of the volume on.
+ * They are copied through a small buffer, unless they are adjacent. */
 static void store_row(const reading *r, const unsigned char *from, size_t step, size_t first, size_t count,
                       unsigned char *row) {
   enum { STAGED = 512 };
@@ -153,7 +154,7 @@ static void store_row(const reading *r, const unsigned char *from, size_t step, 
   }
 }
 
-/* Stores a part. chunk: the part's voxels; null if the part gets the fill value. */
+/* Stores the voxels of a part. chunk: the voxels of the part's chunk; null if all get the fill value. */
 static void put(const reading *r, const worker *w, const part *p, const unsigned char *chunk) {
   size_t step[3];
   for (int a = 0; a < 3; a++) step[a] = r->choice->axis[a] < 0 ? 0 : r->stride[r->choice->axis[a]];
@@ -212,7 +213,7 @@ static uint64_t little_u64(const unsigned char *bytes) {
   return value;
 }
 
-/* Finds a chunk in its file. *length is 0 if the chunk is missing. */
+/* Finds a part's chunk in the open file. *length is set to 0 if the chunk is missing. */
 static hl_status find_chunk(const reading *r, const worker *w, const part *p, uint64_t *offset,
                             uint64_t *length, hl_error *error) {
   uint64_t size = w->source != NULL ? hl_source_size(w->source) : 0, number = 0;
@@ -238,7 +239,7 @@ static hl_status read_part(void *data, size_t number, int index, hl_error *error
   if (!place_part(r, r->first + number, &p)) return HL_OK;
   uint64_t slice = r->size[0] * r->size[1];
   if (!hl_destination_wants(r->to, p.begin[2] * slice, p.count[2] * slice)) {
-    /* the chunk counts as found: only the rank that keeps its voxels knows whether it exists */
+    /* a chunk of other ranks counts as found: only the rank that keeps its voxels knows whether it exists */
     atomic_fetch_add_explicit(&r->found, 1, memory_order_relaxed);
     return HL_OK;
   }
@@ -256,14 +257,14 @@ static hl_status read_part(void *data, size_t number, int index, hl_error *error
 
 enum { FILES_AT_A_TIME = 64 };
 
-/* The greatest length of a file; more would not be read. */
+/* The greatest length of a file. The rest of a longer file would not be read. */
 static uint64_t longest_file(const hl_zarr_array *array) {
   uint64_t chunk = hl_zarr_chunk_most(array) + 16, length;
   return __builtin_mul_overflow(chunk, array->shards.chunks, &length) ? UINT64_MAX : length + 64;
 }
 
-/* Whether any voxel of a file is kept here. number: the number of the file's first part. place: set to the
- * place of one of the file's parts. */
+/* Whether any voxel of a file is kept by this process. number: the number of the file's first part. place:
+ * set to the place of one of the file's parts. */
 static bool wants_file(const reading *r, uint64_t number, part *place) {
   uint64_t slice = r->size[0] * r->size[1], inner = r->inner[0] * r->inner[1] * r->inner[2];
   for (uint64_t n = 0; n < inner; n++)
@@ -274,7 +275,8 @@ static bool wants_file(const reading *r, uint64_t number, part *place) {
 }
 
 /* Fetches the files of the `count` parts from r->first on. separator: the separator in the files' names.
- * again: whether to fetch only those files that the server does not have under the array's own separator. */
+ * again: whether to fetch only those files that were not found under their names with the array's own
+ * separator. */
 static hl_status bring_files(const reading *r, uint64_t count, char separator, bool again, hl_error *error) {
   uint64_t inner = r->inner[0] * r->inner[1] * r->inner[2];
   const char *names[FILES_AT_A_TIME];
@@ -306,7 +308,7 @@ static void close_files(const reading *r, int workers) {
   }
 }
 
-/* Brings some files at a time, and reads their parts. */
+/* Fetches some files at a time from the server, and reads their parts. */
 static hl_status read_from_server(reading *r, hl_pool *pool, hl_error *error) {
   const hl_zarr_array *array = r->array;
   uint64_t step = FILES_AT_A_TIME * r->inner[0] * r->inner[1] * r->inner[2];
@@ -340,7 +342,7 @@ static void prepare(reading *r) {
   hl_voxels_store(array->type, false, array->fill, 1, r->fill);
 }
 
-/* The number of voxels of a chunk's longest row. */
+/* The greatest number of voxels that a row of a chunk can have in the volume. */
 static size_t longest_row(const reading *r) {
   int axis = r->choice->axis[0];
   uint64_t chunk = axis < 0 ? 1 : r->array->chunk[axis];

@@ -5,15 +5,16 @@
 #include "volume/formats/zarr/array.h"
 #include "volume/io/destination.h"
 
-/* The array's axes that are the volume's axes, and the index along all others. */
+/* Which of the array's axes are the volume's axes, and which index along all others is read. */
 typedef struct hl_zarr_choice {
-  int axis[3];                       /* the array's axis for each of i, j, k; -1: there is none, and the
-                                      * volume has a single voxel along it */
-  uint64_t index[HL_ZARR_AXES_MOST]; /* index along the axes that are not in `axis` */
+  int axis[3];                       /* for each of i, j, k, the index of the array's axis; -1 if there is
+                                      * none, so that the volume has a single voxel along it */
+  uint64_t index[HL_ZARR_AXES_MOST]; /* for each axis of the array that is not in `axis`, the index that is
+                                      * read */
 } hl_zarr_choice;
 
 /* Opens the destination and reads all voxels into it. Fails if all chunks are missing. grid: the volume's
- * grid, as the choice makes it. The destination must be zero before. Close it also after a failure. */
+ * grid, which must fit the choice. *to must be zero before, and is to be closed also after a failure. */
 hl_status hl_zarr_voxels_read(const hl_bundle *bundle, const hl_zarr_array *array,
                               const hl_zarr_choice *choice, const hl_volume_description *grid,
                               hl_destination *to, hl_error *error);

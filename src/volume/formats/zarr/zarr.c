@@ -24,8 +24,8 @@ static bool is_marker(const char *name) {
          strcmp(name, ".zattrs") == 0;
 }
 
-/* Finds the root of an archive, which may lie in a folder: the folder of the marker file with the shortest
- * path. */
+/* Finds the root of the hierarchy in an archive, which may lie in a folder. It is the folder of that marker
+ * file which has the fewest folders in its path. */
 static bool find_root_of_archive(const hl_bundle *bundle, char folder[HL_ZARR_PATH_BYTES]) {
   int least = HL_BUNDLE_DEPTH_MOST;
   for (size_t n = 0; n < bundle->count; n++) {
@@ -61,7 +61,7 @@ static hl_status find_root(hl_bundle *bundle, char folder[HL_ZARR_PATH_BYTES], b
 
 /* ---- one image ---- */
 
-/* The sizes of a level's volume along x, y, z. *others: the product of its other axes' sizes. */
+/* Finds the sizes along x, y, z of the volume that a level gives. */
 static void level_sizes(const hl_zarr_image *image, int level, size_t sizes[3]) {
   const hl_zarr_array *array = &image->levels[level].array;
   for (int a = 0; a < 3; a++) sizes[a] = 1;
@@ -79,7 +79,7 @@ static hl_status choose_level(const hl_zarr_image *image, const char *path, hl_l
   return hl_level_choose(request, path, sizes, (size_t)image->level_count, error);
 }
 
-/* Describes the volume's grid, and finds the array's axes that are the grid's. */
+/* Describes the volume's grid, and finds which of the array's axes are the grid's axes. */
 static void describe(const hl_zarr_image *image, int number, hl_payload *payload, hl_zarr_choice *choice) {
   const hl_zarr_level *level = &image->levels[number];
   double known = 1;
@@ -98,8 +98,8 @@ static void describe(const hl_zarr_image *image, int number, hl_payload *payload
   if (choice->axis[HL_ZARR_Z] < 0) payload->grid.axis[HL_ZARR_Z][HL_ZARR_Z] = known;
 }
 
-/* The size of the array along the axis of a kind (time, channel). *axis: set to the number of this axis; -1
- * if there is none. */
+/* The size of the array along its axis of a kind, such as time. *axis: set to the index of this axis; -1 if
+ * there is none. */
 static size_t count_along(const hl_zarr_image *image, const hl_zarr_array *array, hl_zarr_axis kind,
                           int *axis) {
   *axis = -1;
@@ -157,7 +157,7 @@ static hl_status load_array(const hl_bundle *bundle, const hl_zarr_array *array,
   return status;
 }
 
-/* Lists the array `name` of the group, if it exists and can hold a volume. */
+/* Adds the array `name` of a group to the request's list, if it exists and can hold a volume. */
 static hl_status list_array(const hl_bundle *bundle, const char *folder, const char *name,
                             hl_load_request *request, hl_error *error) {
   char path[HL_ZARR_PATH_BYTES];
@@ -192,7 +192,8 @@ static hl_status list_folder(const hl_bundle *bundle, char **names, size_t *coun
   return status;
 }
 
-/* Lists the names of the arrays in an archive's folder, sorted and owned as by list_folder(). */
+/* Lists the names of the arrays in a folder of an archive. They are sorted and owned as those of
+ * list_folder(). */
 static hl_status list_archive(const hl_bundle *bundle, const char *root, char **names, size_t *count,
                               hl_error *error) {
   size_t length = strlen(root);
@@ -228,7 +229,7 @@ static hl_status list_arrays(const hl_bundle *bundle, const char *folder, hl_loa
   return status;
 }
 
-/* Loads a group without OME-Zarr's metadata: reads one of its arrays. */
+/* Loads one of the arrays of a group that has no metadata of OME-Zarr. */
 static hl_status load_group(const hl_bundle *bundle, const char *folder, hl_load_request *request,
                             hl_volume **volume, hl_error *error) {
   char path[HL_ZARR_PATH_BYTES];
@@ -269,7 +270,7 @@ static hl_status load_described(const hl_bundle *bundle, const char *folder, con
   return status;
 }
 
-/* Loads a group or an array. depth: the number of collections around it, such as a plate and a well. */
+/* Loads a group or an array. depth: the number of collections that contain it, such as a plate and a well. */
 static hl_status load_node(const hl_bundle *bundle, char folder[HL_ZARR_PATH_BYTES], int depth,
                            hl_load_request *request, hl_volume **volume, hl_error *error) {
   json_t *attributes;

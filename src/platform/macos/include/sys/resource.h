@@ -8,7 +8,7 @@
 
 int hl_posix_getrusage(int who, struct rusage *usage);
 #define getrusage hl_posix_getrusage
-/* Another process's limits cannot be set: fails. */
+/* Always fails, because the limits of another process cannot be set. */
 int prlimit(pid_t process, int what, const struct rlimit *limit, struct rlimit *before);
 
 #endif

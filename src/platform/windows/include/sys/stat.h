@@ -7,7 +7,8 @@
 #include <io.h>
 #include <sys/types.h>
 #include <time.h>
-#include <wchar.h> /* declares structs with such members, before these become macros */
+/* declares structs with members of these names, and so comes before the names become macros */
+#include <wchar.h>
 
 struct stat {
   unsigned long long st_dev, st_ino;
