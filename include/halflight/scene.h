@@ -498,10 +498,11 @@ HL_API HL_WARN_UNUSED hl_status hl_camera_frame(const hl_scene_description *desc
 HL_API HL_WARN_UNUSED hl_status hl_camera_fit(const hl_scene_description *description, double zoom,
                                               hl_camera *camera);
 
-/* Finds the direction of a light (a unit vector, the way that light travels) from where the camera sees the
- * light: azimuth (positive: right) and elevation (positive: up) are angles from the line of sight. At 0, 0
- * the light shines along the line of sight. camera null: direction becomes 0, 0, 0, which hl_scene_create()
- * refuses; direction null: nothing is done. */
+/* Finds the direction in which a light travels, a unit vector, from the place of the lamp beside the camera:
+ * azimuth (positive: the lamp stands to the right of the camera) and elevation (positive: above it) are
+ * angles from the line of sight. At 0, 0 the lamp stands at the camera and shines along the line of sight.
+ * camera null: direction becomes 0, 0, 0, which hl_scene_create() refuses; direction null: nothing is done.
+ */
 HL_API void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elevation_deg,
                                double direction[3]);
 /* Finds the direction of a light as hl_light_direction() does, but in the axes of HL_LIGHT_FRAME_CAMERA. */

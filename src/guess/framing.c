@@ -12,7 +12,8 @@
 
 /* The fraction of the picture's half width or height that the visible voxels fill. */
 #define FILLED 0.92 /* seen from one direction */
-/* The least value of FILLED to which the eye may move back to make room for turning. */
+/* The eye moves back to make room for turning, as long as the outline fills at least this part of the
+ * picture. */
 #define FILLED_LEAST 0.82
 /* During a turn the outline may reach beyond the picture by this factor. It is small enough that only the
  * outline's invisible rim is cut off. */

@@ -15,7 +15,7 @@
 #define FLOW_DEPTH   2.0  /* optical depth of a flow in which all values are shown */
 #define MEDIUM_DEPTH 10.0 /* optical depth of smoke across the whole object */
 #define SHELL        0.2  /* optical depth of the shell of a field, along a line that crosses the shell */
-/* voxel edges across an object; the opacities of solid matter are right for this size */
+/* The width of an object, in voxels, for which the opacities of solid matter were chosen. */
 #define FINE 96
 
 /* The colours of a function at four distances from the background: faint, solid, dense and top. Linear RGB.

@@ -12,8 +12,9 @@ enum { LEVEL_SUMS = HL_LEVEL_FALL + 1, LEVEL_BLENDED = HL_LEVEL_THIN + 1 };
 /* The filter that blurs cells, [1 2 1] / 4, so that there are no steps from cell to cell. */
 static const label_filter BLUR = {2, {0.5f, 0.25f, 0}};
 
-/* The weight of imaginary faces that are added, at every voxel, to the sums over the border's faces. On them
- * the field is 1/2 and falls by HL_LABEL_SLOPE, so that the field stays unchanged far from any border. */
+/* The weight of an imaginary face that is added, at every voxel, to the sums over the faces of the label's
+ * border. On this face the field has the values that it should have, so that it asks for no correction: it
+ * decides where the voxel lies far from any border. */
 static const float FAINT = 1e-3f;
 
 /* The least fall across the border's faces. A smaller fall counts as this one, so that the field is not made

@@ -24,14 +24,14 @@ hl_label_part hl_label_part_of_all(const hl_label_part *parts, size_t count);
 /* The place of a voxel's label in a rising list; `count` if the list lacks it. */
 size_t hl_label_place(const int64_t *labels, size_t count, const hl_volume *map, hl_number_row row, size_t i);
 
-enum { HL_LABEL_STEPS = 6 }; /* the steps in which the voxels of a label's part are smoothed */
+enum { HL_LABEL_STEPS = 6 }; /* the number of passes over the voxels that smooth a box around a label */
 
 /* The smoothing of labels. */
 typedef struct hl_label_work {
   const hl_context *context; /* its progress callback gets the fraction of the work that is done, as the stage
                               * "prepare" */
-  double whole;              /* voxels of all parts */
-  double done;               /* number of voxels that have taken a step, summed over all steps so far */
+  double whole;              /* voxels of all boxes */
+  double done;               /* number of voxels that passes have visited so far, each visit counted */
 } hl_label_work;
 
 size_t hl_label_part_voxels(const hl_label_part *part);

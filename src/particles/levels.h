@@ -32,8 +32,9 @@ typedef struct hl_particle_level {
 
 static inline hl_particle_level hl_particle_level_of(const hl_particle_set *set,
                                                      const hl_particle_lattice *lattice, int level) {
-  /* Derived: by subdivision, point j of level l reaches the points of level 0 from 2^l j - 2 (2^l - 1) on.
-   * The margin keeps them within the face. */
+  /* Derived: subdivision spreads the coefficient of point j of level l over points of level 0, of which the
+   * first is 2^l j - 2 (2^l - 1). Points of level l have at least this margin from the grid's faces, so that
+   * the points of level 0 lie inside the grid. */
   hl_particle_level grid = {.margin = level < 2 ? level : 2};
   for (int a = 0; a < 3; a++) {
     grid.points[a] = hl_particle_points(lattice, level, a);

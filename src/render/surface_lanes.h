@@ -75,8 +75,8 @@ LANES_INLINE color_lanes light_of_sample(const shade_job *job, const shade_light
   return passing;
 }
 
-/* The fraction of light that passes the surfaces close before the samples. The buffer may hold all, some or
- * none of these surfaces. */
+/* The fraction of light that passes the surfaces close before the samples. The light's buffer may hold the
+ * same surfaces. So the caller takes the lesser of this fraction and the buffer's. */
 LANES_INLINE lanes contact_of(const shade_job *job, const shade_light *light, const surface_samples *samples,
                               int channel) {
   if (samples->contact == NULL) return lanes_set(1.0f);

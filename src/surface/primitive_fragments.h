@@ -36,8 +36,9 @@ static inline void hl_mark_slab(const fragment_work *work, fragment_worker *work
  * fragment only serves to mark slabs. */
 fragment hl_fragment_of(const fragment_work *work, size_t mesh_index, uint32_t primitive);
 
-/* Adds a fragment to slabs `first` to `last` of a light's view. The fragment begins at its delayed height
- * `start`. There must be room for MOST_SLABS fragments. */
+/* Adds a fragment to slabs `first` to `last` of a light's view. Light meets the fragment at
+ * the height `start`, which lies a little behind the surface, so that the surface does not shade itself.
+ * There must be room for MOST_SLABS fragments. */
 void hl_add_to_slabs(const fragment_work *work, fragment_worker *worker, fragment f, double start,
                      int32_t first, int32_t last);
 

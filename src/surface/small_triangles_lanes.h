@@ -18,8 +18,8 @@ static const double SMALL_NEAREST = 1e-4;
 /* The greatest difference of heights within a small triangle, in distances of sheets. */
 static const float SMALL_RISE = 4;
 
-/* Corners in 1/256 pixels from the first pixel. For each edge, value + x down - y across is above 0 inside
- * the triangle. */
+/* Corners in 1/256 pixels from the first pixel. For each edge, `value` + x * `down` - y * `across` is
+ * above 0 inside the triangle. */
 typedef struct small_shape {
   lanes x[3], y[3];
   lanes across[3], down[3], value[3];

@@ -47,8 +47,8 @@ static vec3 on_sheet(vec3 start, vec3 direction, vec3 normal, double height) {
                   vec3_scale(direction, (height - vec3_dot(normal, start)) / vec3_dot(normal, direction)));
 }
 
-/* The least rise of a view's middle ray, as a fraction of the ray's length, for which `base` is the point
- * where this ray meets the sheet. A flatter ray meets the sheet too far away. Then `base` is the eye. */
+/* The least sine of the angle between a view's middle ray and the sheets for which `base` is the point where
+ * this ray meets the sheet. A flatter ray meets the sheet too far away. Then `base` is the eye. */
 static const double FLATTEST_MIDDLE = 0.01;
 
 static void perspective_rays(const view *view, vec3 normal, double height, affine3 from_frame,

@@ -110,7 +110,8 @@ static const float *pixel_of(const search *all, int row, int column) {
   return all->pixels + place_of(all, row, column);
 }
 
-/* The integral of unit vectors over the directions of a pixel's tent. */
+/* The integral of unit vectors over the directions around a pixel, weighted by the tent filter with which the
+ * sky's image is read. */
 static vec3 moment_of(const search *all, int row, int column) {
   const row_integrals *of = &all->rows[row];
   double across = of->across * all->bend;
