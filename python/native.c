@@ -74,13 +74,14 @@ static void on_converted(void *user_data, const void *bytes, size_t byte_count) 
 }
 
 /* Fetches files of the store that the caller names. */
-static hl_status on_fetch(void *user_data, const char *url, const char *const *names, size_t count,
-                          uint64_t most, hl_fetched_file *files, hl_error *error) {
+static hl_status on_fetch(void *user_data, const char *url, const char *const *names,
+                          const hl_fetch_range *ranges, size_t count, uint64_t most, hl_fetched_file *files,
+                          hl_error *error) {
   const fetch_permission permission = {.named = call.url != NULL && strcmp(call.url, url) == 0,
                                        .instead = "stores that a program names: give it to Volume()",
                                        .cancelled = on_cancelled,
                                        .user_data = user_data};
-  return fetch_if_named(&permission, url, names, count, most, files, error);
+  return fetch_if_named(&permission, url, names, ranges, count, most, files, error);
 }
 
 hl_status python_context_create(hl_context **context, hl_error *error) {

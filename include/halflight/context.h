@@ -74,10 +74,22 @@ typedef enum hl_mpi {
   HL_MPI_MPICH = 2
 } hl_mpi;
 
-/* A file that was brought from a server. */
+/* Which bytes of a server's file are wanted. */
+typedef struct hl_fetch_range {
+  uint64_t begin; /* the place of the first byte; UINT64_MAX: the last `count` bytes are wanted, or all bytes
+                   * of a shorter file */
+  uint64_t count; /* the number of bytes; 0: the whole file is wanted */
+} hl_fetch_range;
+
+/* Bytes of a file that were brought from a server. */
 typedef struct hl_fetched_file {
-  int descriptor; /* the file, open for reading, at any position; -1: the server has no such file */
-  uint64_t size;  /* the file's size in bytes; the library reads no further bytes of the descriptor */
+  int descriptor; /* a file that begins with these bytes, open for reading, at any position; -1: the server
+                   * has no such file */
+  uint64_t size;  /* the number of these bytes; what follows them in the descriptor's file is not read */
+  uint64_t begin; /* the place of the first of these bytes in the server's file */
+  uint64_t whole; /* the size of the server's file in bytes */
+  uint64_t state; /* a number that is another one if the server's file has changed; 0: the server does not
+                   * tell */
 } hl_fetched_file;
 
 /* All callbacks may be null (a default is used) and receive user_data. The library calls `allocate` and
@@ -112,19 +124,21 @@ typedef struct hl_context_options {
                        size_t *byte_count, hl_error *error);
   /* Releases the bytes that `convert` gave. */
   void (*converted)(void *user_data, const void *bytes, size_t byte_count);
-  /* Called where a volume's file is the URL of a Zarr store on a server ("http://..." or "https://..."). The
-   * callback brings `count` files of the store, whose names are relative to the store ("0/c/1/2/3"). Each
-   * file may have `most` bytes at most. files: [count]; the library closes their descriptors, also after a
-   * failure. A file that the server does not have counts as absent from the store; every other fault must be
-   * an error. The callback decides which URLs may be asked for, because a scene's text can name any URL. Null
-   * (default): URLs are refused. The library itself uses no network. */
-  hl_status (*fetch)(void *user_data, const char *url, const char *const *names, size_t count, uint64_t most,
-                     hl_fetched_file *files, hl_error *error);
-  /* A folder on a disk for scratch files; copied; null (default): none. It is used for a volume of one
-   * component that is too large for memory_limit, together with a renderer's tables of its voxels. Such a
-   * volume is read into a scratch file of 1.15 times the voxels' bytes, and is rendered from there. The
-   * scratch file has no name. The context keeps parts of it in memory as far as the limit leaves room, and
-   * always up to 16 times 64^3 voxels. */
+  /* Called where a volume's file is the URL of a Zarr store on a server ("http://..." or "https://...").
+   * The callback brings bytes of `count` files of the store, whose names are relative to the store
+   * ("0/c/1/2/3"). ranges: [count], the bytes that are wanted; null: whole files are wanted. Where the server
+   * sends no ranges, the callback brings the whole file. It brings at most `most` bytes of each. files:
+   * [count], whose descriptors the library closes, also after a failure. A file that the server does not have
+   * is one of the store's absent files; every other fault must be an error, such as other bytes than the
+   * wanted ones. The callback decides which URLs it may ask: a scene's text can name any. Null (default):
+   * URLs are refused. The library asks no network itself. */
+  hl_status (*fetch)(void *user_data, const char *url, const char *const *names, const hl_fetch_range *ranges,
+                     size_t count, uint64_t most, hl_fetched_file *files, hl_error *error);
+  /* A folder on a disk for scratch files; copied; null (default): none. A volume of one component may be
+   * too large for memory_limit, together with a renderer's tables of its voxels. Its file is then read into
+   * a scratch file of 1.15 times the voxels' bytes, and rendered from there. The file has no name. Parts of
+   * it are in memory where the limit leaves room beside what the context holds, and always up to 16 times
+   * 64^3 voxels. */
   const char *scratch_folder;
   /* The device that makes the renderers' frames. "cpu" (the default, also null): the processors. "gpu": the
    * first GPU. "auto": the first GPU, if the first frame shows that it is faster than the processors. "cuda"

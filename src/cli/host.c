@@ -84,16 +84,17 @@ static hl_status on_convert(void *user_data, const char *format, const char *pat
   return openvdb_convert(path, host->memory_limit, on_cancelled, user_data, bytes, byte_count, error);
 }
 
-/* Fetches files of a Zarr store whose URL is an INPUT of the command line. */
-static hl_status on_fetch(void *user_data, const char *url, const char *const *names, size_t count,
-                          uint64_t most, hl_fetched_file *files, hl_error *error) {
+/* Fetches files of a store that the command line names. */
+static hl_status on_fetch(void *user_data, const char *url, const char *const *names,
+                          const hl_fetch_range *ranges, size_t count, uint64_t most, hl_fetched_file *files,
+                          hl_error *error) {
   const cli_host *host = user_data;
   fetch_permission permission = {.instead = "INPUTs of the command line alone: give it there",
                                  .cancelled = on_cancelled,
                                  .user_data = user_data};
   for (char *const *operand = host->operands; operand != NULL && *operand != NULL; operand++)
     permission.named = permission.named || strcmp(*operand, url) == 0;
-  return fetch_if_named(&permission, url, names, count, most, files, error);
+  return fetch_if_named(&permission, url, names, ranges, count, most, files, error);
 }
 
 static void on_converted(void *user_data, const void *bytes, size_t byte_count) {

@@ -17,13 +17,14 @@ void fetch_choose_cache_folder(char *folder, size_t bytes) {
 }
 
 hl_status fetch_if_named(const fetch_permission *permission, const char *url, const char *const *names,
-                         size_t count, uint64_t most, hl_fetched_file *files, hl_error *error) {
+                         const hl_fetch_range *ranges, size_t count, uint64_t most, hl_fetched_file *files,
+                         hl_error *error) {
   char cache[1024], folder[1100];
   fetch_choose_cache_folder(cache, sizeof cache);
   if (permission->named && cache[0] != '\0') {
     snprintf(folder, sizeof folder, "%s/servers", cache);
     const fetcher f = {folder, COPIES_LIMIT, permission->cancelled, permission->user_data};
-    return fetch_files(&f, url, names, count, most, files, error);
+    return fetch_files(&f, url, names, ranges, count, most, files, error);
   }
   if (permission->named) {
     snprintf(error->message, sizeof error->message,

@@ -18,7 +18,8 @@ typedef struct fetch_permission {
 
 /* Fetches files of a store, as hl_context_options.fetch must do. Fails if the user did not name the URL. */
 hl_status fetch_if_named(const fetch_permission *permission, const char *url, const char *const *names,
-                         size_t count, uint64_t most, hl_fetched_file *files, hl_error *error);
+                         const hl_fetch_range *ranges, size_t count, uint64_t most, hl_fetched_file *files,
+                         hl_error *error);
 
 /* Writes the user's cache folder for Halflight to `folder`, which has room for `bytes` bytes. The text is
  * empty if the environment names no such folder. */

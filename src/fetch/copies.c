@@ -14,32 +14,32 @@
 #include <time.h>
 #include <unistd.h>
 
-#define MARK     "\nhalflight-copy 1\n"
+#define MARK     "\nhalflight-copy 2\n"
 #define NEW_NAME "new-"
 
-/* The lines that follow a copy's bytes: MARK, the URL, the condition, the number of bytes, and the length of
- * these lines. */
-enum { LENGTH_DIGITS = 8, LINES_MOST = FETCH_URL_BYTES + FETCH_CONDITION_BYTES + 64 };
+/* The lines that follow a copy's bytes: MARK, the key, the condition, the number of bytes with the place of
+ * the first of them and the size of the server's file, and the length of these lines. */
+enum { LENGTH_DIGITS = 8, LINES_MOST = COPIES_KEY_BYTES + FETCH_CONDITION_BYTES + 128 };
 
 static hl_status fail(hl_error *error, const char *path) {
   snprintf(error->message, sizeof error->message, "%.800s: the folder of copies: %s", path, strerror(errno));
   return HL_ERROR_IO;
 }
 
-/* Makes the name of a URL's copy from two 64-bit FNV-1a hashes (Fowler, Noll, Vo) with different initial
- * values. Two URLs may have the same name; the URL that is stored in the copy tells them apart. */
-static void copy_path(const char *folder, const char *url, char path[COPIES_PATH_BYTES]) {
+/* The name of a key's copy: two hashes FNV-1a (Fowler, Noll, Vo) of 64 bits with different beginnings. The
+ * key in the copy tells whether two keys have one name. */
+static void copy_path(const char *folder, const char *key, char path[COPIES_PATH_BYTES]) {
   uint64_t hash[2] = {0xcbf29ce484222325u, 0x9e3779b97f4a7c15u};
   for (int h = 0; h < 2; h++)
-    for (const char *c = url; *c != '\0'; c++) hash[h] = (hash[h] ^ (unsigned char)*c) * 0x100000001b3u;
+    for (const char *c = key; *c != '\0'; c++) hash[h] = (hash[h] ^ (unsigned char)*c) * 0x100000001b3u;
   snprintf(path, COPIES_PATH_BYTES, "%.4000s/%016" PRIx64 "%016" PRIx64, folder, hash[0], hash[1]);
 }
 
 /* ---- one copy ---- */
 
-/* Reads the lines at the end of a copy. Returns false if the lines name another URL, or if the copy is cut
- * short. */
-static bool read_lines(int descriptor, const char *url, uint64_t *size, char *condition) {
+/* Reads the lines at the end of a copy. False if they are another key's, or if the copy is cut short. */
+static bool read_lines(const char *key, hl_fetched_file *file, char *condition) {
+  const int descriptor = file->descriptor;
   struct stat about;
   char lines[LINES_MOST + 1], expected[LINES_MOST];
   if (fstat(descriptor, &about) != 0 || !S_ISREG(about.st_mode) || about.st_size < LENGTH_DIGITS)
@@ -50,29 +50,31 @@ static bool read_lines(int descriptor, const char *url, uint64_t *size, char *co
   if (length < LENGTH_DIGITS || length > LINES_MOST || length > about.st_size) return false;
   if (pread(descriptor, lines, (size_t)length, about.st_size - length) != length) return false;
   lines[length] = '\0';
-  int begun = snprintf(expected, sizeof expected, MARK "%s\n", url);
+  int begun = snprintf(expected, sizeof expected, MARK "%s\n", key);
   if (begun >= (int)sizeof expected || strncmp(lines, expected, (size_t)begun) != 0) return false;
   char *line = lines + begun, *end = strchr(line, '\n');
   if (end == NULL || end - line >= FETCH_CONDITION_BYTES) return false;
   *end = '\0';
-  *size = strtoull(end + 1, NULL, 10);
   snprintf(condition, FETCH_CONDITION_BYTES, "%s", line);
-  return *size == (uint64_t)(about.st_size - length);
+  return sscanf(end + 1, "%" SCNu64 " %" SCNu64 " %" SCNu64 "\n", &file->size, &file->begin, &file->whole) ==
+             3 &&
+         file->size == (uint64_t)(about.st_size - length);
 }
 
-void copies_find(const char *folder, const char *url, hl_fetched_file *file, char *condition) {
+void copies_find(const char *folder, const char *key, hl_fetched_file *file, char *condition) {
   char path[COPIES_PATH_BYTES];
-  copy_path(folder, url, path);
+  copy_path(folder, key, path);
   condition[0] = '\0';
-  *file = (hl_fetched_file){open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW), 0};
-  if (file->descriptor < 0 || read_lines(file->descriptor, url, &file->size, condition)) return;
+  *file = (hl_fetched_file){.descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW)};
+  if (file->descriptor < 0 || read_lines(key, file, condition)) return;
   close(file->descriptor);
-  *file = (hl_fetched_file){-1, 0};
+  condition[0] = '\0';
+  *file = (hl_fetched_file){.descriptor = -1};
 }
 
-void copies_touch(const char *folder, const char *url) {
+void copies_touch(const char *folder, const char *key) {
   char path[COPIES_PATH_BYTES];
-  copy_path(folder, url, path);
+  copy_path(folder, key, path);
   utimensat(AT_FDCWD, path, NULL, 0);
 }
 
@@ -85,27 +87,24 @@ hl_status copies_begin(const char *folder, char *path, hl_error *error) {
 }
 
 /* Appends the lines. */
-static bool write_lines(int descriptor, const char *url, const char *condition, uint64_t size) {
+static bool write_lines(const char *key, const char *condition, const hl_fetched_file *file) {
   char lines[LINES_MOST + LENGTH_DIGITS + 1];
-  int length = snprintf(lines, LINES_MOST, MARK "%s\n%s\n%" PRIu64 "\n", url, condition, size);
+  int length = snprintf(lines, LINES_MOST, MARK "%s\n%s\n%" PRIu64 " %" PRIu64 " %" PRIu64 "\n", key,
+                        condition, file->size, file->begin, file->whole);
   if (length >= LINES_MOST) return false;
   length += snprintf(lines + length, LENGTH_DIGITS + 1, "%0*d", LENGTH_DIGITS, length + LENGTH_DIGITS);
-  return pwrite(descriptor, lines, (size_t)length, (off_t)size) == length;
+  return pwrite(file->descriptor, lines, (size_t)length, (off_t)file->size) == length;
 }
 
-hl_status copies_keep(const char *folder, const char *url, const char *condition, const char *path,
+hl_status copies_keep(const char *folder, const char *key, const char *condition, const char *path,
                       hl_fetched_file *file, hl_error *error) {
   char kept[COPIES_PATH_BYTES];
-  struct stat about;
-  copy_path(folder, url, kept);
-  *file = (hl_fetched_file){open(path, O_RDWR | O_CLOEXEC | O_NOFOLLOW), 0};
-  bool sound = file->descriptor >= 0 && fstat(file->descriptor, &about) == 0;
-  if (sound) file->size = (uint64_t)about.st_size;
-  sound = sound && write_lines(file->descriptor, url, condition, file->size) && rename(path, kept) == 0;
-  if (sound) return HL_OK;
+  copy_path(folder, key, kept);
+  file->descriptor = open(path, O_RDWR | O_CLOEXEC | O_NOFOLLOW);
+  if (file->descriptor >= 0 && write_lines(key, condition, file) && rename(path, kept) == 0) return HL_OK;
   fail(error, folder);
   if (file->descriptor >= 0) close(file->descriptor);
-  *file = (hl_fetched_file){-1, 0};
+  *file = (hl_fetched_file){.descriptor = -1};
   return HL_ERROR_IO;
 }
 

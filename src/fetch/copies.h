@@ -1,30 +1,33 @@
-/* fetch/copies.h - a folder with copies of files from servers, which only the user can read.
+/* fetch/copies.h - a folder of copies of files on servers, and of parts of files, the user's alone.
  *
- * A copy holds the server's bytes. Lines after them state the URL, the number of bytes, and the condition
- * under which the server is to send the file again. Copies appear whole or not at all. */
+ * A copy is a file that holds the server's bytes and, after them, lines that name what they are of (the key:
+ * a URL and, for a part of a file, '#' and the range), the condition under which the server is to send them
+ * again, their length, and their place in the server's file. Copies appear whole or not at all. */
 #ifndef HL_FETCH_COPIES_H
 #define HL_FETCH_COPIES_H
 
 #include "curl.h"
 
-enum { COPIES_PATH_BYTES = 4096 };
+enum { COPIES_PATH_BYTES = 4096, COPIES_KEY_BYTES = FETCH_URL_BYTES + RANGE_BYTES + 2 };
 
 /* Makes the folder. If its copies have more than `limit` bytes together, removes those that were not used for
  * longest. */
 hl_status copies_open(const char *folder, uint64_t limit, hl_error *error);
 
-/* Opens the copy of a URL. *file: {-1, 0} if there is none. condition: [FETCH_CONDITION_BYTES]. */
-void copies_find(const char *folder, const char *url, hl_fetched_file *file, char *condition);
+/* Opens the copy of a key. file->descriptor: -1 if there is none. file->state is left 0. condition:
+ * [FETCH_CONDITION_BYTES]. */
+void copies_find(const char *folder, const char *key, hl_fetched_file *file, char *condition);
 
 /* Notes that a copy was used. */
-void copies_touch(const char *folder, const char *url);
+void copies_touch(const char *folder, const char *key);
 
 /* Makes an empty file with a new name, into which the server's bytes are to be written. path:
  * [COPIES_PATH_BYTES]. */
 hl_status copies_begin(const char *folder, char *path, hl_error *error);
 
-/* Turns a file of copies_begin() into the copy of a URL, and opens it. */
-hl_status copies_keep(const char *folder, const char *url, const char *condition, const char *path,
+/* Turns a file of copies_begin() into the copy of a key, and opens it. In: `size`, `begin` and `whole` of
+ * *file. Out: its descriptor. */
+hl_status copies_keep(const char *folder, const char *key, const char *condition, const char *path,
                       hl_fetched_file *file, hl_error *error);
 
 #endif

@@ -41,9 +41,10 @@ static void write_list(FILE *list, const curl_transfer *transfers, size_t count,
     write_option(list, "url", transfers[n].url);
     write_option(list, "output", transfers[n].output);
     if (transfers[n].condition[0] != '\0') write_option(list, "header", transfers[n].condition);
+    if (transfers[n].range[0] != '\0') write_option(list, "range", transfers[n].range);
     fprintf(list,
             "write-out = \"%%{stderr}\\ntransfer %zu %%{exitcode} %%{http_code}\\n%%header{etag}\\n"
-            "%%header{last-modified}\\n%%{errormsg}\\n\"\n",
+            "%%header{last-modified}\\n%%header{content-range}\\n%%{errormsg}\\n\"\n",
             n);
   }
 }
@@ -82,7 +83,7 @@ static void read_condition(const char *tag, const char *date, char condition[FET
     snprintf(condition, FETCH_CONDITION_BYTES, "If-Modified-Since: %s", text);
 }
 
-enum { TAG, DATE, SAID, LINES };
+enum { TAG, DATE, RANGE, SAID, LINES };
 
 /* Reads the lines that curl writes about a transfer, except the first one. */
 static void read_result(FILE *said, curl_transfer *transfer) {
@@ -92,6 +93,8 @@ static void read_result(FILE *said, curl_transfer *transfer) {
   for (int n = 0; n < LINES; n++) whole = getline(&lines[n], &room[n], said) > 0 && whole;
   if (whole) {
     read_condition(lines[TAG], lines[DATE], transfer->next_condition);
+    if (!copy_line(lines[RANGE], transfer->content_range, sizeof transfer->content_range))
+      transfer->content_range[0] = '\0';
     snprintf(transfer->said, sizeof transfer->said, "%.*s", (int)strcspn(lines[SAID], "\r\n"), lines[SAID]);
   }
   for (int n = 0; n < LINES; n++) free(lines[n]);
@@ -149,7 +152,7 @@ hl_status curl_run(const fetcher *f, curl_transfer *transfers, size_t count, uin
   for (size_t n = 0; n < count; n++) {
     transfers[n].problem = -1;
     transfers[n].answer = 0;
-    transfers[n].next_condition[0] = '\0';
+    transfers[n].next_condition[0] = transfers[n].content_range[0] = '\0';
     snprintf(transfers[n].said, sizeof transfers[n].said, "curl ended before");
   }
   FILE *list = make_list(transfers, count, most);

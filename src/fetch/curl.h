@@ -3,6 +3,7 @@
 #define HL_FETCH_CURL_H
 
 #include "fetcher.h"
+#include "ranges.h"
 
 enum { FETCH_URL_BYTES = 4096, FETCH_CONDITION_BYTES = 300, FETCH_SAID_BYTES = 160 };
 
@@ -14,12 +15,15 @@ typedef struct curl_transfer {
   const char *output;                    /* borrowed; the file that curl writes to */
   char condition[FETCH_CONDITION_BYTES]; /* a line for the request's header, by which the server can tell
                                           * whether its file has changed; "" for none */
+  char range[RANGE_BYTES];               /* the part of the file that is wanted, by range_write() */
   /* Results. */
   int problem; /* curl's exit code for this transfer; -1 if curl ended before the transfer did */
   int answer;  /* the server's status code; 0 without an answer */
-  char next_condition[FETCH_CONDITION_BYTES]; /* the condition for the next request of this file; "" if there
-                                               * is none */
-  char said[FETCH_SAID_BYTES];                /* curl's words about the problem */
+  char next_condition[FETCH_CONDITION_BYTES]; /* the condition for the next request; "" if there is none */
+  char content_range[RANGE_BYTES]; /* which part of the file the server says that it has sent; "" if it says
+                                    * none
+                                    */
+  char said[FETCH_SAID_BYTES];     /* curl's words about the problem */
 } curl_transfer;
 
 /* Makes the transfers. most: the greatest number of bytes of each file. Fails if there is no curl, or if the

@@ -1,9 +1,9 @@
 /* fetch/fetch.c - fetches files of a store. The server is asked for each file, even if there is a copy. It is
  * asked again if a transfer failed for a reason that may be temporary.
  *
- * The server answers 304 if the copy is up to date. It answers 404 or 410 where there is no file. Any other
- * answer without a whole file is an error. It must not count as an absent file, because absent files have a
- * meaning in a store. */
+ * The server answers 304 if the copy is up to date. It answers 404 or 410 where there is no file. It answers
+ * 200 with a whole file, and 206 with the wanted part of one. Any other answer is an error, because an absent
+ * file has a meaning in a store. */
 #define _GNU_SOURCE
 #include "fetch.h"
 
@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -22,9 +23,11 @@ enum { TRIES = 4 };
 /* A file that is wanted. */
 typedef struct wanted {
   const char *name;
+  hl_fetch_range range;
   curl_transfer transfer;
+  char key[COPIES_KEY_BYTES];   /* the key of its copy */
   char path[COPIES_PATH_BYTES]; /* the file that curl writes to; "" if there is none */
-  hl_fetched_file copy;         /* the copy that an earlier run left; {-1, 0} if there is none */
+  hl_fetched_file copy;         /* the copy that an earlier run left; its descriptor is -1 if there is none */
   bool done;
 } wanted;
 
@@ -81,7 +84,12 @@ static hl_status fail(const fetching *t, const char *name, const char *what) {
 static hl_status begin(fetching *t, wanted *file) {
   if (!is_plain(t->url) || !join_url(t->url, file->name, file->transfer.url))
     return fail(t, file->name, "no URL: give one of printable ASCII characters, others as %XX");
-  copies_find(t->f->folder, file->transfer.url, &file->copy, file->transfer.condition);
+  if (!range_write(&file->range, file->transfer.range))
+    return fail(t, file->name, "bytes beyond the greatest number of 64 bits are wanted");
+  /* no URL that is sent has '#' */
+  snprintf(file->key, sizeof file->key, "%s%s%s", file->transfer.url, file->range.count > 0 ? "#" : "",
+           file->transfer.range);
+  copies_find(t->f->folder, file->key, &file->copy, file->transfer.condition);
   hl_status status = copies_begin(t->f->folder, file->path, t->error);
   if (status != HL_OK) file->path[0] = '\0';
   file->transfer.output = file->path;
@@ -112,22 +120,46 @@ static hl_status fail_transfer(const fetching *t, const wanted *file, bool tried
   return fail(t, file->name, what);
 }
 
-/* Takes the result of a transfer. A file that has come or is absent is done; others will be asked for again,
- * unless the failure is permanent. */
+/* A number for the state of a server's file that a condition names: FNV-1a of 64 bits; 0 without one. */
+static uint64_t state_of(const char *condition) {
+  uint64_t hash = 0xcbf29ce484222325u;
+  if (condition[0] == '\0') return 0;
+  for (const char *c = condition; *c != '\0'; c++) hash = (hash ^ (unsigned char)*c) * 0x100000001b3u;
+  return hash != 0 ? hash : 1;
+}
+
+/* Keeps the bytes that have come, if they are the wanted ones. */
+static hl_status keep(fetching *t, wanted *file, hl_fetched_file *result) {
+  const curl_transfer *transfer = &file->transfer;
+  hl_fetched_file told = {.descriptor = -1};
+  struct stat about;
+  if (stat(file->path, &about) != 0) return fail(t, file->name, "its copy is gone");
+  told.size = told.whole = (uint64_t)about.st_size;
+  if (transfer->answer == 206 && (!range_is_answered(&file->range, transfer->content_range, &told) ||
+                                  told.size != (uint64_t)about.st_size))
+    return fail(t, file->name, "the server sends other bytes than the part that it was asked for");
+  hl_status status = copies_keep(t->f->folder, file->key, transfer->next_condition, file->path, &told,
+                                 t->error);
+  if (status != HL_OK) return status;
+  *result = told;
+  result->state = state_of(transfer->next_condition);
+  file->path[0] = '\0';
+  file->done = true;
+  return HL_OK;
+}
+
+/* Takes the result of a transfer: the file has come, is absent, or must be asked for again. */
 static hl_status take(fetching *t, wanted *file, hl_fetched_file *result) {
   curl_transfer *transfer = &file->transfer;
   bool whole = transfer->problem == 0;
   if (whole && transfer->answer == 304 && file->copy.descriptor >= 0) {
     *result = file->copy;
-    file->copy = (hl_fetched_file){-1, 0};
-    copies_touch(t->f->folder, transfer->url);
+    result->state = state_of(transfer->condition);
+    file->copy.descriptor = -1;
+    copies_touch(t->f->folder, file->key);
     file->done = true;
-  } else if (whole && transfer->answer == 200) {
-    hl_status status = copies_keep(t->f->folder, transfer->url, transfer->next_condition, file->path, result,
-                                   t->error);
-    if (status != HL_OK) return status;
-    file->path[0] = '\0';
-    file->done = true;
+  } else if (whole && (transfer->answer == 200 || (transfer->answer == 206 && file->range.count > 0))) {
+    return keep(t, file, result);
   } else if (whole && (transfer->answer == 404 || transfer->answer == 410)) {
     file->done = true;
   } else if (!may_pass(transfer)) {
@@ -188,15 +220,19 @@ static hl_status run_tries(fetching *t, hl_fetched_file *results) {
   return status == HL_OK && left != NULL ? fail_transfer(t, left, true) : status;
 }
 
-hl_status fetch_files(const fetcher *f, const char *url, const char *const *names, size_t count,
-                      uint64_t most, hl_fetched_file *files, hl_error *error) {
+hl_status fetch_files(const fetcher *f, const char *url, const char *const *names,
+                      const hl_fetch_range *ranges, size_t count, uint64_t most, hl_fetched_file *files,
+                      hl_error *error) {
   fetching t = {.f = f, .url = url, .most = most, .count = count, .error = error};
-  for (size_t n = 0; n < count; n++) files[n] = (hl_fetched_file){-1, 0};
+  for (size_t n = 0; n < count; n++) files[n] = (hl_fetched_file){.descriptor = -1};
   hl_status status = copies_open(f->folder, f->limit, error);
   if (status != HL_OK) return status;
   t.files = calloc(count, sizeof *t.files);
   if (t.files == NULL) return fail(&t, "", "out of memory");
-  for (size_t n = 0; n < count; n++) t.files[n].name = names[n], t.files[n].copy.descriptor = -1;
+  for (size_t n = 0; n < count; n++) {
+    t.files[n].name = names[n], t.files[n].copy.descriptor = -1;
+    if (ranges != NULL) t.files[n].range = ranges[n];
+  }
   for (size_t n = 0; n < count && status == HL_OK; n++) status = begin(&t, &t.files[n]);
   if (status == HL_OK) status = run_tries(&t, files);
   for (size_t n = 0; n < count; n++) {

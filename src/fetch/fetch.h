@@ -1,4 +1,5 @@
-/* fetch/fetch.h - files of a store on a web server, by way of the program curl and of a folder of copies.
+/* fetch/fetch.h - files of a store on a web server, or parts of files, by way of the program curl and of a
+ * folder of copies.
  *
  * In: the store's URL and names in it. Out: descriptors of copies. A copy is used again only if the server
  * says that its file has not changed since. */
@@ -7,9 +8,10 @@
 
 #include "fetcher.h"
 
-/* Fetches files, as hl_context_options.fetch must do. The caller owns the descriptors, also after a
- * failure; they are -1 for files that did not come. */
-hl_status fetch_files(const fetcher *f, const char *url, const char *const *names, size_t count,
-                      uint64_t most, hl_fetched_file *files, hl_error *error);
+/* Fetches files or parts of them, as hl_context_options.fetch must do. The caller owns the descriptors, also
+ * after a failure; they are -1 for files that did not come. */
+hl_status fetch_files(const fetcher *f, const char *url, const char *const *names,
+                      const hl_fetch_range *ranges, size_t count, uint64_t most, hl_fetched_file *files,
+                      hl_error *error);
 
 #endif

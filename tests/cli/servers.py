@@ -77,14 +77,60 @@ def write_store(folder, version):
         write_level(folder / str(level), 64 >> level, version)
 
 
+def crc32c(data):
+    """The CRC32C of RFC 3720, bit by bit."""
+    rest = 0xffffffff
+    for byte in data:
+        rest ^= byte
+        for _ in range(8):
+            rest = rest >> 1 ^ (0x82f63b78 if rest & 1 else 0)
+    return rest ^ 0xffffffff
+
+
+SHARDED, SHARDED_SIDE = "sharded.zarr", 32
+
+
+def write_sharded(folder, index_location="end"):
+    """An image of two channels, in two shards that hold chunks of both channels: first those of channel 0."""
+    n, inner = SHARDED_SIDE, SHARDED_SIDE // CHUNK
+    folder.joinpath("0").mkdir(parents=True)
+    scale = [{"type": "scale", "scale": [1.0] * 4}]
+    multiscales = [{"axes": [{"name": "c", "type": "channel"}] + [{"name": name, "type": "space"} for name in "zyx"],
+                    "datasets": [{"path": "0", "coordinateTransformations": scale}]}]
+    (folder / "zarr.json").write_text(json.dumps({"zarr_format": 3, "node_type": "group", "attributes": {
+        "ome": {"version": "0.5", "multiscales": multiscales}}}))
+    codec = {"name": "sharding_indexed", "configuration": {
+        "chunk_shape": [1] + [CHUNK] * 3, "codecs": [{"name": "bytes"}], "index_location": index_location,
+        "index_codecs": [{"name": "bytes", "configuration": {"endian": "little"}}, {"name": "crc32c"}]}}
+    (folder / "0/zarr.json").write_text(json.dumps({
+        "zarr_format": 3, "node_type": "array", "shape": [2] + [n] * 3, "data_type": "uint8", "fill_value": 0,
+        "chunk_grid": {"name": "regular", "configuration": {"chunk_shape": [2, CHUNK] + [n] * 2}},
+        "chunk_key_encoding": {"name": "default", "configuration": {"separator": "/"}}, "codecs": [codec]}))
+    for z in range(inner):
+        index, data, index_bytes = b"", b"", 16 * 2 * inner * inner + 4
+        for channel in range(2):
+            for y in range(inner):
+                for x in range(inner):
+                    chunk = chunk_bytes(n, (z, y, x))[::-1 if channel == 1 else 1]
+                    place = len(data) + (index_bytes if index_location == "start" else 0)
+                    index += place.to_bytes(8, "little") + len(chunk).to_bytes(8, "little")
+                    data += chunk
+        index += crc32c(index).to_bytes(4, "little")
+        shard = folder / f"0/c/0/{z}/0/0"
+        shard.parent.mkdir(parents=True)
+        shard.write_bytes(index + data if index_location == "start" else data + index)
+
+
 # ---- the server ----
 
 class Server:
-    """Serves a folder. faults: by path, a list of faults, one for each request, of which "always" repeats the next."""
+    """Serves a folder. faults: by path, a list of faults, one for each request, of which "always" repeats the next. sends_ranges:
+    whether a part of a file is sent where one is asked for."""
 
     def __init__(self, folder):
-        self.folder, self.faults, self.key = folder, {}, None
+        self.folder, self.faults, self.key, self.sends_ranges = folder, {}, None, False
         self.sent, self.requests, self.answers, self.lock = 0, [], [], threading.Lock()
+        self.hold = None  # called with the name of each file before it is sent
         self.released = threading.Event()
         self.http = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Handler, self))
         self.http.daemon_threads = True
@@ -129,6 +175,8 @@ class Handler(http.server.BaseHTTPRequestHandler):
         with self.store.lock:
             self.store.requests.append(name)
             fault = self.store.fault(name)
+        if self.store.hold is not None:
+            self.store.hold(name)
         file = self.store.folder / name
         body = file.read_bytes() if file.is_file() else b""
         if self.store.key is not None and query != self.store.key:
@@ -139,8 +187,22 @@ class Handler(http.server.BaseHTTPRequestHandler):
             tag = f'"{zlib.crc32(body)}"'
             if self.headers.get("If-None-Match") == tag:
                 return self.answer(304)
+            if self.store.sends_ranges and self.headers.get("Range"):
+                return self.part(body, tag)
             return self.answer(200, body, [("ETag", tag)])
         return getattr(self, "fault_" + fault)(body)
+
+    def place(self, body):
+        """The first and the last byte of "Range", which names one range."""
+        first, last = self.headers["Range"].removeprefix("bytes=").split("-")
+        if first == "":
+            return max(0, len(body) - int(last)), len(body) - 1
+        return int(first), min(int(last), len(body) - 1)
+
+    def part(self, body, tag, shift=0, cut=0, headers=None):
+        first, last = self.place(body)
+        told = [("Content-Range", f"bytes {first + shift}-{last + shift}/{len(body)}")] if headers is None else headers
+        self.answer(206, body[first:last + 1 - cut], [("ETag", tag), *told])
 
     def fault_500(self, body):
         self.answer(500, b"<html>trouble</html>")
@@ -161,6 +223,29 @@ class Handler(http.server.BaseHTTPRequestHandler):
     def fault_half(self, body):
         """Half of the file, which the server says is the whole."""
         self.answer(200, body[:len(body) // 2])
+
+    def fault_shifted(self, body):
+        """Another part of the file than the one that was asked for."""
+        self.part(body, '"1"', shift=-1)
+
+    def fault_bare(self, body):
+        """A part, without a word of which."""
+        self.part(body, '"1"', headers=())
+
+    def fault_short(self, body):
+        """Fewer bytes than the header tells."""
+        self.part(body, '"1"', cut=1)
+
+    def fault_416(self, body):
+        self.answer(416, b"", [("Content-Range", f"bytes */{len(body)}")])
+
+    def fault_noise(self, body):
+        """Wrong bytes in the right place."""
+        self.part(bytes(byte ^ 1 for byte in body), f'"{zlib.crc32(body)}"')
+
+    def fault_new(self, body):
+        """The part of a file that has just been written anew."""
+        self.part(body, '"new"')
 
     def fault_stall(self, body):
         self.send_response(200)
@@ -195,11 +280,11 @@ class Case:
         return subprocess.run([self.program, *map(str, words)], capture_output=True, text=True, cwd=self.folder,
                               env={**self.environment, **environment})
 
-    def picture(self, store, **environment):
+    def picture(self, store, *words, **environment):
         """(the picture's bytes or None, standard error)"""
         out = self.folder / "out.npy"
         out.unlink(missing_ok=True)
-        done = self.run("render", store, "-o", out, "--size", "32x32", "--quiet", **environment)
+        done = self.run("render", store, "-o", out, "--size", "32x32", "--quiet", *words, **environment)
         return (out.read_bytes() if out.exists() else None) if done.returncode == 0 else None, done.stderr
 
     def fresh(self):
@@ -213,9 +298,9 @@ class Case:
         if not passed:
             print(f"# {said!r}")
 
-    def refused(self, name, server, store, words, **environment):
+    def refused(self, name, server, store, words, *options, **environment):
         """The program makes no picture, and says why in one line."""
-        picture, said = self.picture(store, **environment)
+        picture, said = self.picture(store, *options, **environment)
         out = self.folder / "out.npy"
         self.ok(name, picture is None and not out.exists() and said.count("\n") == 1 and words in said,
                 (said, server.requests[-4:]))
@@ -290,6 +375,61 @@ def lasting_faults(case, server):
         case.refused(f"{fault} of {chunk.replace('__', '/')}: refused", server, f"{server.url}/v{version}.zarr", words)
 
 
+def sharded(case, server):
+    """Of shards that hold more than what is read, the index and the chunks that are read are fetched, and no more."""
+    shards = [f"{SHARDED}/0/c/0/{z}/0/0" for z in range(SHARDED_SIDE // CHUNK)]
+    folder, store = server.folder / SHARDED, f"{server.url}/{SHARDED}"
+    whole = sum((server.folder / name).stat().st_size for name in shards)
+    channel = ("--channel", 1)
+    for location in ("start", "end"):
+        shutil.rmtree(folder, ignore_errors=True)
+        write_sharded(folder, location)
+        right = case.picture(folder, *channel)[0]
+        case.fresh()
+        server.forget()
+        server.sends_ranges = True
+        picture, said = case.picture(store, *channel)
+        case.ok(f"index at the {location}: the picture of the folder", picture is not None and picture == right and
+                right != case.picture(folder)[0], said)
+        parts = server.answers.count(206)
+        case.ok(f"index at the {location}: an index and one part of each shard", parts == 2 * len(shards) and
+                server.sent < whole / 2 + 8192, (server.answers, server.sent, whole))
+        server.forget()
+        picture, said = case.picture(store, *channel)
+        case.ok(f"index at the {location}: no part is sent twice", picture == right and
+                set(server.answers) <= {304, 404}, (said, server.answers))
+        case.fresh()
+        server.forget()
+        server.sends_ranges = False
+        picture, said = case.picture(store, *channel)
+        sent = [server.requests.count(name) for name in shards]
+        case.ok(f"index at the {location}: a server without ranges sends each shard once", picture == right and
+                sent == [1] * len(shards), (said, sent))
+    server.sends_ranges = True
+    name = shards[0].replace("/", "__")
+    for fault in ("500", "cut"):
+        case.fresh()
+        server.forget(**{name: [fault]})
+        picture, said = case.picture(store, *channel)
+        case.ok(f"a shard's {fault}, then the part: the right picture", picture == right, said)
+    other = "the server sends other bytes than the part that it was asked for"
+    changed = "the server's file has changed while it was read"
+    for fault, kinds, words in (
+            ("shifted index", ["shifted"], other), ("index of no place", ["bare"], other), ("short index", ["short"], other),
+            ("416", ["416"], "the server answers 416"), ("damaged index", ["noise"], "the index of a shard is damaged"),
+            ("shifted chunks", [None, "shifted"], other), ("short chunks", [None, "short"], other),
+            ("shard that changes", [None, "new"], changed), ("shard that vanishes", [None, "404"], changed)):
+        case.fresh()
+        server.forget(**{name: kinds})
+        case.refused(f"{fault}: refused", server, store, words, *channel)
+    (server.folder / shards[0]).unlink()
+    case.fresh()
+    server.forget()
+    absent = case.picture(folder, *channel)[0]
+    case.ok("an absent shard is the fill value", absent not in (None, right) and case.picture(store, *channel)[0] == absent)
+    server.sends_ranges = False
+
+
 def who_is_asked(case, server):
     folder, store = server.folder / "v2.zarr", f"{server.url}/v2.zarr"
     case.fresh()
@@ -345,9 +485,11 @@ def main():
         stores = pathlib.Path(folder, "stores")
         for version in (2, 3):
             write_store(stores / f"v{version}.zarr", version)
+        write_sharded(stores / SHARDED)
         server = Server(stores)
         for version in (2, 3):
             sound_servers(case, server, version)
+        sharded(case, server)
         changed_files(case, server)
         passing_faults(case, server)
         lasting_faults(case, server)

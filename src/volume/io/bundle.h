@@ -69,8 +69,15 @@ bool hl_bundle_has_brought(const hl_bundle *bundle, const char *name);
  * length of a file in bytes. Only the caller's thread may call it. */
 hl_status hl_bundle_bring(const hl_bundle *bundle, const char *const *names, size_t count, uint64_t most,
                           hl_error *error);
-/* hl_bundle_brought_count() gives the number of files that have been fetched. hl_bundle_forget() forgets all
- * of them after the first `count`; no source of such a file may be open. */
+/* Fetches parts of files in one request: of file names[n] the bytes of ranges[n]. A source of such a file
+ * (hl_bundle_find()) knows all parts that were fetched. A server may send whole files instead, of at most
+ * `most` bytes. Fails if a file has changed between two parts. Only the caller's thread may call it. */
+hl_status hl_bundle_bring_parts(const hl_bundle *bundle, const char *const *names,
+                                const hl_fetch_range *ranges, size_t count, uint64_t most, hl_error *error);
+/* Whether the server has this file, of which only parts were fetched. */
+bool hl_bundle_has_parts(const hl_bundle *bundle, const char *name);
+/* The first function gives the number of files that were fetched so far. The second forgets the files that
+ * were fetched after the first `count`; no source of such a file may be open. */
 size_t hl_bundle_brought_count(const hl_bundle *bundle);
 void hl_bundle_forget(const hl_bundle *bundle, size_t count);
 /* hl_bundle_find() and hl_bundle_close() call these two functions for a store on a server. */

@@ -1,7 +1,7 @@
 /* volume/io/bundle_server.c - the files of a store on a server, which the context's `fetch` callback fetches.
  *
- * Many files are fetched at a time, on the caller's thread. They stay open until they are forgotten, so that
- * any thread can read them. */
+ * Files are brought many at a time, on the caller's thread, and stay open until they are forgotten, so that
+ * any thread can read them. A file of which parts are brought has an entry for each part. */
 #include <string.h>
 #include <unistd.h>
 
@@ -75,12 +75,24 @@ static hl_status make_room(const hl_bundle *bundle, size_t count, hl_error *erro
   return HL_OK;
 }
 
+/* Checks that a part is of the same file as the parts that were fetched before. */
+static hl_status check_state(const hl_bundle *bundle, const char *name, const hl_fetched_file *file,
+                             hl_error *error) {
+  const brought_file *known = find(bundle->brought, name);
+  if (known == NULL || ((known->file.descriptor < 0) == (file->descriptor < 0) &&
+                        known->file.whole == file->whole && known->file.state == file->state))
+    return HL_OK;
+  return hl_fail(error, HL_ERROR_IO, "%s/%s: the server's file has changed while it was read: read it again",
+                 bundle->path, name);
+}
+
 /* Takes over files that were fetched. Files for which there is no memory are closed. */
 static hl_status take(const hl_bundle *bundle, const char *const *names, size_t count,
                       const hl_fetched_file *files, hl_error *error) {
   hl_brought *brought = bundle->brought;
   hl_status status = HL_OK;
   for (size_t n = 0; n < count; n++) {
+    if (status == HL_OK) status = check_state(bundle, names[n], &files[n], error);
     char *name = status == HL_OK ? hl_copy_text(bundle->context, names[n]) : NULL;
     if (name != NULL) brought->files[brought->count++] = (brought_file){name, files[n]};
     else if (files[n].descriptor >= 0) close(files[n].descriptor);
@@ -89,17 +101,17 @@ static hl_status take(const hl_bundle *bundle, const char *const *names, size_t 
   return status;
 }
 
-/* Asks the server for files that were not fetched before. */
-static hl_status ask(const hl_bundle *bundle, const char *const *names, size_t count, uint64_t most,
-                     hl_error *error) {
+/* Asks the server for files. ranges: null for whole files. */
+static hl_status ask(const hl_bundle *bundle, const char *const *names, const hl_fetch_range *ranges,
+                     size_t count, uint64_t most, hl_error *error) {
   const hl_context_options *options = &bundle->context->options;
   hl_error said = {0};
   hl_fetched_file *files = hl_allocate(bundle->context, count, sizeof *files);
   if (files == NULL) return hl_fail_memory(error, count * sizeof *files, "a list of files");
-  for (size_t n = 0; n < count; n++) files[n] = (hl_fetched_file){-1, 0};
+  for (size_t n = 0; n < count; n++) files[n] = (hl_fetched_file){.descriptor = -1};
   hl_status status = make_room(bundle, count, error);
   if (status == HL_OK) {
-    status = options->fetch(options->user_data, bundle->path, names, count, most, files, &said);
+    status = options->fetch(options->user_data, bundle->path, names, ranges, count, most, files, &said);
     if (status != HL_OK) hl_fail(error, status, "%s", said.message);
   }
   for (size_t n = 0; n < count && status != HL_OK; n++)
@@ -117,8 +129,37 @@ hl_status hl_bundle_bring(const hl_bundle *bundle, const char *const *names, siz
   if (missing == NULL) return hl_fail_memory(error, count * sizeof *missing, "a list of files");
   for (size_t n = 0; n < count; n++)
     if (!hl_bundle_has_brought(bundle, names[n])) missing[asked++] = names[n];
-  hl_status status = asked > 0 ? ask(bundle, missing, asked, most, error) : HL_OK;
+  hl_status status = asked > 0 ? ask(bundle, missing, NULL, asked, most, error) : HL_OK;
   hl_release(bundle->context, missing);
+  return status;
+}
+
+hl_status hl_bundle_bring_parts(const hl_bundle *bundle, const char *const *names,
+                                const hl_fetch_range *ranges, size_t count, uint64_t most, hl_error *error) {
+  return bundle->brought != NULL && count > 0 ? ask(bundle, names, ranges, count, most, error) : HL_OK;
+}
+
+static bool is_whole(const hl_fetched_file *file) { return file->begin == 0 && file->size == file->whole; }
+
+bool hl_bundle_has_parts(const hl_bundle *bundle, const char *name) {
+  const brought_file *known = find(bundle->brought, name);
+  return known != NULL && known->file.descriptor >= 0 && !is_whole(&known->file);
+}
+
+/* Opens a file by the parts that were fetched. */
+static hl_status open_parts(const hl_bundle *bundle, const char *name, uint64_t whole, hl_source **source,
+                            hl_error *error) {
+  const hl_brought *brought = bundle->brought;
+  size_t count = 0;
+  hl_source_part *parts = hl_allocate(bundle->context, brought->count, sizeof *parts);
+  if (parts == NULL) return hl_fail_memory(error, brought->count * sizeof *parts, "a list of files");
+  for (size_t n = 0; n < brought->count; n++) {
+    const hl_fetched_file *file = &brought->files[n].file;
+    if (file->descriptor < 0 || strcmp(brought->files[n].name, name) != 0) continue;
+    parts[count++] = (hl_source_part){file->descriptor, file->begin, file->size};
+  }
+  hl_status status = hl_source_of_parts(bundle->context, bundle->path, parts, count, whole, source, error);
+  hl_release(bundle->context, parts);
   return status;
 }
 
@@ -126,6 +167,7 @@ hl_status hl_brought_find(const hl_bundle *bundle, const char *name, hl_source *
   const brought_file *known = find(bundle->brought, name);
   *source = NULL;
   if (known == NULL || known->file.descriptor < 0) return HL_OK;
+  if (!is_whole(&known->file)) return open_parts(bundle, name, known->file.whole, source, error);
   return hl_source_of_descriptor(bundle->context, bundle->path, known->file.descriptor, known->file.size,
                                  source, error);
 }

@@ -16,9 +16,11 @@ enum { FIRST_LOOK_BYTES = 2048 };
 
 struct hl_source {
   hl_context *context;
-  char *path;                  /* owned */
-  int descriptor;              /* a file's descriptor, else -1 */
-  bool is_borrowed;            /* whether the caller owns the descriptor */
+  char *path;            /* owned */
+  int descriptor;        /* a file's descriptor, else -1 */
+  bool is_borrowed;      /* whether the caller owns the descriptor */
+  hl_source_part *parts; /* owned; [part_count]; the known parts of a file; null for other sources */
+  size_t part_count;
   const unsigned char *memory; /* borrowed; [size]; may be null */
   uint64_t size;
   unsigned char *window; /* owned; for files: the bytes [window_begin, + window_length) */
@@ -58,6 +60,7 @@ void hl_source_close(hl_source *source) {
   hl_source_close(source->below);
   if (source->inflated.zlib.state != NULL) inflateEnd(&source->inflated.zlib);
   if (source->descriptor >= 0 && !source->is_borrowed) close(source->descriptor);
+  hl_release(source->context, source->parts);
   hl_release(source->context, source->inflated.bytes);
   hl_release(source->context, source->window);
   hl_release(source->context, source->path);
@@ -100,6 +103,22 @@ hl_status hl_source_of_descriptor(hl_context *context, const char *path, int des
   (*source)->is_borrowed = true;
   (*source)->size = size;
   status = make_window(*source, error);
+  if (status == HL_OK) return HL_OK;
+  hl_source_close(*source);
+  *source = NULL;
+  return status;
+}
+
+hl_status hl_source_of_parts(hl_context *context, const char *path, const hl_source_part *parts, size_t count,
+                             uint64_t whole, hl_source **source, hl_error *error) {
+  hl_status status = make(context, path, source, error);
+  if (status != HL_OK) return status;
+  (*source)->size = whole;
+  (*source)->part_count = count;
+  (*source)->parts = hl_allocate(context, count, sizeof *parts);
+  if ((*source)->parts == NULL) status = hl_fail_memory(error, count * sizeof *parts, path);
+  else memcpy((*source)->parts, parts, count * sizeof *parts);
+  if (status == HL_OK) status = make_window(*source, error);
   if (status == HL_OK) return HL_OK;
   hl_source_close(*source);
   *source = NULL;
@@ -153,10 +172,26 @@ hl_context *hl_source_context(const hl_source *source) { return source->context;
 const char *hl_source_path(const hl_source *source) { return source->path; }
 uint64_t hl_source_size(const hl_source *source) { return source->size; }
 
+/* Finds the part that holds the byte at `offset`. *offset becomes its place in the part's descriptor, and
+ * *wanted at most the number of bytes up to the part's end: 0 if there is no such part. Returns the
+ * descriptor. */
+static int find_part(const hl_source *source, uint64_t *offset, size_t *wanted) {
+  for (size_t n = 0; n < source->part_count; n++) {
+    const hl_source_part *part = &source->parts[n];
+    if (*offset < part->begin || *offset - part->begin >= part->count) continue;
+    *offset -= part->begin;
+    if (part->count - *offset < *wanted) *wanted = (size_t)(part->count - *offset);
+    return part->descriptor;
+  }
+  *wanted = 0;
+  return -1;
+}
+
 static hl_status read_file(hl_source *source, uint64_t offset, void *bytes, size_t wanted, size_t *count,
                            hl_error *error) {
+  int descriptor = source->parts != NULL ? find_part(source, &offset, &wanted) : source->descriptor;
   for (*count = 0; *count < wanted;) {
-    ssize_t got = pread(source->descriptor, (unsigned char *)bytes + *count, wanted - *count,
+    ssize_t got = pread(descriptor, (unsigned char *)bytes + *count, wanted - *count,
                         (off_t)(offset + *count));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return hl_fail(error, HL_ERROR_IO, "%s: cannot read: %s", source->path, strerror(errno));
@@ -272,7 +307,7 @@ hl_status hl_source_peek(hl_source *source, uint64_t offset, size_t wanted, cons
 hl_status hl_source_read(hl_source *source, uint64_t offset, void *bytes, size_t wanted, size_t *count,
                          hl_error *error) {
   *count = 0;
-  if (source->descriptor >= 0)
+  if (source->descriptor >= 0 || source->parts != NULL)
     return read_file(source, offset, bytes, clip(source, offset, wanted), count, error);
   if (source->below != NULL && source->inflated.zlib.state == NULL)
     return hl_source_read(source->below, source->below_at + offset, bytes, clip(source, offset, wanted),

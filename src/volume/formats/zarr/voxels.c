@@ -12,6 +12,7 @@
 #include "core/memory.h"
 #include "volume/convert.h"
 #include "volume/formats/zarr/chunk.h"
+#include "volume/formats/zarr/shard.h"
 #include "volume/io/parallel.h"
 
 enum {
@@ -174,7 +175,7 @@ static void put(const reading *r, const worker *w, const part *p, const unsigned
 
 static hl_status read_index(const reading *r, worker *w, hl_error *error) {
   const hl_zarr_array *array = r->array;
-  size_t bytes = (size_t)array->shards.chunks * 16 + 4 * (size_t)array->shards.index_checks, got = 0;
+  size_t bytes = hl_zarr_index_bytes(array), got = 0;
   uint64_t size = hl_source_size(w->source);
   if (size < bytes)
     return hl_zarr_fail(r->bundle, w->key, error, HL_ERROR_INPUT,
@@ -207,27 +208,22 @@ static hl_status open_file(const reading *r, worker *w, const part *p, hl_error 
   return status;
 }
 
-static uint64_t little_u64(const unsigned char *bytes) {
-  uint64_t value = 0;
-  for (int n = 7; n >= 0; n--) value = value << 8 | bytes[n];
-  return value;
-}
-
-/* Finds a part's chunk in the open file. *length is set to 0 if the chunk is missing. */
+/* Finds a chunk in its file. *length is 0 if the chunk is missing. */
 static hl_status find_chunk(const reading *r, const worker *w, const part *p, uint64_t *offset,
                             uint64_t *length, hl_error *error) {
-  uint64_t size = w->source != NULL ? hl_source_size(w->source) : 0, number = 0;
+  uint64_t size = w->source != NULL ? hl_source_size(w->source) : 0;
   *offset = 0;
   *length = size;
   if (w->source == NULL || !r->array->shards.are_used) return HL_OK;
-  for (int axis = 0; axis < r->array->rank; axis++)
-    number = number * r->array->shards.size[axis] + p->inner[axis];
-  *offset = little_u64(w->index + 16 * number);
-  *length = little_u64(w->index + 16 * number + 8);
-  if (*offset == UINT64_MAX && *length == UINT64_MAX) *length = 0;
-  else if (*length == 0 || *offset > size || *length > size - *offset)
-    return hl_zarr_fail(r->bundle, w->key, error, HL_ERROR_INPUT, "a chunk lies outside of its shard");
-  return HL_OK;
+  return hl_zarr_index_find(r->array, w->index, p->inner, size, offset, length)
+             ? HL_OK
+             : hl_zarr_fail(r->bundle, w->key, error, HL_ERROR_INPUT, "a chunk lies outside of its shard");
+}
+
+/* Whether any of a part's voxels is kept here. */
+static bool wants_part(const reading *r, const part *p) {
+  uint64_t slice = r->size[0] * r->size[1];
+  return hl_destination_wants(r->to, p->begin[2] * slice, p->count[2] * slice);
 }
 
 static hl_status read_part(void *data, size_t number, int index, hl_error *error) {
@@ -237,9 +233,8 @@ static hl_status read_part(void *data, size_t number, int index, hl_error *error
   uint64_t offset, length = 0;
   const unsigned char *chunk = NULL;
   if (!place_part(r, r->first + number, &p)) return HL_OK;
-  uint64_t slice = r->size[0] * r->size[1];
-  if (!hl_destination_wants(r->to, p.begin[2] * slice, p.count[2] * slice)) {
-    /* a chunk of other ranks counts as found: only the rank that keeps its voxels knows whether it exists */
+  if (!wants_part(r, &p)) {
+    /* the chunk counts as found: only the rank that keeps its voxels knows whether it exists */
     atomic_fetch_add_explicit(&r->found, 1, memory_order_relaxed);
     return HL_OK;
   }
@@ -257,7 +252,21 @@ static hl_status read_part(void *data, size_t number, int index, hl_error *error
 
 enum { FILES_AT_A_TIME = 64 };
 
-/* The greatest length of a file. The rest of a longer file would not be read. */
+static uint64_t parts_of_file(const reading *r) { return r->inner[0] * r->inner[1] * r->inner[2]; }
+
+/* Whether shards have chunks that are not read: those of other times or channels, or of other ranks. */
+static bool reads_parts_of_shards(const reading *r) {
+  return r->array->shards.are_used && (parts_of_file(r) < r->array->shards.chunks || r->to->own != NULL);
+}
+
+/* The number of files that are read at a time. Each file, and each part of a shard, is an open descriptor, of
+ * which processes often may have 1024. */
+static uint64_t files_at_a_time(const reading *r) {
+  uint64_t parts = parts_of_file(r), files = parts < HL_ZARR_SPANS_MOST ? HL_ZARR_SPANS_MOST / parts : 1;
+  return reads_parts_of_shards(r) && files < FILES_AT_A_TIME ? files : FILES_AT_A_TIME;
+}
+
+/* The greatest length of a file; more would not be read. */
 static uint64_t longest_file(const hl_zarr_array *array) {
   uint64_t chunk = hl_zarr_chunk_most(array) + 16, length;
   return __builtin_mul_overflow(chunk, array->shards.chunks, &length) ? UINT64_MAX : length + 64;
@@ -266,24 +275,21 @@ static uint64_t longest_file(const hl_zarr_array *array) {
 /* Whether any voxel of a file is kept by this process. number: the number of the file's first part. place:
  * set to the place of one of the file's parts. */
 static bool wants_file(const reading *r, uint64_t number, part *place) {
-  uint64_t slice = r->size[0] * r->size[1], inner = r->inner[0] * r->inner[1] * r->inner[2];
-  for (uint64_t n = 0; n < inner; n++)
-    if (place_part(r, number + n, place) &&
-        hl_destination_wants(r->to, place->begin[2] * slice, place->count[2] * slice))
-      return true;
+  for (uint64_t n = 0; n < parts_of_file(r); n++)
+    if (place_part(r, number + n, place) && wants_part(r, place)) return true;
   return false;
 }
 
-/* Fetches the files of the `count` parts from r->first on. separator: the separator in the files' names.
- * again: whether to fetch only those files that were not found under their names with the array's own
- * separator. */
+/* Fetches the files of the `count` parts from r->first on, or the indices of shards. separator: the separator
+ * in the files' names. again: whether to fetch only those files that the server does not have under the
+ * array's own separator. */
 static hl_status bring_files(const reading *r, uint64_t count, char separator, bool again, hl_error *error) {
-  uint64_t inner = r->inner[0] * r->inner[1] * r->inner[2];
   const char *names[FILES_AT_A_TIME];
+  hl_fetch_range ranges[FILES_AT_A_TIME];
   size_t wanted = 0;
   char(*keys)[KEY_BYTES] = hl_allocate(r->bundle->context, FILES_AT_A_TIME, sizeof *keys);
   hl_status status = keys != NULL ? HL_OK : hl_fail_memory(error, FILES_AT_A_TIME * sizeof *keys, "names");
-  for (uint64_t n = 0; n < count && status == HL_OK; n += inner) {
+  for (uint64_t n = 0; n < count && status == HL_OK; n += parts_of_file(r)) {
     part place;
     hl_source *known = NULL;
     if (!wants_file(r, r->first + n, &place)) continue;
@@ -293,10 +299,62 @@ static hl_status bring_files(const reading *r, uint64_t count, char separator, b
     if (known != NULL) continue;
     name_file(r->array, &place, separator, keys[wanted]);
     names[wanted] = keys[wanted];
+    ranges[wanted] = hl_zarr_index_range(r->array);
     wanted++;
   }
-  if (status == HL_OK) status = hl_bundle_bring(r->bundle, names, wanted, longest_file(r->array), error);
+  uint64_t most = longest_file(r->array);
+  if (status == HL_OK && reads_parts_of_shards(r))
+    status = hl_bundle_bring_parts(r->bundle, names, ranges, wanted, most, error);
+  else if (status == HL_OK) status = hl_bundle_bring(r->bundle, names, wanted, most, error);
   hl_release(r->bundle->context, keys);
+  return status;
+}
+
+/* Parts of shards that are to be fetched. */
+typedef struct span_list {
+  char (*keys)[KEY_BYTES]; /* owned; [FILES_AT_A_TIME]; names of the shards */
+  size_t shards, count;
+  const char *names[HL_ZARR_SPANS_MOST];     /* [count]; in `keys` */
+  hl_fetch_range ranges[HL_ZARR_SPANS_MOST]; /* [count] */
+} span_list;
+
+/* Lists the ranges of a shard's chunks that are read. number: the number of the shard's first part. chunks:
+ * [parts of a file]. */
+static hl_status list_chunks(const reading *r, const worker *w, uint64_t number, hl_fetch_range *chunks,
+                             size_t *count, hl_error *error) {
+  hl_status status = HL_OK;
+  *count = 0;
+  for (uint64_t n = 0; n < parts_of_file(r) && status == HL_OK; n++) {
+    part p;
+    if (!place_part(r, number + n, &p) || !wants_part(r, &p)) continue;
+    hl_fetch_range *chunk = &chunks[*count];
+    status = find_chunk(r, w, &p, &chunk->begin, &chunk->count, error);
+    *count += status == HL_OK && chunk->count > 0;
+  }
+  return status;
+}
+
+/* Adds to the list what is to be fetched of one shard, whose index has been fetched. A shard that does not
+ * exist, or that the server has sent as a whole, adds nothing. */
+static hl_status list_spans(const reading *r, uint64_t number, span_list *list, hl_error *error) {
+  part place;
+  worker *w = &r->workers[0];
+  size_t count;
+  if (!wants_file(r, number, &place)) return HL_OK;
+  hl_status status = open_file(r, w, &place, error);
+  if (status != HL_OK || w->source == NULL || !hl_bundle_has_parts(r->bundle, w->key)) return status;
+  hl_fetch_range *chunks = hl_allocate(r->bundle->context, parts_of_file(r), sizeof *chunks);
+  if (chunks == NULL) return hl_fail_memory(error, parts_of_file(r) * sizeof *chunks, "a list of chunks");
+  status = list_chunks(r, w, number, chunks, &count, error);
+  if (status == HL_OK) {
+    char *key = strcpy(list->keys[list->shards++], w->key);
+    count = hl_zarr_spans_join(chunks, count);
+    for (size_t n = 0; n < count; n++) {
+      list->names[list->count] = key;
+      list->ranges[list->count++] = chunks[n];
+    }
+  }
+  hl_release(r->bundle->context, chunks);
   return status;
 }
 
@@ -308,10 +366,31 @@ static void close_files(const reading *r, int workers) {
   }
 }
 
-/* Fetches some files at a time from the server, and reads their parts. */
+/* Fetches the chunks that are read of the shards of the `count` parts from r->first on. */
+static hl_status bring_chunks(const reading *r, uint64_t count, int workers, hl_error *error) {
+  hl_context *context = r->bundle->context;
+  span_list *list = hl_allocate_zeroed(context, 1, sizeof *list);
+  if (list == NULL) return hl_fail_memory(error, sizeof *list, "a list of chunks");
+  list->keys = hl_allocate(context, FILES_AT_A_TIME, sizeof *list->keys);
+  hl_status status = list->keys != NULL
+                         ? HL_OK
+                         : hl_fail_memory(error, FILES_AT_A_TIME * sizeof *list->keys, "names");
+  for (uint64_t n = 0; n < count && status == HL_OK; n += parts_of_file(r))
+    status = list_spans(r, r->first + n, list, error);
+  close_files(r, workers); /* the sources know the indices alone */
+  if (status == HL_OK)
+    status = hl_bundle_bring_parts(r->bundle, list->names, list->ranges, list->count, longest_file(r->array),
+                                   error);
+  hl_release(context, list->keys);
+  hl_release(context, list);
+  return status;
+}
+
+/* Brings some files at a time, and reads their parts. */
 static hl_status read_from_server(reading *r, hl_pool *pool, hl_error *error) {
   const hl_zarr_array *array = r->array;
-  uint64_t step = FILES_AT_A_TIME * r->inner[0] * r->inner[1] * r->inner[2];
+  bool by_parts = reads_parts_of_shards(r);
+  uint64_t step = files_at_a_time(r) * parts_of_file(r);
   size_t known = hl_bundle_brought_count(r->bundle);
   hl_status status = HL_OK;
   for (; r->first < r->parts && status == HL_OK; r->first += step) {
@@ -319,6 +398,7 @@ static hl_status read_from_server(reading *r, hl_pool *pool, hl_error *error) {
     status = bring_files(r, count, array->separator, false, error);
     if (status == HL_OK && array->separator_untold && array->rank > 1)
       status = bring_files(r, count, '/', true, error);
+    if (status == HL_OK && by_parts) status = bring_chunks(r, count, hl_pool_threads(pool), error);
     if (status == HL_OK)
       status = hl_parallel_read(r->bundle->context, pool, r->bundle->path, (size_t)count, read_part, r,
                                 error);
