@@ -139,16 +139,18 @@ typedef struct hl_volume_load_options {
   const void *bytes;  /* the file's content in memory, borrowed during the call; no file is opened, and path
                        * is only a name. Default null */
   size_t byte_count;
-  const char *series; /* the series that is read, if there are several. DICOM: a series' number, UID or
-                       * description; null: the largest series. OME-Zarr: an image's number, path or name;
-                       * null: the first image */
-  hl_space space;     /* the anatomical space to which the volume's world is converted, if the file tells its
-                       * own space; default unknown: the world is not converted */
-  int time, channel, level; /* the time step, channel and resolution (0: the finest) that are read, if the
-                             * file has several; numbers from 0; default HL_INDEX_DEFAULT */
-  int pixels; /* the longer side, in pixels, of the picture that the volume will fill; 0 (default): unknown.
-               * Of several resolutions, the coarsest one whose longest axis has at least so many voxels is
-               * read. Not used where `level` is given */
+  const char *series; /* the series that is read, of several. DICOM: a series' number, UID or description;
+                       * null: the largest. OME-Zarr: an image's number, path or name; null: the first */
+  hl_space space;     /* the anatomical space into which the volume's world is turned, if the file tells
+                       * its own space; default unknown: the world is not turned */
+  int time, channel, level; /* the time step, channel and resolution (0: the finest) that are read, of
+                             * several; numbers from 0; default HL_INDEX_DEFAULT */
+  int pixels; /* the longer side, in pixels, of a picture that the volume will fill; 0 (default): unknown.
+               * Of several resolutions, the coarsest is read whose longest axis has at least as many
+               * voxels. Unused where `level` is given */
+  int preview_pixels; /* above 0: of several resolutions, a coarser one is read for a first picture, whose
+                       * longer side has this many pixels. hl_volume_selection.aim is then the resolution that
+                       * would be read without this option. Default 0 */
 } hl_volume_load_options;
 
 HL_API void hl_volume_load_options_defaults(hl_volume_load_options *options);
@@ -270,6 +272,8 @@ typedef struct hl_volume_selection {
   size_t struct_size; /* set by the caller */
   size_t times, channels, levels;
   int time, channel, level;
+  int aim; /* the resolution that the options of reading ask for; another one than `level` if a coarser one
+            * was read for a first picture (hl_volume_load_options.preview_pixels) */
 } hl_volume_selection;
 
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_selection(const hl_volume *volume,

@@ -20,9 +20,10 @@ typedef struct cli_host {
   bool (*cancelled)(void); /* or null */
   void (*progressed)(const char *stage, double fraction); /* or null */
   uint64_t memory_limit;                                  /* bytes; 0: unknown */
-  cli_read_files read;                                    /* the files that the context has read */
-  char *const *operands;                                  /* see cli_host_options */
-  char subject[32]; /* the input's name beside the bar, cut to keep the line short */
+  int preview_pixels;    /* hl_volume_load_options.preview_pixels for the volumes of the command line */
+  cli_read_files read;   /* the files that the context has read */
+  char *const *operands; /* see cli_host_options */
+  char subject[32];      /* the input's name beside the bar, cut to keep the line short */
 } cli_host;
 
 typedef struct cli_host_options {

@@ -163,6 +163,12 @@ void input_load_options(const cli_value *reading, const cli_value *spacing, hl_v
   if (spacing != NULL && spacing->given) memcpy(options->spacing, spacing->number, sizeof options->spacing);
 }
 
+int input_picture_side(void) {
+  hl_scene_description description;
+  hl_scene_description_defaults(&description);
+  return description.width > description.height ? description.width : description.height;
+}
+
 hl_status input_load_volume(hl_context *context, const cli_input *input,
                             const hl_volume_load_options *options, hl_volume **volume, hl_error *error) {
   hl_volume_load_options chosen;
@@ -194,13 +200,12 @@ void input_name_source(const hl_volume_load_options *options, hl_scene_volume *v
   volume->time = options->time, volume->channel = options->channel, volume->level = options->level;
   hl_volume_selection read = {.struct_size = sizeof read};
   if (options->pixels > 0 && hl_volume_get_selection(volume->volume, &read) == HL_OK && read.levels > 1)
-    volume->level = read.level; /* the scene may be drawn in another size */
+    volume->level = read.aim; /* the scene may be drawn in another size */
   memcpy(volume->spacing, options->spacing, sizeof volume->spacing);
 }
 
-/* Writes into the scene the options that its volume was read with. */
-static hl_status name_source(hl_context *context, const hl_volume_load_options *options, hl_scene **scene,
-                             hl_error *error) {
+hl_status input_name_scene(hl_context *context, const hl_volume_load_options *options, hl_scene **scene,
+                           hl_error *error) {
   hl_scene_description description = *hl_scene_describe(*scene);
   hl_scene_volume volume = description.volumes[0];
   hl_scene *named = NULL;
@@ -222,7 +227,7 @@ static hl_status load_volume_scene(hl_context *context, const cli_input *input,
   if (status == HL_OK)
     status = hl_scene_for_volume_look(context, volume, file, input->look != NULL ? input->look : "auto",
                                       scene, error);
-  if (status == HL_OK && options != NULL) status = name_source(context, options, scene, error);
+  if (status == HL_OK && options != NULL) status = input_name_scene(context, options, scene, error);
   hl_volume_release(volume);
   return status;
 }

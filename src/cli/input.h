@@ -89,8 +89,11 @@ void input_close(cli_input *input);
  * render_load_options(), because its --channel is a text. */
 void input_load_options(const cli_value *reading, const cli_value *spacing, hl_volume_load_options *options);
 
-/* Reads an input that is a volume. options: null means the defaults; `bytes` is not used, because the input
- * has them. */
+/* The longer side of a picture whose size nobody has chosen, in pixels: hl_volume_load_options.pixels where
+ * no picture's size is known. */
+int input_picture_side(void);
+
+/* Reads an input that is a volume. options: all but `bytes`, which the input has; null: the defaults. */
 hl_status input_load_volume(hl_context *context, const cli_input *input,
                             const hl_volume_load_options *options, hl_volume **volume, hl_error *error);
 
@@ -101,8 +104,12 @@ hl_status input_smooth(double sigma, hl_volume **volume, hl_error *error);
  * strings are borrowed. */
 void input_name_source(const hl_volume_load_options *options, hl_scene_volume *volume);
 
-/* Makes the scene of an input: reads the scene in it or, for a bare volume, reads the volume by `options`
- * (null: the defaults) and makes a scene for it. */
+/* Writes into a scene of one volume the options with which this volume was read. */
+hl_status input_name_scene(hl_context *context, const hl_volume_load_options *options, hl_scene **scene,
+                           hl_error *error);
+
+/* The scene of an input: read from it, or made for a bare volume, which is read by `options` (null: the
+ * defaults). */
 hl_status input_load(hl_context *context, const cli_input *input, const hl_volume_load_options *options,
                      hl_scene **scene, hl_error *error);
 

@@ -180,7 +180,7 @@ static hl_status name_channel(channel_scenes *made, const hl_volume *volume, hl_
   named.name = is_named ? volume->channels[channel].name : numbered;
   named.array = options->array, named.series = options->series, named.component = options->component;
   named.time = options->time, named.channel = channel, named.level = options->level;
-  if (volume->selection.levels > 1) named.level = volume->selection.level;
+  if (volume->selection.levels > 1) named.level = volume->selection.aim;
   memcpy(named.spacing, options->spacing, sizeof named.spacing);
   description.volumes = &named;
   hl_scene *with_name = NULL;

@@ -21,7 +21,7 @@ static _Thread_local struct {
   int socket;        /* socket of the client that has asked for the frame */
   server_page *page; /* null: there is no page */
   unsigned long long number;
-  const server_opened *opened; /* the open scene for which this thread makes a preview; null: it makes none */
+  const server_opened *opened; /* the open scene that this thread prepares; null: it prepares none */
   bool opening;                /* a file is being opened */
 } current;
 
@@ -238,10 +238,28 @@ static void fail_frame(server_answer *answer, hl_status status, const hl_error *
 static hl_status make_quick(server *s, long long number, hl_scene *scene, hl_scene **quick, hl_error *error) {
   const struct timespec moment = {.tv_nsec = 2000000};
   server_opened *opened = opened_enter(s, number);
-  while (opened != NULL && !atomic_load(&opened->prepared) && !server_is_outdated()) nanosleep(&moment, NULL);
-  hl_preview *preview = opened != NULL ? atomic_load(&opened->preview) : NULL;
+  const opened_state *now = opened != NULL ? opened_now(opened) : NULL;
+  while (now != NULL && !atomic_load(&now->prepared) && !server_is_outdated()) nanosleep(&moment, NULL);
+  hl_preview *preview = now != NULL ? atomic_load(&now->preview) : NULL;
   hl_status status = preview != NULL ? hl_preview_scene(preview, scene, quick, error) : HL_OK;
   if (opened != NULL) opened_leave(s, opened);
+  return status;
+}
+
+/* Waits until the finest resolutions of an open scene's volumes are read. */
+static hl_status await_finest(server *s, long long number, hl_error *error) {
+  const struct timespec moment = {.tv_nsec = 2000000};
+  hl_status status = HL_OK;
+  server_opened *opened = opened_enter(s, number);
+  if (opened == NULL) return HL_OK; /* read_scene() tells it */
+  while (atomic_load(&opened->refining) && !server_is_outdated()) nanosleep(&moment, NULL);
+  if (atomic_load(&opened->refining)) status = HL_ERROR_CANCELLED;
+  else if (opened->problem[0] != '\0') {
+    snprintf(error->message, sizeof error->message, "only a coarser resolution was read: %.900s",
+             opened->problem);
+    status = HL_ERROR_INPUT;
+  }
+  opened_leave(s, opened);
   return status;
 }
 
@@ -252,8 +270,8 @@ static hl_status read_scene(server *s, long long number, const char *text, size_
     snprintf(error->message, sizeof error->message, "%s", closed_line);
     return HL_ERROR_INPUT;
   }
-  hl_status status = hl_scene_from_json_like(s->sealed, text, length, NULL, "scene", opened->scene, scene,
-                                             error);
+  hl_status status = hl_scene_from_json_like(s->sealed, text, length, NULL, "scene",
+                                             opened_now(opened)->scene, scene, error);
   opened_leave(s, opened);
   if (status != HL_OK) return status;
   const hl_scene_description *d = hl_scene_describe(*scene);
@@ -331,7 +349,8 @@ static hl_status make_frame(server *s, server_page *page, const frame_request *r
   hl_scene *scene = NULL, *quick = NULL;
   double began = server_seconds();
   if (server_is_outdated()) return HL_ERROR_CANCELLED;
-  hl_status status = read_scene(s, request->opened, request->text, request->length, &scene, error);
+  hl_status status = request->coarse ? HL_OK : await_finest(s, request->opened, error);
+  if (status == HL_OK) status = read_scene(s, request->opened, request->text, request->length, &scene, error);
   double parsed = server_seconds();
   if (status == HL_OK && request->moving) status = make_quick(s, request->opened, scene, &quick, error);
   bool coarser = quick != NULL && quick != scene;
@@ -424,7 +443,7 @@ static void answer_opened(server *s, hl_scene *scene, const char *title, hl_stat
                           server_answer *answer) {
   if (status == HL_OK) {
     server_opened *opened = opened_add(s, scene, title);
-    answer->from_malloc = opened != NULL ? (unsigned char *)strdup(opened->start) : NULL;
+    answer->from_malloc = opened != NULL ? (unsigned char *)strdup(opened_now(opened)->start) : NULL;
     if (opened != NULL) opened_leave(s, opened);
     if (answer->from_malloc == NULL) {
       snprintf(error->message, sizeof error->message, "no memory to open another file");
@@ -465,7 +484,7 @@ void answer_join(server *s, const frame_request *request, long long with, const 
   hl_status status = read_scene(s, request->opened, request->text, request->length, &base, &error);
   server_opened *added = opened_enter(s, with);
   if (status == HL_OK && added != NULL)
-    status = join_scenes(s->options.context, base, added->scene, &joined, &error);
+    status = join_scenes(s->options.context, base, opened_now(added)->scene, &joined, &error);
   if (added != NULL) opened_leave(s, added);
   opened_close(s, with);
   hl_scene_release(base);

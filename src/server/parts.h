@@ -77,17 +77,31 @@ typedef struct server_page {
   unsigned long long base_number; /* number of the frame of `base`; guarded by server.pages_lock */
 } server_page;
 
+/* An open scene as it was read so far. Volumes of several resolutions are read from coarse to fine; each time
+ * the whole state is replaced. */
+typedef struct opened_state opened_state;
+
+struct opened_state {
+  hl_scene *scene;               /* owned */
+  char *start;                   /* owned; the text of the scene's start.json */
+  int refined;                   /* how often a state was replaced by a finer one before this one */
+  _Atomic(hl_preview *) preview; /* owned; null until the preview is made, and where it cannot be made */
+  atomic_bool prepared;          /* the preview is made, or cannot be made */
+  opened_state *before;          /* owned; the state that this one replaced; requests may still use it */
+};
+
 /* A scene that is open. */
 typedef struct server_opened {
-  long long number;              /* the number by which pages name the scene; 0 for the program's input */
-  hl_scene *scene;               /* owned; null: the place is free */
-  char *start;                   /* owned; the text of the scene's start.json */
-  _Atomic(hl_preview *) preview; /* owned; null until the preview was made, and if it cannot be made */
-  atomic_bool prepared;          /* the preview is made, or cannot be made */
-  int users;                     /* number of requests that use the scene; guarded by server.pages_lock */
-  atomic_bool leaving;           /* the page that opened the scene was closed; set while server.pages_lock is
-                                  * held */
-  unsigned long long last_use;   /* guarded by server.pages_lock */
+  long long number; /* the number by which pages name the scene; 0: the scene is the program's input */
+  _Atomic(opened_state *) state; /* owned; null: the place is free. A state that was loaded stays while the
+                                  * scene is entered */
+  char *title;                   /* owned */
+  atomic_bool refining;          /* finer resolutions are still to be read */
+  char problem[1000];  /* why they were not read, an error line; "" where they were. It does not change once
+                        * `refining` is false */
+  int users;           /* number of requests that use the scene; guarded by server.pages_lock */
+  atomic_bool leaving; /* the scene's page has gone; set while server.pages_lock is held */
+  unsigned long long last_use; /* guarded by server.pages_lock */
 } server_opened;
 
 typedef struct server {
@@ -136,12 +150,13 @@ typedef struct frame_request {
   int depth;          /* bits of a PNG's channels: 8 or 16 */
   int metadata;       /* 1: a PNG carries its scene; 0: it does not */
   int scale_bar, legend; /* 1: drawn over a PNG of 8 bits */
-  int axes;              /* an hl_axes; axes, too, are drawn over a PNG of 8 bits */
-  const char *unit;      /* unit of lengths that is used if the scene's files tell none; null: none */
-  int moving;       /* 1: a quick frame, with coarser volumes if the sheets are far apart; 0: the scene as it
-                     * is */
-  long long base;   /* 0: `text` is a whole scene. Else `text` is a difference from an earlier scene: that of
-                     * the page's frame with this number */
+  int axes;              /* an hl_axes; axes are drawn over a PNG of 8 bits, too */
+  const char *unit; /* unit of lengths, used where the scene's files tell none; null: there is no such unit */
+  int moving;     /* 1: a quick frame, of coarser volumes where the sheets are wide; 0: the scene as it is */
+  int coarse;     /* 1: the volumes are taken as they were read so far; 0: the frame waits for the finest
+                   * resolutions that are to be read, and fails where they cannot be read */
+  long long base; /* 0: `text` is a whole scene; else `text` is a difference, from the scene of the page's
+                   * frame with this number */
   const char *text; /* the scene */
   size_t length;
 } frame_request;
@@ -157,8 +172,10 @@ typedef struct film_request {
 
 /* A plane of voxels that a page asks for. */
 typedef struct slice_request {
-  long long opened, volume; /* the number of the open scene, and the index of the volume in it */
-  bool of_mask;             /* the plane is cut out of the volume's mask, not out of the volume itself */
+  long long refined; /* `refined` of the state whose voxels the plane is given in; -1: it is not told */
+  long long opened, volume; /* number of the open scene, and index of the volume in it */
+  bool of_mask;             /* the plane is cut out of the label map that masks the volume, not out of the
+                             * volume */
   hl_reslice_options plane;
 } slice_request;
 
@@ -253,6 +270,12 @@ hl_status turn_to_frame(server *s, hl_scene **scene, const film_request *film, i
 /* opened.c: open scenes. opened_enter() holds a scene until opened_leave(). Null: the scene is not open any
  * more. */
 server_opened *opened_enter(server *s, long long number);
+static inline const opened_state *opened_now(const server_opened *opened) {
+  return atomic_load(&opened->state);
+}
+/* JSON of how far an open scene was read: {"refined": N, "refining": BOOL, "problem": TEXT} (free()); null:
+ * no memory. */
+char *describe_refinement(const server_opened *opened);
 void opened_leave(server *s, server_opened *opened);
 /* Closes a scene that a page has opened, as soon as no request holds it. */
 void opened_close(server *s, long long number);

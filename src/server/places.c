@@ -14,9 +14,12 @@ void answer_slice(server *s, const slice_request *request, server_answer *answer
     refuse_line(answer, 410, closed_line);
     return;
   }
-  const hl_volume *volume = sliced_volume(opened->scene, request->volume, request->of_mask);
+  const opened_state *now = opened_now(opened);
+  const hl_volume *volume = sliced_volume(now->scene, request->volume, request->of_mask);
   hl_error error = {0};
-  if (volume == NULL) refuse_line(answer, 400, "the scene has no such volume or mask");
+  if (request->refined >= 0 && request->refined != now->refined)
+    refuse_line(answer, 409, "the plane is given in voxels of a resolution that a finer one has replaced");
+  else if (volume == NULL) refuse_line(answer, 400, "the scene has no such volume or mask");
   else if (slice_values(volume, &request->plane, &answer->from_malloc, &answer->length, &error) == HL_OK) {
     answer->status = 200;
     answer->type = "application/octet-stream";

@@ -63,6 +63,7 @@ frame_request query_frame(struct MHD_Connection *connection, const char *text, s
                          .axes = query_choice(connection, "axes", axes, 0),
                          .unit = query_text(connection, "unit"),
                          .moving = (int)query_number(connection, "moving", 0, 1, 0),
+                         .coarse = (int)query_number(connection, "coarse", 0, 1, 0),
                          .base = query_number(connection, "base", 1, MOST_NUMBER, 0),
                          .text = text,
                          .length = length};
@@ -88,6 +89,7 @@ bool query_slice(struct MHD_Connection *connection, slice_request *wanted) {
   hl_reslice_options_defaults(plane);
   wanted->opened = query_number(connection, "opened", 0, MOST_NUMBER, 0);
   wanted->volume = query_number(connection, "volume", 0, MOST_NUMBER, 0);
+  wanted->refined = query_number(connection, "refined", 0, MOST_NUMBER, -1);
   long long sides[] = {query_number(connection, "width", 1, MOST_SLICE_SIDE, -1),
                        query_number(connection, "height", 1, MOST_SLICE_SIDE, -1),
                        query_number(connection, "depth", 1, MOST_SLICE_SIDE, 1)};

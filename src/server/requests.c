@@ -204,14 +204,17 @@ static void answer_progress(server *s, struct MHD_Connection *connection, server
   answer_json(answer, text);
 }
 
-static void answer_start(server *s, server_answer *answer) {
-  server_opened *first = opened_enter(s, 0);
-  if (first == NULL) {
-    answer_problem(answer, 410, "the volume that the viewer began with is open no longer\n");
+/* Answers with start.json of an open scene, or with how far it was read. */
+static void answer_opened(server *s, struct MHD_Connection *connection, bool start, server_answer *answer) {
+  long long number = query_number(connection, "opened", 0, MOST_NUMBER, 0);
+  server_opened *opened = number >= 0 ? opened_enter(s, number) : NULL;
+  if (opened == NULL) {
+    answer_problem(answer, 410,
+                   number == 0 ? "the volume that the viewer began with is open no longer\n" : closed_line);
     return;
   }
-  answer_json(answer, strdup(first->start));
-  opened_leave(s, first);
+  answer_json(answer, start ? strdup(opened_now(opened)->start) : describe_refinement(opened));
+  opened_leave(s, opened);
 }
 
 static void answer_opening(server *s, server_answer *answer) {
@@ -255,7 +258,8 @@ static void answer_asset(server *s, const char *path, server_answer *answer) {
 
 static void answer_get(server *s, struct MHD_Connection *connection, const char *path,
                        server_answer *answer) {
-  if (strcmp(path, "start.json") == 0) answer_start(s, answer);
+  if (strcmp(path, "start.json") == 0) answer_opened(s, connection, true, answer);
+  else if (strcmp(path, "refined.json") == 0) answer_opened(s, connection, false, answer);
   else if (strcmp(path, "folder.json") == 0) answer_folder(s, connection, answer);
   else if (strcmp(path, "film.json") == 0) answer_film_progress(s, connection, answer);
   else if (strcmp(path, "progress.json") == 0) answer_progress(s, connection, answer);
@@ -268,13 +272,13 @@ static void post_frame(server *s, struct MHD_Connection *connection, const reque
                        server_answer *answer) {
   frame_request wanted = query_frame(connection, r->body, r->length);
   if (names_page(&wanted) && is_picture_format(wanted.format) && wanted.quality > 0 && wanted.metadata >= 0 &&
-      wanted.moving >= 0 && wanted.base >= 0 && (wanted.depth == 8 || wanted.depth == 16) &&
-      overlay_fits(&wanted))
+      wanted.moving >= 0 && wanted.coarse >= 0 && wanted.base >= 0 &&
+      (wanted.depth == 8 || wanted.depth == 16) && overlay_fits(&wanted))
     answer_frame(s, &wanted, NULL, answer);
   else
     answer_problem(answer, 400,
                    "a frame needs ?page=NAME&number=N&format=jpeg|png|exr|npy (&quality=10..100, "
-                   "&depth=8|16, &metadata=0|1, &moving=0|1, "
+                   "&depth=8|16, &metadata=0|1, &moving=0|1, &coarse=0|1, "
                    "&base=N; of a png with 8 bits &scale_bar=0|1, "
                    "&legend=0|1, &axes=none|arrows|letters, &unit=TEXT)\n");
 }
@@ -284,6 +288,7 @@ static void post_depth(server *s, struct MHD_Connection *connection, const reque
                        server_answer *answer) {
   frame_request wanted = query_frame(connection, r->body, r->length);
   wanted.format = "depth";
+  wanted.coarse = 1;
   if (names_page(&wanted) && wanted.opened >= 0) answer_frame(s, &wanted, NULL, answer);
   else answer_problem(answer, 400, "a depth needs ?page=NAME&number=N (&opened=N)\n");
 }
@@ -293,6 +298,7 @@ static void post_overlay(server *s, struct MHD_Connection *connection, const req
                          server_answer *answer) {
   frame_request wanted = query_frame(connection, r->body, r->length);
   wanted.format = "overlay";
+  wanted.coarse = 1;
   if (names_page(&wanted) && wanted.opened >= 0 && names_overlay(&wanted))
     answer_frame(s, &wanted, NULL, answer);
   else

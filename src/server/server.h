@@ -4,7 +4,8 @@
  *
  *
  * - GET TOKEN/: the page, and the files it consists of (page/, embedded in the program)
- * - GET TOKEN/start.json: the open scene, its volumes' ranges and histograms, presets, colormaps
+ * - GET TOKEN/start.json?opened=N: the open scene, its volumes' ranges and histograms, presets, colormaps
+ * - GET TOKEN/refined.json?opened=N: how far volumes of several resolutions were read, from coarse to fine
  * - POST TOKEN/frame?page=NAME&number=N&format=FORMAT: a scene file's text in, its picture out
  * - POST TOKEN/scene: a scene file's text in, the same scene with all its defaults written out
  * - POST TOKEN/depth?page=NAME&number=N: a scene file's text in; as JSON, the depth of the place that the
@@ -25,6 +26,8 @@
  *   comes the start.json of this scene together with the scene M, which is closed
  * - GET TOKEN/opening.json: the progress of reading a file
  * - GET TOKEN/state.json: the server's state: pages, open scenes, bytes, connections
+ *
+ * Frames with &coarse=1 show such volumes as they were read so far; others wait until all is read.
  *
  * A scene names volumes and images of an open scene; no other file is read for it. A file that a page opens
  * may name only files below its own folder; a dropped file lies in a folder of its own. A page's frames are
@@ -50,7 +53,10 @@ typedef struct server_options {
   const char *title;  /* the input's name, for the page's title */
   const char *folder; /* absolute path; pages may open files below it; null: they may open none */
   hl_status (*open)(void *files_data, const server_file *file, hl_scene **scene, hl_error *error);
-  void *files_data;                        /* data for `open` */
+  /* Reads volumes whose files have finer resolutions than were read (hl_volume_selection.aim), at the next
+   * finer one. *finer: the scene with these volumes; null: there is none to read. Null: no scene has one. */
+  hl_status (*refine)(void *files_data, const hl_scene *scene, hl_scene **finer, hl_error *error);
+  void *files_data;                        /* data for `open` and `refine` */
   uint64_t most_upload_bytes;              /* the most bytes of a dropped file; 0: no limit */
   int port;                                /* 0: any free port */
   bool (*token)(int port, char token[33]); /* sets the URL's token, 32 hexadecimal digits, to the one that was

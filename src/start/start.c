@@ -142,8 +142,7 @@ static void put_colormaps(FILE *out, hl_context *context) {
   fputc('}', out);
 }
 
-char *describe_start(hl_context *context, const hl_scene *opened, const char *title, long long number,
-                     bool folder) {
+char *describe_start(hl_context *context, const hl_scene *opened, const start_about *about) {
   char *scene = NULL, *text = NULL;
   size_t length = 0;
   if (hl_scene_to_json(context, opened, &scene, NULL) != HL_OK) return NULL;
@@ -151,8 +150,9 @@ char *describe_start(hl_context *context, const hl_scene *opened, const char *ti
   if (out != NULL) {
     const hl_scene_description *d = hl_scene_describe(opened);
     fprintf(out, "{\"version\":\"%s\",\"title\":", hl_version());
-    put_json_text(out, title);
-    fprintf(out, ",\"opened\":%lld,\"folder\":%s", number, folder ? "true" : "false");
+    put_json_text(out, about->title);
+    fprintf(out, ",\"opened\":%lld,\"folder\":%s,\"refined\":%d,\"refining\":%s", about->number,
+            about->folder ? "true" : "false", about->refined, about->refining ? "true" : "false");
     fprintf(out, ",\"scene\":%s,\"volumes\":[", scene);
     for (size_t v = 0; v < d->volume_count; v++) {
       if (v > 0) fputc(',', out);

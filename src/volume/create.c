@@ -136,7 +136,7 @@ static hl_volume *make_volume(hl_context *context, const hl_volume_description *
   memcpy(volume->dimension, description->dimensions, sizeof volume->dimension);
   volume->type = description->type;
   volume->space = description->space;
-  volume->selection = (hl_selection){1, 1, 1, 0, 0, 0};
+  volume->selection = (hl_selection){1, 1, 1, 0, 0, 0, 0};
   volume->window[0] = volume->window[1] = NAN;
   volume->storage = hl_voxel_type_storage(description->type);
   volume->row_bytes = volume->dimension[0] * hl_storage_bytes(volume->storage);

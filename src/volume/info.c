@@ -123,7 +123,7 @@ hl_status hl_volume_get_selection(const hl_volume *volume, hl_volume_selection *
     return HL_ERROR_ARGUMENT;
   const hl_selection *read = &volume->selection;
   *selection = (hl_volume_selection){sizeof *selection, read->times,   read->channels, read->levels,
-                                     read->time,        read->channel, read->level};
+                                     read->time,        read->channel, read->level,    read->aim};
   return HL_OK;
 }
 

@@ -272,8 +272,9 @@ static hl_status check_options(const hl_volume_load_options *options, hl_error *
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "%s: time %d, channel %d, level %d: give an index or HL_INDEX_DEFAULT for each", subject,
                    options->time, options->channel, options->level);
-  if (options->pixels < 0)
-    return hl_fail(error, HL_ERROR_ARGUMENT, "%s: pixels is %d: give 0 or more", subject, options->pixels);
+  if (options->pixels < 0 || options->preview_pixels < 0)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "%s: pixels %d, preview_pixels %d: give 0 or more for each",
+                   subject, options->pixels, options->preview_pixels);
   if (options->space != HL_SPACE_UNKNOWN && hl_space_name(options->space) == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "%s: there is no space %d", subject, (int)options->space);
   bool given = options->spacing[0] != 0 || options->spacing[1] != 0 || options->spacing[2] != 0;
@@ -369,7 +370,8 @@ hl_status hl_volume_load_with(hl_context *context, const char *path, const hl_vo
                              .channel = options->channel,
                              .level = options->level,
                              .pixels = options->pixels,
-                             .selection = {1, 1, 1, 0, 0, 0}};
+                             .preview_pixels = options->preview_pixels,
+                             .selection = {1, 1, 1, 0, 0, 0, 0}};
   memcpy(request.spacing, options->spacing, sizeof request.spacing);
   hl_stream *stream = NULL;
   bool on_server = options->bytes == NULL && hl_plain_is_url(path) && !hl_is_confined(context);

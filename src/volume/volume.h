@@ -28,6 +28,7 @@ typedef struct hl_array_entry {
 typedef struct hl_selection {
   size_t times, channels, levels;
   int time, channel, level;
+  int aim; /* the resolution that is read where no coarser one is wanted for a first picture */
 } hl_selection;
 
 /* One of the DICOM series in the input of a volume. All texts are printable. */

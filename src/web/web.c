@@ -158,7 +158,8 @@ static int show(hl_scene *scene, const char *title) {
   web.preview = NULL;
   hl_scene_release(web.scene);
   web.scene = scene;
-  char *start = describe_start(web.context, web.scene, title, 0, false);
+  const start_about about = {.title = title};
+  char *start = describe_start(web.context, web.scene, &about);
   return start != NULL ? answer(HL_OK, (unsigned char *)start, strlen(start))
                        : answer_text(HL_ERROR_MEMORY, "no memory for what the page is told of a volume");
 }

@@ -383,6 +383,7 @@ static int info_of_volume(cli_host *host, const cli_value *values, const cli_inp
   hl_error error = {0};
   json_writer json = {0};
   input_load_options(&values[INFO_ARRAY], NULL, &load);
+  load.pixels = input_picture_side(); /* what is told is of the resolution that a picture shows */
   hl_status status = input_load_volume(host->context, input, &load, &volume, &error);
   int exit_code = status == HL_OK
                       ? tell_volume(host, values[INFO_JSON].given ? &json : NULL, input->title, volume)

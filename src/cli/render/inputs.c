@@ -128,6 +128,9 @@ static int load_each(cli_host *host, const cli_value *values, cli_input *inputs,
     bool bare = inputs[n].kind == INPUT_VOLUME;
     inputs[n].look = render_look_name(values);
     inputs[n].smooth = values[RENDER_SMOOTH].given ? &values[RENDER_SMOOTH].number[0] : NULL;
+    /* A pipe cannot be read again. --smooth is measured in voxels of the resolution that is to be seen. */
+    bool is_read_once = inputs[n].bytes != NULL || inputs[n].smooth != NULL;
+    options.preview_pixels = is_read_once ? 0 : host->preview_pixels;
     hl_status status = bare && render_has_channels(values)
                            ? load_channels(host, values, &inputs[n], options, &scenes[n], &error)
                            : input_load(host->context, &inputs[n], bare ? &options : NULL, &scenes[n],

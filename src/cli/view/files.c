@@ -86,11 +86,18 @@ hl_status view_name_absolutely(hl_context *context, const char *folder, hl_scene
 
 /* ---- files that pages open ---- */
 
+/* A volume of several resolutions is read as the command line's volumes are. A dropped file is gone when
+ * finer resolutions could be read. */
 static hl_status for_volume(hl_context *context, const server_file *file, const char *path, hl_scene **scene,
                             hl_error *error) {
   hl_volume *volume = NULL;
-  hl_status status = hl_volume_load(file->confined, file->name, &volume, error);
+  hl_volume_load_options options;
+  hl_volume_load_options_defaults(&options);
+  options.pixels = input_picture_side();
+  if (file->folder != NULL) options.preview_pixels = VIEW_PREVIEW_PIXELS;
+  hl_status status = hl_volume_load_with(file->confined, file->name, &options, &volume, error);
   if (status == HL_OK) status = hl_scene_for_volume(context, volume, path, scene, error);
+  if (status == HL_OK) status = input_name_scene(context, &options, scene, error);
   hl_volume_release(volume);
   return status;
 }
@@ -121,5 +128,73 @@ hl_status view_open_file(void *user_data, const server_file *file, hl_scene **sc
   hl_status status = is_mesh_file(file->confined, file->name) ? for_mesh(context, file, path, scene, error)
                                                               : for_volume(context, file, path, scene, error);
   free(path);
+  return status;
+}
+
+/* ---- finer resolutions ---- */
+
+/* Loads a file of an absolute path. As when a page opened it, nothing outside of its folder is read. */
+static hl_status load_again(hl_context *context, const char *path, const hl_volume_load_options *options,
+                            hl_volume **volume, hl_error *error) {
+  hl_context *confined = NULL;
+  const char *name = base_name(path);
+  if (path[0] != '/') return hl_volume_load_with(context, path, options, volume, error); /* a URL */
+  char *folder = strndup(path, (size_t)(name - path));
+  if (folder == NULL) {
+    snprintf(error->message, sizeof error->message, "out of memory for a path");
+    return HL_ERROR_MEMORY;
+  }
+  hl_status status = hl_context_confine(context, folder, &confined, error);
+  if (status == HL_OK) status = hl_volume_load_with(confined, name, options, volume, error);
+  hl_context_destroy(confined);
+  free(folder);
+  return status;
+}
+
+/* Reads a scene's volume at the next finer resolution, from the file and with the options with which it was
+ * read. *finer: null if the volume is as fine as it is to be. */
+static hl_status read_finer(hl_context *context, const hl_scene_volume *volume, hl_volume **finer,
+                            hl_error *error) {
+  hl_volume_selection read = {.struct_size = sizeof read};
+  hl_volume_info info = {.struct_size = sizeof info};
+  hl_volume_load_options options;
+  *finer = NULL;
+  if (volume->file == NULL || hl_volume_get_selection(volume->volume, &read) != HL_OK ||
+      read.level <= read.aim)
+    return HL_OK;
+  hl_status status = hl_volume_get_info(volume->volume, &info);
+  if (status != HL_OK) return status;
+  hl_volume_load_options_defaults(&options);
+  options.array = volume->array;
+  options.series = volume->series;
+  options.component = volume->component;
+  memcpy(options.spacing, volume->spacing, sizeof options.spacing);
+  options.time = read.time;
+  options.channel = read.channel;
+  options.level = read.aim;
+  /* the next finer resolution is the coarsest one that has more voxels */
+  for (int axis = 0; axis < 3; axis++)
+    if (info.dimensions[axis] >= (size_t)options.preview_pixels)
+      options.preview_pixels = (int)info.dimensions[axis] + 1;
+  return load_again(context, volume->file, &options, finer, error);
+}
+
+hl_status view_refine_scene(void *user_data, const hl_scene *scene, hl_scene **finer, hl_error *error) {
+  hl_context *context = user_data;
+  hl_scene_description d = *hl_scene_describe(scene);
+  hl_scene_volume *volumes = malloc(d.volume_count * sizeof *volumes + 1);
+  hl_volume **read = calloc(d.volume_count + 1, sizeof *read);
+  hl_status status = volumes != NULL && read != NULL ? HL_OK : HL_ERROR_MEMORY;
+  if (status != HL_OK) snprintf(error->message, sizeof error->message, "out of memory for a list of volumes");
+  for (size_t v = 0; status == HL_OK && v < d.volume_count; v++) {
+    volumes[v] = d.volumes[v];
+    status = read_finer(context, &volumes[v], &read[v], error);
+    if (read[v] != NULL) volumes[v].volume = read[v];
+  }
+  d.volumes = volumes;
+  if (status == HL_OK) status = hl_scene_create(context, &d, finer, error);
+  for (size_t v = 0; read != NULL && v < d.volume_count; v++) hl_volume_release(read[v]);
+  free(read);
+  free(volumes);
   return status;
 }

@@ -5,12 +5,18 @@
 
 #include "server/server.h"
 
-/* Replaces the names of files in a scene by absolute paths, so that the scene that a page saves can be
- * rendered from any folder. folder: the folder to which the names are relative; null: the current folder. */
+/* The longer side, in pixels, of the first picture of a volume of several resolutions. */
+enum { VIEW_PREVIEW_PIXELS = 128 };
+
+/* Replaces the names of files in a scene by absolute paths, so that the page's scene can be rendered from
+ * any folder. folder: the folder from which the scene's names start; null: the current folder. */
 hl_status view_name_absolutely(hl_context *context, const char *folder, hl_scene **scene, hl_error *error);
 
 /* Opens a file, and makes its scene. The file may hold a scene, a mesh or a volume. context: the hl_context
  * that the scene is made with. */
 hl_status view_open_file(void *context, const server_file *file, hl_scene **scene, hl_error *error);
+
+/* Reads volumes at their next finer resolutions, as server_options.refine must do. */
+hl_status view_refine_scene(void *context, const hl_scene *scene, hl_scene **finer, hl_error *error);
 
 #endif

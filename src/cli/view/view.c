@@ -133,6 +133,7 @@ static int run_view(const cli_value *values, char **inputs) {
                               .operands = inputs};
   int exit_code = render_check_options(render);
   if (exit_code == EXIT_CODE_OK) exit_code = host_open(&options, &job.host);
+  job.host.preview_pixels = VIEW_PREVIEW_PIXELS;
   if (exit_code == EXIT_CODE_OK) exit_code = load(&job, inputs);
   if (exit_code == EXIT_CODE_OK) {
     host_clear_bar(&job.host);
@@ -144,6 +145,7 @@ static int run_view(const cli_value *values, char **inputs) {
                              .title = title,
                              .folder = getcwd(folder, sizeof folder),
                              .open = view_open_file,
+                             .refine = view_refine_scene,
                              .files_data = job.host.context,
                              .most_upload_bytes = job.host.memory_limit,
                              .port = port,

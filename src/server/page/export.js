@@ -90,7 +90,7 @@ export function exportPanel(viewer) {
     report(`rendering ${image.width} × ${image.height} …`);
     try {
       const type = format === "exr" ? "exr" : "png";
-      const frame = await channel.fetchFrame(scene, { format: type, depth: format === "png16" ? 16 : 8, metadata: !bare.checked, lane: "-save", ...over() });
+      const frame = await channel.fetchFrame(scene, { format: type, depth: format === "png16" ? 16 : 8, metadata: !bare.checked, lane: "-save", finest: true, ...over() });
       if (frame !== null) download(frame.blob, `${name()}.${type}`);
       report(frame === null ? "cancelled by another save" : `saved ${name()}.${type}`);
     } catch (error) {

@@ -46,7 +46,7 @@ export class Frames {
 
   // report({ stage, width, height, spacing, milliseconds, bytes, error }) is told of every frame.
   constructor({ store, start, channel }, canvas, report) {
-    this.#voxels = start.volumes.map((volume) => Math.min(...volume.axes.map(length)));
+    this.#measure(start);
     this.#work = LEAST_PIXELS / firstSpacing(start.volumes);
     this.#store = store;
     this.#channel = channel;
@@ -54,6 +54,16 @@ export class Frames {
     this.#report = report;
     // Marks and layouts change no picture.
     store.listen((scene) => { if (scene !== this.#scene) this.move(); });
+  }
+
+  #measure({ volumes }) {
+    this.#voxels = volumes.map((volume) => Math.min(...volume.axes.map(length)));
+  }
+
+  // Volumes were replaced by finer resolutions of themselves.
+  refine(start) {
+    this.#measure(start);
+    this.move();
   }
 
   // Asks for no more frames.

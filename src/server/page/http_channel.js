@@ -29,6 +29,7 @@ export class Refused extends Error {
 
 const GONE = 410; // what the page had opened is open no longer
 const NO_BASE = 409; // the viewer does not hold the scene that a difference is from
+const REPLACED = 409; // the voxels of a plane were replaced by finer ones
 
 async function check(response) {
   if (response.ok) return response;
@@ -51,14 +52,17 @@ const overlayQuery = ({ scaleBar = false, legend = false, axes = "none", unit = 
 export class HttpChannel {
   #number = 0;
   #opened;
+  #refined;
   #held = new HeldScene(() => ++this.#number); // not of the frames in lanes
   #page = crypto.getRandomValues(new Uint32Array(2)).reduce((name, n) => name + n.toString(36), "p");
 
   #source;
 
-  // opened: the number of what is open (of start.json), whose volumes the scenes have; source: what open() opens it by, or null.
-  constructor(opened = 0, source = null) {
+  // opened: the number of what is open (of start.json), whose volumes the scenes have; source: what open() opens it by, or null;
+  // refined: of start.json.
+  constructor(opened = 0, source = null, refined = 0) {
     this.#opened = opened;
+    this.#refined = refined;
     this.#source = source;
   }
 
@@ -88,12 +92,25 @@ export class HttpChannel {
 
   // What is open, and what there is to choose from: start.json.
   async start() {
-    return (await this.#ask("start.json", {}, {})).json();
+    const start = await (await this.#ask("start.json", { opened: 0 }, {})).json();
+    this.#refined = start.refined;
+    return start;
   }
 
-  // The values of a plane of voxels.
+  // How far volumes of several resolutions are read, from coarse to fine: { refined, refining, problem }.
+  async refinement() {
+    return (await this.#ask("refined.json", { opened: 0 }, {})).json();
+  }
+
+  // The values of a plane of voxels; none where a finer resolution has taken the place of the voxels meanwhile.
   async slice({ width, height, origin, across, down, through, depth = 1, volume = 0, of = "voxels", blend = "maximum", between = "nearest" }) {
-    const bytes = await (await this.#ask("slice", { opened: 0, volume, of, width, height, depth, origin, across, down, through, blend, between })).arrayBuffer();
+    let bytes;
+    try {
+      bytes = await (await this.#ask("slice", { opened: 0, refined: this.#refined, volume, of, width, height, depth, origin, across, down, through, blend, between })).arrayBuffer();
+    } catch (error) {
+      if (error.status !== REPLACED) throw error;
+      return { values: new Float32Array(width * height).fill(NaN), width, height };
+    }
     return { values: bytes.byteLength === 4 * width * height ? new Float32Array(bytes) : new Float64Array(bytes), width, height };
   }
 
@@ -115,10 +132,11 @@ export class HttpChannel {
   }
 
   // A picture of the scene: { blob, times }, or null where a newer frame of this page has cancelled it. `lane` sets
-  // frames apart that do not cancel each other; `moving` makes a quick picture, of coarser volumes where the sheets are wide.
+  // frames apart that do not cancel each other; `moving` makes a quick picture, of coarser volumes where the sheets are wide; `finest`
+  // waits until the finest resolutions that are to be read are there, and fails where they cannot be read.
   // scaleBar, legend, axes: drawn over a PNG of 8 bits; a bar is refused where neither the scene's files nor `unit` tell a unit of length.
-  async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, metadata = true, moving = false, lane = "", ...over } = {}) {
-    const query = { page: this.#page + lane, opened: 0, format, quality, depth, metadata: +metadata, moving: +moving, ...overlayQuery(over) };
+  async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, metadata = true, moving = false, lane = "", finest = false, ...over } = {}) {
+    const query = { page: this.#page + lane, opened: 0, format, quality, depth, metadata: +metadata, moving: +moving, coarse: +!finest, ...overlayQuery(over) };
     const ask = (number, body, base) => this.#ask("frame", { ...query, number, ...(base === undefined ? {} : { base }) }, { method: "POST", body });
     const response = await (lane === "" ? this.#held.send(scene, moving, ask) : ask(++this.#number, JSON.stringify(scene)));
     if (response.status === 204) return null;

@@ -15,7 +15,7 @@ function show(start, source = null, kept = null) {
   shown.keeping?.abort();
   if (channel?.opened !== start.opened) {
     channel?.leave();
-    channel = new HttpChannel(start.opened, source);
+    channel = new HttpChannel(start.opened, source, start.refined);
   }
   shown = { source, keeping: new AbortController() };
   const viewer = mount(document.body, channel, start, { keyboard: document, reopen: show, source, kept, restore: (file) => restoreFrom(file, viewer, channel, reopen), startAfresh: () => show(start, source) });

@@ -113,6 +113,13 @@ export class Slices {
 
   // ---- what is shown ----
 
+  // Volumes were replaced by finer resolutions of themselves.
+  refine() {
+    for (const values of this.#values.values()) values.forget();
+    this.#reading = null;
+    this.update();
+  }
+
   // Brings layout and planes to the state of the store.
   update() {
     const { layout } = this, shown = layout === "four" ? 3 : layout === "beside" ? 1 : 0;

@@ -23,6 +23,7 @@ import { openPanel } from "./open_panel.js";
 import { Overlay } from "./overlay.js";
 import { Pointer } from "./pointer.js";
 import { Probe } from "./probe.js";
+import { followRefinement } from "./refinement.js";
 import { isOfSameFiles, startOf } from "./session.js";
 import { helpSheet, installShortcuts } from "./shortcuts.js";
 import { sessionPanel } from "./session_panel.js";
@@ -73,6 +74,7 @@ const MARKUP = `
       <footer>
         <span id="stage" data-stage="refining">loading</span>
         <span id="progress"></span>
+        <span id="resolution"></span>
         <span id="statistics"></span>
       </footer>
     </main>
@@ -235,7 +237,8 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
   viewer.probe = new Probe(viewer, find("view"));
   const status = statusLine(find, channel);
   const frames = new Frames(viewer, find("picture"), (frame) => {
-    status.show(frame);
+    // A picture is not final as long as finer voxels are still to come.
+    status.show(frame.stage === "final" && whole.refining ? { ...frame, stage: "settled" } : frame);
     if (frame.error) viewer.failed(frame.error);
     if (frame.stage === "final") {
       viewer.probe.rest();
@@ -252,7 +255,15 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
   followFiles(store, whole, source, reopen);
   viewer.slices.update();
   update();
+  const endRefinement = followRefinement(whole, channel, {
+    tell: (text) => { find("resolution").textContent = text; }, failed: viewer.failed,
+    renew: () => {
+      frames.refine(start);
+      viewer.slices.refine();
+      panels.forEach((panel) => panel.rebuild?.());
+    },
+  });
   if (kept === null && !matchMedia("(prefers-reduced-motion: reduce)").matches) frames.animate(sweptLight, SWEEP_TIME);
   else frames.move();
-  return { store, start: whole, frames, overlay: viewer.overlay, probe: viewer.probe, slices: viewer.slices, marking: viewer.marking, report, adds: viewer.adds, upload: viewer.upload, followLink: viewer.followLink, end: () => { ended.abort(); frames.end(); status.end(); connection.end(); } };
+  return { store, start: whole, frames, overlay: viewer.overlay, probe: viewer.probe, slices: viewer.slices, marking: viewer.marking, report, adds: viewer.adds, upload: viewer.upload, followLink: viewer.followLink, end: () => { ended.abort(); frames.end(); status.end(); connection.end(); endRefinement(); } };
 }

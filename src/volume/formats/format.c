@@ -170,20 +170,36 @@ static uint64_t level_bytes(const hl_level_size *level) {
              : bytes;
 }
 
+/* The coarsest level that a picture of this size cannot tell from `level`; `level` itself where the size is
+ * 0. */
+static size_t coarsest_for(int pixels, const hl_level_size *levels, size_t count, size_t level) {
+  while (level + 1 < count && pixels > 0 && fills_picture(&levels[level + 1], pixels)) level++;
+  return level;
+}
+
+/* Selects a level, and the level of the first picture. */
+static void aim_at(hl_load_request *request, const hl_level_size *levels, size_t level) {
+  hl_selection *selection = &request->selection;
+  selection->aim = (int)level;
+  selection->level = (int)coarsest_for(request->preview_pixels, levels, selection->levels, level);
+}
+
 hl_status hl_level_choose(hl_load_request *request, const char *path, const hl_level_size *levels,
                           size_t count, hl_error *error) {
   hl_selection *selection = &request->selection;
   uint64_t limit = request->context->options.memory_limit;
   selection->levels = count;
   hl_status status = choose_step(path, "level", request->level, count, &selection->level, error);
-  if (status != HL_OK || request->level >= 0) return status;
+  if (status != HL_OK || request->level >= 0) {
+    aim_at(request, levels, (size_t)selection->level);
+    return status;
+  }
   size_t level = 0;
   while (level + 1 < count && limit > 0 && level_bytes(&levels[level]) > limit / 2) level++;
   size_t by_memory = level;
   while (level + 1 < count && level_voxels(&levels[level]) > VOXELS_OF_A_PICTURE) level++;
-  while (level + 1 < count && request->pixels > 0 && fills_picture(&levels[level + 1], request->pixels))
-    level++;
-  selection->level = (int)level;
+  level = coarsest_for(request->pixels, levels, count, level);
+  aim_at(request, levels, level);
   if (level > 0)
     hl_log(request->context, HL_LOG_WARNING,
            "%.300s: level %zu of %zu is taken, %s: choose by \"level\" (--level)", path, level, count,

@@ -20,9 +20,10 @@ typedef struct hl_load_request {
   double spacing[3];        /* world units; all 0 for the file's own */
   int time, channel, level; /* HL_INDEX_DEFAULT, or an index */
   int pixels;               /* pixels of the picture's longer side; 0 if unknown */
-  double window[2];         /* set by readers: the data values that are to be shown black and white; two equal
-                             * values if the file does not state them */
-  hl_channel *channels;     /* owned; [selection.channels]; set by readers if the file describes its
+  int preview_pixels;       /* pixels of the longer side of a first picture; 0 if there is none */
+  double window[2];         /* set by readers: the data values between which greys are to be shown; equal if
+                             * not told */
+  hl_channel *channels;     /* owned; [selection.channels]; set by readers, where the file describes
                              * channels */
   const char *unit;         /* set by readers: the unit of lengths, static; null if the file does not state
                              * it */
@@ -81,10 +82,10 @@ typedef struct hl_level_size {
   hl_voxel_type type;
 } hl_level_size;
 
-/* Chooses one of `count` levels, which begin with the finest, and sets it in request->selection. The choice
- * is the wanted level. If none is wanted, it is the finest level that takes at most half of the memory limit
- * and has at most 2^30 voxels. If a coarser level still has as many voxels as the request's pixels, the
- * coarsest such level is chosen. */
+/* Sets request->selection's level among `count` levels, of which the finest is first. The choice is the
+ * wanted level, else the finest that leaves half of the memory limit free and has at most 2^30 voxels. A
+ * coarser level is chosen if it is as fine as the request's pixels can show. The choice becomes the
+ * selection's aim; its level is a coarser one if the request's preview_pixels show no more. */
 hl_status hl_level_choose(hl_load_request *request, const char *path, const hl_level_size *levels,
                           size_t count, hl_error *error);
 
