@@ -21,6 +21,10 @@ typedef struct plan_rays {
   float h0, hu, hv;
   float step;
   float height;
+  /* Only of the rays of a light that is `soft`, in frame space: */
+  float position; /* where in its chunk the slab before the sheet lies */
+  float young;    /* how far the slab's samples have faded to the light of its chunk, 0 to 1 */
+  int chunk;      /* number of the slab's chunk, from 1 on */
 } plan_rays;
 
 /* Rays in the volume's index space: the members of box_rays (view/view.h). */
@@ -69,10 +73,11 @@ typedef struct plan_light {
   int first_tile;     /* index of this light's first tile among the tiles of all lights */
   int first_slab;     /* the first slab that the light reaches */
   int stride;         /* floats from row to row of a plane */
-  int plane, origin;  /* plane: number of floats of a plane; origin: the index of pixel (0, 0) in a plane */
-  /* The offset of the light's first plane, in units of 16 floats. The planes are [ring][1 or
-   * 2][channels][plane]. The first planes of a sheet hold the transmittance, the second ones the light at the
-   * outside of surfaces. */
+  int plane, origin;  /* number of floats of a plane, and the place of pixel (0, 0) in it */
+  int soft;           /* its shadows are blurred by chunks of slabs (shadow_cascade/cascade.h) */
+  /* Where the light's planes begin, in units of 16 floats: [ring][1 to 3][channels][plane]. The first planes
+   * of a sheet are the transmittance. The light at the outside of surfaces follows, where the variant has it,
+   * and the light from which samples of soft lights fade. */
   unsigned planes;
   float map[3][4]; /* frame space to (w, w u, w v) of the buffer */
   float slab_path; /* as path in attenuate_job (shadow/attenuate.h) */
@@ -144,8 +149,56 @@ typedef struct device_sweep {
   plan_light lights[PLAN_LIGHTS];
 } device_sweep;
 
-/* The variant for which kernels are compiled. Each member gives the value of the macro that has the member's
- * name in capitals. */
+/* ---- passes over the fields of soft lights' chunks (shadow_cascade/cascade.h) ---- */
+
+/* The sum a + (1 - thin) b of fields of one level. */
+#define PASS_ADD    0
+#define PASS_HALF   1 /* the same, of fields that are twice as fine */
+#define PASS_DOUBLE 2 /* the same, where b is twice as coarse */
+#define PASS_BLUR   3 /* the same, where b is blurred */
+#define PASS_SPLIT  4
+#define PASS_ABSORB 5
+#define PASS_REFILL 6
+
+/* Stands for a field of zeros. */
+#define PASS_NOTHING 0xffffffffu
+
+/* Pixels of zeros around a field (CASCADE_MARGIN), and the value of a whole. */
+#define PASS_MARGIN 48
+#define PASS_WHOLE  32768
+
+/* A pass over the tiles of a level. A field is named by the place of its pixel (0, 0). */
+typedef struct plan_pass {
+  int kind;
+  int tiles_x, tiles_y;         /* of the output */
+  int stride, stride_in;        /* numbers of pixels from row to row: of the level, and of inputs of another
+                                 * level */
+  unsigned a, b, thin;          /* inputs */
+  unsigned to, to_thin;         /* outputs. PASS_SPLIT reads a and thin, and writes the first part here.
+                                 * PASS_ABSORB adds the matter at the chunk's beginning here */
+  unsigned second, second_thin; /* outputs of PASS_SPLIT and PASS_ABSORB: the second part */
+  unsigned boxes;            /* PASS_BLUR: the first of the boxes of the columns of tiles; those of the rows
+                              * follow */
+  float late;                /* PASS_SPLIT: the part that the second gets */
+  float length;              /* PASS_ABSORB: of the chunk */
+  int light, channel, chunk; /* PASS_ABSORB, PASS_REFILL: chunk: number of the chunk that ends */
+  int sheet;                 /* PASS_REFILL: at which the chunk ends */
+  unsigned marks;            /* PASS_REFILL: the first of the tiles' marks */
+} plan_pass;
+
+/* As blur_box (shadow/blur.h). */
+typedef struct plan_blur {
+  int reach;
+  float edge, scale;
+} plan_blur;
+
+/* Marks of a light's tiles. MARK_READ: the next chunk's slabs read the tile, so it is refilled. MARK_AGAIN:
+ * it was refilled at the chunk's beginning, too. */
+#define MARK_READ  1
+#define MARK_AGAIN 2
+
+/* The variant for which kernels are compiled. A member is the value of the macro that has the same name in
+ * capitals. */
 typedef struct plan_variant {
   int storage; /* 0: u8, 1: u16, 2: f32 */
   int bricks;  /* the volume is a field in bricks, of f32 */
@@ -157,6 +210,7 @@ typedef struct plan_variant {
   int cuts;    /* the volume has cuts */
   int steep;   /* the volume has gradient opacity */
   int colored; /* the voxels have colours of their own */
+  int soft;    /* some lights are soft */
   int back_to_front;
   int channels; /* number of channels of light attenuation: 1 or 3 */
 } plan_variant;

@@ -40,7 +40,7 @@ typedef struct gpu_buffer {
 /* A program that the driver has loaded. */
 typedef struct gpu_program {
   void *module;
-  void *kernels[8]; /* the kernels, in the order of the names given to load_program() */
+  void *kernels[12]; /* the kernels, in the order of the names given to load_program() */
 } gpu_program;
 
 /* The bytes of a compiled program, which the driver can load without compiling the text again; released with

@@ -68,7 +68,8 @@ void hl_gpu_forget(hl_gpu *gpu);
 bool hl_gpu_try(hl_gpu *gpu, const float *numbers, uint32_t count, float *results, uint32_t result_count);
 
 /* A sweep as plain data; borrowed until hl_gpu_read(). */
-typedef struct gpu_sweep {
+typedef struct gpu_sweep gpu_sweep;
+struct gpu_sweep {
   const device_sweep *plan;
   plan_variant variant;
   const plan_rays *rays; /* [2 + 2 lights][sheets] (gpu/kernels/sweep.h) */
@@ -76,9 +77,30 @@ typedef struct gpu_sweep {
   size_t cut_count;
   const int32_t *shown_from; /* [tiles][16 blocks]; where slabs are composited from back to front: the first
                               * visible slab of each block; null: slab 1 for all blocks */
-  size_t plane_floats;       /* number of floats of the planes of all lights together */
-  int slabs;                 /* number of slabs of a run */
-} gpu_sweep;
+  size_t plane_floats;       /* floats of the planes of all lights together */
+  int slabs;                 /* number of slabs of a run, at most */
+  /* Soft lights; zeros where there are none: */
+  const unsigned char *ends;       /* [sheets]; not 0 for sheets at which a chunk of some light ends */
+  size_t field_pixels, row_floats; /* of the fields of all soft lights; of the rows of a blur */
+  /* Is called after the slabs before such a sheet: it makes the passes (hl_gpu_pass()) that bring the lights'
+   * buffers to the next chunk. data: of_chunks. */
+  bool (*end_chunks)(void *data, hl_gpu *gpu, const gpu_sweep *sweep, int sheet);
+  void *of_chunks;
+};
+
+/* Passes over the fields of soft lights, one after the other. */
+typedef struct gpu_passes {
+  const plan_pass *list; /* [count] */
+  size_t count;
+  const plan_blur *boxes; /* [box_count] */
+  size_t box_count;
+  const unsigned char *marks; /* [mark_count] */
+  size_t mark_count;
+} gpu_passes;
+bool hl_gpu_pass(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_passes *passes);
+/* Waits for the slabs so far, and tells for each tile of a light the last chunk whose slabs absorbed light
+ * there; 0: none. chunks: [light->tiles]. */
+bool hl_gpu_touched(hl_gpu *gpu, const plan_light *light, int32_t *chunks);
 
 /* What a sweep took. */
 typedef struct gpu_times {

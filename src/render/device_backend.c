@@ -105,7 +105,7 @@ static hl_status run(hl_renderer *renderer, const frame_plan *plan, int index, f
   int32_t *shown_from = NULL;
   hl_status status = hl_find_hidden(&means, plan, of, pixels, &shown_from, statistics, error);
   statistics->samples_shaded = samples;
-  if (status == HL_OK) status = hl_plan_sweep(context, plan, of, shown_from, &planned, error);
+  if (status == HL_OK) status = hl_plan_sweep(&means, plan, of, shown_from, &planned, error);
   if (status == HL_OK) status = make_sweep(renderer, &planned, pixels, statistics, error);
   hl_plan_release(context, &planned);
   hl_release(context, shown_from);

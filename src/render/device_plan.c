@@ -52,10 +52,30 @@ static bool is_masked(const frame_plan *plan) { return volume_of(plan)->classifi
 static bool has_two_numbers(const frame_plan *plan) {
   return volume_of(plan)->classifier->plane.sums != NULL;
 }
-static bool is_soft(const frame_plan *plan) {
+static bool has_soft(const frame_plan *plan) {
   for (int i = 0; i < plan->frame.light_count; i++)
     if (plan->frame.lights[i].shadows == HL_SHADOWS_SOFT) return true;
   return false;
+}
+static bool is_soft_otherwise(const frame_plan *plan) {
+  for (int i = 0; i < plan->frame.light_count; i++)
+    if (plan->frame.lights[i].shadows == HL_SHADOWS_SOFT &&
+        hl_shadow_method(&plan->frame.lights[i]) != &hl_shadow_cascade)
+      return true;
+  return false;
+}
+
+/* Soft shadows of a medium have been held to the processors' bytes. What is named here has not been. */
+static bool has_soft_matter(const frame_plan *plan) {
+  const frame_volume *volume = volume_of(plan);
+  return has_soft(plan) && (volume->look.shading != HL_SHADING_NONE || plan->volumes.grids[0].cut ||
+                            volume->classifier->steepness != NULL || plan->channels > 1);
+}
+static bool has_other_lights(const frame_plan *plan) {
+  bool other = false;
+  for (int i = 0; i < plan->frame.light_count; i++)
+    other = other || plan->frame.lights[i].shadows == HL_SHADOWS_HARD || !plan->frame.lights[i].parallel;
+  return has_soft(plan) && other;
 }
 
 /* Whether the frame has cut surfaces with gradient opacity that cast shadows. A device cannot make these
@@ -100,7 +120,9 @@ static const struct {
     {is_masked, "a mask"},
     {has_two_numbers, "a function of two numbers"},
     {hides_cut_surfaces, "gradient opacity of cut surfaces that cast shadows"},
-    {is_soft, "soft shadows"},
+    {is_soft_otherwise, "soft shadows by another method than the cascade"},
+    {has_soft_matter, "soft shadows of surfaces, cuts, gradient opacity or coloured extinction"},
+    {has_other_lights, "soft shadows beside hard ones, or of near lights"},
     {has_images, "lights with images"},
     {has_phase_tables, "wide lights in media that scatter unevenly"},
 };
@@ -366,10 +388,18 @@ static hl_status plan_cuts(hl_context *context, const sweep_task *task, planned_
   return HL_OK;
 }
 
-/* The number of planes of one sheet. There is one plane per channel for the transmittance. Where the light at
- * the outside of surfaces is kept, there is another plane per channel. */
+/* Whether any light's shadows are made in chunks. */
+static bool has_soft_lights(const sweep_task *task) {
+  for (int i = 0; i < task->plan->geometry->light_count; i++)
+    if (hl_is_chunked(&task->plan->lights[i].shadow)) return true;
+  return false;
+}
+
+/* The number of planes of one sheet: one per channel for the transmittance, as many for the light at the
+ * outside of surfaces, where it is kept, and as many for the light from which samples of soft lights fade. */
 static size_t planes_of_sheet(const sweep_task *task, const light_shadow *shadow) {
-  return (size_t)task->frame_plan->channels * (shadow->plan.outside ? 2 : 1);
+  const size_t kinds = 1 + (shadow->plan.outside ? 1u : 0) + (has_soft_lights(task) ? 1u : 0);
+  return (size_t)task->frame_plan->channels * kinds;
 }
 
 /* Sets a light's buffer. *floats: where the buffer's planes begin; raised by the number of floats of these
@@ -381,6 +411,7 @@ static void plan_buffer(const sweep_task *task, int index, int ring, size_t *flo
   shadow_buffer buffer = {0};
   hl_shadow_buffer_measure(view, shadow->plan.reach, &buffer);
   const shadow_map map = hl_map_of_view(view);
+  light->soft = hl_is_chunked(shadow);
   light->width = view->width;
   light->height = view->height;
   light->tiles_x = buffer.tiles_x;
@@ -489,6 +520,7 @@ static plan_variant variant_of(const sweep_task *task, const device_sweep *plan)
                         .outside = keeps_outside(task),
                         .boxed = grid->cut,
                         .cuts = shade->cut_count > 0,
+                        .soft = has_soft_lights(task),
                         .colored = shade->colors.voxels != NULL,
                         .steep = shade->classifier->steepness != NULL,
                         .back_to_front = task->plan->geometry->back_to_front,
@@ -506,8 +538,9 @@ static hl_status find_constants(hl_context *context, const frame_plan *frame_pla
   return HL_OK;
 }
 
-hl_status hl_plan_sweep(hl_context *context, const frame_plan *frame_plan, const sweep_plan *of,
+hl_status hl_plan_sweep(const sweep_means *means, const frame_plan *frame_plan, const sweep_plan *of,
                         const int32_t *shown_from, planned_sweep *planned, hl_error *error) {
+  hl_context *context = means->context;
   const sweep_task sweep = {frame_plan, of, &planned->constants}, *task = &sweep;
   device_sweep *plan = &planned->plan;
   memset(planned, 0, sizeof *planned);
@@ -550,6 +583,9 @@ hl_status hl_plan_sweep(hl_context *context, const frame_plan *frame_plan, const
                                .slabs = slabs};
   status = plan_all_rays(context, task, planned, error);
   planned->sweep.rays = planned->rays;
+  if (status == HL_OK && planned->sweep.variant.soft)
+    status = hl_device_cascades_begin(means, frame_plan, of, planned->rays, &planned->cascades,
+                                      &planned->sweep, error);
   return status == HL_OK ? plan_cuts(context, task, planned, error) : status;
 }
 
@@ -557,6 +593,7 @@ void hl_plan_release(hl_context *context, planned_sweep *planned) {
   hl_release(context, planned->memory);
   hl_release(context, planned->rays);
   hl_release(context, planned->cuts);
+  hl_device_cascades_release(&planned->cascades);
   planned->memory = NULL;
   planned->rays = NULL;
   planned->cuts = NULL;

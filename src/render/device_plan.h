@@ -5,6 +5,7 @@
 
 #include "gpu/gpu.h"
 #include "plan/frame_plan.h"
+#include "render/device_cascade.h"
 #include "render/sweep_constants.h"
 
 /* The reason why a device does not make a frame, as a part of a sentence: "its meshes are not there yet".
@@ -22,12 +23,13 @@ typedef struct planned_sweep {
   gpu_sweep sweep;
   plan_rays *rays; /* owned */
   plan_cut *cuts;  /* owned; null where the volume has no cuts */
+  device_cascades cascades;
 } planned_sweep;
 
 /* Describes a sweep of a plan by the numbers that a device reads. shown_from: the first visible slabs, as in
  * a sweep's target; borrowed. planned: release it after a failure, too. Its address must not change, because
  * its members point to each other. */
-hl_status hl_plan_sweep(hl_context *context, const frame_plan *frame_plan, const sweep_plan *plan,
+hl_status hl_plan_sweep(const sweep_means *means, const frame_plan *frame_plan, const sweep_plan *plan,
                         const int32_t *shown_from, planned_sweep *planned, hl_error *error);
 void hl_plan_release(hl_context *context, planned_sweep *planned);
 

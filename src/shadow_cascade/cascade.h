@@ -60,9 +60,10 @@ enum { CASCADE_LEVELS = 16, CASCADE_GROUPS = 7, CASCADE_FEW_GROUPS = 4, CASCADE_
  * is also the margin before the next row. Likewise, the margin after a field is also the margin before the
  * next field. */
 typedef struct cascade_field {
-  field_pixel *pixels;  /* pixel (0,0); in the level's memory */
-  unsigned char *zeros; /* [tiles]; 1 where all pixels of the tile are zeros, so that passes skip the tile; a
-                         * part of the level's flags */
+  field_pixel *pixels;  /* pixel (0,0); in the level's memory; null where a device has the pixels */
+  unsigned char *zeros; /* [tiles]; 1 where all pixels of the tile are zeros, so that work skips it; a part
+                         * of the level's flags */
+  size_t place;         /* of pixel (0,0) among the pixels of all levels, one level after the other */
 } cascade_field;
 
 /* The light that a group's slabs have absorbed. */
@@ -83,9 +84,10 @@ typedef struct cascade_box {
 typedef struct cascade_level {
   int scale; /* edge of this level's pixels, pixels of the buffer */
   int tiles_x, tiles_y;
-  size_t stride, plane, origin, pixels; /* numbers of pixels. stride: from row to row; plane: in a field;
-                                         * origin: from a field's start to its pixel (0,0); pixels: in all
-                                         * fields and the margin after them */
+  size_t first;                         /* number of the pixels of all levels before */
+  size_t stride, plane, origin, pixels; /* numbers of pixels. stride: from row to row; plane: of a field;
+                                         * origin: before a field's pixel (0,0); pixels: of all fields and the
+                                         * margin after them */
   cascade_group group[CASCADE_GROUPS];  /* oldest first */
   int count, capacity;
   double fraction[2], greatest_fraction; /* from the fractions in `boxes`: the mean along rows and the mean
@@ -103,7 +105,7 @@ typedef struct cascade_level {
   cascade_field mean[2][HL_CHANNELS]; /* for lights with an emission image: one group's `absorbed` and `thin`,
                                        * averaged over the step between taps */
   cascade_box *boxes;                 /* owned; [tiles_x], then [tiles_y] */
-  field_pixel *memory;                /* the shadow_memory's */
+  field_pixel *memory;                /* the shadow_memory's; null where a device has the pixels */
   size_t planes;
   unsigned char *flags; /* owned */
 } cascade_level;
@@ -159,9 +161,13 @@ typedef struct soft_cascade {
 
 /* The threads and functions for passes over a cascade's fields. */
 typedef struct cascade_crew {
+  const struct cascade_works *works; /* who makes the passes (cascade_passes.h) */
+  /* the processors: */
   hl_pool *pool;
   const cascade_functions *functions;
   const cascade_reads *reads;
+  /* a device: */
+  void *device; /* data of its `works` */
 } cascade_crew;
 
 /* These functions are in cascade_levels.c; they do what shadow_method says. */
@@ -169,6 +175,27 @@ void hl_cascade_plan(light_shadow *shadow);
 void hl_cascade_lay_out(light_shadow *shadow, shadow_layouts *layouts);
 hl_status hl_cascade_begin(light_shadow *shadow, hl_error *error);
 void hl_cascade_end(light_shadow *shadow);
+/* Begins a copy of a planned shadow whose pixels a device has. Its arrays that pass are laid out; the buffer
+ * and the kept planes are null. */
+void hl_cascade_begin_elsewhere(light_shadow *shadow);
+
+/* cascade_method.c */
+
+/* A slab's place among the chunks. */
+typedef struct cascade_slab {
+  float position; /* of the slab in its chunk (attenuate_job) */
+  float young;    /* how far samples have faded to the light of the chunk (shadow_lookup) */
+  int chunk;      /* number of the chunk, from 1 on */
+  bool ends;      /* the chunk ends at the sheet after the slab */
+} cascade_slab;
+
+/* Finds the chunks of a planned shadow. first: the first sheet at which a chunk may end. slabs: [sheets];
+ * slab k lies before sheet k. */
+void hl_cascade_find_chunks(const light_shadow *planned, int first, cascade_slab *slabs);
+/* Ends a chunk: adds its matter to the groups, sums the groups and refills the buffer. occupancy: of the
+ * light's view. */
+void hl_cascade_end_chunk(light_shadow *shadow, const occupancy *occupancy, int sheet,
+                          const cascade_crew *crew);
 
 /* cascade_exchange.c */
 void hl_cascade_exchange_lay_out(soft_cascade *cascade, const light_exchange *with, shadow_layouts *layouts);

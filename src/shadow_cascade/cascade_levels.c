@@ -59,7 +59,10 @@ static int level_scale(const soft_cascade *cascade, int level) {
 
 static cascade_field field_of_plane(const cascade_level *level, size_t plane) {
   size_t tiles = (size_t)level->tiles_x * (size_t)level->tiles_y;
-  return (cascade_field){level->memory + plane * level->plane + level->origin, level->flags + plane * tiles};
+  size_t at = plane * level->plane + level->origin;
+  return (cascade_field){.pixels = level->memory == NULL ? NULL : level->memory + at,
+                         .zeros = level->flags + plane * tiles,
+                         .place = level->first + at};
 }
 
 /* Hands out the next plane of a level's memory. *used counts the planes that were handed out. */
@@ -96,6 +99,7 @@ static void plan_level(soft_cascade *cascade, int index, int tiles_x, int tiles_
                   (index == 0 ? 2 * channels * MOMENT_PLANES : 1);
   if (cascade->emission != NULL) level->planes += 2 * channels;
   level->pixels = level->planes * level->plane + (CASCADE_MARGIN + 1) * level->stride;
+  level->first = index == 0 ? 0 : level[-1].first + level[-1].pixels;
 }
 
 static void sum_up_parts(cascade_level *level) {
@@ -127,6 +131,7 @@ static void place_fields(soft_cascade *cascade, int index) {
     level->mean[c % 2][c / 2] = next_field(level, &used);
   for (size_t c = 0; c < channels && index == 0; c++) {
     cascade->absorbed[c] = level->sum[0][c];
+    if (level->memory == NULL) continue;
     cascade->moment[c] = (float *)(void *)(level->memory + used * level->plane) + level->origin;
     used += MOMENT_PLANES;
     cascade->absorbed_at_start[c] = (float *)(void *)(level->memory + used * level->plane) + level->origin;
@@ -254,18 +259,23 @@ void hl_cascade_lay_out(light_shadow *shadow, shadow_layouts *layouts) {
   }
 }
 
+void hl_cascade_begin_elsewhere(light_shadow *shadow) {
+  soft_cascade *cascade = shadow->state;
+  size_t tiles = (size_t)cascade->reads.tiles_x * (size_t)cascade->reads.tiles_y;
+  memset(cascade->touched, 0, tiles);
+  memset(cascade->refilled, 0, tiles);
+  for (int i = 0; i < cascade->level_count; i++) begin_level(cascade, i, &shadow->plan.seen);
+  cascade->level[0].count = 1; /* at the first chunk's start */
+  cascade->level[0].group[0].omega = cascade->chunk_start;
+}
+
 hl_status hl_cascade_begin(light_shadow *shadow, hl_error *error) {
   (void)error;
   soft_cascade *cascade = shadow->state;
   shadow_memory *memory = shadow->kept;
-  size_t tiles = (size_t)cascade->reads.tiles_x * (size_t)cascade->reads.tiles_y;
-  memset(cascade->touched, 0, tiles);
-  memset(cascade->refilled, 0, tiles);
   if (!memory->zeros) hl_pool_clear(shadow->means.pool, memory->planes, memory->capacity);
   memory->zeros = false;
-  for (int i = 0; i < cascade->level_count; i++) begin_level(cascade, i, &shadow->plan.seen);
-  cascade->level[0].count = 1; /* at the first chunk's start */
-  cascade->level[0].group[0].omega = cascade->chunk_start;
+  hl_cascade_begin_elsewhere(shadow);
   cascade->begun = true;
   for (int sheet = 0; sheet < shadow->buffer->ring; sheet++)
     for (int c = 0; c < shadow->setup.channels; c++)

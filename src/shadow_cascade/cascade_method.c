@@ -50,7 +50,7 @@ static void copy_field(const cascade_crew *crew, const cascade_level *level, con
                        const cascade_level *to_level, const cascade_field *to) {
   const cascade_sum sum = {
       .level_a = level, .a = from, .level = to_level, .to = to, .reach = READ_EVERYWHERE};
-  hl_cascade_add(crew, &sum);
+  crew->works->add(crew, &sum);
 }
 
 /* Moves the oldest group of level 0 to level 1, and converts it to that level's pixels. */
@@ -87,7 +87,7 @@ static void merge_up(soft_cascade *cascade, int index, const cascade_crew *crew)
                                    .next = next,
                                    .first = {&first->absorbed[c], &first->thin[c]},
                                    .second = {&second->absorbed[c], &second->thin[c]}};
-    hl_cascade_merge(crew, &merger);
+    crew->works->merge(crew, &merger);
   }
   first->filled = first->filled || a.filled || b.filled;
   second->filled = b.filled;
@@ -97,33 +97,29 @@ static void merge_up(soft_cascade *cascade, int index, const cascade_crew *crew)
 }
 
 typedef struct absorb_task {
-  const soft_cascade *cascade;
-  const shadow_buffer *buffer;
-  cascade_group *start, *end;
-  double length;
-  int edge;
+  const cascade_absorption *of;
   absorbed_tile_function *absorbed;
-  bool any; /* cascade->absorbed is not all zeros */
 } absorb_task;
 
 static void absorb_tile(const absorb_task *task, size_t tile_x, size_t tile_y, bool read, int channel) {
-  const cascade_level *level = &task->cascade->level[0];
-  const cascade_field *start[2] = {&task->start->absorbed[channel], &task->start->thin[channel]};
-  const cascade_field *end[2] = {&task->end->absorbed[channel], &task->end->thin[channel]};
+  const cascade_absorption *of = task->of;
+  const cascade_level *level = &of->cascade->level[0];
+  const cascade_field *start[2] = {&of->start->absorbed[channel], &of->start->thin[channel]};
+  const cascade_field *end[2] = {&of->end->absorbed[channel], &of->end->thin[channel]};
   size_t tile = tile_y * (size_t)level->tiles_x + tile_x;
-  bool touched = task->cascade->touched[tile];
-  absorbed_job job = {task->cascade->absorbed_at_start[channel],
-                      task->buffer->transmittance[channel],
-                      task->cascade->moment[channel],
-                      (float)task->length,
-                      task->any && read ? task->cascade->absorbed[channel].pixels : NULL,
+  bool touched = of->cascade->touched[tile];
+  absorbed_job job = {of->cascade->absorbed_at_start[channel],
+                      of->buffer->transmittance[channel],
+                      of->cascade->moment[channel],
+                      (float)of->length,
+                      of->any && read ? of->cascade->absorbed[channel].pixels : NULL,
                       start[0]->pixels,
                       start[1]->pixels,
                       end[0]->pixels,
                       end[1]->pixels,
                       level->stride,
-                      task->buffer->stride,
-                      task->edge};
+                      of->buffer->stride,
+                      of->edge};
   if (!touched) {
     for (int i = 0; i < 2; i++) hl_cascade_clear_tile(level, end[i], (int)tile_x, (int)tile_y);
     return;
@@ -140,13 +136,21 @@ static void absorb_tile(const absorb_task *task, size_t tile_x, size_t tile_y, b
 static void absorb_piece(void *data, size_t index, int worker) {
   (void)worker;
   const absorb_task *task = data;
-  const cascade_level *level = &task->cascade->level[0];
-  const row_piece piece = hl_cascade_row_piece(level, index);
-  const read_row row = hl_cascade_read_row(&task->cascade->reads, 1, piece.y, 0);
+  const soft_cascade *cascade = task->of->cascade;
+  const row_piece piece = hl_cascade_row_piece(&cascade->level[0], index);
+  const read_row row = hl_cascade_read_row(&cascade->reads, 1, piece.y, 0);
   for (int x = piece.first; x < piece.end; x++) {
     bool read = row.any && hl_cascade_is_read(&row, &row.all, x);
-    for (int c = 0; c < task->cascade->channels; c++) absorb_tile(task, (size_t)x, (size_t)piece.y, read, c);
+    for (int c = 0; c < cascade->channels; c++) absorb_tile(task, (size_t)x, (size_t)piece.y, read, c);
   }
+}
+
+static bool absorb_chunk(const cascade_crew *crew, const cascade_absorption *absorption) {
+  const soft_cascade *cascade = absorption->cascade;
+  const cascade_level *level = &cascade->level[0];
+  absorb_task task = {absorption, crew->functions->absorbed};
+  hl_pool_run(crew->pool, hl_cascade_row_pieces(level), absorb_piece, &task);
+  return memchr(cascade->touched, 1, (size_t)level->tiles_x * (size_t)level->tiles_y) != NULL;
 }
 
 /* The width, in pixels, of the strip along the edges of opaque surfaces that does not hide the matter before
@@ -167,19 +171,13 @@ static void push_chunk(soft_cascade *cascade, const light_shadow *shadow, double
   end->omega = omega;
   const sheet_stack *sheets = shadow->setup.sheets;
   double length = omega - start->omega, last = hl_cascade_omega(cascade, hl_last_height(sheets));
-  absorb_task task = {cascade,
-                      shadow->buffer,
-                      start,
-                      end,
-                      length,
-                      edge_of(length, fmax(last - omega, 0)),
-                      crew->functions->absorbed,
-                      any};
-  hl_pool_run(crew->pool, hl_cascade_row_pieces(level), absorb_piece, &task);
+  const cascade_absorption absorption = {
+      cascade, shadow->buffer, start, end, length, edge_of(length, fmax(last - omega, 0)), any};
+  bool touched = crew->works->absorb(crew, &absorption);
   if (shadow->owned != NULL) {
     hl_cascade_exchange_send(cascade, shadow->owned);
   } else {
-    end->filled = memchr(cascade->touched, 1, (size_t)level->tiles_x * (size_t)level->tiles_y) != NULL;
+    end->filled = touched;
     start->filled = start->filled || end->filled;
   }
   level->renewed = true;
@@ -208,7 +206,7 @@ static void bring(cascade_sum sum, cascade_blur blur, const cascade_crew *crew) 
   const cascade_level *from = sum.level_b;
   if (from->scale == sum.level->scale) {
     const cascade_blurred_sum blurred = {from, sum.b, sum.a, sum.thin, sum.to, blur, sum.reach};
-    hl_cascade_blur_add(crew, &blurred);
+    crew->works->blur_add(crew, &blurred);
     return;
   }
   if (blur.variance * from->greatest_fraction > fmin(blur.resampled[0], blur.resampled[1])) {
@@ -217,7 +215,7 @@ static void bring(cascade_sum sum, cascade_blur blur, const cascade_crew *crew) 
                                          .to = &from->scratch,
                                          .blur = blur,
                                          .reach = reach_at(&sum, from->scale)};
-    hl_cascade_blur_add(crew, &blurred);
+    crew->works->blur_add(crew, &blurred);
     sum.b = &from->scratch;
   }
   while (from->scale > 2 * sum.level->scale) {
@@ -229,13 +227,13 @@ static void bring(cascade_sum sum, cascade_blur blur, const cascade_crew *crew) 
                                    .level = next,
                                    .to = &next->scratch,
                                    .reach = reach_at(&sum, next->scale)};
-      hl_cascade_add(crew, &doubled);
+      crew->works->add(crew, &doubled);
       sum.b = &next->scratch;
     }
     from = next;
   }
   sum.level_b = from;
-  hl_cascade_add(crew, &sum);
+  crew->works->add(crew, &sum);
 }
 
 /* Adds a group to the sum of the groups before it. Before that, blurs this sum from the omega of the group
@@ -332,10 +330,6 @@ static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cas
   return sum;
 }
 
-/* Bits of cascade->refilled. REFILLED_BEFORE: the tile was refilled at the end of the chunk before.
- * REFILLED_NOW: the tile was refilled at the end of this chunk. */
-enum { REFILLED_BEFORE = 1, REFILLED_NOW = 2 };
-
 typedef struct refill_task {
   soft_cascade *cascade;
   shadow_buffer *buffer;
@@ -401,12 +395,17 @@ static bool find_shade(soft_cascade *cascade, double receiver, const cascade_cre
   return true;
 }
 
-/* Refills the buffer in which samples look up light. any: whether find_shade() found anything in the light's
- * way. */
-static void refill_buffer(soft_cascade *cascade, shadow_buffer *buffer, bool any, const cascade_crew *crew) {
-  refill_task task = {cascade, buffer, crew->functions, any};
-  hl_pool_run(crew->pool, hl_cascade_row_pieces(&cascade->level[0]), refill_piece, &task);
+/* Refills the buffer that sheets look up. */
+static void refill_buffer(const cascade_crew *crew, const cascade_refilling *of) {
+  refill_task task = {of->cascade, of->buffer, crew->functions, of->any};
+  hl_pool_run(crew->pool, hl_cascade_row_pieces(&of->cascade->level[0]), refill_piece, &task);
 }
+
+static const cascade_works processors = {.add = hl_cascade_add,
+                                         .blur_add = hl_cascade_blur_add,
+                                         .merge = hl_cascade_merge,
+                                         .absorb = absorb_chunk,
+                                         .refill = refill_buffer};
 
 static void begin_chunk(soft_cascade *cascade) {
   size_t tiles = (size_t)cascade->level[0].tiles_x * (size_t)cascade->level[0].tiles_y;
@@ -422,43 +421,77 @@ static bool ends_chunk(const light_shadow *shadow, int sheet) {
   return isfinite(omega) && omega - cascade->chunk_start >= cascade->chunk;
 }
 
+/* Begins the next chunk at a sheet where a chunk ends. Returns its end. */
+static double start_next(soft_cascade *cascade, const sheet_stack *sheets, int sheet) {
+  double omega = hl_cascade_omega(cascade, hl_sheet_height(sheets, sheet));
+  double end = hl_cascade_chunks_on(cascade, omega, 1);
+  if (cascade->shrink > 0) cascade->chunk = end - omega;
+  cascade->chunk_start = omega;
+  return end;
+}
+
+void hl_cascade_end_chunk(light_shadow *shadow, const occupancy *occupancy, int sheet,
+                          const cascade_crew *crew) {
+  soft_cascade *cascade = shadow->state;
+  double end = start_next(cascade, shadow->setup.sheets, sheet);
+  find_reads(cascade, occupancy, shadow, sheet);
+  /* this sum is made from the chunks before the one that ends here */
+  bool any = find_shade(cascade, end, crew);
+  push_chunk(cascade, shadow, cascade->chunk_start, any, crew);
+  const cascade_refilling refilling = {cascade, shadow->buffer, sheet, any};
+  crew->works->refill(crew, &refilling);
+  begin_chunk(cascade);
+}
+
 static void advance_cascade(light_shadow *shadow, const occupancy *occupancy, int sheet) {
   soft_cascade *cascade = shadow->state;
-  const sheet_stack *sheets = shadow->setup.sheets;
   if (!ends_chunk(shadow, sheet)) {
     hl_cascade_exchange_look(cascade);
     return;
   }
   hl_cascade_exchange_receive(cascade);
-  double omega = hl_cascade_omega(cascade, hl_sheet_height(sheets, sheet));
-  const cascade_crew crew = {shadow->means.pool, shadow->means.functions->cascade, &cascade->reads};
-  double end = hl_cascade_chunks_on(cascade, omega, 1);
-  if (cascade->shrink > 0) cascade->chunk = end - omega;
-  cascade->chunk_start = omega;
-  find_reads(cascade, occupancy, shadow, sheet);
-  /* the sum for this refill was made from the chunks before the chunk that ends here */
-  bool any = find_shade(cascade, end, &crew);
-  push_chunk(cascade, shadow, omega, any, &crew);
-  refill_buffer(cascade, shadow->buffer, any, &crew);
-  begin_chunk(cascade);
+  const cascade_crew crew = {&processors, shadow->means.pool, shadow->means.functions->cascade,
+                             &cascade->reads, NULL};
+  hl_cascade_end_chunk(shadow, occupancy, sheet, &crew);
 }
 
 /* ---- the method ---- */
 
-/* Sets how much of a slab's light the samples read from the buffer's first planes; they read the rest from
- * its second planes. The part is 0 at the beginning of a chunk, and 1 once the chunk has its whole length. */
-static void before_shading(light_shadow *shadow, int sheet, shadow_lookup *lookup) {
-  const soft_cascade *cascade = shadow->state;
-  double middle = slab_omega(cascade, shadow->setup.sheets, sheet);
+static float position_of(const soft_cascade *cascade, const sheet_stack *sheets, int sheet) {
+  double middle = slab_omega(cascade, sheets, sheet);
+  return (float)(isfinite(middle) ? middle - cascade->chunk_start : 0);
+}
+
+static float young_of(const soft_cascade *cascade, const sheet_stack *sheets, int sheet) {
+  double middle = slab_omega(cascade, sheets, sheet);
   double age = isfinite(middle) ? (middle - cascade->chunk_start) / cascade->chunk : 0;
-  lookup->young = (float)fmin(fmax(age, 0), 1);
+  return (float)fmin(fmax(age, 0), 1);
+}
+
+void hl_cascade_find_chunks(const light_shadow *planned, int first, cascade_slab *slabs) {
+  soft_cascade cascade = *(const soft_cascade *)planned->state;
+  light_shadow shadow = *planned;
+  const sheet_stack *sheets = planned->setup.sheets;
+  shadow.state = &cascade;
+  slabs[0] = (cascade_slab){.chunk = 1};
+  for (int sheet = 1, chunk = 1; sheet < sheets->count; sheet++) {
+    slabs[sheet] = (cascade_slab){position_of(&cascade, sheets, sheet), young_of(&cascade, sheets, sheet),
+                                  chunk, sheet >= first && ends_chunk(&shadow, sheet)};
+    if (!slabs[sheet].ends) continue;
+    (void)start_next(&cascade, sheets, sheet);
+    chunk++;
+  }
+}
+
+/* Sets the part of a slab's light that its samples read from the buffer; they read the rest from the buffer's
+ * second planes. The part is 0 at the beginning of a chunk, and 1 once the chunk has its whole length. */
+static void before_shading(light_shadow *shadow, int sheet, shadow_lookup *lookup) {
+  lookup->young = young_of(shadow->state, shadow->setup.sheets, sheet);
 }
 
 /* Sets the slab's position in the chunk. */
 static void before_slab(light_shadow *shadow, int sheet, attenuate_job *job) {
-  const soft_cascade *cascade = shadow->state;
-  double middle = slab_omega(cascade, shadow->setup.sheets, sheet);
-  job->position = (float)(isfinite(middle) ? middle - cascade->chunk_start : 0);
+  job->position = position_of(shadow->state, shadow->setup.sheets, sheet);
   job->marks = true;
 }
 

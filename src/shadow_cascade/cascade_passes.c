@@ -183,18 +183,20 @@ static int fill_boxes(cascade_box *boxes, int count, double variance, double res
   return (reach + TILE) / TILE;
 }
 
+void hl_cascade_find_boxes(const cascade_level *level, const cascade_blur *blur, int *reach_x, int *reach_y) {
+  *reach_x = fill_boxes(level->boxes, level->tiles_x, blur->variance, blur->resampled[0]);
+  *reach_y = fill_boxes(level->boxes + level->tiles_x, level->tiles_y, blur->variance, blur->resampled[1]);
+}
+
 void hl_cascade_blur_add(const cascade_crew *crew, const cascade_blurred_sum *sum) {
   const cascade_level *level = sum->level;
-  const cascade_blur *blur = &sum->blur;
   blur_task task = {.reads = crew->reads, .sum = *sum, .function = crew->functions->blur_add};
   task.job = (field_blur_job){.from = sum->from->pixels,
                               .a = pixels_of(sum->a),
                               .to = sum->to->pixels,
                               .thin = pixels_of(sum->thin),
                               .stride = level->stride};
-  task.reach_x = fill_boxes(level->boxes, level->tiles_x, blur->variance, blur->resampled[0]);
-  task.reach_y = fill_boxes(level->boxes + level->tiles_x, level->tiles_y, blur->variance,
-                            blur->resampled[1]);
+  hl_cascade_find_boxes(level, &sum->blur, &task.reach_x, &task.reach_y);
   hl_pool_run(crew->pool, hl_cascade_row_pieces(level), blur_piece, &task);
 }
 
@@ -219,8 +221,6 @@ static void split_row(void *data, size_t index, int worker) {
   }
 }
 
-enum { MERGE_SUMS = 6 };
-
 typedef struct merge_task {
   const cascade_level *level;
   int ratio; /* ratio of the levels' scales */
@@ -238,10 +238,27 @@ static void merge_row(void *data, size_t index, int worker) {
     add_tiles(&task->sums[i], (row_piece){(int)index, 0, task->sums[i].sum.level->tiles_x});
 }
 
-void hl_cascade_merge(const cascade_crew *crew, const cascade_merger *merger) {
+void hl_cascade_find_merge_sums(const cascade_merger *merger, cascade_sum sums[MERGE_SUMS]) {
   const cascade_level *level = merger->level, *next = merger->next;
   const cascade_matter *a = &merger->a, *b = &merger->b, *spare = &merger->spare, *first = &merger->first,
                        *second = &merger->second;
+  const cascade_field *of_a[2] = {a->absorbed, a->thin}, *of_b[2] = {b->absorbed, b->thin},
+                      *of_spare[2] = {spare->absorbed, spare->thin};
+  const cascade_field *to[2] = {second->absorbed, second->thin}, *old[2] = {first->absorbed, first->thin};
+  for (int i = 0; i < 2; i++) {
+    /* the matter that goes to `first` passes through the fields of `second`, which are overwritten at last */
+    const cascade_sum of_kind[3] = {
+        {level, of_b[i], of_b[1], level, of_a[i], next, to[i], READ_EVERYWHERE},
+        {next, to[i], to[1], next, old[i], next, old[i], READ_EVERYWHERE},
+        {level, of_spare[i], NULL, NULL, NULL, next, to[i], READ_EVERYWHERE},
+    };
+    for (int s = 0; s < 3; s++) sums[2 * s + i] = of_kind[s];
+  }
+}
+
+void hl_cascade_merge(const cascade_crew *crew, const cascade_merger *merger) {
+  const cascade_level *level = merger->level, *next = merger->next;
+  const cascade_matter *b = &merger->b, *spare = &merger->spare;
   merge_task task = {.level = level, .ratio = next->scale / level->scale};
   task.split = (split_task){level,
                             {b->absorbed, b->thin, spare->absorbed, spare->thin},
@@ -252,17 +269,8 @@ void hl_cascade_merge(const cascade_crew *crew, const cascade_merger *merger) {
                              level->stride,
                              (float)merger->late},
                             crew->functions->split};
-  const cascade_field *of_a[2] = {a->absorbed, a->thin}, *of_b[2] = {b->absorbed, b->thin},
-                      *of_spare[2] = {spare->absorbed, spare->thin};
-  const cascade_field *to[2] = {second->absorbed, second->thin}, *old[2] = {first->absorbed, first->thin};
-  for (int i = 0; i < 2; i++) {
-    /* the matter for `first` passes through the fields of `second`, which are overwritten in the last step */
-    const cascade_sum sums[3] = {
-        {level, of_b[i], of_b[1], level, of_a[i], next, to[i], READ_EVERYWHERE},
-        {next, to[i], to[1], next, old[i], next, old[i], READ_EVERYWHERE},
-        {level, of_spare[i], NULL, NULL, NULL, next, to[i], READ_EVERYWHERE},
-    };
-    for (int s = 0; s < 3; s++) task.sums[2 * s + i] = task_of_add(crew, &sums[s]);
-  }
+  cascade_sum sums[MERGE_SUMS];
+  hl_cascade_find_merge_sums(merger, sums);
+  for (int i = 0; i < MERGE_SUMS; i++) task.sums[i] = task_of_add(crew, &sums[i]);
   hl_pool_run(crew->pool, (size_t)next->tiles_y, merge_row, &task);
 }

@@ -69,11 +69,49 @@ typedef struct cascade_merger {
   const cascade_level *next;
   cascade_matter first, second; /* on next */
 } cascade_merger;
-/* Merges two groups. Each row of tiles goes through all steps before the next row begins. */
+/* The sums of a merge after the split, in order. */
+enum { MERGE_SUMS = 6 };
+void hl_cascade_find_merge_sums(const cascade_merger *merger, cascade_sum sums[MERGE_SUMS]);
+/* Merges two groups. Each row of tiles goes through all steps before the next row does. */
 void hl_cascade_merge(const cascade_crew *crew, const cascade_merger *merger);
 
-/* How far repeated doubling reads beyond its output; in pixels of the buffer. from: the scale of the first
- * input; to: the scale of the last output. */
+/* The light that a chunk's slabs absorbed goes to the groups at the chunk's two ends. */
+typedef struct cascade_absorption {
+  const soft_cascade *cascade;
+  const shadow_buffer *buffer; /* null where a device has it */
+  cascade_group *start, *end;
+  double length; /* of the chunk, in omega */
+  int edge;      /* as in absorbed_job */
+  bool any;      /* cascade->absorbed is not all zeros */
+} cascade_absorption;
+
+/* The buffer is refilled from cascade->absorbed. */
+typedef struct cascade_refilling {
+  soft_cascade *cascade;
+  shadow_buffer *buffer; /* null where a device has it */
+  int sheet;
+  bool any; /* cascade->absorbed is not all zeros */
+} cascade_refilling;
+
+/* Bits of cascade->refilled. REFILLED_BEFORE: the tile was refilled at the end of the chunk before.
+ * REFILLED_NOW: the tile was refilled at the end of this chunk. */
+enum { REFILLED_BEFORE = 1, REFILLED_NOW = 2 };
+
+/* Who makes the passes: the processors, or a device. */
+typedef struct cascade_works {
+  void (*add)(const cascade_crew *crew, const cascade_sum *sum);
+  void (*blur_add)(const cascade_crew *crew, const cascade_blurred_sum *sum);
+  void (*merge)(const cascade_crew *crew, const cascade_merger *merger);
+  /* Returns whether the chunk's slabs absorbed any light. */
+  bool (*absorb)(const cascade_crew *crew, const cascade_absorption *absorption);
+  void (*refill)(const cascade_crew *crew, const cascade_refilling *refilling);
+} cascade_works;
+
+/* Finds the boxes of a blur: level->boxes. */
+void hl_cascade_find_boxes(const cascade_level *level, const cascade_blur *blur, int *reach_x, int *reach_y);
+
+/* How far beyond its output repeated doubling reads, from the scale `from` down to the scale `to`; in pixels
+ * of the buffer. */
 int hl_cascade_doubling_reach(int from, int to);
 
 /* Whether all tiles of a rectangle are zeros. Tiles outside the level count as zeros. */

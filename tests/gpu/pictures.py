@@ -52,6 +52,8 @@ CLIP = {"min": [5, 3, 4], "max": [24, 20, 15]}
 BALL = {"type": "sphere", "center": [4, 2, -6], "radius": 9}
 BLOCK = {"type": "box", "min": [-9, -5, -13], "max": [7, 9, 3]}
 STEEP = {"gradient_opacity": [[0.02, 0], [0.12, 1]]}
+SUN = {"type": "directional", "direction": [0.4, -0.7, 0.5], "angular_diameter_deg": 7}
+LAMP = {"type": "point", "position": [40, 50, -50], "radius": 9}
 GRAINS = {"file": "grains.csv", "array": "density"}
 THIN = [[0.001, 0], [0.05, 0.2], [1, 0.6]]
 FAR = {"type": "perspective", "position": [70, 50, -120], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 30}
@@ -90,6 +92,8 @@ MADE = {
     "gradient opacity, surfaces": scene(opacity=LAYERS, shading="phong", function=STEEP),
     "gradient opacity, cuts, light from behind": scene(function=STEEP, direction=(0.2, -0.3, -0.9),
                                                        volume={"cuts": [BALL, plane(1, 0.4, -0.2)]}),
+    "soft shadows": scene(shadows="soft", light=SUN),
+    "soft shadows of a wide light": scene(shadows="soft", opacity=DENSE, light={**SUN, "angular_diameter_deg": 25}),
     "coloured voxels": scene(opacity=[[20, 0], [200, 0.3]], volume={"file": "colors.nrrd"}),
     "near light, colours, flat view": scene(light={"type": "point", "position": [40, 50, -50]}, camera=FLAT,
                                             volume={"attenuation_color": [1, 0.5, 0.2]}),
@@ -101,10 +105,11 @@ LARGE = scene(volume={"file": "large.nrrd"}, render={"sheet_spacing": 4},
               camera={"type": "perspective", "position": [380, 250, -680], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 30})
 # One scene of each feature.
 FEW = ("medium", "several surfaces, colours, near light", "cuts, surfaces", "a field at levels, surfaces", "gradient opacity, surfaces",
-       "coloured voxels", "labels")
+       "coloured voxels", "labels", "soft shadows")
 LEFT = {
-    "soft shadows": scene(shadows="soft", light={"type": "directional", "direction": [0.4, -0.7, 0.5],
-                                                 "angular_diameter_deg": 7}),
+    "soft shadows by another method than the cascade": scene(shadows="soft", light=SUN, render={"soft_method": "paper"}),
+    "soft shadows of surfaces, cuts, gradient opacity or coloured extinction": scene(shadows="soft", shading="phong", light=SUN),
+    "soft shadows beside hard ones, or of near lights": scene(shadows="soft", light=LAMP),
     "gradient opacity of cut surfaces that cast shadows": scene(opacity=DENSE, shading="phong", function=STEEP,
                                                                 volume={"cuts": [BALL]}),
     "splatting in place of gathering": scene(render={"reconstruction": "splat"}),

@@ -14,8 +14,9 @@
 #define DEEPEST     80.0f
 #define EVEN_LIGHT  0.1f
 
-/* Number of planes of one sheet in a light's buffer. */
-#define PLANES_OF_SHEET (CHANNELS * (1 + OUTSIDE))
+/* Number of planes of one sheet in a light's buffer, and the first of the planes from which samples fade. */
+#define PLANES_OF_SHEET (CHANNELS * (1 + OUTSIDE + SOFT))
+#define OLDER_PLANE     (CHANNELS * (1 + OUTSIDE))
 
 /* A pixel's way through a slab, and where its matter is seen. */
 typedef struct slab_sample {
@@ -111,6 +112,24 @@ DEVICE float look_up_cubic(GLOBAL const plan_light *light, const shadow_taps *ta
 DEVICE float interpolated(GLOBAL const plan_light *light, const shadow_taps *taps, int cubic,
                           GLOBAL const float *plane) {
   return cubic ? look_up_cubic(light, taps, plane) : look_up(light, taps, plane);
+}
+
+/* As between_chunks() in render/reaching_lanes.h. */
+DEVICE float between_chunks(float older, float younger, float young) {
+  return fused(younger - older, young, older);
+}
+
+/* The transmittance as samples see it. plane: of the transmittance. young: as in plan_rays. */
+DEVICE float faded(GLOBAL const plan_light *light, const shadow_taps *taps, int cubic,
+                   GLOBAL const float *plane, float young) {
+  const float younger = interpolated(light, taps, cubic, plane);
+#if SOFT
+  if (light->soft)
+    return between_chunks(interpolated(light, taps, cubic, plane + OLDER_PLANE * light->plane), younger,
+                          young);
+#endif
+  (void)young;
+  return younger;
 }
 
 /* ---- what the slab's own matter absorbs ---- */
@@ -409,18 +428,26 @@ DEVICE void pass_face(light_depths *depths, int channel, float found, float own)
 
 /* The light that reaches the slab near a face. */
 DEVICE float reaching_face(GLOBAL const plan_light *light, const shadow_taps *taps, light_depths *depths,
-                           int channel, GLOBAL const float *plane) {
-  GLOBAL const float *at = first_tap(light, taps, plane), *below = at + light->stride;
-  float own[NEAR_PIXELS];
-  for (int i = 0; i < NEAR_PIXELS; i++) own[i] = exp_of_depth(depths->close[channel][i]);
-  float sum = between_taps(taps, at[0], at[1], below[0], below[1]);
+                           int channel, GLOBAL const float *plane, float young) {
+  GLOBAL const float *at = first_tap(light, taps, plane);
+  float own[NEAR_PIXELS], found[NEAR_PIXELS];
+  for (int i = 0; i < NEAR_PIXELS; i++) {
+    own[i] = exp_of_depth(depths->close[channel][i]);
+    found[i] = at[i / 2 * light->stride + i % 2];
+#if SOFT
+    if (light->soft)
+      found[i] = between_chunks(at[OLDER_PLANE * light->plane + i / 2 * light->stride + i % 2], found[i],
+                                young);
+#endif
+  }
+  float sum = between_taps(taps, found[0], found[1], found[2], found[3]);
   float of_own = between_taps(taps, own[0], own[1], own[2], own[3]);
   pass_face(depths, channel, sum, of_own);
   of_own = greater(of_own, DARK);
   float reached = lesser(divided(sum, greater(of_own, 1e-6f)), 1.0f);
   reached = taps->inside ? reached : 1.0f;
   if (light->cubic && depths->beside < 1.0f) {
-    float differ = look_up_cubic(light, taps, plane) - sum;
+    float differ = faded(light, taps, 1, plane, young) - faded(light, taps, 0, plane, young);
     reached = greater(reached + differ * (1.0f - depths->beside), 0.0f);
   }
   return reached;
@@ -428,11 +455,12 @@ DEVICE float reaching_face(GLOBAL const plan_light *light, const shadow_taps *ta
 
 #endif
 
-/* The light's transmittance to the sample in each channel. It is a mean over the slab's matter, in which
- * matter has the weight with which the eye sees it. planes: the planes of the sheet before the slab. */
+/* The light's transmittance to the sample in each channel, as a mean over the slab's matter in which matter
+ * counts as much as the eye sees of it. planes: the planes of the sheet before the slab. young: as in
+ * plan_rays. */
 DEVICE void passing_light(const volume_data *volume, vector normal, GLOBAL const plan_light *light,
                           const slab_sample *s, vector towards, float path, GLOBAL const float *planes,
-                          float passing[CHANNELS]) {
+                          float young, float passing[CHANNELS]) {
   shadow_taps taps = taps_of_position(light, s->position);
   light_depths depths;
   light_ways ways;
@@ -469,10 +497,10 @@ DEVICE void passing_light(const volume_data *volume, vector normal, GLOBAL const
   for (int c = 0; c < CHANNELS; c++) {
     GLOBAL const float *plane = planes + c * light->plane + light->origin;
 #if BOXED
-    float reached = depths.face ? reaching_face(light, &taps, &depths, c, plane)
-                                : interpolated(light, &taps, light->cubic, plane);
+    float reached = depths.face ? reaching_face(light, &taps, &depths, c, plane, young)
+                                : faded(light, &taps, light->cubic, plane, young);
 #else
-    float reached = interpolated(light, &taps, light->cubic, plane);
+    float reached = faded(light, &taps, light->cubic, plane, young);
 #endif
     float own = own_transmittance(s->depth, s->left, depths.enter[c], depths.more[c]);
     passing[c] = lesser(reached * own, 1.0f);

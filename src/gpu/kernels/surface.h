@@ -262,17 +262,28 @@ DEVICE way_begin find_begin(const volume_data *volume, const slab_sample *s, vec
 }
 
 /* Finds the light at the outside of a sample's surface. way: the light's way from the slab's first sheet to
- * the sample. planes: planes of the sheet before the slab; Y follows T. */
+ * the sample. planes: planes of the sheet before the slab; Y follows T. young: as in plan_rays. */
 DEVICE void passing_to_surface(const volume_data *volume, GLOBAL const plan_light *light,
                                const slab_sample *s, vector towards, float way, GLOBAL const float *planes,
-                               float passing[CHANNELS]) {
+                               float young, float passing[CHANNELS]) {
   const shadow_taps taps = taps_of_position(light, s->position);
   float own_kept = 1.0f, own_passing = 1.0f;
   for (int c = 0; c < CHANNELS; c++) {
     GLOBAL const float *plane = planes + c * light->plane + light->origin;
     float outside = interpolated(light, &taps, light->cubic, plane + CHANNELS * light->plane);
+    float passed = 0.0f;
+    if (volume->plan->several_surfaces || light->soft)
+      passed = interpolated(light, &taps, light->cubic, plane);
+#if SOFT
+    if (light->soft) {
+      const float taken = outside - passed;
+      passed = between_chunks(interpolated(light, &taps, light->cubic, plane + OLDER_PLANE * light->plane),
+                              passed, young);
+      outside = passed + greater(taken, 0.0f);
+    }
+#endif
+    (void)young;
     if (volume->plan->several_surfaces) {
-      float passed = interpolated(light, &taps, light->cubic, plane);
       if (c == 0) {
         const way_begin begin = find_begin(volume, s, towards, way);
         if (begin.there && begin.first != begin.foot) {

@@ -1,5 +1,6 @@
 /* gpu/kernels/sweep.c - the kernels' entry points. */
 #include "gpu/kernels/sweep.h"
+#include "gpu/kernels/cascade.h"
 #include "gpu/kernels/trial.h"
 
 /* Sets floats to a value; each member sets four floats. */
@@ -48,14 +49,15 @@ spread_distances(GLOBAL const byte *from, GLOBAL byte *to, unsigned x, unsigned 
 }
 
 /* The arguments of the kernels that work on a run of slabs. */
-#define SWEEP_ARGUMENTS                                                                                 \
-  GLOBAL const device_sweep *APART plan, GLOBAL const plan_rays *APART rays,                            \
-      GLOBAL const byte *APART voxels, GLOBAL const byte *APART distances,                              \
-      GLOBAL const wide *APART cell_bits, GLOBAL const float *APART tables, GLOBAL float *APART pixels, \
-      GLOBAL float *APART planes, GLOBAL float *APART light_state, GLOBAL int *APART changed,           \
-      GLOBAL const int *APART shown_from, GLOBAL unsigned *APART counts, GLOBAL float *APART slots,     \
-      GLOBAL unsigned *APART list, GLOBAL unsigned *APART masks, GLOBAL const plan_cut *APART cuts,     \
-      GLOBAL const plan_brick *APART directory, GLOBAL const byte *APART colors, int first, int end, int run
+#define SWEEP_ARGUMENTS                                                                                    \
+  GLOBAL const device_sweep *APART plan, GLOBAL const plan_rays *APART rays,                               \
+      GLOBAL const byte *APART voxels, GLOBAL const byte *APART distances,                                 \
+      GLOBAL const wide *APART cell_bits, GLOBAL const float *APART tables, GLOBAL float *APART pixels,    \
+      GLOBAL float *APART planes, GLOBAL float *APART light_state, GLOBAL int *APART changed,              \
+      GLOBAL const int *APART shown_from, GLOBAL unsigned *APART counts, GLOBAL float *APART slots,        \
+      GLOBAL unsigned *APART list, GLOBAL unsigned *APART masks, GLOBAL const plan_cut *APART cuts,        \
+      GLOBAL const plan_brick *APART directory, GLOBAL const byte *APART colors, GLOBAL float *APART soft, \
+      GLOBAL int *APART touched, int first, int end, int run
 
 DEVICE sweep_data sweep_of(SWEEP_ARGUMENTS) {
   sweep_data sweep;
@@ -70,6 +72,8 @@ DEVICE sweep_data sweep_of(SWEEP_ARGUMENTS) {
   sweep.volume.directory = directory;
   sweep.volume.colors = colors;
   sweep.pixels = pixels;
+  sweep.soft = soft;
+  sweep.touched = touched;
   sweep.planes = planes;
   sweep.light = light_state;
   sweep.changed = changed;
@@ -86,7 +90,7 @@ DEVICE sweep_data sweep_of(SWEEP_ARGUMENTS) {
 
 #define SWEEP_OF_ARGUMENTS                                                                         \
   sweep_of(plan, rays, voxels, distances, cell_bits, tables, pixels, planes, light_state, changed, \
-           shown_from, counts, slots, list, masks, cuts, directory, colors, first, end, run)
+           shown_from, counts, slots, list, masks, cuts, directory, colors, soft, touched, first, end, run)
 
 /* Lists the samples that the picture's pixels may see in slabs first to end - 1. */
 KERNEL(16) find_samples(SWEEP_ARGUMENTS) {
@@ -125,6 +129,10 @@ KERNEL(12) run_light(SWEEP_ARGUMENTS) {
                         column;
   light_pixel own;
   for (int c = 0; c < PLANES_OF_SHEET; c++) own.passing[c] = state[c * 256];
+#if SOFT
+  GLOBAL float *moments = soft + (wide)tile * (512 * CHANNELS) + member;
+  for (int c = 0; c < CHANNELS; c++) own.moment[c] = moments[c * 512];
+#endif
   int changed_at = changed[(wide)tile * 256 + member];
   const ray_left ray = left_of_ray(&light->box, cuts + light->first_cut, light->cut_count, u, v);
   int lit = block_any(votes, is_lit(&own));
@@ -152,6 +160,9 @@ KERNEL(12) run_light(SWEEP_ARGUMENTS) {
       changed_at = sheet;
     }
 #endif
+#if SOFT
+    if (changed_at == sheet && sheet >= first) touched[tile] = in_frame[sheet].chunk;
+#endif
     step = least_of_group(step);
     if (step > end - sheet) step = end - sheet;
     if (step > 1) way.after_known = way.after_shows = 0;
@@ -162,6 +173,52 @@ KERNEL(12) run_light(SWEEP_ARGUMENTS) {
     lit = block_any(votes, is_lit(&own));
   }
   for (int c = 0; c < PLANES_OF_SHEET; c++) state[c * 256] = own.passing[c];
+#if SOFT
+  for (int c = 0; c < CHANNELS; c++) moments[c * 512] = own.moment[c];
+#endif
   changed[(wide)tile * 256 + member] = changed_at;
 #endif
 }
+
+#if SOFT
+
+/* ---- passes over the fields of soft lights ---- */
+
+/* The arguments of these kernels. number: of the pass. */
+#define PASS_ARGUMENTS                                                                            \
+  GLOBAL const device_sweep *APART plan, GLOBAL const plan_pass *APART passes,                    \
+      GLOBAL const plan_blur *APART boxes, GLOBAL const byte *APART marks, GLOBAL word16 *fields, \
+      GLOBAL float *APART rows, GLOBAL float *APART planes, GLOBAL float *APART light_state,      \
+      GLOBAL float *APART soft, GLOBAL const int *APART touched, GLOBAL int *APART changed, int number
+
+KERNEL(16) pass_rows(PASS_ARGUMENTS) {
+  (void)plan, (void)marks, (void)planes, (void)light_state, (void)soft, (void)touched, (void)changed;
+  blur_row(passes + number, boxes, fields, rows, work_number());
+}
+
+KERNEL(16) pass_fields(PASS_ARGUMENTS) {
+  (void)plan, (void)marks, (void)planes, (void)light_state, (void)soft, (void)touched, (void)changed;
+  if (passes[number].kind == PASS_SPLIT) split_pixel(passes + number, fields, work_number());
+  else sum_pixel(passes + number, boxes, fields, rows, work_number());
+}
+
+KERNEL(16) pass_absorbed(PASS_ARGUMENTS) {
+  SHARED_VOTES;
+  (void)boxes, (void)marks, (void)rows, (void)planes, (void)changed;
+  const light_place place = place_of_member(plan, passes + number, work_number());
+  GLOBAL float *own = soft + ((wide)place.tile * CHANNELS + passes[number].channel) * 512 + place.member;
+  const float
+      before = 1.0f - own[256],
+      now = light_state[((wide)place.tile * PLANES_OF_SHEET + passes[number].channel) * 256 + place.member];
+  const float taken = greater(before - greater(now, 0.0f), 0.0f);
+  const int any = block_any(votes, taken > 0.0f), counts = touched[place.tile] == passes[number].chunk;
+  absorb_pixel(passes + number, fields, place.at, before, taken, own, any && counts);
+}
+
+KERNEL(16) pass_refill(PASS_ARGUMENTS) {
+  (void)boxes, (void)rows;
+  refill_pixel(plan, passes + number, marks, fields, planes, light_state, soft, touched, changed,
+               work_number());
+}
+
+#endif

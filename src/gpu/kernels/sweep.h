@@ -106,8 +106,12 @@ typedef struct sweep_data {
   GLOBAL float *pixels; /* [tiles][16 blocks][R G B A][16] */
   GLOBAL float *planes; /* planes of all lights */
   GLOBAL float *light;  /* [light tiles][planes of a sheet][256 pixels]; the light at the last sheet of the
-                         * previous run */
-  GLOBAL int *changed;  /* [light tiles][256 pixels]; the last sheet at which the pixel's light changed */
+                         * run before */
+  GLOBAL float *soft; /* [light tiles][channels][2][256 pixels]; of soft lights: the sum of the light that the
+                       * chunk's slabs absorbed, each times the slab's position, and 1 - the light at the
+                       * chunk's beginning */
+  GLOBAL int *touched; /* [light tiles]; the last chunk whose slabs absorbed light there */
+  GLOBAL int *changed; /* [light tiles][256 pixels]; the last sheet at which the pixel's light changed */
   GLOBAL const int *shown_from; /* [tiles][16] */
   GLOBAL unsigned *counts;      /* [256], then [runs]. The first 256 numbers count composited samples; tile t
                                  * adds its samples to number t % 256. The others are the lengths of the
@@ -256,7 +260,7 @@ DEVICE void shade_slot(const sweep_data *sweep, unsigned slot, int run_first) {
   if (!(s.extinction > 0.0f)) return;
 #endif
   find_normal(volume, before + after, &s);
-  vector lit = color_of_slab(plan, volume, sweep->planes, (sheet - 1) % plan->ring, &s);
+  vector lit = color_of_slab(plan, volume, sweep->planes, rays - plan->sheets, (sheet - 1) % plan->ring, &s);
   at[0] = lit.x;
   at[1] = lit.y;
   at[2] = lit.z;
@@ -290,9 +294,13 @@ DEVICE void composite_slabs(const sweep_data *sweep, int number) {
 
 /* ---- the lights ---- */
 
-/* A light's pixel: T, followed by Y where surfaces have it (shadow/attenuate.h). */
+/* A light's pixel: T, followed by Y where surfaces have it (shadow/attenuate.h), and by the light from which
+ * samples of soft lights fade. */
 typedef struct light_pixel {
   float passing[PLANES_OF_SHEET];
+#if SOFT
+  float moment[CHANNELS];
+#endif
 } light_pixel;
 
 /* The factor by which gradient opacity multiplies a slab's extinction. It is found at the centre of gravity
@@ -347,7 +355,12 @@ DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *ligh
   for (int c = 0; c < CHANNELS; c++) {
     float depth = fused(extinction, volume->weight[c], 0.0f), light_before = pixel->passing[c];
     all = all + depth;
-    pixel->passing[c] = light_before * exp_negative(depth * path);
+    const float passing = exp_negative(depth * path);
+    pixel->passing[c] = light_before * passing;
+#if SOFT
+    pixel->passing[OLDER_PLANE + c] = pixel->passing[OLDER_PLANE + c] * passing;
+    pixel->moment[c] = fused(light_before - pixel->passing[c], in_frame->position, pixel->moment[c]);
+#endif
 #if OUTSIDE
     pixel->passing[CHANNELS + c] = pass_outside(pixel->passing[CHANNELS + c], light_before, pixel->passing[c],
                                                 kept);
@@ -359,7 +372,7 @@ DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *ligh
 /* Ends the surface in a light's pixel: sets the light at the surface's outside to the transmittance. This is
  * done where a slab absorbs no light in this pixel, but affects the light of another pixel of the block. */
 DEVICE void leave_surface(light_pixel *pixel) {
-  for (int c = 0; c < PLANES_OF_SHEET - CHANNELS; c++)
+  for (int c = 0; c < CHANNELS * OUTSIDE; c++)
     pixel->passing[CHANNELS + c] = greater(pixel->passing[c], 0.0f);
 }
 

@@ -1,12 +1,9 @@
-/* gpu/gpu.c - see gpu.h. */
-#include "gpu/gpu.h"
-
+/* gpu/gpu_run.c - brings volumes to an open device, and runs sweeps there. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <dlfcn.h>
-
+#include "gpu/gpu_state.h"
 #include "gpu/program_cache.h"
 
 extern const char hl_kernel_text[]; /* made by kernels/text.py */
@@ -19,172 +16,18 @@ enum {
   KERNEL_FIND,
   KERNEL_SHADE,
   KERNEL_COMPOSITE,
+  KERNEL_ROWS, /* this one and the next ones: only of variants with soft lights */
+  KERNEL_FIELDS,
+  KERNEL_ABSORBED,
+  KERNEL_REFILL,
   KERNELS
 };
-static const char *const kernel_names[KERNELS] = {"fill_floats",      "try_arithmetic", "spread_distances",
-                                                  "run_light",        "find_samples",   "shade_samples",
-                                                  "composite_samples"};
+static const char *const kernel_names[KERNELS] = {"fill_floats",       "try_arithmetic", "spread_distances",
+                                                  "run_light",         "find_samples",   "shade_samples",
+                                                  "composite_samples", "pass_rows",      "pass_fields",
+                                                  "pass_absorbed",     "pass_refill"};
 
-enum { MOST_VARIANTS = 64, VARIANT_DEFINES = 14, SAMPLE_COUNTERS = 256 };
-
-/* The buffers of a device. */
-enum buffer_use {
-  BUFFER_PLAN,
-  BUFFER_RAYS,
-  BUFFER_VOXELS,
-  BUFFER_DISTANCES,
-  BUFFER_DISTANCES_MADE, /* distances of bricks, after the first and after the third pass over the bricks;
-                          * kernels read the distances after the third pass */
-  BUFFER_CELL_BITS,
-  BUFFER_TABLES,
-  BUFFER_PIXELS,
-  BUFFER_PLANES,
-  BUFFER_LIGHT,
-  BUFFER_CHANGED,
-  BUFFER_SHOWN_FROM,
-  BUFFER_COUNTS,
-  BUFFER_SLOTS,
-  BUFFER_LIST,
-  BUFFER_MASKS,
-  BUFFER_CUTS,
-  BUFFER_DIRECTORY,
-  BUFFER_COLORS,
-  BUFFERS
-};
-
-typedef struct known_program {
-  plan_variant variant;
-  gpu_program program;
-} known_program;
-
-struct hl_gpu {
-  hl_context *context;
-  void *library;
-  gpu_device device;
-  const char *cache_folder;
-  gpu_buffer buffers[BUFFERS];
-  uint64_t version, tables_version; /* versions of the voxels and of the tables that are on the device; 0:
-                                     * there are no voxels or tables */
-  known_program programs[MOST_VARIANTS];
-  int program_count, launches;
-  int32_t brick_count[3];
-  bool has_distances; /* BUFFER_DISTANCES_MADE holds the distances of bricks; else they must be found first
-                       * from BUFFER_DISTANCES, which holds the relevant bricks */
-};
-
-const gpu_device *hl_gpu_device(const hl_gpu *gpu) { return &gpu->device; }
-const char *hl_gpu_problem(const hl_gpu *gpu) { return gpu->device.problem; }
-
-/* ---- finding and opening devices ---- */
-
-static const gpu_driver *const drivers[] = {&hl_cuda_driver, &hl_opencl_driver};
-enum { DRIVERS = sizeof drivers / sizeof *drivers };
-
-void *hl_load_library(const char *const *names, char *problem) {
-  for (; *names != NULL; names++) {
-    void *library = dlopen(*names, RTLD_NOW | RTLD_LOCAL);
-    if (library != NULL) return library;
-    if (problem[0] != '\0') continue;
-    snprintf(problem, GPU_PROBLEM_BYTES, "there is no %s", *names);
-  }
-  return NULL;
-}
-
-static bool find_of_driver(const gpu_driver *driver, gpu_found *found, void *data, char *problem) {
-  void *library;
-  gpu_device_info info;
-  if (!driver->load(&library, problem)) return true;
-  bool goes_on = true;
-  for (int i = 0; i < driver->count(library) && goes_on; i++)
-    if (driver->describe(library, i, &info)) goes_on = found(data, driver, library, i, &info);
-  if (goes_on) driver->unload(library); /* if `found` returned false, the caller keeps the library open */
-  return goes_on;
-}
-
-void hl_gpu_find(const char *driver, gpu_found *found, void *data, char *problem) {
-  char of_driver[DRIVERS][GPU_PROBLEM_BYTES] = {{0}};
-  bool goes_on = true;
-  size_t used = 0;
-  problem[0] = '\0';
-  for (int d = 0; d < DRIVERS && goes_on; d++)
-    if (driver == NULL || strcmp(driver, drivers[d]->name) == 0)
-      goes_on = find_of_driver(drivers[d], found, data, of_driver[d]);
-  for (int d = 0; d < DRIVERS; d++)
-    if (of_driver[d][0] != '\0' && used < GPU_PROBLEM_BYTES)
-      used += (size_t)snprintf(problem + used, GPU_PROBLEM_BYTES - used, "%s%s", used > 0 ? "; " : "",
-                               of_driver[d]);
-}
-
-/* The name that is searched for, and the device that was opened for it. */
-typedef struct gpu_search {
-  const char *wanted;
-  gpu_device device;
-  void *opened;
-  bool met;
-} gpu_search;
-
-/* Converts an ASCII letter to lower case, whatever the locale. */
-static char small_letter(char c) { return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c; }
-
-static bool has_word(const char *text, const char *word) {
-  for (; *text != '\0'; text++) {
-    size_t i = 0;
-    while (word[i] != '\0' && small_letter(text[i]) == small_letter(word[i])) i++;
-    if (word[i] == '\0') return true;
-  }
-  return false;
-}
-
-static bool is_wanted(const char *wanted, const gpu_driver *driver, const gpu_device_info *info) {
-  if (strcmp(wanted, "gpu") == 0 || strcmp(wanted, "auto") == 0) return !info->processor;
-  return strcmp(wanted, driver->name) == 0 || has_word(info->name, wanted);
-}
-
-static bool open_if_wanted(void *data, const gpu_driver *driver, void *library, int index,
-                           const gpu_device_info *info) {
-  gpu_search *search = data;
-  if (!is_wanted(search->wanted, driver, info)) return true;
-  search->met = true;
-  search->device.driver = driver;
-  search->device.info = *info;
-  search->opened = library;
-  return !driver->open(library, index, &search->device);
-}
-
-hl_gpu *hl_gpu_open(hl_context *context, const char *wanted, const char *cache_folder, char *problem) {
-  gpu_search search = {.wanted = wanted};
-  char missing[GPU_PROBLEM_BYTES];
-  hl_gpu_find(NULL, open_if_wanted, &search, missing);
-  if (search.device.state == NULL) {
-    if (search.met) snprintf(problem, GPU_PROBLEM_BYTES, "%s", search.device.problem);
-    else
-      snprintf(problem, GPU_PROBLEM_BYTES, "no device answers to \"%.60s\"%s%.300s", wanted,
-               missing[0] != '\0' ? ": " : "", missing);
-    return NULL;
-  }
-  hl_gpu *gpu = hl_allocate_zeroed(context, 1, sizeof *gpu);
-  if (gpu == NULL) {
-    search.device.driver->close(&search.device);
-    snprintf(problem, GPU_PROBLEM_BYTES, "no memory is left");
-    return NULL;
-  }
-  gpu->context = context;
-  gpu->library = search.opened;
-  gpu->device = search.device;
-  gpu->cache_folder = cache_folder;
-  return gpu;
-}
-
-void hl_gpu_close(hl_gpu *gpu) {
-  if (gpu == NULL) return;
-  const gpu_driver *driver = gpu->device.driver;
-  for (int i = 0; i < gpu->program_count; i++)
-    driver->release_program(&gpu->device, &gpu->programs[i].program);
-  for (int i = 0; i < BUFFERS; i++) driver->release(&gpu->device, &gpu->buffers[i]);
-  driver->close(&gpu->device);
-  driver->unload(gpu->library);
-  hl_release(gpu->context, gpu);
-}
+enum { VARIANT_DEFINES = 15, SAMPLE_COUNTERS = 256, TILE_SIDE = 16 };
 
 /* ---- memory ---- */
 
@@ -201,7 +44,7 @@ static bool reserve(hl_gpu *gpu, enum buffer_use use, size_t bytes) {
 }
 
 static bool upload(hl_gpu *gpu, enum buffer_use use, size_t offset, const void *from, size_t bytes) {
-  return gpu->device.driver->upload(&gpu->device, &gpu->buffers[use], offset, from, bytes);
+  return bytes == 0 || gpu->device.driver->upload(&gpu->device, &gpu->buffers[use], offset, from, bytes);
 }
 
 static bool reserve_and_upload(hl_gpu *gpu, enum buffer_use use, const void *from, size_t bytes) {
@@ -255,8 +98,7 @@ static bool upload_bricks(hl_gpu *gpu, const gpu_volume *volume) {
                bytes = volume->slots * width * width * width * sizeof(float);
   size_t entries = 1;
   for (int axis = 0; axis < 3; axis++) entries *= volume->directory_size[axis];
-  return reserve(gpu, BUFFER_VOXELS, bytes) &&
-         (bytes == 0 || upload(gpu, BUFFER_VOXELS, 0, volume->voxels, bytes)) &&
+  return reserve(gpu, BUFFER_VOXELS, bytes) && upload(gpu, BUFFER_VOXELS, 0, volume->voxels, bytes) &&
          reserve_and_upload(gpu, BUFFER_DIRECTORY, volume->directory, entries * sizeof *volume->directory);
 }
 
@@ -316,13 +158,14 @@ static void define_variant(const plan_variant *v, char defines[VARIANT_DEFINES][
       {"PHONG", v->phong},       {"LIT", v->lit},         {"SHADOWED", v->shadowed},
       {"OUTSIDE", v->outside},   {"BOXED", v->boxed},     {"BACK_TO_FRONT", v->back_to_front},
       {"CHANNELS", v->channels}, {"CUTS", v->cuts},       {"BRICKS", v->bricks},
-      {"STEEP", v->steep},       {"COLORED", v->colored}};
+      {"STEEP", v->steep},       {"COLORED", v->colored}, {"SOFT", v->soft}};
   for (int i = 0; i < VARIANT_DEFINES; i++)
     snprintf(defines[i], sizeof defines[i], "%s=%d", all[i].name, all[i].value);
 }
 
 static bool compile(hl_gpu *gpu, const plan_variant *variant, gpu_program *program) {
   const gpu_driver *driver = gpu->device.driver;
+  const int kernels = variant->soft ? KERNELS : KERNEL_ROWS;
   char words[VARIANT_DEFINES][40], key[PROGRAM_KEY_BYTES];
   const char *defines[VARIANT_DEFINES];
   gpu_binary binary = {0};
@@ -334,13 +177,13 @@ static bool compile(hl_gpu *gpu, const plan_variant *variant, gpu_program *progr
     length += snprintf(key + length, sizeof key - (size_t)length, " %s", words[i]);
   }
   bool loaded = hl_program_stored(gpu->cache_folder, key, &binary) &&
-                driver->load_program(&gpu->device, &binary, kernel_names, KERNELS, program);
+                driver->load_program(&gpu->device, &binary, kernel_names, kernels, program);
   if (!loaded) {
     free(binary.bytes);
     binary = (gpu_binary){0};
     if (!driver->compile(&gpu->device, hl_kernel_text, defines, VARIANT_DEFINES, &binary)) return false;
     hl_program_store(gpu->cache_folder, key, &binary);
-    loaded = driver->load_program(&gpu->device, &binary, kernel_names, KERNELS, program);
+    loaded = driver->load_program(&gpu->device, &binary, kernel_names, kernels, program);
   }
   free(binary.bytes);
   return loaded;
@@ -408,13 +251,38 @@ static bool find_distances(hl_gpu *gpu, const gpu_program *program) {
 
 static size_t light_floats(const gpu_sweep *sweep) {
   return (size_t)sweep->plan->light_tiles * 256 * (size_t)sweep->variant.channels *
-         (sweep->variant.outside ? 2 : 1);
+         (size_t)(1 + sweep->variant.outside + sweep->variant.soft);
 }
 
 /* The number of counters of a sweep: counters of samples, and a counter for the list of each run. It is
  * rounded up to a multiple of four. */
 static size_t counters_of(const gpu_sweep *sweep) {
-  return SAMPLE_COUNTERS + ((size_t)(sweep->plan->sheets / sweep->slabs) + 4) / 4 * 4;
+  size_t runs = (size_t)(sweep->plan->sheets / sweep->slabs);
+  for (int sheet = 0; sheet < sweep->plan->sheets && sweep->ends != NULL; sheet++)
+    runs += sweep->ends[sheet] != 0;
+  return SAMPLE_COUNTERS + (runs + 4) / 4 * 4;
+}
+
+/* Numbers of floats of the buffers of soft lights, rounded up to multiples of four. */
+static size_t soft_floats(const gpu_sweep *sweep) {
+  return sweep->variant.soft ? (size_t)sweep->plan->light_tiles * 512 * (size_t)sweep->variant.channels : 0;
+}
+static size_t touched_floats(const gpu_sweep *sweep) {
+  return sweep->variant.soft ? ((size_t)sweep->plan->light_tiles + 3) / 4 * 4 : 0;
+}
+static size_t field_floats(const gpu_sweep *sweep) { return (sweep->field_pixels + 7) / 8 * 4; }
+
+static bool make_soft_room(hl_gpu *gpu, const gpu_sweep *sweep) {
+  return reserve(gpu, BUFFER_SOFT, soft_floats(sweep) * sizeof(float)) &&
+         reserve(gpu, BUFFER_TOUCHED, touched_floats(sweep) * sizeof(float)) &&
+         reserve(gpu, BUFFER_FIELDS, field_floats(sweep) * sizeof(float)) &&
+         reserve(gpu, BUFFER_ROWS, sweep->row_floats * sizeof(float));
+}
+
+static bool reset_soft(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *program) {
+  return fill(gpu, program, BUFFER_SOFT, soft_floats(sweep), 0) &&
+         fill(gpu, program, BUFFER_TOUCHED, touched_floats(sweep), 0) &&
+         fill(gpu, program, BUFFER_FIELDS, field_floats(sweep), 0);
 }
 
 static bool make_room(hl_gpu *gpu, const gpu_sweep *sweep) {
@@ -433,7 +301,7 @@ static bool make_room(hl_gpu *gpu, const gpu_sweep *sweep) {
               reserve(gpu, BUFFER_SLOTS, slots * 4 * sizeof(float)) &&
               reserve(gpu, BUFFER_LIST, slots * sizeof(uint32_t)) &&
               reserve(gpu, BUFFER_MASKS, 2 * tiles * 256 * sizeof(uint32_t)) &&
-              reserve(gpu, BUFFER_CUTS, sweep->cut_count * sizeof *sweep->cuts);
+              reserve(gpu, BUFFER_CUTS, sweep->cut_count * sizeof *sweep->cuts) && make_soft_room(gpu, sweep);
   if (done && sweep->shown_from != NULL)
     done = upload(gpu, BUFFER_SHOWN_FROM, 0, sweep->shown_from, tiles * 16 * sizeof(int32_t));
   if (done && sweep->cut_count > 0)
@@ -448,7 +316,8 @@ static bool reset(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *progra
               fill(gpu, program, BUFFER_COUNTS, counters_of(sweep), 0) &&
               fill(gpu, program, BUFFER_PLANES, sweep->plane_floats, 1) &&
               fill(gpu, program, BUFFER_LIGHT, light_floats(sweep), 1) &&
-              fill(gpu, program, BUFFER_CHANGED, (size_t)plan->light_tiles * 256, 0);
+              fill(gpu, program, BUFFER_CHANGED, (size_t)plan->light_tiles * 256, 0) &&
+              reset_soft(gpu, sweep, program);
   if (done && sweep->shown_from == NULL)
     done = fill(gpu, program, BUFFER_SHOWN_FROM, (size_t)plan->tiles * 16, 0);
   return done;
@@ -487,6 +356,8 @@ static bool launch_kernel(hl_gpu *gpu, const gpu_program *program, int kernel, s
                                     memory(gpu, BUFFER_CUTS),
                                     memory(gpu, BUFFER_DIRECTORY),
                                     memory(gpu, BUFFER_COLORS),
+                                    memory(gpu, BUFFER_SOFT),
+                                    memory(gpu, BUFFER_TOUCHED),
                                     number(run.first),
                                     number(run.end),
                                     number(run.number)};
@@ -512,14 +383,69 @@ static bool launch_run(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *p
          launch_kernel(gpu, program, KERNEL_COMPOSITE, pixels, run);
 }
 
+/* The end of a run that begins with a slab. A run ends at the latest where a soft light's chunk ends. */
+static int end_of_run(const gpu_sweep *sweep, int first) {
+  int end = first + 1;
+  while (end < sweep->plan->sheets && end - first < sweep->slabs &&
+         (sweep->ends == NULL || !sweep->ends[end - 1]))
+    end++;
+  return end;
+}
+
 static bool launch_runs(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *program) {
   const int sheets = sweep->plan->sheets;
   bool done = gpu->device.driver->follow(&gpu->device, LINE_AHEAD, LINE_PICTURE);
-  for (int first = 1, number = 0; first < sheets && done; first += sweep->slabs, number++)
-    done = launch_run(
-        gpu, sweep, program,
-        (device_run){first, first + sweep->slabs < sheets ? first + sweep->slabs : sheets, number});
+  for (int first = 1, number = 0, end; first < sheets && done; first = end, number++) {
+    end = end_of_run(sweep, first);
+    done = launch_run(gpu, sweep, program, (device_run){first, end, number});
+    if (done && end < sheets && sweep->ends != NULL && sweep->ends[end - 1])
+      done = sweep->end_chunks(sweep->of_chunks, gpu, sweep, end - 1);
+  }
   return done;
+}
+
+/* ---- passes over the fields of soft lights ---- */
+
+/* The number of members that make a pass: one for each pixel of the output. */
+static size_t members_of_pass(const plan_pass *pass) {
+  return (size_t)pass->tiles_x * (size_t)pass->tiles_y * 256;
+}
+
+static bool launch_pass(hl_gpu *gpu, const gpu_program *program, int kernel, size_t members, int index) {
+  const gpu_argument arguments[] = {
+      memory(gpu, BUFFER_PLAN),    memory(gpu, BUFFER_PASSES),  memory(gpu, BUFFER_BOXES),
+      memory(gpu, BUFFER_MARKS),   memory(gpu, BUFFER_FIELDS),  memory(gpu, BUFFER_ROWS),
+      memory(gpu, BUFFER_PLANES),  memory(gpu, BUFFER_LIGHT),   memory(gpu, BUFFER_SOFT),
+      memory(gpu, BUFFER_TOUCHED), memory(gpu, BUFFER_CHANGED), number(index)};
+  return launch(gpu, program, kernel, LINE_AHEAD, groups_of(members), arguments,
+                (int)(sizeof arguments / sizeof *arguments));
+}
+
+bool hl_gpu_pass(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_passes *passes) {
+  const gpu_program *program = program_of(gpu, &sweep->variant);
+  bool done = program != NULL &&
+              reserve_and_upload(gpu, BUFFER_PASSES, passes->list, passes->count * sizeof *passes->list) &&
+              reserve_and_upload(gpu, BUFFER_BOXES, passes->boxes,
+                                 passes->box_count * sizeof *passes->boxes) &&
+              reserve_and_upload(gpu, BUFFER_MARKS, passes->marks, passes->mark_count) &&
+              gpu->device.driver->follow(&gpu->device, LINE_AHEAD, LINE_PICTURE);
+  for (size_t i = 0; i < passes->count && done; i++) {
+    const plan_pass *pass = &passes->list[i];
+    const int kernel = pass->kind == PASS_ABSORB   ? KERNEL_ABSORBED
+                       : pass->kind == PASS_REFILL ? KERNEL_REFILL
+                                                   : KERNEL_FIELDS;
+    if (pass->kind == PASS_BLUR)
+      done = launch_pass(gpu, program, KERNEL_ROWS,
+                         members_of_pass(pass) + (size_t)pass->tiles_x * TILE_SIDE * 2 * PASS_MARGIN, (int)i);
+    done = done && launch_pass(gpu, program, kernel, members_of_pass(pass), (int)i);
+  }
+  return done;
+}
+
+bool hl_gpu_touched(hl_gpu *gpu, const plan_light *light, int32_t *chunks) {
+  return gpu->device.driver->download(&gpu->device, &gpu->buffers[BUFFER_TOUCHED],
+                                      (size_t)light->first_tile * sizeof *chunks, chunks,
+                                      (size_t)light->tiles * sizeof *chunks);
 }
 
 /* ---- the trial ---- */

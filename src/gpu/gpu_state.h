@@ -1,0 +1,61 @@
+/* gpu/gpu_state.h - the data of an open device. */
+#ifndef HL_GPU_GPU_STATE_H
+#define HL_GPU_GPU_STATE_H
+
+#include "gpu/gpu.h"
+
+enum { MOST_VARIANTS = 64 };
+
+/* The buffers of a device. */
+enum buffer_use {
+  BUFFER_PLAN,
+  BUFFER_RAYS,
+  BUFFER_VOXELS,
+  BUFFER_DISTANCES,
+  BUFFER_DISTANCES_MADE, /* distances of bricks after the first and after the third pass; kernels read the
+                          * latter */
+  BUFFER_CELL_BITS,
+  BUFFER_TABLES,
+  BUFFER_PIXELS,
+  BUFFER_PLANES,
+  BUFFER_LIGHT,
+  BUFFER_CHANGED,
+  BUFFER_SHOWN_FROM,
+  BUFFER_COUNTS,
+  BUFFER_SLOTS,
+  BUFFER_LIST,
+  BUFFER_MASKS,
+  BUFFER_CUTS,
+  BUFFER_DIRECTORY,
+  BUFFER_COLORS,
+  BUFFER_SOFT,
+  BUFFER_TOUCHED,
+  BUFFER_FIELDS,
+  BUFFER_ROWS,
+  BUFFER_PASSES,
+  BUFFER_BOXES,
+  BUFFER_MARKS,
+  BUFFERS
+};
+
+typedef struct known_program {
+  plan_variant variant;
+  gpu_program program;
+} known_program;
+
+struct hl_gpu {
+  hl_context *context;
+  void *library;
+  gpu_device device;
+  const char *cache_folder;
+  gpu_buffer buffers[BUFFERS];
+  uint64_t version, tables_version; /* versions of the voxels and of the tables on the device; 0: there are
+                                     * none */
+  known_program programs[MOST_VARIANTS];
+  int program_count, launches;
+  int32_t brick_count[3];
+  bool has_distances; /* the distances of bricks are made; else BUFFER_DISTANCES holds which bricks are
+                       * relevant */
+};
+
+#endif
