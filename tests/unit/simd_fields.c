@@ -79,6 +79,9 @@ static void mark_opaque(float *pixels) {
     if (i / 40 % 2) pixels[i] = -LEAST_MARK;
 }
 
+/* The pixel of a number of any size; NaN becomes 0. */
+static field_pixel nearest_pixel(float number) { return (field_pixel)fminf(fmaxf(number, 0), 65535); }
+
 void test_fields(void **unused) {
   (void)unused;
   static const char *const names[] = {
@@ -93,8 +96,8 @@ void test_fields(void **unused) {
     fill_salted(&s.a[0][0], FIELD * FIELD, &seed, 0, 1);
     fill_salted(&s.b[0][0], FIELD * FIELD, &seed, 0, 1);
     for (int i = 0; i < FIELD * FIELD; i++) {
-      (&s.lacking[0][0])[i] = (field_pixel)((&s.a[0][0])[i] * (round % 4 ? FIELD_ONE : 65535));
-      (&s.thin[0][0])[i] = (field_pixel)((&s.b[0][0])[i] * FIELD_ONE);
+      (&s.lacking[0][0])[i] = nearest_pixel((&s.a[0][0])[i] * (round % 4 ? FIELD_ONE : 65535));
+      (&s.thin[0][0])[i] = nearest_pixel((&s.b[0][0])[i] * FIELD_ONE);
     }
     field_pixel *lacking = &s.lacking[MARGIN][MARGIN], *thin = &s.thin[MARGIN][MARGIN],
                 *out = &s.out.lacking[MARGIN][MARGIN];
