@@ -55,6 +55,9 @@ typedef struct hl_overlay {
   const char *legend_title; /* title of the first volume's legend, in place of the volume's name; the
                              * values' unit is added; may be null */
   hl_axes axes;
+  int marks; /* non-zero: the scene's marks (hl_mark), with their lengths and angles in the world of the first
+              * volume's file. Lengths have world_unit or the unit that this file tells; where neither is
+              * known, no unit is written. Refused where the scene has no marks */
   const hl_annotation *annotations; /* [annotation_count] */
   size_t annotation_count;
   const char *letter; /* the panel's letter, such as "a", drawn in bold at the upper left; may be null */

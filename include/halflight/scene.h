@@ -222,6 +222,26 @@ typedef struct hl_render_settings {
                       * 0: chosen by the renderer */
 } hl_render_settings;
 
+/* What a mark is: a length between two points, an angle of three points with the corner second, the length of
+ * a line of several pieces, an arrow to the second of two points, or a text at a point. */
+typedef enum hl_mark_kind {
+  HL_MARK_RULER = 0,
+  HL_MARK_ANGLE = 1,
+  HL_MARK_LINE = 2,
+  HL_MARK_ARROW = 3,
+  HL_MARK_TEXT = 4
+} hl_mark_kind;
+
+/* A measure or a text that stands in a scene. Renderers do not show it: a figure draws it over the picture
+ * (hl_overlay's marks). */
+typedef struct hl_mark {
+  hl_mark_kind kind;
+  const char *text;          /* UTF-8; written before the measure; may be null */
+  const double (*points)[3]; /* [point_count]; the scene's world. 2 points of a ruler and of an arrow, 3 of an
+                              * angle, 2 to 500 of a line, 1 of a text */
+  size_t point_count;
+} hl_mark;
+
 typedef struct hl_scene_description {
   size_t struct_size;         /* set by hl_scene_description_defaults() */
   int width, height;          /* pixels */
@@ -246,8 +266,10 @@ typedef struct hl_scene_description {
   hl_tone tone; /* how picture files such as PNG show light that is brighter than white; default
                  * HL_TONE_CLIP */
   hl_sky sky;
-  int background_sky; /* non-zero: pictures show the sky in place of a background, and have alpha 1
-                       * everywhere; default 0 */
+  int background_sky;   /* non-zero: pictures show the sky in place of a background, and have alpha 1
+                         * everywhere; default 0 */
+  const hl_mark *marks; /* [mark_count]; marks change no picture; figures can draw them over it */
+  size_t mark_count;
 } hl_scene_description;
 
 typedef struct hl_scene hl_scene; /* a scene; it never changes, and is reference-counted */

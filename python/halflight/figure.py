@@ -41,6 +41,7 @@ class _Overlay:
     depth: float | str | None = None
     legend: bool | str = False
     axes: str | None = None
+    marks: bool = False
     texts: Sequence[tuple[str, Sequence[float]]] | Mapping[str, Sequence[float]] = ()
     letter: str | None = None
 
@@ -71,6 +72,7 @@ class _Overlay:
                 overlay.legend_title = text(self.legend)
         if self.axes is not None:
             overlay.axes = getattr(lib, _AXES[choice("axes", self.axes, list(_AXES))])
+        overlay.marks = bool(self.marks)
         if self.letter is not None:
             overlay.letter = text(self.letter)
         items = list(self.texts.items() if isinstance(self.texts, Mapping) else self.texts)

@@ -281,7 +281,7 @@ class Image(NDArrayOperatorsMixin):
 
     @suggests
     def annotate(self, *, scale_bar: bool | str = False, unit: str | None = None, depth: float | str | None = None,
-                 legend: bool | str = False, axes: str | None = None,
+                 legend: bool | str = False, axes: str | None = None, marks: bool = False,
                  texts: Sequence[tuple[str, Sequence[float]]] | Mapping[str, Sequence[float]] = (), letter: str | None = None,
                  width: float | str | None = None, dpi: float | None = None, font_size: float = 7, font: str = "Sans") -> Figure:
         """The picture as a figure, with what is drawn over it; `save` writes .pdf, .svg, .png or .tif.
@@ -299,6 +299,8 @@ class Image(NDArrayOperatorsMixin):
             The volumes' colours over their values, with their opacity; or the names of labels. A text is the title.
         axes : "arrows" or "letters", optional
             The world's directions, or the body's at the edges.
+        marks : bool
+            The scene's rulers, angles, lines, arrows and texts, with what they measure.
         texts : sequence of (str, (x, y)) or (str, (x, y, z)), or a mapping
             At fractions of the picture from its upper left, or beside a point of the scene's world.
         letter : str, optional
@@ -317,7 +319,7 @@ class Image(NDArrayOperatorsMixin):
         """
         from .figure import _Overlay, annotate
 
-        overlay = _Overlay(scale_bar, unit, depth, legend, axes, texts, letter)
+        overlay = _Overlay(scale_bar, unit, depth, legend, axes, marks, texts, letter)
         return annotate(self, overlay, width, dpi, font_size, font)
 
     def __repr__(self) -> str:

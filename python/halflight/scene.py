@@ -8,6 +8,7 @@ from typing import Any, Literal, Unpack
 import numpy
 
 from . import _settings, arrays, colors, cuts
+from . import marks as scene_marks
 from ._library import call, context, ffi, lib, made, text_of
 from ._words import check_keywords, choice
 from .camera import Camera, camera_from
@@ -46,6 +47,9 @@ class Settings(PictureSettings, RenderSettings, total=False):
         Triangles among the volumes.
     cuts : a mapping or a list of them
         What is cut out of all volumes, in the world: as `cuts` of a `Volume`.
+    marks : a mapping or a list of them
+        Measures and texts in the world, which `Image.annotate` draws: ``{"kind": "ruler", "points": [(0, 0, 0), (9, 0, 0)],
+        "text": "width"}``; kinds are "ruler", "angle", "line", "arrow" and "text".
     sky : float, colour or mapping
         Light from all directions, which folds and hollows get less of: an even colour, or the keywords of
         `halflight.keywords.SkySettings`, as ``{"type": "gradient", "zenith": (0.5, 0.7, 1)}``. An image is an array
@@ -60,6 +64,7 @@ class Settings(PictureSettings, RenderSettings, total=False):
     description: str
     meshes: Mesh | Sequence[Mesh]
     cuts: Any
+    marks: Any
     sky: float | Sequence[float] | str | Mapping[str, Any]
 
 
@@ -253,7 +258,7 @@ class Scene:
     def _state(self) -> dict[str, Any]:
         """All that the scene shows beside its volumes, by the keywords that make it."""
         state: dict[str, Any] = {word: getattr(self, word) for word in (
-            "camera", "lights", "ambient", "size", "background", "meshes", "cuts", "exposure", "tone", "sky", "description")}
+            "camera", "lights", "ambient", "size", "background", "meshes", "cuts", "marks", "exposure", "tone", "sky", "description")}
         return state | dict(self.settings)
 
     def __reduce__(self) -> Any:
@@ -314,6 +319,11 @@ class Scene:
     def cuts(self) -> list[dict[str, Any]]:
         """What is cut out of all volumes."""
         return cuts.cuts_from(self._struct)
+
+    @property
+    def marks(self) -> list[dict[str, Any]]:
+        """Measures and texts that stand in the scene."""
+        return scene_marks.marks_from(self._struct)
 
     @property
     def sky(self) -> dict[str, Any]:
@@ -547,6 +557,8 @@ def _build(base: Any, volumes: Sequence[Volume], settings: Mapping[str, Any], ch
         _set_meshes(struct, meshes, keep)
     if (cut := settings.get("cuts")) is not None:
         cuts.fill(struct, cut, keep, "")
+    if (marks := settings.get("marks")) is not None:
+        scene_marks.fill(struct, marks, keep)
     if (lights := settings.get("lights")) is not None and not isinstance(lights, str):
         _set_lights(struct, lights, keep)
         flags |= lib.HL_COMPOSE_LIGHTS

@@ -62,12 +62,13 @@ static hl_status check_panel(const hl_figure_panel *panel, size_t index, hl_erro
       return hl_fail(error, HL_ERROR_ARGUMENT,
                      "panel %zu: its place must be finite, and its width and height above 0 mm", index + 1);
   const hl_overlay *overlay = &panel->overlay;
-  bool of_scene = overlay->scale_bar || overlay->legend || overlay->axes != HL_AXES_NONE;
+  bool of_scene = overlay->scale_bar || overlay->legend || overlay->marks || overlay->axes != HL_AXES_NONE;
   for (size_t a = 0; a < overlay->annotation_count; a++) of_scene |= overlay->annotations[a].in_world != 0;
   if (of_scene && panel->scene == NULL)
-    return hl_fail(error, HL_ERROR_ARGUMENT,
-                   "panel %zu: a scale bar, a legend, axes and points of the world need the picture's scene",
-                   index + 1);
+    return hl_fail(
+        error, HL_ERROR_ARGUMENT,
+        "panel %zu: a scale bar, a legend, axes, marks and points of the world need the picture's scene",
+        index + 1);
   return HL_OK;
 }
 

@@ -42,7 +42,8 @@ hl_status hl_overlay_draw(const hl_ink *ink, const hl_overlay *overlay, const hl
                             .picture = picture,
                             .margin = fmin(ink->size, 0.06 * fmin(picture.width, picture.height))};
   if (place.scene != NULL) place.map = hl_map_of(&place.scene->camera, picture);
-  hl_status status = overlay->legend ? hl_overlay_legend(ink, &place, error) : HL_OK;
+  hl_status status = overlay->marks ? hl_overlay_marks(ink, &place, error) : HL_OK;
+  if (status == HL_OK && overlay->legend) status = hl_overlay_legend(ink, &place, error);
   if (status == HL_OK && overlay->axes != HL_AXES_NONE) status = hl_overlay_axes(ink, &place, error);
   if (status == HL_OK && overlay->scale_bar) status = hl_overlay_bar(ink, &place, error);
   for (size_t a = 0; status == HL_OK && a < overlay->annotation_count; a++)

@@ -23,5 +23,6 @@ hl_status hl_overlay_draw(const hl_ink *ink, const hl_overlay *overlay, const hl
 hl_status hl_overlay_bar(const hl_ink *ink, const hl_overlay_place *place, hl_error *error);
 hl_status hl_overlay_legend(const hl_ink *ink, const hl_overlay_place *place, hl_error *error);
 hl_status hl_overlay_axes(const hl_ink *ink, const hl_overlay_place *place, hl_error *error);
+hl_status hl_overlay_marks(const hl_ink *ink, const hl_overlay_place *place, hl_error *error);
 
 #endif

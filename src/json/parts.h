@@ -5,6 +5,7 @@
 #include <halflight/settings.h>
 
 #include "json/read.h"
+#include "json/text_writer.h"
 #include "scene/check/limits.h"
 
 /* The members of a struct that an image is loaded into. */
@@ -112,6 +113,14 @@ void hl_json_release_meshes(hl_context *context, hl_mesh_shelf *shelf);
 /* Reads the array "cuts" of a volume or a scene; null if absent. *cuts is owned by the caller (hl_release),
  * also after a failure. */
 hl_status hl_json_read_cuts(hl_json_reader *reader, const json_t *value, const hl_cut **cuts, size_t *count);
+
+/* Reads the array "marks" of a scene; null if absent. *marks is owned by the caller (hl_marks_release), also
+ * after a failure. */
+hl_status hl_json_read_marks(hl_json_reader *reader, const json_t *value, const hl_mark **marks,
+                             size_t *count);
+
+/* Writes the member "marks", if there are any. */
+void hl_json_write_marks(hl_json_writer *w, const hl_mark *marks, size_t count);
 
 /* Reads the array "iso" of a volume; null if absent. The surfaces are owned by *volume. */
 hl_status hl_json_read_iso(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume);

@@ -13,6 +13,7 @@
 #include "json/settings.h"
 #include "json/shapes.h"
 #include "scene/check/check.h"
+#include "scene/marks.h"
 #include "scene/scene.h"
 #include "scene/settings.h"
 
@@ -40,6 +41,7 @@ static void release(hl_context *context, gathered *g) {
   }
   hl_release(context, g->shelf.loaded);
   hl_release(context, (void *)g->description.cuts);
+  hl_marks_release(context, g->description.marks, g->description.mark_count);
   hl_json_release_meshes(context, &g->meshes);
   hl_json_release_sky(context, &g->description.sky);
   json_decref(g->shelf.stood_in);
@@ -214,7 +216,7 @@ static hl_status read_version(hl_json_reader *reader, const json_t *root) {
 static hl_status read_scene(hl_json_reader *reader, const json_t *root, gathered *g) {
   static const char *const others[] = {"halflight", "description", "image",   "camera", "lights",
                                        "sky",       "groups",      "volumes", "meshes", "render",
-                                       "cuts",      "$schema",     NULL};
+                                       "cuts",      "marks",       "$schema", NULL};
   hl_scene_description *d = &g->description;
   const char *schema = NULL;
   hl_status status = hl_json_settings_object(reader, root, HL_SETTINGS_SCENE, -1, others);
@@ -232,6 +234,8 @@ static hl_status read_scene(hl_json_reader *reader, const json_t *root, gathered
   if (status == HL_OK)
     status = hl_json_read_cuts(reader, json_object_get(root, "cuts"), &d->cuts, &d->cut_count);
   if (status == HL_OK) status = check_cuts(reader, d);
+  if (status == HL_OK)
+    status = hl_json_read_marks(reader, json_object_get(root, "marks"), &d->marks, &d->mark_count);
   if (status == HL_OK) status = hl_json_read_meshes(reader, json_object_get(root, "meshes"), &g->meshes);
   d->meshes = g->meshes.meshes;
   d->mesh_count = g->meshes.count;

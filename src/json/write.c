@@ -7,6 +7,7 @@
 #include "core/door.h"
 #include "core/memory.h"
 #include "json/file_names.h"
+#include "json/parts.h"
 #include "json/read.h"
 #include "json/shapes.h"
 #include "json/text_writer.h"
@@ -467,6 +468,7 @@ static void write_scene(hl_json_writer *w, const hl_scene_description *d) {
   }
   write_meshes(w, d);
   write_cuts(w, d->cuts, d->cut_count);
+  hl_json_write_marks(w, d->marks, d->mark_count);
   hl_json_open(w, "render", "{");
   write_settings(w, HL_SETTINGS_RENDER, 0, &d->render);
   hl_json_close(w, "}");

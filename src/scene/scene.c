@@ -13,6 +13,7 @@
 #include "scene/function/function_plane.h"
 #include "scene/geometry/placement.h"
 #include "scene/light/light_kind.h"
+#include "scene/marks.h"
 #include "scene/settings.h"
 
 void hl_light_defaults(hl_light *light) {
@@ -101,6 +102,7 @@ static void destroy(hl_scene *scene) {
   for (size_t m = 0; m < d->mesh_count; m++) release_mesh(context, (hl_scene_mesh *)&d->meshes[m]);
   hl_release(context, (void *)d->meshes);
   hl_release(context, (void *)d->cuts);
+  hl_marks_release(context, d->marks, d->mark_count);
   hl_drawn_scene_destroy(context, scene->drawn);
   hl_release(context, scene->field_errors);
   hl_placed_cuts_release(context, &scene->cut);
@@ -245,6 +247,14 @@ static hl_status copy_cuts(hl_scene *scene, const hl_scene_description *from, hl
   return status;
 }
 
+static hl_status copy_marks(hl_scene *scene, const hl_scene_description *from, hl_error *error) {
+  hl_mark *copy = NULL;
+  hl_status status = hl_marks_copy(scene->context, from->marks, from->mark_count, &copy, error);
+  scene->description.marks = copy;
+  scene->description.mark_count = copy != NULL ? from->mark_count : 0;
+  return status;
+}
+
 static void forget_images(hl_light *light) {
   light->texture.file = light->emission.file = NULL;
   light->texture.pixels = light->emission.pixels = NULL;
@@ -359,6 +369,8 @@ hl_status hl_scene_create(hl_context *context, const hl_scene_description *descr
   made->description.meshes = NULL;
   made->description.mesh_count = 0;
   made->description.cuts = NULL;
+  made->description.marks = NULL;
+  made->description.mark_count = 0;
   made->description.description = NULL;
   made->description.sky.file = NULL;
   made->description.sky.pixels = NULL;
@@ -369,6 +381,7 @@ hl_status hl_scene_create(hl_context *context, const hl_scene_description *descr
   if (status == HL_OK) status = copy_volumes(made, description, error);
   if (status == HL_OK) status = copy_meshes(made, description, error);
   if (status == HL_OK) status = copy_cuts(made, description, error);
+  if (status == HL_OK) status = copy_marks(made, description, error);
   if (status == HL_OK) status = copy_sky(made, &description->sky, error);
   const hl_sky *sky = &made->description.sky;
   if (status == HL_OK && sky->pixels != NULL)

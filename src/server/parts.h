@@ -149,8 +149,8 @@ typedef struct frame_request {
   int quality;        /* quality of a JPEG */
   int depth;          /* bits of a PNG's channels: 8 or 16 */
   int metadata;       /* 1: a PNG carries its scene; 0: it does not */
-  int scale_bar, legend; /* 1: drawn over a PNG of 8 bits */
-  int axes;              /* an hl_axes; axes are drawn over a PNG of 8 bits, too */
+  int scale_bar, legend, marks; /* 1: drawn over a PNG of 8 bits */
+  int axes;                     /* an hl_axes; axes are drawn over a PNG of 8 bits, too */
   const char *unit; /* unit of lengths, used where the scene's files tell none; null: there is no such unit */
   int moving;     /* 1: a quick frame, of coarser volumes where the sheets are wide; 0: the scene as it is */
   int coarse;     /* 1: the volumes are taken as they were read so far; 0: the frame waits for the finest

@@ -26,7 +26,7 @@ static hl_status write_jpeg(const hl_image *image, const hl_image_write_options 
 }
 
 static bool has_overlay(const frame_request *request) {
-  return request->scale_bar || request->legend || request->axes != HL_AXES_NONE;
+  return request->scale_bar || request->legend || request->marks || request->axes != HL_AXES_NONE;
 }
 
 /* Describes a figure that the picture fills, with the overlays that the request asks for. In a perspective
@@ -40,6 +40,7 @@ static void make_figure(const hl_image *image, const hl_scene *scene, const fram
   panel->overlay.scale_bar = request->scale_bar;
   panel->overlay.scale_bar_depth = HL_DEPTH_OF_TARGET;
   panel->overlay.legend = request->legend;
+  panel->overlay.marks = request->marks;
   panel->overlay.axes = (hl_axes)request->axes;
   panel->overlay.world_unit = request->unit;
 }

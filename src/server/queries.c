@@ -60,6 +60,7 @@ frame_request query_frame(struct MHD_Connection *connection, const char *text, s
                          .metadata = (int)query_number(connection, "metadata", 0, 1, 1),
                          .scale_bar = (int)query_number(connection, "scale_bar", 0, 1, 0),
                          .legend = (int)query_number(connection, "legend", 0, 1, 0),
+                         .marks = (int)query_number(connection, "marks", 0, 1, 0),
                          .axes = query_choice(connection, "axes", axes, 0),
                          .unit = query_text(connection, "unit"),
                          .moving = (int)query_number(connection, "moving", 0, 1, 0),
@@ -74,11 +75,11 @@ bool names_page(const frame_request *wanted) {
 }
 
 bool names_overlay(const frame_request *wanted) {
-  return wanted->scale_bar >= 0 && wanted->legend >= 0 && wanted->axes >= 0;
+  return wanted->scale_bar >= 0 && wanted->legend >= 0 && wanted->marks >= 0 && wanted->axes >= 0;
 }
 
 bool overlay_fits(const frame_request *wanted) {
-  bool plain = wanted->scale_bar == 0 && wanted->legend == 0 && wanted->axes == 0;
+  bool plain = wanted->scale_bar == 0 && wanted->legend == 0 && wanted->marks == 0 && wanted->axes == 0;
   return plain || (names_overlay(wanted) && strcmp(wanted->format, "png") == 0 && wanted->depth == 8);
 }
 

@@ -280,7 +280,7 @@ static void post_frame(server *s, struct MHD_Connection *connection, const reque
                    "a frame needs ?page=NAME&number=N&format=jpeg|png|exr|npy (&quality=10..100, "
                    "&depth=8|16, &metadata=0|1, &moving=0|1, &coarse=0|1, "
                    "&base=N; of a png with 8 bits &scale_bar=0|1, "
-                   "&legend=0|1, &axes=none|arrows|letters, &unit=TEXT)\n");
+                   "&legend=0|1, &marks=0|1, &axes=none|arrows|letters, &unit=TEXT)\n");
 }
 
 /* Answers with the depth of the place that the middle of a small picture of the scene shows. */
@@ -302,9 +302,10 @@ static void post_overlay(server *s, struct MHD_Connection *connection, const req
   if (names_page(&wanted) && wanted.opened >= 0 && names_overlay(&wanted))
     answer_frame(s, &wanted, NULL, answer);
   else
-    answer_problem(answer, 400,
-                   "an overlay needs ?page=NAME&number=N (&opened=N, &scale_bar=0|1, &legend=0|1, "
-                   "&axes=none|arrows|letters, &unit=TEXT)\n");
+    answer_problem(
+        answer, 400,
+        "an overlay needs ?page=NAME&number=N (&opened=N, &scale_bar=0|1, &legend=0|1, &marks=0|1, "
+        "&axes=none|arrows|letters, &unit=TEXT)\n");
 }
 
 static void post_slice(server *s, struct MHD_Connection *connection, server_answer *answer) {

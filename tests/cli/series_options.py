@@ -116,6 +116,8 @@ def write_inputs():
     stacks.write(f"{SIZE}x{SIZE}x{SIZE}", "part_1.dicom")
     mesh("part_1.obj")
     mesh("wall.obj")
+    pathlib.Path("part_1.marked.json").write_text(json.dumps(dict(
+        halflight=1, volumes=[dict(file="map.nrrd")], marks=[dict(kind="ruler", points=[[2, 2, 2], [9, 9, 9]])])))
     endings = [path[len("part_1"):] for path in os.listdir() if path.startswith("part_1")]
     for ending in endings:
         copy = shutil.copytree if os.path.isdir("part_1" + ending) else shutil.copyfile
@@ -146,6 +148,7 @@ CASES = {
     "unit": ["--scale-bar 3@target --unit um"],
     "legend": ["--legend auto", ".seg.nrrd --show all --legend Parts"],
     "axes": ["--axes arrows", "--axes letters"],
+    "marks": [".marked.json --marks"],
     "annotate": ["--annotate x@0.2,0.4 --annotate y@6,6,6"],
     "font-size": ["--legend auto --font-size 4"],
     "view": ["--view left"],
@@ -246,7 +249,7 @@ def compare(case):
     again = [os.stat(f"two/{n}.png").st_ino for n in range(2)]
     run("render", f"part_?{ending}", *operands, "-o", "two/%d.png", *options)
     # A picture without its scene does not tell that it is the right one, nor does a scene what is drawn over it.
-    figure = {"--width", "--dpi", "--scale-bar", "--legend", "--axes", "--annotate"}
+    figure = {"--width", "--dpi", "--scale-bar", "--legend", "--axes", "--marks", "--annotate"}
     told = "--no-metadata" not in options and not figure & set(options)
     if (again == [os.stat(f"two/{n}.png").st_ino for n in range(2)]) != told:
         return "the pictures of the series were " + ("made again" if told else "taken for those that were there")

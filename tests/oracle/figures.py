@@ -272,6 +272,92 @@ def points_of_the_world():
     check(min(abs(middle - half) for half in halves) < 0.2 and camera["height"] > 0, f"{middle} among {halves}")
 
 
+def marked(look, marks, **volume):
+    """marked.json: a scene of `look` with these marks, and with these settings of its volume."""
+    scene = json.loads(halflight(*look, "--print-scene"))
+    scene["volumes"][0].update(volume)
+    Path("marked.json").write_text(json.dumps(scene | {"marks": marks}))
+    return scene
+
+
+def length_said(number):
+    """A length as the viewer's page writes it (shortNumber() of controls.js)."""
+    from decimal import ROUND_HALF_UP, Decimal
+    digits = 5 if 1000 <= number < 1e5 else 3
+    exact = Decimal(number)
+    rounded = exact.quantize(Decimal(1).scaleb(exact.adjusted() - digits + 1), ROUND_HALF_UP)
+    if 1e-3 <= number < 1e5:
+        text = format(rounded, "f")
+        return (text.rstrip("0").rstrip(".") if "." in text else text)
+    power = rounded.adjusted()
+    return f"{rounded.scaleb(-power):.2f}e{'+' if power >= 0 else '-'}{abs(power)}"
+
+
+def lengths_of_marks():
+    """Rulers say the length in the file, in its unit or in the given one, rounded as on the page; no unit is invented."""
+    nifti("rods.nii", rods, 1.0)
+    look = ["rods.nii", "--ortho", "--view", "front", "--size", "300x300", "--quiet"]
+    lengths = [12.25, 0.125, 1 / 3, 12.35, 999.6, 1234.56, 99999.7, 123456.0, 0.000125, 0.0012, 40, 7.125]
+    rulers = [{"kind": "ruler", "points": [[20, 20, 14 + 3 * n], [20 + length, 20, 14 + 3 * n]], "text": f"r{n}"} for n, length in enumerate(lengths)]
+    marked(look, rulers)
+    for unit, symbol in ([], "mm"), (["--unit", "um"], "µm"), (["--unit", "au"], "au"):
+        halflight("marked.json", "--marks", *unit, "-o", "marks.pdf", "--quiet")
+        said = "".join(words("marks.pdf").split())
+        for n, length in enumerate((20 + length) - 20 for length in lengths):
+            # The middle of a longer ruler lies beyond the picture, and its text, too.
+            if length < 60:
+                check("".join(f"r{n}:{length_said(length)}{symbol}".split()) in said, f"{length}: {length_said(length)} {symbol} in {said!r}")
+    angle = {"kind": "angle", "points": [[40, 20, 30], [20, 20, 30], [20 + 10 * math.cos(0.7), 20, 30 + 10 * math.sin(0.7)]], "text": ""}
+    line = {"kind": "line", "points": [[10, 30, 10], [30, 30, 10], [30, 30, 25]], "text": "way"}
+    # What the scene does with the volume changes no length of its file. A point of the file lies where the volume's transform puts it.
+    turn = {"scale": 2, "rotate": {"axis": [0, 0, 1], "angle_deg": 90}, "translate": [3, 4, 5]}
+    turned = [mark | {"points": [[3 - 2 * y, 4 + 2 * x, 5 + 2 * z] for x, y, z in mark["points"]]} for mark in (angle, line)]
+    for marks, volume in ([angle, line], {}), (turned, {"transform": turn}):
+        marked(look, marks, **volume)
+        halflight("marked.json", "--marks", "--view", "front", "-o", "marks.pdf", "--quiet")
+        check(f"{math.degrees(0.7):.1f}°" in words("marks.pdf") and "way: 35 mm" in words("marks.pdf"), words("marks.pdf"))
+    nifti("rods.nii", rods, 1.0, "unknown")
+    marked(look, [{"kind": "ruler", "points": [[20, 32, 32], [50, 32, 32]]}])
+    halflight("marked.json", "--marks", "-o", "marks.pdf", "--quiet")
+    check(words("marks.pdf").split() == ["30"], f"no unit is known: {words('marks.pdf')!r}")
+    said = halflight(*look, "--marks", "-o", "no.png", exit_code=2)
+    check("has none" in said and not Path("no.png").exists(), said)
+
+
+def places_of_marks():
+    """Each kind is drawn where its points lie, as a vector; a mark with a point behind the eye is left out."""
+    nifti("rods.nii", rods, 1.0)
+    look = ["rods.nii", "--ortho", "--view", "front", "--size", "400x400", "--quiet"]
+    points = [[12, 32, 32], [52, 32, 32], [32, 32, 52]]
+    scene = marked(look, [{"kind": "line", "points": points}])
+    camera = scene["camera"]
+    halflight("marked.json", "--marks", "-o", "marks.svg", "--quiet")
+    page = float(XML.parse("marks.svg").getroot().get("viewBox").split()[2])
+    # From the front, x grows to the picture's left or right, and z upwards: the camera says which.
+    way = np.subtract(camera["target"], camera["position"])
+    right = np.cross(way, camera["up"])
+    right, up = right / np.linalg.norm(right), np.array(camera["up"]) / np.linalg.norm(camera["up"])
+    seen = [page * (0.5 + sign * np.dot(np.subtract(point, camera["target"]), axis) / camera["height"]) for point in points for sign, axis in ((1, right), (-1, up))]
+    found = [numbers for style, numbers in paths("marks.svg") if len(numbers) == 6 and "fill:none" in style]
+    check(len(found) == 2 and max(abs(np.subtract(found[1], seen))) < 0.05, f"{found} beside {seen}")
+    halflight("marked.json", "-o", "plain.png", "--quiet")
+    halflight("marked.json", "--marks", "-o", "marked.png", "--quiet")
+    plain, drawn = (np.asarray(Image.open(name).convert("L")).astype(int) for name in ("plain.png", "marked.png"))
+    middle = [round((seen[k] + seen[k + 2]) / 2 * 400 / page) for k in (0, 1)]
+    check(drawn[middle[1] - 1:middle[1] + 2, middle[0]].max() > 150 and plain.shape == drawn.shape and (plain != drawn).mean() < 0.05, "the PNG shows the line over the picture")
+    kinds = {"ruler": 2, "angle": 3, "line": 2, "arrow": 2, "text": 1}
+    for kind, count in kinds.items():
+        marked(look, [{"kind": kind, "points": points[:count], "text": "x"}])
+        halflight("marked.json", "--marks", "-o", "kind.png", "--quiet")
+        check((np.asarray(Image.open("kind.png").convert("L")) != plain).any(), f"{kind} is drawn")
+    eye = ["rods.nii", "--view", "front", "--size", "200x200", "--quiet"]
+    position = json.loads(halflight(*eye, "--print-scene"))["camera"]["position"]
+    behind = (np.array(position) + 2 * (np.array(position) - [32, 32, 32])).tolist()
+    marked(eye, [{"kind": "ruler", "points": [[32, 32, 32], behind], "text": "seen"}, {"kind": "text", "points": [[32, 32, 32]], "text": "here"}])
+    halflight("marked.json", "--marks", "-o", "marks.pdf", "--quiet")
+    check(words("marks.pdf").split() == ["here"], words("marks.pdf"))
+
+
 def pages():
     """Panels on a page: places, letters, what is shared, insets."""
     nifti("rods.nii", rods, 1.0)
@@ -319,7 +405,7 @@ with tempfile.TemporaryDirectory() as folder:
     import os
     os.chdir(folder)
     for test in (bars, chosen_lengths, perspective, units_are_not_invented, physical_sizes, hostile_texts, legends, label_legends, letters,
-                 points_of_the_world, pages, linear_files_are_refused):
+                 points_of_the_world, lengths_of_marks, places_of_marks, pages, linear_files_are_refused):
         before = checks
         test()
         print(f"{test.__name__}: {checks - before} checks", flush=True)

@@ -1,5 +1,6 @@
 """Figures: pictures with scale bars, legends and texts, and several on a page."""
 import io
+import pickle
 import re
 
 import numpy as np
@@ -31,6 +32,24 @@ def test_what_is_drawn_changes_pixels(image):
     for words in dict(legend=True), dict(axes="arrows"), dict(texts=[("x", (0.5, 0.5))]), dict(letter="a"), \
             dict(scale_bar="5mm", unit="mm", depth="target"), dict(texts={"y": (12, 12, 12)}):
         assert image.annotate(**words).encode() != plain, words
+
+
+def test_marks_of_a_scene_are_kept_and_drawn(image):
+    marks = [{"kind": "ruler", "points": [(2, 2, 2), (20, 2, 2)], "text": "width"}, {"kind": "text", "points": [(12, 12, 12)], "text": "café"}]
+    scene = image.scene.replace(marks=marks)
+    text = '{"halflight": 1, "volumes": [{"shapes": [{"type": "sphere", "radius": 8}], "voxel_size": 1}]}'
+    of_file = halflight.Scene.from_json(text).replace(marks=marks)
+    assert scene.marks == marks == of_file.marks == halflight.Scene.from_json(of_file.to_json()).marks
+    assert pickle.loads(pickle.dumps(scene)).marks == marks and scene.replace(size=(80, 60)).marks == marks
+    marked = halflight.Renderer().render(scene)
+    assert np.array_equal(np.asarray(marked), np.asarray(image))
+    assert marked.annotate(marks=True).encode() != marked.annotate().encode() == image.annotate().encode()
+    with pytest.raises(ValueError, match="none"):
+        image.annotate(marks=True).encode()
+    with pytest.raises(TypeError, match=r"marks\[0\]"):
+        image.scene.replace(marks=[{"kind": "circle", "points": [(1, 2, 3)]}])
+    with pytest.raises(ValueError, match="/marks/0/points"):
+        image.scene.replace(marks=[{"kind": "angle", "points": [(1, 2, 3)]}])
 
 
 def test_sizes_are_stated(image, tmp_path):

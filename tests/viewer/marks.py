@@ -6,12 +6,18 @@ usage: marks.py PROGRAM chromium|firefox-esr [FOLDER]
 FOLDER: where screenshots are kept; without it they are not made.
 """
 import json
+import base64
+import io
 import math
 import os
+import re
+import shutil
+import subprocess
 import sys
 import tempfile
 
 import numpy
+from PIL import Image
 
 import checks
 from checks import check
@@ -185,6 +191,69 @@ def axis_of_values(browser):
     press_named(browser, "Undo")
 
 
+def saved_blob(browser, text):
+    """What a button of the panel saves, by its text."""
+    browser.run("saved.length = 0")
+    press(browser, text)
+    browser.wait("saved.length === 1")
+    return base64.b64decode(browser.run("""saved[0].arrayBuffer().then((bytes) => btoa(new Uint8Array(bytes).reduce((text, byte) => text + String.fromCharCode(byte), '')))"""))
+
+
+def rendered(scene, name, *words):
+    with open("saved.json", "wb") as file:
+        file.write(scene)
+    os.makedirs("rendered", exist_ok=True)  # beside its data a picture would name them relative to itself
+    subprocess.run([PROGRAM, "render", "saved.json", *words, "-o", f"rendered/{name}", "--quiet"], check=True)
+    with open(f"rendered/{name}", "rb") as file:
+        return file.read()
+
+
+def saved_pictures(browser):
+    """A saved picture has the marks with the texts of the page, as `halflight render --marks` draws them; a box leaves them out."""
+    # From farther away all texts lie in the picture.
+    browser.run("(({ position, target, ...camera }) => halflight.store.setCamera({ ...camera, target, position: position.map((x, k) => target[k] + 2 * (x - target[k])) }))(halflight.store.scene.camera)")
+    rest(browser)
+    open_section(browser, "Save")
+    browser.run("globalThis.saved = []; URL.createObjectURL = (blob) => { saved.push(blob); return 'blob:none'; }; HTMLAnchorElement.prototype.click = () => {}")
+    check(browser.run("(({ checked, disabled }) => checked && !disabled)(document.getElementById('saved-marks'))"), "marks are saved as soon as there are any")
+    scene = saved_blob(browser, "save scene")
+    check(json.loads(scene)["marks"] == marks(browser), "the scene file has the marks")
+    picture = saved_blob(browser, "save picture")
+    check(picture == rendered(scene, "marks.png", "--marks"), "the picture is that of halflight render --marks")
+    with Image.open(io.BytesIO(picture)) as image:
+        check(json.loads(image.text["halflight:scene"])["marks"] == marks(browser), "the picture's own scene has the marks")
+    command = browser.run("import('./export.js').then((m) => m.commandLine(halflight.store.file, 'a', { marks: true }))")
+    check(" --marks <<" in command and '"marks": [' in command, "the copied command draws them")
+    browser.run("document.getElementById('saved-marks').click()")
+    plain = saved_blob(browser, "save picture")
+    check(plain == rendered(scene, "plain.png") and plain != picture, "without the box they are left out")
+    browser.run("document.getElementById('saved-marks').click()")
+    shown = browser.run("[...document.querySelectorAll('#overlay .mark-text')].map((one) => one.textContent)")
+    if shutil.which("pdftotext"):
+        rendered(scene, "marks.pdf", "--marks")
+        told = subprocess.run(["pdftotext", "rendered/marks.pdf", "-"], check=True, capture_output=True, text=True).stdout
+        missing = [text for text in shown if not all(word in told for word in text.split())]  # words, as texts may overlap
+        check(len(shown) >= 6 and missing == [], f"the page's texts {shown}, the PDF's {told!r}")
+    # A ruler of the page, and the same one in the picture: in fractions of the sides.
+    ruler = next(mark for mark in marks(browser) if mark["kind"] == "ruler")
+    box = browser.run("(({ x, y, width, height }) => [x, y, width, height])(document.getElementById('view').getBoundingClientRect())")
+    ends = [[(at - low) / side for at, low, side in zip(in_picture(browser, point), box[:2], box[2:])] for point in ruler["points"]]
+    svg = rendered(scene, "marks.svg", "--marks").decode()
+    width, height = (float(side) for side in re.search(r'viewBox="0 0 (\S+) (\S+)"', svg).groups())
+    lines = [[float(n) for n in re.findall(r"-?[0-9.]+", d)] for d in re.findall(r'd="(M [^"A-KN-Z]*)"', svg)]
+    expected = [side * at for end in ends for at, side in zip(end, (width, height))]
+    check(any(len(line) == 4 and max(abs(a - b) for a, b in zip(line, expected)) < 0.1 for line in lines), f"the ruler {expected} among {lines[:8]}")
+    # The scene file brings its marks along.
+    with open("saved.json", "wb") as file:
+        file.write(scene)
+    with Viewer(PROGRAM, "saved.json") as other, kind(size=(900, 600)) as second:
+        second.open(other.url)
+        rest(second)
+        check(marks(second) == marks(browser), "a viewer of the scene file shows its marks")
+        check(second.run("[...document.querySelectorAll('#overlay .mark-text')].map((one) => one.textContent)") == shown, "with the same texts")
+        check("marks" not in scene_of(second) and second.problems == [], f"{second.problems}")
+
+
 kind = browser_named(sys.argv[2])
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
@@ -214,5 +283,6 @@ with tempfile.TemporaryDirectory() as folder:
         page.run("new Promise((done) => setTimeout(done, 500))")
         shown = page.run("document.querySelectorAll('[data-plane=axial] .mark').length")
         check(shown < len(marks(page)), f"another plane shows fewer: {shown}")
+        saved_pictures(page)
         check(page.problems == [], f"the console has errors: {page.problems}")
 print(f"{checks.count} checks passed")

@@ -92,9 +92,13 @@ def drawn_over(viewer, scene):
     check(pixels(legend) != pixels(plain), "the legend is seen")
     equals(viewer, scene, ["--unit", "kpc", "--scale-bar", "auto@target"], scale_bar=1, unit="kpc")
     check(pixels(equals(viewer, scene, ["--axes", "arrows"], axes="arrows")) != pixels(plain), "the axes are seen")
-    for asked in ({"axes": "letters"}, {"axes": "arrow"}, {"scale_bar": 1}, {"legend": 1, "depth": 16}, {"legend": 1, "format": "exr"}, {"legend": 1, "format": "jpeg"}, {"legend": 2}):
+    target = scene["camera"]["target"]
+    marked = scene | {"marks": [{"kind": "ruler", "points": [target, [target[0] + 0.3, *target[1:]]], "text": "r"}, {"kind": "text", "points": [target], "text": "t"}]}
+    check(pixels(equals(viewer, marked, ["--unit", "kpc", "--marks"], marks=1, unit="kpc")) != pixels(plain), "the marks are seen")
+    check(pixels(frame(viewer, marked)[2]) == pixels(plain), "marks change no picture by themselves")
+    for asked in ({"axes": "letters"}, {"axes": "arrow"}, {"scale_bar": 1}, {"legend": 1, "depth": 16}, {"legend": 1, "format": "exr"}, {"legend": 1, "format": "jpeg"}, {"legend": 2}, {"marks": 1}):
         status, _, body = frame(viewer, scene, **asked)
-        check(status == 400 and body.count(b"\n") <= 1 and any(word in body for word in (b"unit", b"8 bits", b"directions")), f"{asked}: {status} {body}")
+        check(status == 400 and body.count(b"\n") <= 1 and any(word in body for word in (b"unit", b"8 bits", b"directions", b"none")), f"{asked}: {status} {body}")
     subprocess.run([PROGRAM, "convert", "torus.nrrd", "torus.mrc", "--quiet"], check=True)
     with Viewer(PROGRAM, "torus.mrc") as measured:
         scene = small(json.loads(request(measured, "GET", "start.json")[2])["scene"], 160)

@@ -259,7 +259,8 @@ static int add_panel(page_reading *reading, const json_t *given, const json_t *b
   if (exit_code == EXIT_CODE_OK && inset != NULL) {
     json_t *bare = json_copy(keys); /* the inset gets the panel's options without the overlays, which are
                                      * drawn once, over the panel */
-    static const char *const drawn[] = {"scale-bar", "scale_bar", "legend", "axes", "annotate", "unit"};
+    static const char *const drawn[] = {"scale-bar", "scale_bar", "legend", "axes",
+                                        "marks",     "annotate",  "unit"};
     for (size_t n = 0; n < sizeof drawn / sizeof *drawn; n++) json_object_del(bare, drawn[n]);
     exit_code = add_panel(reading, inset, bare, index);
     json_decref(bare);

@@ -96,11 +96,12 @@ int render_overlay_read(const cli_value *values, cli_overlay *overlay) {
   if (values[RENDER_FONT_SIZE].given) overlay->font_points = values[RENDER_FONT_SIZE].number[0];
   if (values[RENDER_UNIT].given) overlay->overlay.world_unit = values[RENDER_UNIT].text;
   if (values[RENDER_AXES].given) overlay->overlay.axes = (hl_axes)values[RENDER_AXES].choice;
+  overlay->overlay.marks = values[RENDER_MARKS].given;
   const cli_value *legend = &values[RENDER_LEGEND];
   overlay->overlay.legend = legend->given;
   if (legend->given && strcmp(legend->text, "auto") != 0) overlay->overlay.legend_title = legend->text;
   overlay->drawn = values[RENDER_SCALE_BAR].given || legend->given || values[RENDER_AXES].given ||
-                   values[RENDER_ANNOTATE].given;
+                   values[RENDER_MARKS].given || values[RENDER_ANNOTATE].given;
   int exit_code = EXIT_CODE_OK;
   if (values[RENDER_SCALE_BAR].given) exit_code = read_scale_bar(&values[RENDER_SCALE_BAR], overlay);
   for (int n = 0; n < values[RENDER_ANNOTATE].count && exit_code == EXIT_CODE_OK; n++)
@@ -113,7 +114,7 @@ int render_overlay_read(const cli_value *values, cli_overlay *overlay) {
 static bool is_linear(const char *path) { return has_extension(path, ".exr") || has_extension(path, ".npy"); }
 
 int render_overlay_check_options(const cli_value *values, const char *path) {
-  static const int drawn[] = {RENDER_SCALE_BAR, RENDER_LEGEND, RENDER_AXES, RENDER_ANNOTATE};
+  static const int drawn[] = {RENDER_SCALE_BAR, RENDER_LEGEND, RENDER_AXES, RENDER_MARKS, RENDER_ANNOTATE};
   cli_overlay overlay;
   int exit_code = render_overlay_read(values, &overlay);
   for (size_t n = 0; n < sizeof drawn / sizeof *drawn && exit_code == EXIT_CODE_OK; n++) {
@@ -127,12 +128,15 @@ int render_overlay_check_options(const cli_value *values, const char *path) {
       exit_code = fail(EXIT_CODE_USAGE, "--%s is drawn with 8 bits per channel: leave --depth 16 out",
                        render_options[drawn[n]].name);
   }
-  if (exit_code == EXIT_CODE_OK && values[RENDER_UNIT].given && !values[RENDER_SCALE_BAR].given)
-    exit_code = fail(EXIT_CODE_USAGE, "--unit is the unit of the scale bar's length: add --scale-bar");
+  if (exit_code == EXIT_CODE_OK && values[RENDER_UNIT].given && !values[RENDER_SCALE_BAR].given &&
+      !values[RENDER_MARKS].given)
+    exit_code = fail(
+        EXIT_CODE_USAGE,
+        "--unit is the unit of lengths that are drawn over the picture: add --scale-bar or --marks");
   if (exit_code == EXIT_CODE_OK && values[RENDER_FONT_SIZE].given && !overlay.drawn)
     exit_code = fail(EXIT_CODE_USAGE,
                      "--font-size is the size of letters drawn over the picture: add --scale-bar, --legend, "
-                     "--axes or --annotate");
+                     "--axes, --marks or --annotate");
   const cli_value *size = &values[RENDER_SIZE];
   if (exit_code == EXIT_CODE_OK && size->given && overlay.width > 0 && overlay.pixels_per_inch > 0 &&
       fabs(overlay.width / MILLIMETRES_PER_INCH * overlay.pixels_per_inch - size->number[0]) > 0.5)

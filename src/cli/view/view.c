@@ -47,6 +47,7 @@ static bool has_render_option(size_t row) {
     case RENDER_UNIT:
     case RENDER_LEGEND:
     case RENDER_AXES:
+    case RENDER_MARKS:
     case RENDER_ANNOTATE:
     case RENDER_FONT_SIZE:
     case RENDER_RANGE_OF_ALL:

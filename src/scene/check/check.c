@@ -14,6 +14,7 @@
 #include "scene/geometry/placement.h"
 #include "scene/light/light_kind.h"
 #include "scene/light/sky.h"
+#include "scene/marks.h"
 
 static hl_status check_camera(const hl_camera *camera, hl_error *error) {
   hl_checker check = {error, "/camera"};
@@ -138,6 +139,7 @@ hl_status hl_description_check(const hl_scene_description *d, hl_error *error) {
     status = hl_check_count(&root, "volumes", d->volumes, d->volume_count, HL_LIMIT_VOLUMES);
   if (status == HL_OK) status = hl_check_count(&root, "meshes", d->meshes, d->mesh_count, HL_LIMIT_MESHES);
   if (status == HL_OK) status = hl_cuts_check(&root, d->cuts, d->cut_count);
+  if (status == HL_OK) status = hl_marks_check(d->marks, d->mark_count, error);
   if (status != HL_OK) return status;
   if (d->volume_count + d->mesh_count == 0)
     return hl_check_refuse(&root, "volumes", "is empty: name at least one volume or mesh");

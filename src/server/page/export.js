@@ -17,14 +17,14 @@ export const fileWord = (title, ending) => quoted(`${stem(title)}${ending}`.repl
 export const sceneText = (scene) => JSON.stringify(scene, null, 2) + "\n";
 
 // A command that needs nothing beside it but the scene's volumes: the scene is its standard input.
-// over: { scaleBar, legend, axes, unit }: what is drawn over the picture (figure_overlay.js), and the unit of lengths where the files tell
+// over: { scaleBar, legend, axes, marks, unit }: what is drawn over the picture (figure_overlay.js), and the unit of lengths where the files tell
 // none. In a perspective picture the bar holds at the camera's target.
-export const commandLine = (scene, title, { scaleBar = false, legend = false, axes = "none", unit = "" } = {}) =>
-  `halflight render - -o ${fileWord(title, ".png")}${unit ? ` --unit ${quoted(unit)}` : ""}${scaleBar ? ` --scale-bar auto${scene.camera.type === "orthographic" ? "" : "@target"}` : ""}${legend ? " --legend auto" : ""}${axes === "none" ? "" : ` --axes ${axes}`} <<'END'\n${sceneText(scene)}END\n`;
+export const commandLine = (scene, title, { scaleBar = false, legend = false, axes = "none", marks = false, unit = "" } = {}) =>
+  `halflight render - -o ${fileWord(title, ".png")}${unit ? ` --unit ${quoted(unit)}` : ""}${scaleBar ? ` --scale-bar auto${scene.camera.type === "orthographic" ? "" : "@target"}` : ""}${legend ? " --legend auto" : ""}${axes === "none" ? "" : ` --axes ${axes}`}${marks ? " --marks" : ""} <<'END'\n${sceneText(scene)}END\n`;
 
 // The same as a Python program.
-const annotated = ({ scaleBar = false, legend = false, axes = "none", unit = "" }) => {
-  const words = [...(scaleBar ? ["scale_bar=True", 'depth="target"'] : []), ...(unit ? [`unit=${JSON.stringify(unit)}`] : []), ...(legend ? ["legend=True"] : []), ...(axes === "none" ? [] : [`axes=${JSON.stringify(axes)}`])];
+const annotated = ({ scaleBar = false, legend = false, axes = "none", marks = false, unit = "" }) => {
+  const words = [...(scaleBar ? ["scale_bar=True", 'depth="target"'] : []), ...(unit ? [`unit=${JSON.stringify(unit)}`] : []), ...(legend ? ["legend=True"] : []), ...(axes === "none" ? [] : [`axes=${JSON.stringify(axes)}`]), ...(marks ? ["marks=True"] : [])];
   return words.length > 0 ? `.annotate(${words.join(", ")})` : "";
 };
 
@@ -76,11 +76,11 @@ export function exportPanel(viewer) {
   const bare = make("input", { type: "checkbox", id: "bare", title: "A PNG without the scene, and without the names of its files" });
 
   const figure = figureOverlay(viewer), same = make("p", { class: "facts" }), plain = make("p", { class: "facts", id: "plain-format", hidden: true }, "What is drawn over the picture is saved in PNGs of 8 bits alone.");
-  const drawsOver = () => { const { scaleBar, legend, axes } = figure.over(); return scaleBar || legend || axes !== "none"; };
-  const over = () => (format === "png" && drawsOver() ? figure.over() : {});
+  const drawsOver = () => { const { scaleBar, legend, axes, marks } = figure.saved(); return scaleBar || legend || axes !== "none" || marks === true; };
+  const over = () => (format === "png" && drawsOver() ? figure.saved() : {});
 
   async function savePicture() {
-    const scene = structuredClone(store.scene), image = scene.image, seen = { width: image.width, height: image.height };
+    const scene = structuredClone(store.file), image = scene.image, seen = { width: image.width, height: image.height };
     image.width = Math.round(+width.value) || image.width;
     image.height = Math.round(+height.value) || image.height;
     // The seen part is in the picture, whatever the picture's shape is.
@@ -101,7 +101,7 @@ export function exportPanel(viewer) {
 
   const save = button("save picture", savePicture, { class: "primary" });
   const saveScene = () => {
-    download(new Blob([sceneText(store.scene)], { type: "application/json" }), `${name()}.json`);
+    download(new Blob([sceneText(store.file)], { type: "application/json" }), `${name()}.json`);
     report(`saved ${name()}.json`);
   };
   body.append(
@@ -109,10 +109,10 @@ export function exportPanel(viewer) {
     row(make("label", { for: "transparent" }, "Transparent"), transparent),
     row(make("label", { for: "bare" }, "No metadata"), bare), ...figure.elements, plain, row("", save),
     row(make("span", { class: "name" }, "Scene"), make("span", { class: "buttons" }, button("save scene", saveScene),
-      button("copy scene", () => copy(sceneText(store.scene), "the scene")))),
+      button("copy scene", () => copy(sceneText(store.file), "the scene")))),
     row("", make("span", { class: "buttons" },
-      button("copy command", () => copy(commandLine(store.scene, store.title, figure.over()), "the command")),
-      button("copy Python", () => copy(pythonProgram(store.scene, store.title, figure.over()), "the program")))),
+      button("copy command", () => copy(commandLine(store.file, store.title, figure.saved()), "the command")),
+      button("copy Python", () => copy(pythonProgram(store.file, store.title, figure.saved()), "the program")))),
     same);
   function update() {
     for (const [input, key] of [[width, "width"], [height, "height"]])

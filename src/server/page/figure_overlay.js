@@ -1,27 +1,32 @@
-// What a figure has over its picture: a scale bar, a legend and axes. The viewer draws them as `halflight render` does: they lie over the
-// picture at rest, and are saved with it. What is wanted stands in store.page.over.
+// What a figure has over its picture: a scale bar, a legend, axes and marks. The viewer draws them as `halflight render` does. The first
+// three lie over the picture at rest, where the page has marks of its own (mark_overlay.js), and all are saved with it. What is wanted
+// stands in store.page.over.
 
 import { isActive, make, row, select } from "./controls.js";
 import { isAnatomical } from "./sections.js";
+import { givenUnit, isUnitless } from "./units.js";
 
-// Returns { elements, update, over }. elements: rows of a panel. over(): what is wanted and can be drawn, { scaleBar, legend, axes, unit }.
+// Returns { elements, update, over, saved }. elements: rows of a panel. over(): what is wanted over the picture and can be drawn,
+// { scaleBar, legend, axes, unit }. saved(): the same for a saved picture, with { marks }.
 export function figureOverlay({ store, start, channel, failed, find, atRest, frames }) {
-  const wanted = () => ({ scaleBar: false, legend: false, axes: "none", ...(channel.overlay ? store.page.over : {}) });
+  const wanted = () => ({ scaleBar: false, legend: false, axes: "none", marks: true, ...(channel.overlay ? store.page.over : {}) });
   const want = (part) => store.setPage({ over: { ...wanted(), ...part } });
   const isVisible = (volume) => volume.visible !== false;
   // Why no legend can be drawn; "": one can. A strip of colours shows a function of one number.
   const noLegend = () => (!store.scene.volumes.some(isVisible) ? "A legend shows a visible volume."
     : store.scene.volumes.some((volume) => isVisible(volume) && volume.transfer_function?.second !== undefined) ? "A legend cannot show a transfer function of two numbers."
     : "");
-  // Whether the file of a visible volume does not tell the unit of its lengths. A person can give the unit then.
-  const isUnitless = () => start.volumes.some((volume, v) => volume?.unit === null && store.scene.volumes[v] && isVisible(store.scene.volumes[v]));
-  const given = () => (isUnitless() ? String(store.page.unit ?? "") : "");
-  const lacksUnit = () => isUnitless() && given() === "";
+  const lacksUnit = () => isUnitless({ store, start }) && givenUnit({ store, start }) === "";
   const kinds = [["none", "none"], ["arrows", "arrows"], ...(start.volumes.some(isAnatomical) ? [["letters", "letters of the body"]] : [])];
-  const over = () => {
-    const { scaleBar, legend, axes } = wanted(), bar = scaleBar === true && !lacksUnit();
-    return { scaleBar: bar, legend: legend === true && noLegend() === "", axes: kinds.some(([kind]) => kind === axes) ? axes : "none", ...(bar && given() ? { unit: given() } : {}) };
+  const drawn = (withMarks) => {
+    const { scaleBar, legend, axes, marks } = wanted(), bar = scaleBar === true && !lacksUnit(), unit = givenUnit({ store, start });
+    const hasMarks = withMarks && channel.overlay && marks !== false && store.marks.length > 0;
+    return {
+      scaleBar: bar, legend: legend === true && noLegend() === "", axes: kinds.some(([kind]) => kind === axes) ? axes : "none",
+      ...(hasMarks ? { marks: true } : {}), ...((bar || hasMarks) && unit ? { unit } : {}),
+    };
   };
+  const over = () => drawn(false), saved = () => drawn(true);
 
   // ---- over the picture ----
 
@@ -75,15 +80,15 @@ export function figureOverlay({ store, start, channel, failed, find, atRest, fra
   };
   const unit = make("input", { type: "text", id: "unit", maxlength: 24, placeholder: "mm, µm, kpc …", oninput: () => store.setPage({ unit: unit.value.trim() }) });
   const unitRow = row(make("label", { for: "unit", title: "One unit of length of the volume's file" }, "Unit"), unit);
-  const bar = box("Scale bar", "scale-bar", "scaleBar"), legend = box("Legend", "legend", "legend");
+  const bar = box("Scale bar", "scale-bar", "scaleBar"), legend = box("Legend", "legend", "legend"), marks = box("Marks", "saved-marks", "marks");
   const axes = select({ label: "Axes", choices: kinds, get: () => over().axes, set: (name) => want({ axes: name }) });
   const unknown = make("p", { class: "facts", id: "no-unit" }, "The volume's file tells no unit of length. With one, a scale bar can be drawn.");
   bar.input.setAttribute("aria-describedby", "no-unit");
-  const elements = channel.overlay ? [unitRow, bar.element, unknown, legend.element, axes.element] : [];
+  const elements = channel.overlay ? [unitRow, bar.element, unknown, legend.element, marks.element, axes.element] : [];
 
   function update() {
-    const { scaleBar, legend: hasLegend } = over();
-    unitRow.hidden = !isUnitless();
+    const { scaleBar, legend: hasLegend, marks: hasMarks } = saved();
+    unitRow.hidden = !isUnitless({ store, start });
     if (!isActive(unit)) unit.value = store.page.unit ?? "";
     bar.input.disabled = lacksUnit();
     unknown.hidden = !lacksUnit();
@@ -91,7 +96,10 @@ export function figureOverlay({ store, start, channel, failed, find, atRest, fra
     legend.input.disabled = noLegend() !== "";
     legend.input.title = noLegend();
     legend.input.checked = hasLegend;
+    marks.input.disabled = store.marks.length === 0;
+    marks.input.title = marks.input.disabled ? "The scene has no marks. The panel “Measure” makes them." : "Rulers, angles, lines, arrows and texts in saved pictures";
+    marks.input.checked = hasMarks === true;
     axes.update();
   }
-  return { elements, update, over };
+  return { elements, update, over, saved };
 }

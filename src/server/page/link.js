@@ -3,7 +3,7 @@
 // same file.
 
 import { reshaped } from "./camera.js";
-import { isMark } from "./marks.js";
+import { readMarks } from "./marks.js";
 
 const MARK = "#view=";
 const MOST_BYTES = 1 << 20; // the most bytes of the text to which a link unfolds
@@ -56,7 +56,9 @@ function comparable(store, start) {
   return { scene: { ...scene, camera: reshaped(scene.camera, scene.image, { width, height }), image: { ...scene.image, width, height } }, marks, page };
 }
 
-const beginning = (start) => ({ scene: { volumes: [], ...start.scene }, marks: [], page: {} });
+function beginning({ scene: { marks, ...scene } }) {
+  return { scene: { volumes: [], ...scene }, marks: readMarks(marks), page: {} };
+}
 
 export async function linkOf(store, start) {
   return MARK + (await packed(JSON.stringify(difference(beginning(start), comparable(store, start)) ?? {})));
@@ -72,7 +74,7 @@ export async function follow(text, { store, start, channel }) {
   } catch (error) {
     throw new Error(`this link cannot be read: ${error.message || "it is cut short"}`);
   }
-  const marks = Array.isArray(told?.marks) ? told.marks.filter(isMark) : [], page = told?.page;
+  const marks = readMarks(told?.marks), page = told?.page;
   const scene = await channel.completeScene(told?.scene ?? {});
   store.replace({
     scene, marks, page: { ...(page !== null && typeof page === "object" && !Array.isArray(page) ? page : {}), bookmarks: store.page.bookmarks },

@@ -4,6 +4,7 @@
 
 import { unplaced } from "./boxes.js";
 import { shortNumber } from "./controls.js";
+import { lengthUnit } from "./units.js";
 import { dot, length, subtract } from "./vector.js";
 
 // For each kind: its name, and the least and greatest number of its points.
@@ -12,32 +13,24 @@ export const KINDS = {
   arrow: { name: "Arrow", least: 2, most: 2 }, text: { name: "Text", least: 1, most: 1 },
 };
 
-export const UNITS = { metre: "m", millimetre: "mm", micrometre: "µm", angstrom: "Å" };
-
-// The measures of lengths come from the first volume's file: { unit, length(a, b), angle }.
-function measures({ store, start }) {
-  const own = (point) => unplaced(point, store.scene.volumes[0]?.transform), unit = UNITS[start.volumes[0]?.unit] ?? store.page.unit;
-  return { unit: unit ? ` ${unit}` : "", own };
-}
-
 // The angle at b of a corner a, b, c, in degrees.
 function angleOf([a, b, c]) {
   const [u, v] = [subtract(a, b), subtract(c, b)], size = length(u) * length(v);
   return size > 0 ? (180 / Math.PI) * Math.acos(Math.min(Math.max(dot(u, v) / size, -1), 1)) : 0;
 }
 
-// The number that a mark measures; null: none.
+// The number that a mark measures, in the lengths of the first volume's file; null: none.
 export function measured(mark, viewer) {
-  const { own } = measures(viewer), points = mark.points.map(own);
+  const points = mark.points.map((point) => unplaced(point, viewer.store.scene.volumes[0]?.transform));
   if (mark.kind === "angle") return points.length === 3 ? angleOf(points) : null;
   if (mark.kind !== "ruler" && mark.kind !== "line") return null;
   return points.slice(1).reduce((sum, point, n) => sum + length(subtract(point, points[n])), 0);
 }
 
-// The text that is written at a mark.
+// The text that is written at a mark. Saved pictures have the same text (marks.c of the figures).
 export function captionOf(mark, viewer) {
-  const number = measured(mark, viewer), { unit } = measures(viewer);
-  const said = number === null ? "" : mark.kind === "angle" ? `${number.toFixed(1)}°` : `${shortNumber(number)}${unit}`;
+  const number = measured(mark, viewer), unit = lengthUnit(viewer);
+  const said = number === null ? "" : mark.kind === "angle" ? `${number.toFixed(1)}°` : `${shortNumber(number)}${unit ? ` ${unit}` : ""}`;
   return [mark.text, said].filter(Boolean).join(": ");
 }
 
@@ -45,3 +38,6 @@ export function captionOf(mark, viewer) {
 export const isMark = (mark) => mark?.kind in KINDS && Array.isArray(mark.points) && mark.points.length >= KINDS[mark.kind].least &&
   mark.points.length <= KINDS[mark.kind].most && typeof (mark.text ?? "") === "string" &&
   mark.points.every((point) => Array.isArray(point) && point.length === 3 && point.every(Number.isFinite));
+
+// The marks in a list of a file, each with a text.
+export const readMarks = (list) => (Array.isArray(list) ? list.filter(isMark).map(({ kind, points, text = "" }) => ({ kind, points, text })) : []);

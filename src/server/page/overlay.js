@@ -7,8 +7,8 @@ import { CutHandles } from "./cut_handles.js";
 import { hexOf } from "./color.js";
 import { make, shortNumber } from "./controls.js";
 import { directionOf, sizeOf, steppedDirection, withDirection, withSize } from "./light.js";
-import { UNITS } from "./marks.js";
 import { SkyRing } from "./sky_ring.js";
+import { symbolOf } from "./units.js";
 
 const MARKER = { size: 34, left: 64, bottom: 64 }; // pixels
 const BAR_WIDTH = 140; // the most pixels
@@ -29,8 +29,8 @@ export function roundLength(most) {
 // What lengths of the world are measured in: " mm" where volumes tell it, none another, and all keep their size; what a person has
 // said where none tells it; else nothing.
 function unitOf({ scene, page }, volumes) {
-  const told = new Set(volumes.map((volume) => UNITS[volume?.unit]).filter(Boolean));
-  if (told.size === 0 && page.unit) told.add(page.unit);
+  const told = new Set(volumes.map((volume) => symbolOf(volume?.unit)).filter(Boolean));
+  if (told.size === 0 && page.unit) told.add(symbolOf(page.unit));
   return told.size === 1 && scene.volumes.every(({ transform }) => (transform?.scale ?? 1) === 1) ? ` ${[...told][0]}` : "";
 }
 

@@ -2,7 +2,7 @@
 // the marks, the layout, the crosshair, bookmarks, and the history. It holds a person's changes and the names
 // of the volumes, but not their voxels.
 
-import { isMark } from "./marks.js";
+import { readMarks } from "./marks.js";
 
 const KEY = "halflight-session", VERSION = 1;
 const KEEP_AFTER = 300; // milliseconds without a change
@@ -19,7 +19,7 @@ const isSource = (source) => [source].flat().every((path) => typeof path === "st
 // A session; the parts on which the page relies are checked. Null: the object is no session.
 export function readSession(object) {
   if (object === null || typeof object !== "object" || object.halflight_session !== VERSION || typeof object.scene?.camera !== "object") return null;
-  const { source = null, own = null, title = "", whole = title, scene, page = {} } = object, marks = Array.isArray(object.marks) ? object.marks.filter(isMark) : [];
+  const { source = null, own = null, title = "", whole = title, scene, page = {} } = object, marks = readMarks(object.marks);
   const known = typeof page === "object" && page !== null && !Array.isArray(page) ? page : {};
   return { source: isSource(source) ? source : null, own: isSource(own) ? own : null, title: String(title), whole: String(whole), scene, marks, page: known };
 }

@@ -3,6 +3,7 @@
 // elsewhere. Objects are never altered, only replaced.
 
 import { reshaped } from "./camera.js";
+import { readMarks } from "./marks.js";
 
 const MOST_STEPS = 100; // the most steps that can be undone, for each history
 const UNREMEMBERED = ["camera", "size", "time", "page"]; // changes that are no steps of the main history
@@ -26,15 +27,20 @@ export class Store {
   #last = { name: "", gesture: -1 };
   #lastCamera = -1; // number of the gesture in which the camera was last moved
 
-  // marks: a person's measures and texts (marks.js). page: settings that are no part of pictures: layout,
+  // scene: a scene file, which may have marks. marks: a person's measures and texts (marks.js) in place of those of the file. page: settings that are no part of pictures: layout,
   // crosshair, bookmarks. source: by which the scene's files are opened (http_channel.js, open()), or null. title: what they are called.
-  constructor(scene, { marks = [], page = {}, history = null, source = null, title = "" } = {}) {
+  constructor({ marks: own, ...scene }, { marks = readMarks(own), page = {}, history = null, source = null, title = "" } = {}) {
     this.scene = { volumes: [], ...scene }; // a scene may consist of meshes only
     this.marks = marks;
     this.page = page;
     this.source = source;
     this.title = title;
     if (history !== null) [this.#undo, this.#redo, this.#undoCamera, this.#redoCamera] = history;
+  }
+
+  // The scene file: the scene with its marks.
+  get file() {
+    return this.marks.length > 0 ? { ...this.scene, marks: this.marks } : this.scene;
   }
 
   // listener(scene, name) is called after every change.
@@ -96,7 +102,7 @@ export class Store {
   }
 
   // Replaces everything, as one step, by a session or a scene that was opened. The picture keeps its size.
-  replace({ scene, marks = this.marks, page = this.page, source = this.source, title = this.title }) {
+  replace({ scene: { marks: own, ...scene }, marks = own === undefined ? this.marks : readMarks(own), page = this.page, source = this.source, title = this.title }) {
     const { width, height } = this.scene.image;
     this.beginGesture();
     this.#remember("replace");

@@ -1,0 +1,179 @@
+/* figure/marks.c - the marks of a scene over its picture: lines, heads of arrows, texts and measures.
+ *
+ * Marks lie over the picture, also where matter stands before them, as in the viewer. A mark of which a point
+ * lies behind the eye is left out. Lengths and angles are those of the first volume's file: the scene's
+ * scale, rotation and translation of that volume are undone. The unit is the one of that file, or the one
+ * that the overlay names; where there is neither, lengths are written without a unit. */
+#include <stdio.h>
+#include <string.h>
+
+#include "figure/overlay.h"
+#include "figure/units.h"
+#include "scene/geometry/placement.h"
+#include "text/plain.h"
+
+enum { MEASURE_BYTES = 96 };
+
+/* ---- measures ---- */
+
+/* A difference of two points of the scene's world, in the world of the first volume's file. */
+static vec3 in_file(const hl_scene_description *scene, vec3 difference) {
+  if (scene->volume_count == 0) return difference;
+  const hl_scene_volume *volume = &scene->volumes[0];
+  vec3 turned = difference;
+  if (volume->rotate_angle_deg != 0)
+    turned = mat3_apply(
+        mat3_rotation(vec3_normalise(vec3_of(volume->rotate_axis)), -volume->rotate_angle_deg * HL_PI / 180),
+        difference);
+  return (vec3){turned.x / hl_scene_volume_scale(volume, 0), turned.y / hl_scene_volume_scale(volume, 1),
+                turned.z / hl_scene_volume_scale(volume, 2)};
+}
+
+/* The way from one point of a mark to another, in the world of the first volume's file. */
+static vec3 way_of(const hl_scene_description *scene, const hl_mark *mark, size_t from, size_t to) {
+  return in_file(scene, vec3_subtract(vec3_of(mark->points[to]), vec3_of(mark->points[from])));
+}
+
+static double length_of(const hl_scene_description *scene, const hl_mark *mark) {
+  double sum = 0;
+  for (size_t p = 1; p < mark->point_count; p++) sum += vec3_length(way_of(scene, mark, p - 1, p));
+  return sum;
+}
+
+/* The angle at the second of three points, degrees. */
+static double angle_of(const hl_scene_description *scene, const hl_mark *mark) {
+  const vec3 u = way_of(scene, mark, 1, 0), v = way_of(scene, mark, 1, 2);
+  const double size = vec3_length(u) * vec3_length(v);
+  return size > 0 ? 180 / HL_PI * acos(fmin(fmax(vec3_dot(u, v) / size, -1), 1)) : 0;
+}
+
+/* Moves a number that lies in the middle between two decimals away from zero, so that printing rounds it as
+ * the viewer's page does. decimals: digits after the point of the number's scientific form. Derived: a double
+ * of this size has fewer than 80 digits, so that its decimal form is exact. */
+static double past_tie(double number, int decimals) {
+  char exact[120];
+  hl_plain_print(exact, sizeof exact, "%.80e", number);
+  const char *rest = strchr(exact, '.');
+  if (rest == NULL || rest[1 + decimals] != '5') return number;
+  rest += 2 + decimals;
+  return rest[strspn(rest, "0")] == 'e' ? nextafter(number, INFINITY) : number;
+}
+
+/* Writes a length as the viewer's page writes numbers (shortNumber() in server/page/controls.js). */
+static void write_length(double length, char text[MEASURE_BYTES]) {
+  const bool plain = length >= 1e-3 && length < 1e5;
+  const int decimals = plain && length >= 1000 ? 4 : 2;
+  if (!(length > 0)) {
+    snprintf(text, MEASURE_BYTES, "0");
+    return;
+  }
+  hl_plain_print(text, MEASURE_BYTES, "%.*e", decimals, past_tie(length, decimals));
+  if (plain) {
+    hl_plain_print(text, MEASURE_BYTES, "%.10g", hl_plain_number(text, NULL));
+    return;
+  }
+  /* The page writes exponents without leading zeros. */
+  char *digits = strpbrk(strchr(text, 'e'), "0123456789");
+  while (digits[0] == '0' && digits[1] != '\0') memmove(digits, digits + 1, strlen(digits));
+}
+
+/* The unit of the marks' lengths; null: it is not known. */
+static const char *unit_of(const hl_overlay_place *place) {
+  const hl_scene_description *scene = place->scene;
+  const char *name = place->overlay->world_unit;
+  if (name == NULL && scene->volume_count > 0) name = hl_volume_unit(scene->volumes[0].volume);
+  const hl_unit *unit = name != NULL ? hl_unit_find(name) : NULL;
+  return unit != NULL ? unit->symbol : name;
+}
+
+/* Writes what is measured; "": the kind measures nothing. */
+static void write_measure(const hl_overlay_place *place, const hl_mark *mark, char text[MEASURE_BYTES]) {
+  text[0] = '\0';
+  if (mark->kind == HL_MARK_ANGLE) {
+    const double angle = angle_of(place->scene, mark);
+    hl_plain_print(text, MEASURE_BYTES, "%.1f\u00b0", angle);
+  } else if (mark->kind == HL_MARK_RULER || mark->kind == HL_MARK_LINE) {
+    const char *unit = unit_of(place);
+    write_length(length_of(place->scene, mark), text);
+    const size_t used = strlen(text);
+    if (unit != NULL) snprintf(text + used, MEASURE_BYTES - used, " %.60s", unit);
+  }
+}
+
+/* ---- drawing ---- */
+
+typedef struct point_on_page {
+  double x, y; /* points */
+} point_on_page;
+
+/* Adds the head of an arrow to the path. */
+static void add_head(const hl_ink *ink, point_on_page from, point_on_page tip) {
+  const double far = hypot(tip.x - from.x, tip.y - from.y), head = 0.8 * ink->size;
+  if (!(far > 0)) return;
+  const double x = (tip.x - from.x) / far * head, y = (tip.y - from.y) / far * head;
+  cairo_move_to(ink->cairo, tip.x - x - y / 2, tip.y - y + x / 2);
+  cairo_line_to(ink->cairo, tip.x, tip.y);
+  cairo_line_to(ink->cairo, tip.x - x + y / 2, tip.y - y - x / 2);
+}
+
+/* Where the text of a mark begins: in the middle of a ruler, at the corner of an angle, at the start of an
+ * arrow, else at the last point. */
+static point_on_page anchor_of(const hl_mark *mark, const point_on_page first[3], point_on_page last) {
+  switch (mark->kind) {
+    case HL_MARK_RULER: return (point_on_page){(first[0].x + first[1].x) / 2, (first[0].y + first[1].y) / 2};
+    case HL_MARK_ANGLE: return first[1];
+    case HL_MARK_ARROW: return first[0];
+    default: return last;
+  }
+}
+
+static void draw_caption(const hl_ink *ink, const hl_overlay_place *place, const hl_mark *mark,
+                         point_on_page at) {
+  char measure[MEASURE_BYTES];
+  write_measure(place, mark, measure);
+  const char *text = mark->text != NULL ? mark->text : "", *between = *text && *measure ? ": " : "";
+  char *caption = g_strconcat(text, between, measure, NULL);
+  if (*caption)
+    hl_ink_text(ink,
+                &(hl_line_of_text){
+                    .text = caption, .x = at.x + 0.7 * ink->size, .y = at.y - 0.4 * ink->size, .align_y = 1});
+  g_free(caption);
+}
+
+/* Draws the path of a mark, and its dot where it is a text. False: a point lies behind the eye, and nothing
+ * is drawn. */
+static bool draw_path(const hl_ink *ink, const hl_map *map, const hl_mark *mark, point_on_page first[3],
+                      point_on_page *last) {
+  cairo_new_path(ink->cairo);
+  for (size_t p = 0; p < mark->point_count; p++) {
+    if (!hl_map_point(map, vec3_of(mark->points[p]), &last->x, &last->y)) {
+      cairo_new_path(ink->cairo);
+      return false;
+    }
+    if (p < 3) first[p] = *last;
+    if (p == 0) cairo_move_to(ink->cairo, last->x, last->y);
+    else cairo_line_to(ink->cairo, last->x, last->y);
+  }
+  if (mark->kind == HL_MARK_ARROW) add_head(ink, first[0], first[1]);
+  if (mark->kind == HL_MARK_TEXT) cairo_line_to(ink->cairo, last->x, last->y); /* a round dot */
+  hl_ink_stroke(ink, (mark->kind == HL_MARK_TEXT ? 0.35 : 0.14) * ink->size);
+  return true;
+}
+
+hl_status hl_overlay_marks(const hl_ink *ink, const hl_overlay_place *place, hl_error *error) {
+  const hl_scene_description *scene = place->scene;
+  const hl_rectangle picture = place->picture;
+  if (scene->mark_count == 0)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "marks: the scene has none: measure in `halflight view`, and save the scene there");
+  cairo_save(ink->cairo);
+  cairo_rectangle(ink->cairo, picture.left, picture.top, picture.width, picture.height);
+  cairo_clip(ink->cairo);
+  for (size_t m = 0; m < scene->mark_count; m++) {
+    point_on_page first[3] = {{0, 0}}, last = {0, 0};
+    if (draw_path(ink, &place->map, &scene->marks[m], first, &last))
+      draw_caption(ink, place, &scene->marks[m], anchor_of(&scene->marks[m], first, last));
+  }
+  cairo_restore(ink->cairo);
+  return HL_OK;
+}
