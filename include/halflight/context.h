@@ -103,8 +103,8 @@ typedef struct hl_context_options {
   void *(*allocate)(void *user_data, size_t size, size_t alignment);
   void (*release)(void *user_data, void *memory);
   void (*log)(void *user_data, hl_log_level level, const char *message);
-  /* fraction in [0,1]: how much of the named stage is done. The stages are "load", "prepare" (labels are
-   * smoothed), "render" and "write". */
+  /* fraction in [0,1] of the named stage: "load", "prepare" (labels are smoothed), "sky" (the field of the
+   * sky's light is made), "render" or "write". A frame has several stages, each from its own 0 to 1. */
   void (*progress)(void *user_data, const char *stage, double fraction);
   /* Asked every few milliseconds. A non-zero answer makes the running call return HL_ERROR_CANCELLED soon:
    * within a tenth of a second, for pictures up to 4096 x 4096 pixels and volumes up to 512^3 voxels. */

@@ -14,6 +14,7 @@
 
 #include <string.h>
 
+#include "core/context.h"
 #include "field/field_planes.h"
 #include "field/harmonics.h"
 #include "field/surface_links.h"
@@ -179,6 +180,17 @@ static void open_light(const moving_light *moving, const field_slices *s, int di
   }
 }
 
+/* The light of how many slices has been moved, over all ends and passes. */
+typedef struct sky_progress {
+  const hl_context *context;
+  double done, whole; /* slices */
+} sky_progress;
+
+static void tell_progress(sky_progress *progress, int32_t slices) {
+  progress->done += slices;
+  hl_progress(progress->context, "sky", progress->done / progress->whole);
+}
+
 /* Where the field's light is added: the cells, and the harmonics that are kept of each cell. */
 typedef struct sky_target {
   float *field;   /* begins with the first cell's first harmonic */
@@ -205,13 +217,16 @@ static void set_links(const surface_links *links, const field_slices *s, size_t 
  * links: the links along the end's axis; null: there are no surfaces. */
 static void sweep_end(const sky_content *content, const opacity_field *opacity, const surface_links *links,
                       const moving_light *moving, const sky_target *target, int end_index, int first,
-                      int channels, const field_functions *functions, hl_pool *pool) {
+                      int channels, const field_functions *functions, hl_pool *pool, sky_progress *progress) {
   field_slices s = hl_field_slices(&content->lattice, end_index / 2);
   const field_planes planes = hl_field_planes(&s);
   sky_end end;
   set_up_end(content, end_index, first, channels, planes.stride, &end);
   const bool adds_passing = end_index % 2 == 0 && first == 0;
-  if (end.count == 0 && !adds_passing) return;
+  if (end.count == 0 && !adds_passing) {
+    tell_progress(progress, s.slices);
+    return;
+  }
   open_light(moving, &s, end.count, pool);
   for (int32_t i = 0; i < s.slices && !hl_pool_cancelled(pool); i++) {
     size_t slice = (size_t)(end_index % 2 ? i : s.slices - 1 - i),
@@ -235,6 +250,7 @@ static void sweep_end(const sky_content *content, const opacity_field *opacity, 
                         .passing = adds_passing ? FIELD_HARMONICS * content->channels : 0}};
     if (links != NULL) set_links(links, &s, slice, end_index % 2, &rows.slice);
     hl_pool_run(pool, (size_t)s.rows, move_row, &rows);
+    tell_progress(progress, 1);
   }
 }
 
@@ -309,8 +325,8 @@ static const surface_links *find_links(const sky_content *content, const surface
   return links;
 }
 
-static void make(const sky_content *content, passing_arrays *arrays, const field_functions *functions,
-                 float *field, hl_pool *pool) {
+static void make(hl_context *context, const sky_content *content, passing_arrays *arrays,
+                 const field_functions *functions, float *field, hl_pool *pool) {
   bool colored = attenuates_in_color(content);
   size_t cell = cell_floats(content);
   const int32_t *count = content->lattice.count;
@@ -318,7 +334,10 @@ static void make(const sky_content *content, passing_arrays *arrays, const field
   field_content matter = content->content;
   matter.matter = arrays->matter;
   const surface_links *links = NULL;
-  for (int pass = 0; pass < (colored ? 3 : 1); pass++) {
+  const int passes = colored ? 3 : 1;
+  sky_progress progress = {.context = context, .whole = 2.0 * passes * (count[0] + count[1] + count[2])};
+  tell_progress(&progress, 0);
+  for (int pass = 0; pass < passes; pass++) {
     for (int v = 0; v < matter.count; v++) {
       arrays->matter[v] = content->content.matter[v];
       arrays->matter[v].cast *= (float)content->colors[v][pass];
@@ -328,7 +347,7 @@ static void make(const sky_content *content, passing_arrays *arrays, const field
     for (int end = 0; end < ENDS; end++) {
       if (end % 2 == 0) links = find_links(content, &arrays->links, &target, field, end / 2, pool);
       sweep_end(content, &arrays->opacity, links, &arrays->moving, &target, end, pass,
-                colored ? 1 : content->channels, functions, pool);
+                colored ? 1 : content->channels, functions, pool, &progress);
     }
   }
   if (arrays->share.with != NULL)
@@ -470,7 +489,7 @@ hl_status hl_sky_make(hl_context *context, hl_pool *pool, const sky_content *con
   while (hl_layout_pass(&layout, context)) lay_out(content, &arrays, &layout);
   if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the light of the sky");
   hl_pool_clear(pool, made->memory, made->bytes);
-  make(&own, &arrays, functions, made->memory, pool);
+  make(context, &own, &arrays, functions, made->memory, pool);
   hl_release(context, layout.base);
   store(content, made->memory, light, pool);
   return hl_pool_check(pool, "rendering", error);

@@ -48,11 +48,16 @@ bool server_is_outdated(void) {
   return current.page != NULL && atomic_load(&current.page->newest) > current.number;
 }
 
+/* The stage of a frame, by the library's name for it. */
+static frame_stage stage_named(const char *name) {
+  return strcmp(name, "prepare") == 0 ? STAGE_LABELS : strcmp(name, "sky") == 0 ? STAGE_SKY : STAGE_PICTURE;
+}
+
 void server_progress(const char *stage, double fraction) {
   if (current.server == NULL || !(fraction >= 0 && fraction <= 1)) return;
   if (current.opening) atomic_store(&current.server->opening_part, (int)(1000 * fraction));
   else if (current.page != NULL) {
-    atomic_store(&current.page->prepares, strcmp(stage, "prepare") == 0);
+    atomic_store(&current.page->stage, (int)stage_named(stage));
     atomic_store(&current.page->frame_part, (int)(1000 * fraction));
   }
 }
@@ -180,16 +185,16 @@ pages_state pages_count(server *s) {
   return state;
 }
 
-int page_progress(server *s, const char *name, bool *prepares, int *others) {
+int page_progress(server *s, const char *name, frame_stage *stage, int *others) {
   int part = 0;
   *others = 0;
-  *prepares = false;
+  *stage = STAGE_PICTURE;
   pthread_mutex_lock(&s->pages_lock);
   for (int p = 0; p < MOST_PAGES; p++) {
     if (s->pages[p].users == 0) continue;
     if (strcmp(s->pages[p].name, name) == 0) {
       part = atomic_load(&s->pages[p].frame_part);
-      *prepares = atomic_load(&s->pages[p].prepares);
+      *stage = (frame_stage)atomic_load(&s->pages[p].stage);
     } else {
       *others += 1;
     }
@@ -388,7 +393,7 @@ static void answer_page(server *s, server_page *page, const frame_request *reque
   current.page = page;
   current.number = request->number;
   atomic_store(&page->frame_part, 0);
-  atomic_store(&page->prepares, false);
+  atomic_store(&page->stage, STAGE_PICTURE);
   hl_status status = make_frame(s, page, request, film, answer, &error);
   /* If memory is short, releases the memory of idle pages and of this page's earlier frames, and tries once
    * more. */

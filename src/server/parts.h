@@ -55,6 +55,9 @@ typedef struct quick_renderer {
                             * compared by its address */
 } quick_renderer;
 
+/* What is made for a frame: first what the picture needs and later frames keep, then the picture. */
+typedef enum frame_stage { STAGE_PICTURE = 0, STAGE_LABELS = 1, STAGE_SKY = 2 } frame_stage;
+
 /* A page in a browser. Its frames are rendered one after the other. */
 typedef struct server_page {
   char name[PAGE_NAME_LENGTH + 1];       /* "": the place is free */
@@ -62,13 +65,14 @@ typedef struct server_page {
   hl_renderer *renderer;                 /* owned; guarded by `rendering`; null: not made yet */
   quick_renderer quick[QUICK_RENDERERS]; /* guarded by `rendering` */
   atomic_ullong newest;                  /* the highest number of a requested frame */
-  atomic_int frame_part; /* how much of the current stage of the frame is done, in thousandths */
-  atomic_bool prepares;  /* the current stage is the one before the picture, which makes smooth labels */
-  atomic_int film_done, film_frames; /* the film that the page renders: number of finished frames, and number
-                                      * of all frames; no film: 0 frames in all */
-  int users;                         /* number of requests that hold the page; guarded by server.pages_lock */
-  bool leaving; /* the page was closed, and its place becomes free when no request holds it any more; guarded
-                 * by server.pages_lock */
+  atomic_int frame_part; /* how much of the current stage of the frame is finished, in thousandths */
+  atomic_int stage;      /* the current stage, a frame_stage */
+  atomic_int film_done, film_frames; /* of the film that the page renders: number of finished frames, and
+                                      * number of all frames; 0 frames in all: there is no film */
+  int users;                         /* number of requests that hold the page; guarded by
+                                      * server.pages_lock */
+  bool leaving; /* the page was closed: its place becomes free when the last request that holds it ends;
+                 * guarded by server.pages_lock */
   unsigned long long last_use; /* guarded by server.pages_lock */
   double last_seen;            /* when the page last asked for something, by server_seconds();
                                 * guarded by server.pages_lock */
@@ -209,10 +213,9 @@ typedef struct pages_state {
 } pages_state;
 
 pages_state pages_count(server *s);
-/* The progress of the page's frame, in thousandths of its current stage. *prepares: whether this is the stage
- * before the picture, in which labels are smoothed. *others: the number of other pages and lanes, this page's
- * lanes included, that have frames under way. */
-int page_progress(server *s, const char *name, bool *prepares, int *others);
+/* The progress of the page's frame, in thousandths of its stage. *others: the number of other pages, and of
+ * lanes of this page, that have frames under way. */
+int page_progress(server *s, const char *name, frame_stage *stage, int *others);
 /* Answers with a frame. film: null for a picture. */
 void answer_frame(server *s, const frame_request *request, const film_request *film, server_answer *answer);
 /* Answers with the scene, its defaults written out and the page's choices applied. film: the scene is that of

@@ -196,10 +196,11 @@ static void answer_film_progress(server *s, struct MHD_Connection *connection, s
 static void answer_progress(server *s, struct MHD_Connection *connection, server_answer *answer) {
   const char *page = query_text(connection, "page");
   char *text = NULL;
-  bool prepares;
-  int others, part = page_progress(s, page != NULL ? page : "", &prepares, &others);
-  if (asprintf(&text, "{\"part\":%.3f,\"prepares\":%s,\"others\":%d}", part / 1000.0,
-               prepares ? "true" : "false", others) < 0)
+  static const char *const names[] = {"picture", "labels", "sky"}; /* in the order of frame_stage */
+  frame_stage stage;
+  int others, part = page_progress(s, page != NULL ? page : "", &stage, &others);
+  if (asprintf(&text, "{\"part\":%.3f,\"stage\":\"%s\",\"others\":%d}", part / 1000.0, names[stage], others) <
+      0)
     text = NULL;
   answer_json(answer, text);
 }

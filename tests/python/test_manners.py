@@ -54,7 +54,7 @@ def test_ctrl_c_stops_the_reference(slow):
 def test_progress_calls_and_may_stop(slow, small):
     told = []
     Renderer().render(small, progress=lambda stage, fraction: told.append((stage, fraction)))
-    assert told and told[-1][1] <= 1 and {stage for stage, _ in told} <= {"prepare", "render", "load", "write"}
+    assert told and told[-1][1] <= 1 and {stage for stage, _ in told} <= {"prepare", "sky", "render", "load", "write"}
     assert all(isinstance(stage, str) and 0 <= fraction <= 1 for stage, fraction in told)
 
     class Enough(Exception):
@@ -77,6 +77,17 @@ def test_progress_of_labels_that_are_smoothed():
     again = []
     Renderer().render(scene, progress=lambda stage, _: again.append(stage))
     assert again and "prepare" not in again  # they are kept
+
+
+def test_progress_of_the_light_of_the_sky(small):
+    told, renderer = [], Renderer()
+    renderer.render(small.replace(sky=0.5), progress=lambda stage, fraction: told.append((stage, fraction)))
+    sky = [fraction for stage, fraction in told if stage == "sky"]
+    assert sky == sorted(sky) and sky[0] == 0 and sky[-1] == 1 and len(sky) > 10
+    assert [stage for stage, _ in told].index("render") == len(sky)  # it comes before the picture
+    again = []
+    renderer.render(small.replace(sky=0.5, camera="front"), progress=lambda stage, _: again.append(stage))
+    assert again and "sky" not in again  # it is kept
 
 
 def test_progress_on_stderr(small, capfd, monkeypatch):

@@ -249,6 +249,38 @@ def renderers_of_copies(viewer, scene):
     check(state(viewer)["renderers"] == 0, "all of them end with the page")
 
 
+def awaited(viewer, scene):
+    """While the light of the sky is made, progress.json says so, with the part that is done; then it tells of the picture."""
+    scene = json.loads(json.dumps(scene))
+    scene["image"].update(width=400, height=400)
+    scene["sky"] = {"type": "uniform", "color": [1, 1, 1], "strength": 0.5}
+    told, ended = [], threading.Event()
+
+    def ask():
+        while not ended.is_set():
+            told.append(json.loads(request(viewer, "GET", "progress.json?page=sky")[1]))
+
+    asking = threading.Thread(target=ask)
+    asking.start()
+    status, _ = request(viewer, "POST", f"frame?page=sky&number={next(numbers)}&format=png&opened=0", json.dumps(scene))
+    ended.set()
+    asking.join()
+    parts = [one["part"] for one in told if one["stage"] == "sky"]
+    check(status == 200 and len(parts) > 2 and parts == sorted(parts) and any(0 < part < 1 for part in parts), f"the light of the sky is told: {parts}")
+    last = max(n for n, one in enumerate(told) if one["stage"] == "sky")
+    check(any(one["stage"] == "picture" and 0 < one["part"] < 1 for one in told[last:]), f"then the picture: {told[last:last + 5]}")
+    told.clear()
+    ended.clear()
+    asking = threading.Thread(target=ask)
+    asking.start()
+    scene["camera"]["position"][0] += 1
+    request(viewer, "POST", f"frame?page=sky&number={next(numbers)}&format=png&opened=0", json.dumps(scene))
+    ended.set()
+    asking.join()
+    check(told and all(one["stage"] != "sky" for one in told), "the light is kept for another view")
+    request(viewer, "POST", "leave?page=sky")
+
+
 def reloads(chromium):
     """A page that is reloaded, and closed, leaves nothing behind."""
     with Viewer(PROGRAM, "torus.nrrd") as viewer, Browser(chromium, (400, 300)) as browser:
@@ -286,6 +318,7 @@ with tempfile.TemporaryDirectory() as folder:
     subprocess.run([PROGRAM, "make", "fire-ball", "--size", "160", "--quiet", "-o", "larger.nrrd"], check=True)
     with Viewer(PROGRAM, "larger.nrrd") as viewer:
         renderers_of_copies(viewer, json.loads(request(viewer, "GET", "start.json")[1])["scene"])
+        awaited(viewer, json.loads(request(viewer, "GET", "start.json")[1])["scene"])
     with Viewer(PROGRAM, "large.nrrd") as viewer:
         large = json.loads(request(viewer, "GET", "start.json")[1])["scene"]
     memory_of_all(large)

@@ -13,8 +13,8 @@
 //   { depth, opacity, object }. depth: the length along the ray from the eye, or orthographic from the plane through the
 //   camera's position, to where the opacity first reaches 0.01; null: nowhere. object: as in hl_layers. Null: cancelled.
 // - overlay(scene, over): what a figure has over the scene's picture (figure_overlay.js), as the blob of a transparent PNG.
-// - progress(): how far the frame under way is, { part, prepares, others }: part from 0 to 1; prepares: it is the part of the labels
-//   that are smoothed before the picture is made; others: frames of other pages under way.
+// - progress(): how far the frame under way is, { part, stage, others }: part of the stage, from 0 to 1; stage: what is made, "labels" (they are
+//   smoothed) and "sky" (its light) before the picture, and "picture"; others: frames of other pages under way.
 
 import { Lost } from "./connection.js";
 import { HeldScene } from "./held_scene.js";

@@ -5,6 +5,8 @@ import { make } from "./controls.js";
 
 // Milliseconds until the progress of a picture is first asked for, and between such questions.
 const ASK_AFTER = 600, ASK_EVERY = 400;
+// What is waited for before the picture is begun, for each stage of progress() of the channel.
+const AWAITED = { labels: "smoothing labels", sky: "light of the sky" };
 const STAGES = { moving: "moving", settled: "refining", refining: "refining", final: "final", waiting: "waiting" };
 
 // find(id): an element of the viewer. Returns show(frame), of frames.js, and end().
@@ -14,10 +16,11 @@ export function statusLine(find, channel) {
 
   // Shows the progress as long as the picture is under way.
   async function ask(mine) {
-    const { part, prepares, others } = await channel.progress().catch(() => ({ part: 0, others: 0 }));
+    const { part, stage: of, others } = await channel.progress().catch(() => ({ part: 0, stage: "picture", others: 0 }));
     if (mine !== number) return;
-    const isDone = prepares && part >= 1; // the picture has not begun
-    progress.textContent = (part > 0 && !isDone ? `${prepares ? "smoothing labels, " : ""}${Math.round(100 * part)} %` : "") + (others > 0 ? ` · with ${others} other ${others === 1 ? "picture" : "pictures"} under way` : "");
+    const awaited = AWAITED[of], isDone = awaited !== undefined && part >= 1; // the picture has not begun
+    const told = [awaited, part > 0 ? `${Math.round(100 * part)} %` : ""].filter(Boolean).join(", ");
+    progress.textContent = (isDone ? "" : told) + (others > 0 ? ` · with ${others} other ${others === 1 ? "picture" : "pictures"} under way` : "");
     timer = setTimeout(() => ask(mine), ASK_EVERY);
   }
 
