@@ -15,8 +15,7 @@
 extern "C" {
 #endif
 
-/* The coarser copies of a scene's volumes. A preview does not change once it is made, and any number of
- * threads may use it. */
+/* Coarser copies of a scene's volumes. Any number of threads may use it at once. */
 typedef struct hl_preview hl_preview;
 
 /* Makes the coarser copies of the scene's volumes and masks, which takes one pass over their voxels and a
@@ -29,13 +28,15 @@ HL_API HL_WARN_UNUSED hl_status hl_preview_create(hl_context *context, const hl_
                                                   hl_preview **preview, hl_error *error);
 HL_API void hl_preview_destroy(hl_preview *preview); /* null is allowed */
 
-/* Makes the scene that is rendered while something moves. Each volume or mask of which the preview has copies
- * is replaced by a copy: the coarsest one whose shortest voxel edge is at most the square root of 2 times the
- * distance between the scene's sheets. render.sheet_spacing is converted to the copies' voxels, so that the
- * distance between the sheets stays the same. Everything else stays. Where no copy is used, *quick is the
- * scene itself, retained. Use a separate renderer for such scenes, because a renderer prepares a volume anew
- * when the volume changes. */
-HL_API HL_WARN_UNUSED hl_status hl_preview_scene(const hl_preview *preview, hl_scene *scene, hl_scene **quick,
+/* The scene as it is rendered while something moves: each volume or mask that the preview has copies of is
+ * replaced by the coarsest copy whose shortest voxel edge is at most the square root of 2 times the distance
+ * of the scene's sheets. Copies for another use of a volume of the preview, as
+ * a label map or as values, are made by the first call with a scene that uses the volume so; where memory is
+ * short for them, the volume stays as it is. render.sheet_spacing is written anew in the voxels of the
+ * copies, so that the sheets stay as far apart as they were. Everything else stays. *quick is the scene
+ * itself, retained, where no copy is that coarse. Use a renderer for such scenes alone: a renderer prepares a
+ * volume anew when the volume changes. */
+HL_API HL_WARN_UNUSED hl_status hl_preview_scene(hl_preview *preview, hl_scene *scene, hl_scene **quick,
                                                  hl_error *error);
 
 #ifdef __cplusplus

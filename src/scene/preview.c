@@ -1,7 +1,9 @@
-/* scene/preview.c - see halflight/preview.h: makes coarser copies of a scene's volumes, and chooses those
- * that suit the scene's sheets. */
+/* scene/preview.c - see halflight/preview.h: a scene's volumes at coarser resolutions, and which of them suit
+ * its sheets. Copies for a use that comes up later, as labels or as values, are made when a scene needs them.
+ */
 #include <halflight/preview.h>
 #include <math.h>
+#include <pthread.h>
 #include <string.h>
 
 #include "core/context.h"
@@ -14,7 +16,8 @@
 
 enum { MOST_LEVELS = 3, LEAST_VOXELS = 64 * 64 * 64 };
 
-/* A volume, and its copies from fine to coarse. */
+/* A volume, and copies of it from fine to coarse. There are none where the volume can have none of this
+ * kind. */
 typedef struct levels {
   hl_volume *volume;               /* retained */
   hl_coarser_kind kind;            /* what the copies are made of */
@@ -22,19 +25,26 @@ typedef struct levels {
   size_t count;
 } levels;
 
+/* A scene has a volume and its mask; each may be used as values and as labels. */
+enum { MAPS = 2, KINDS = 2 };
+
 struct hl_preview {
   hl_context *context;
+  pthread_mutex_t adding; /* held while `volumes` is read or grows */
   size_t count;
-  levels volumes[]; /* [count] */
+  levels volumes[]; /* [count]; there is room for all kinds of all volumes and masks */
 };
+
+static void release_levels(levels *l) {
+  hl_volume_release(l->volume);
+  for (size_t n = 0; n < l->count; n++) hl_volume_release(l->coarser[n]);
+  *l = (levels){0};
+}
 
 void hl_preview_destroy(hl_preview *preview) {
   if (preview == NULL) return;
-  for (size_t v = 0; v < preview->count; v++) {
-    levels *l = &preview->volumes[v];
-    hl_volume_release(l->volume);
-    for (size_t n = 0; n < l->count; n++) hl_volume_release(l->coarser[n]);
-  }
+  for (size_t v = 0; v < preview->count; v++) release_levels(&preview->volumes[v]);
+  pthread_mutex_destroy(&preview->adding);
   hl_release(preview->context, preview);
 }
 
@@ -63,14 +73,38 @@ static const levels *levels_of(const hl_preview *preview, const hl_volume *volum
   return NULL;
 }
 
-/* Makes the copies of a volume, if the volume can have copies and has none yet. */
+static bool is_known(const hl_preview *preview, const hl_volume *volume) {
+  return levels_of(preview, volume, HL_COARSER_MEANS) != NULL ||
+         levels_of(preview, volume, HL_COARSER_LABELS) != NULL;
+}
+
+/* Makes the copies of a volume for a use, if it can have copies and has none yet. Where memory is short, the
+ * copies that were made are kept, and no others are tried again. */
 static hl_status add_levels(hl_preview *preview, hl_volume *volume, hl_coarser_kind kind, hl_error *error) {
-  if (!can_be_coarser(volume, kind) || levels_of(preview, volume, kind) != NULL) return HL_OK;
-  levels *l = &preview->volumes[preview->count++];
+  if (volume == NULL || levels_of(preview, volume, kind) != NULL) return HL_OK;
+  levels *l = &preview->volumes[preview->count];
   l->volume = volume;
   l->kind = kind;
   hl_volume_retain(volume);
-  return make_levels(l, error);
+  hl_status status = can_be_coarser(volume, kind) ? make_levels(l, error) : HL_OK;
+  if (status == HL_OK || status == HL_ERROR_MEMORY) preview->count++;
+  else release_levels(l);
+  return status;
+}
+
+/* Makes the copies of all volumes and masks of a scene for their use there. known: only of volumes and masks
+ * of which there are copies for another use. */
+static hl_status add_scene(hl_preview *preview, const hl_scene_description *d, bool known, hl_error *error) {
+  hl_status status = HL_OK;
+  for (size_t v = 0; v < d->volume_count && status == HL_OK; v++) {
+    const hl_scene_volume *volume = &d->volumes[v];
+    hl_volume *mask = volume->mask.volume;
+    if (!known || is_known(preview, volume->volume))
+      status = add_levels(preview, volume->volume, kind_of(volume), error);
+    if (status == HL_OK && (!known || is_known(preview, mask)))
+      status = add_levels(preview, mask, HL_COARSER_LABELS, error);
+  }
+  return status;
 }
 
 hl_status hl_preview_create(hl_context *context, const hl_scene *scene, hl_preview **preview,
@@ -80,17 +114,15 @@ hl_status hl_preview_create(hl_context *context, const hl_scene *scene, hl_previ
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_preview_create: null context, scene or preview");
   *preview = NULL;
   const hl_scene_description *d = &scene->description;
-  enum { MAPS = 2 }; /* a volume and its mask */
-  hl_preview *made = hl_allocate_zeroed(context, 1, sizeof *made + MAPS * d->volume_count * sizeof(levels));
+  const size_t most = MAPS * KINDS * d->volume_count;
+  hl_preview *made = hl_allocate_zeroed(context, 1, sizeof *made + most * sizeof(levels));
   if (made == NULL) return hl_fail_memory(error, sizeof *made, "a preview");
   made->context = context;
-  hl_status status = HL_OK;
-  for (size_t v = 0; v < d->volume_count && status == HL_OK; v++) {
-    const hl_scene_volume *volume = &d->volumes[v];
-    status = add_levels(made, volume->volume, kind_of(volume), error);
-    if (status == HL_OK && volume->mask.volume != NULL)
-      status = add_levels(made, volume->mask.volume, HL_COARSER_LABELS, error);
+  if (pthread_mutex_init(&made->adding, NULL) != 0) {
+    hl_release(context, made);
+    return hl_fail_memory(error, sizeof *made, "a preview");
   }
+  hl_status status = add_scene(made, d, false, error);
   if (status == HL_OK) *preview = made;
   else hl_preview_destroy(made);
   return status;
@@ -126,7 +158,16 @@ static bool replace(const hl_preview *preview, hl_scene_volume *volume, double a
   return copy != NULL || mask != NULL;
 }
 
-hl_status hl_preview_scene(const hl_preview *preview, hl_scene *scene, hl_scene **quick, hl_error *error) {
+/* Makes the copies that a scene needs and that are missing. Where memory is short, there are fewer copies. */
+static hl_status add_missing(hl_preview *preview, const hl_scene_description *d, hl_error *error) {
+  hl_error short_of = {0};
+  hl_status status = add_scene(preview, d, true, &short_of);
+  if (status == HL_OK || status == HL_ERROR_MEMORY) return HL_OK;
+  if (error != NULL) *error = short_of;
+  return status;
+}
+
+hl_status hl_preview_scene(hl_preview *preview, hl_scene *scene, hl_scene **quick, hl_error *error) {
   HL_DOOR;
   if (preview == NULL || scene == NULL || quick == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_preview_scene: null preview, scene or quick");
@@ -136,16 +177,18 @@ hl_status hl_preview_scene(const hl_preview *preview, hl_scene *scene, hl_scene 
   hl_scene_volume *volumes = hl_allocate(preview->context, d.volume_count + 1, sizeof *volumes);
   if (volumes == NULL) return hl_fail_memory(error, sizeof *volumes, "a preview's scene");
   double apart = d.volume_count > 0 ? d.render.sheet_spacing * hl_scene_smallest_edge(&d) : 0;
+  pthread_mutex_lock(&preview->adding);
+  hl_status status = add_missing(preview, &d, error);
   for (size_t v = 0; v < d.volume_count; v++) {
     volumes[v] = d.volumes[v];
     changed |= replace(preview, &volumes[v], apart);
   }
+  pthread_mutex_unlock(&preview->adding);
   d.volumes = volumes;
-  hl_status status = HL_OK;
-  if (changed) {
+  if (status == HL_OK && changed) {
     d.render.sheet_spacing = apart / hl_scene_smallest_edge(&d);
     status = hl_scene_create(preview->context, &d, quick, error);
-  } else {
+  } else if (status == HL_OK) {
     hl_scene_retain(scene);
     *quick = scene;
   }

@@ -308,16 +308,17 @@ void answer_scene(server *s, const frame_request *request, const composed_choice
   answer->length = strlen(answer->text);
 }
 
-/* The page's renderer for a scene of coarser volumes. If all places are taken, the scene gets the renderer in
- * the first place. */
+/* The page's renderer for a scene of coarser volumes. Where all places are taken, it takes the place that was
+ * used longest ago. */
 static hl_renderer **quick_renderer_of(server_page *page, const hl_scene *scene) {
   const hl_volume *volume = hl_scene_describe(scene)->volumes[0].volume;
-  quick_renderer *found = NULL;
-  for (int q = QUICK_RENDERERS - 1; q >= 0; q--)
-    if (page->quick[q].volume == volume || (found == NULL && page->quick[q].renderer == NULL))
-      found = &page->quick[q];
-  if (found == NULL) found = &page->quick[0];
+  quick_renderer *found = &page->quick[0];
+  for (int q = 1; q < QUICK_RENDERERS; q++)
+    if (page->quick[q].last_use < found->last_use) found = &page->quick[q];
+  for (int q = 0; q < QUICK_RENDERERS; q++)
+    if (page->quick[q].volume == volume) found = &page->quick[q];
   found->volume = volume;
+  found->last_use = ++page->quick_uses;
   return &found->renderer;
 }
 

@@ -50,9 +50,10 @@ extern const size_t server_asset_count;
 /* A renderer for frames while something moves, for volumes at one of the coarser resolutions. There is one
  * for each resolution, because a renderer prepares a volume anew when the volume changes. */
 typedef struct quick_renderer {
-  hl_renderer *renderer;   /* owned; null: not made yet */
-  const hl_volume *volume; /* borrowed; the first volume of the scenes that this renderer renders; it is only
-                            * compared by its address */
+  hl_renderer *renderer;       /* owned; null: not made yet */
+  const hl_volume *volume;     /* borrowed; the first volume of the scenes that the renderer renders; only its
+                                * address is compared */
+  unsigned long long last_use; /* by server_page's quick_uses */
 } quick_renderer;
 
 /* What is made for a frame: first what the picture needs and later frames keep, then the picture. */
@@ -64,6 +65,7 @@ typedef struct server_page {
   pthread_mutex_t rendering;             /* held while a frame of the page is rendered */
   hl_renderer *renderer;                 /* owned; guarded by `rendering`; null: not made yet */
   quick_renderer quick[QUICK_RENDERERS]; /* guarded by `rendering` */
+  unsigned long long quick_uses;         /* guarded by `rendering` */
   atomic_ullong newest;                  /* the highest number of a requested frame */
   atomic_int frame_part; /* how much of the current stage of the frame is finished, in thousandths */
   atomic_int stage;      /* the current stage, a frame_stage */

@@ -102,11 +102,36 @@ static void copies_suit_the_sheets(void **state) {
   hl_volume_release(volume);
 }
 
-static void labels_stay(void **state) {
+/* A box of label 1 beside a box of label 5. */
+static hl_volume *two_boxes(void) {
+  uint8_t *values = calloc(1, 64 * 64 * 64);
+  for (int n = 0; n < 64 * 64 * 64; n++) {
+    const int x = n % 64, y = n / 64 % 64, z = n / 64 / 64;
+    if (x >= 8 && x < 56 && y >= 8 && y < 56 && z >= 8 && z < 56) values[n] = x < 32 ? 1 : 5;
+  }
+  hl_volume *map = volume_of_voxels(context, 64, 64, 64, HL_VOXEL_U8, values);
+  free(values);
+  return map;
+}
+
+/* The copy of the first volume that a scene is shown with, which the preview holds. */
+static const hl_volume *copy_in(hl_preview *preview, hl_scene *scene) {
+  hl_scene *quick = NULL;
+  assert_int_equal(hl_preview_scene(preview, scene, &quick, NULL), HL_OK);
+  assert_ptr_not_equal(quick, scene);
+  const hl_volume *copy = hl_scene_describe(quick)->volumes[0].volume;
+  hl_scene_release(quick);
+  return copy;
+}
+
+/* A volume that is shown by its labels after it was shown by its values gets copies of the other kind, once.
+ * A volume that the preview does not know gets none. */
+static void copies_follow_the_use(void **state) {
   (void)state;
   static const hl_label labels[] = {{.value = 1, .color = {1, 0, 0}, .opacity = 1, .visible = 1}};
-  hl_volume *volume = make((const size_t[3]){128, 64, 64}, 1);
-  hl_scene *plain = scene_of(volume, 4), *scene = NULL, *quick = NULL;
+  hl_volume *volume = make((const size_t[3]){128, 64, 64}, 1),
+            *other = make((const size_t[3]){128, 64, 64}, 2);
+  hl_scene *plain = scene_of(volume, 4), *stranger = scene_of(other, 4), *scene = NULL, *quick = NULL;
   hl_scene_description d = *hl_scene_describe(plain);
   hl_scene_volume of_labels = d.volumes[0];
   of_labels.labels = labels;
@@ -115,12 +140,18 @@ static void labels_stay(void **state) {
   assert_int_equal(hl_scene_create(context, &d, &scene, NULL), HL_OK);
   hl_preview *preview = NULL;
   assert_int_equal(hl_preview_create(context, plain, &preview, NULL), HL_OK);
-  assert_int_equal(hl_preview_scene(preview, scene, &quick, NULL), HL_OK);
-  assert_ptr_equal(quick, scene);
+  const hl_volume *means = copy_in(preview, plain), *commonest = copy_in(preview, scene);
+  assert_ptr_not_equal(means, commonest);
+  assert_ptr_equal(copy_in(preview, scene), commonest);
+  assert_ptr_equal(copy_in(preview, plain), means);
+  assert_int_equal(hl_preview_scene(preview, stranger, &quick, NULL), HL_OK);
+  assert_ptr_equal(quick, stranger);
   hl_scene_release(quick);
   hl_scene_release(scene);
+  hl_scene_release(stranger);
   hl_scene_release(plain);
   hl_preview_destroy(preview);
+  hl_volume_release(other);
   hl_volume_release(volume);
 }
 
@@ -135,18 +166,6 @@ static void labels_are_the_commonest(void **state) {
   assert_float_equal(hl_volume_value(coarse, 1, 0, 0), 2, 0); /* 9 9 2 2 2 9 2 2 */
   hl_volume_release(coarse);
   hl_volume_release(fine);
-}
-
-/* A box of label 1 beside a box of label 5. */
-static hl_volume *two_boxes(void) {
-  uint8_t *values = calloc(1, 64 * 64 * 64);
-  for (int n = 0; n < 64 * 64 * 64; n++) {
-    const int x = n % 64, y = n / 64 % 64, z = n / 64 / 64;
-    if (x >= 8 && x < 56 && y >= 8 && y < 56 && z >= 8 && z < 56) values[n] = x < 32 ? 1 : 5;
-  }
-  hl_volume *map = volume_of_voxels(context, 64, 64, 64, HL_VOXEL_U8, values);
-  free(values);
-  return map;
 }
 
 static void maps_and_masks_have_copies(void **state) {
@@ -208,7 +227,7 @@ int main(void) {
       cmocka_unit_test(long_axes_stay),
       cmocka_unit_test(numbers_that_are_none_are_left_out),
       cmocka_unit_test(copies_suit_the_sheets),
-      cmocka_unit_test(labels_stay),
+      cmocka_unit_test(copies_follow_the_use),
       cmocka_unit_test(labels_are_the_commonest),
       cmocka_unit_test(maps_and_masks_have_copies),
       cmocka_unit_test(null_is_refused),

@@ -249,6 +249,25 @@ def renderers_of_copies(viewer, scene):
     check(state(viewer)["renderers"] == 0, "all of them end with the page")
 
 
+def copies_of_both_kinds(viewer, scene):
+    """A map that is shown by its labels, and then by its values, has copies for both: while something moves, each has a renderer of its own."""
+    by_values = json.loads(json.dumps(scene))
+    del by_values["volumes"][0]["labels"]
+    by_values["volumes"][0]["transfer_function"] = {"unit_distance": 1, "opacity": [[0, 0], [2, 0.5]], "color": [[0, 0.5, 0.5, 0.5]]}
+
+    def moving(asked, spacing):
+        asked = json.loads(json.dumps(asked))
+        asked["image"].update(width=64, height=64)
+        asked["render"].update(sheet_spacing=spacing)
+        status, answer = request(viewer, "POST", f"frame?page=kinds&number={next(numbers)}&format=jpeg&moving=1&opened=0", json.dumps(asked))
+        check(status == 200, f"a frame with sheets {spacing} voxels apart: {answer}")
+        return state(viewer)["renderers"]
+
+    counts = [moving(*asked) for asked in ((scene, 4), (scene, 2), (by_values, 4), (by_values, 2), (by_values, 4), (scene, 4))]
+    check(counts == [1, 2, 3, 3, 3, 3], f"one for each of two copies of each kind, in three places: {counts}")
+    request(viewer, "POST", "leave?page=kinds")
+
+
 def awaited(viewer, scene):
     """While the light of the sky is made, progress.json says so, with the part that is done; then it tells of the picture."""
     scene = json.loads(json.dumps(scene))
@@ -279,6 +298,16 @@ def awaited(viewer, scene):
     asking.join()
     check(told and all(one["stage"] != "sky" for one in told), "the light is kept for another view")
     request(viewer, "POST", "leave?page=sky")
+
+
+def write_map(path, side):
+    """A label map: boxes of 1 and 2."""
+    row = bytes(side // 8) + b"\1" * (side // 4) + b"\2" * (side // 2) + bytes(side // 8)
+    inner = row * (side // 2)
+    empty = bytes(side * side // 4)
+    slices = [empty + inner + empty if side // 8 <= k < side - side // 8 else bytes(side * side) for k in range(side)]
+    with open(path, "wb") as file:
+        file.write(f"NRRD0004\ntype: uint8\ndimension: 3\nsizes: {side} {side} {side}\nencoding: raw\n\n".encode() + b"".join(slices))
 
 
 def reloads(chromium):
@@ -319,6 +348,9 @@ with tempfile.TemporaryDirectory() as folder:
     with Viewer(PROGRAM, "larger.nrrd") as viewer:
         renderers_of_copies(viewer, json.loads(request(viewer, "GET", "start.json")[1])["scene"])
         awaited(viewer, json.loads(request(viewer, "GET", "start.json")[1])["scene"])
+    write_map("map.nrrd", 128)
+    with Viewer(PROGRAM, "map.nrrd", "--show", "all") as viewer:
+        copies_of_both_kinds(viewer, json.loads(request(viewer, "GET", "start.json")[1])["scene"])
     with Viewer(PROGRAM, "large.nrrd") as viewer:
         large = json.loads(request(viewer, "GET", "start.json")[1])["scene"]
     memory_of_all(large)
