@@ -1,0 +1,111 @@
+#!/usr/bin/env python3
+"""Volumes of several resolutions in the viewer: the coarsest is there first, finer ones follow, and a picture that is saved waits for
+them.
+
+usage: refinement.py PROGRAM
+"""
+import http.client
+import json
+import os
+import pathlib
+import sys
+import tempfile
+import zlib
+
+import numpy
+
+import checks
+from checks import check
+from viewer import Viewer, need_viewer
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "cli"))
+import servers  # noqa: E402
+
+PROGRAM = os.path.abspath(sys.argv[1])
+SIDE, CHUNK, LEVELS = 512, 64, 4
+
+
+def write_pyramid(folder):
+    """Levels of 512^3 to 64^3 voxels of a small ball in the middle, whose surface is rough at the finest level alone. Empty chunks are
+    missing."""
+    noise = numpy.random.default_rng(1)
+    folder.mkdir(parents=True)
+    for level in range(LEVELS):
+        size, array = SIDE >> level, folder / str(level)
+        array.mkdir()
+        (array / ".zarray").write_text(json.dumps(
+            {"zarr_format": 2, "shape": [size] * 3, "chunks": [CHUNK] * 3, "dtype": "|u1", "compressor": {"id": "zlib", "level": 1},
+             "fill_value": 0, "order": "C", "filters": None, "dimension_separator": "/"}))
+        middle = size // CHUNK // 2
+        near = range(max(middle - 1, 0), min(middle + 1, size // CHUNK))
+        for place in ((z, y, x) for z in near for y in near for x in near):
+            z, y, x = (CHUNK * p + numpy.arange(CHUNK) + 0.5 - size / 2 for p in place)
+            distance = numpy.sqrt(z[:, None, None] ** 2 + y[None, :, None] ** 2 + x[None, None, :] ** 2) * 10 / size
+            if level == 0:
+                distance += noise.uniform(0, 0.1, distance.shape)
+            chunk = (numpy.clip(8 * (1 - distance) + 0.5, 0, 1) * 250).astype("u1")
+            file = array.joinpath(*map(str, place))
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_bytes(zlib.compress(chunk.tobytes(), 1))
+    (folder / ".zgroup").write_text('{"zarr_format": 2}')
+    (folder / ".zattrs").write_text(json.dumps({"multiscales": servers.levels_text(LEVELS)}))
+
+
+numbers = iter(range(1, 10**6))
+
+
+def request(viewer, method, path, body=None):
+    """(status, headers, body)"""
+    connection = http.client.HTTPConnection("127.0.0.1", viewer.port, timeout=600)
+    connection.request(method, f"/{viewer.token}/{path}", body)
+    answer = connection.getresponse()
+    result = answer.status, answer.headers, answer.read()
+    connection.close()
+    return result
+
+
+def frame(viewer, scene, page="test", **more):
+    query = "".join(f"&{key}={value}" for key, value in more.items())
+    return request(viewer, "POST", f"frame?page={page}&number={next(numbers)}&format=png{query}", json.dumps(scene))
+
+
+def small(scene, side=96):
+    scene = json.loads(json.dumps(scene))
+    scene["image"].update(width=side, height=side)
+    return scene
+
+
+def told(viewer, name, opened=0):
+    return json.loads(request(viewer, "GET", f"{name}.json?opened={opened}")[2])
+
+
+def from_disk():
+    """Files that a page opens are read from coarse to fine, and a scene that is closed ends the reading."""
+    with Viewer(PROGRAM, "stores/a.zarr/3") as viewer:
+        check(not told(viewer, "start")["refining"], "an array of one resolution")
+        opened = json.loads(request(viewer, "POST", "open?file=stores/a.zarr")[2])
+        check(opened["refining"] and opened["volumes"][0]["dimensions"] == [128] * 3, "a file that a page opens")
+        scene = small(opened["scene"])
+        check(scene["volumes"][0]["level"] == 0, "its scene names the level")
+        status, _, picture = frame(viewer, scene, opened=opened["opened"])
+        now = told(viewer, "refined", opened["opened"])
+        check(status == 200 and now["refined"] == 2 and not now["refining"], f"its picture: {status} {now}")
+        coarser = {**scene, "volumes": [{**scene["volumes"][0], "level": 2}]}
+        check(frame(viewer, coarser, opened=opened["opened"])[0] == 400, "a scene of another level is not taken for this one")
+        again = json.loads(request(viewer, "POST", "open?file=stores/a.zarr")[2])
+        request(viewer, "POST", f"leave?page=test&opened={again['opened']}")
+        check(viewer.interrupt(20) == 0, "the viewer ends while a level is read")
+        check(len(picture) > 1000, "a picture")
+
+
+def main():
+    need_viewer(PROGRAM)
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        write_pyramid(pathlib.Path("stores/a.zarr"))
+        from_disk()
+    print(f"{checks.count} checks")
+
+
+if __name__ == "__main__":
+    main()
