@@ -81,7 +81,8 @@ static bool faces_axis(const hl_volume *volume, const size_t at[3], int axis, do
 
 /* Adds the share of the step between a voxel and the next one along an axis, if the values pass the level
  * there: its part of the step over three voxel edges, which begins one voxel earlier and ends one voxel
- * later. Noise can make the share greater than 1. */
+ * later. Noise can make the share greater than 1. Where the values return within the three edges, matter is
+ * one voxel thin. Its share is 0, because smoothing would remove such matter. */
 static void add_share(const hl_volume *volume, const size_t at[3], int axis, double level,
                       step_shares *made) {
   const int other = (axis + 1) % 3;
@@ -90,8 +91,8 @@ static void add_share(const hl_volume *volume, const size_t at[3], int axis, dou
   if (!isfinite(here) || !isfinite(next) || (here > level) == (next > level)) return;
   const double whole = value_beside(volume, at, axis, 2, other, 0) -
                        value_beside(volume, at, axis, -1, other, 0);
-  if (!(whole * (next - here) > 0) || !faces_axis(volume, at, axis, next - here)) return;
-  made->sum += fmin((next - here) / whole, 2);
+  if (!faces_axis(volume, at, axis, next - here)) return;
+  if (whole * (next - here) > 0) made->sum += fmin((next - here) / whole, 2);
   made->count++;
 }
 

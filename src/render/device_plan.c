@@ -121,8 +121,8 @@ static const struct {
     {has_two_numbers, "a function of two numbers"},
     {hides_cut_surfaces, "gradient opacity of cut surfaces that cast shadows"},
     {is_soft_otherwise, "soft shadows by another method than the cascade"},
-    {has_soft_matter, "soft shadows of surfaces, cuts, gradient opacity or coloured extinction"},
     {has_other_lights, "soft shadows beside hard ones, or of near lights"},
+    {has_soft_matter, "soft shadows of surfaces, cuts, gradient opacity or coloured extinction"},
     {has_images, "lights with images"},
     {has_phase_tables, "wide lights in media that scatter unevenly"},
 };

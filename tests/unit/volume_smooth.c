@@ -183,6 +183,19 @@ static void sharpness_is_the_part_of_a_step_between_two_voxels(void **state) {
   assert_true(fabs(expected_sharpness(0.5) - 0.614) < 0.001); /* from there on volumes are smoothed */
 }
 
+/* Rods one voxel thin would vanish. */
+static void thin_matter_is_left(void **state) {
+  (void)state;
+  for (int v = 0; v < COUNT; v++)
+    values[v] = (v % N % 8 == 4 && v / N / N % 8 == 4 && v / N % N > 8 && v / N % N < 24) ? 250 : 0;
+  hl_volume *volume = make(1);
+  const hl_sample sample = {.context = context, .low = 0, .range = 250, .step = 1};
+  hl_data_analysis analysis = {.background = 0, .direction = 1, .solid = 0.5};
+  assert_int_equal(hl_data_find_boundary(volume, &sample, &analysis, NULL), HL_OK);
+  assert_true(analysis.sharpness < 0.1);
+  hl_volume_release(volume);
+}
+
 /* A rim that is narrower along k than the distance of slices makes terraces. */
 static void terraces_are_smoothed(void **state) {
   (void)state;
@@ -295,6 +308,7 @@ int main(void) {
       cmocka_unit_test(cliffs_are_smoothed),
       cmocka_unit_test(sharpness_is_the_part_of_a_step_between_two_voxels),
       cmocka_unit_test(terraces_are_smoothed),
+      cmocka_unit_test(thin_matter_is_left),
       cmocka_unit_test(grain_is_smoothed_and_objects_stay_what_they_are),
       cmocka_unit_test(bare_scenes_are_smoothed),
       cmocka_unit_test(what_has_no_mean_is_refused),
