@@ -132,10 +132,11 @@ export class HttpChannel {
   }
 
   // A picture of the scene: { blob, times }, or null where a newer frame of this page has cancelled it. `lane` sets
-  // frames apart that do not cancel each other; `moving` makes a quick picture, of coarser volumes where the sheets are wide.
+  // frames apart that do not cancel each other; `moving` makes a quick picture, of coarser volumes where the sheets are wide; `finest`
+  // waits until the finest resolutions that are to be read are there, and fails where they cannot be read.
   // scaleBar, legend, axes, marks (those of the scene): drawn over a PNG of 8 bits; a bar is refused where neither the scene's files nor `unit` tell a unit of length.
-  async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, metadata = true, moving = false, lane = "", ...over } = {}) {
-    const query = { page: this.#page + lane, opened: 0, format, quality, depth, metadata: +metadata, moving: +moving, ...overlayQuery(over) };
+  async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, metadata = true, moving = false, lane = "", finest = false, ...over } = {}) {
+    const query = { page: this.#page + lane, opened: 0, format, quality, depth, metadata: +metadata, moving: +moving, coarse: +!finest, ...overlayQuery(over) };
     const ask = (number, body, base) => this.#ask("frame", { ...query, number, ...(base === undefined ? {} : { base }) }, { method: "POST", body });
     const response = await (lane === "" ? this.#held.send(scene, moving, ask) : ask(++this.#number, JSON.stringify(scene)));
     if (response.status === 204) return null;
