@@ -245,6 +245,68 @@ def labels_and_isolines(browser):
     browser.run("halflight.store.undo()")
 
 
+def reds(browser, voxels):
+    """How bright the voxels of the axial plane are, wherever the scene puts the volume: the red of the slice's canvas at each of them."""
+    return browser.run(f"""import('./sections.js').then(({{ pointAt }}) => {{ const view = halflight.slices.view('axial'), {{ grid, transform }} = halflight.slices.source;
+      const canvas = view.area.querySelector('canvas').getContext('2d');
+      return {json.dumps(voxels)}.map((voxel) => {{ const [x, y] = view.project(pointAt(grid, transform, voxel)); return canvas.getImageData(Math.round(x), Math.round(y), 1, 1).data[0]; }}); }})""")
+
+
+def line_pixels(browser):
+    return browser.run("""(() => { const canvas = document.querySelector('[data-plane=axial] canvas'), { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+      let count = 0; for (let n = 0; n < data.length; n += 4) count += data[n] === 255 && data[n + 1] === 122 && data[n + 2] === 102; return count; })()""")
+
+
+def is_inside(cut, point):
+    """How far a point lies inside a cut's shape, for planes and spheres in millimetres."""
+    if cut["type"] == "plane":
+        normal = numpy.array(cut["normal"])
+        return numpy.dot(numpy.subtract(point, cut["point"]), normal) / numpy.linalg.norm(normal)
+    if cut["type"] == "sphere":
+        return cut["radius"] - math.dist(point, cut["center"])
+    return min(min(high - x, x - low) for low, high, x in zip(cut["min"], cut["max"], point))
+
+
+def cuts_in_slices(browser):
+    """What cuts and clip boxes remove is dimmed, with a line at its border: for each shape, in the lengths of the file and in those of the scene."""
+    move(browser, (20, 25, 15))
+    browser.run("halflight.slices.window = [0, 1200]")
+    still(browser)
+    voxels = [[i, j, 15] for i in range(12, 30, 3) for j in range(12, 40, 3) if (1.5 * (i - 20)) ** 2 + (j - 25) ** 2 < 17**2]
+    bright, middle = reds(browser, voxels), world((20, 25, 15))
+    check(min(bright) > 150 and line_pixels(browser) == 0, f"nothing is cut: {min(bright)}")
+    plane = {"type": "plane", "point": middle, "normal": [1, -0.7, 0.2]}
+    box = {"type": "box", "min": [middle[0] - 9, middle[1] - 30, middle[2] - 4], "max": [middle[0] + 7, middle[1] + 5, middle[2] + 6]}
+    sphere = {"type": "sphere", "center": [middle[0] + 5, middle[1] + 4, middle[2] + 6], "radius": 12}
+    turn = {"scale": [2, 2, 2], "rotate": {"axis": [1, 2, 3], "angle_deg": 40}, "translate": [5, -7, 9]}
+    # { cuts of the volume, its clip box, cuts of the scene, its transform }
+    scenes = [([plane], None, [], None), ([box], None, [], None), ([sphere | {"keep": "inside"}], None, [], None), ([], box, [], None), ([], None, [sphere], None),
+              ([plane, sphere], None, [box], None), ([sphere], box, [], turn), ([plane | {"world": True}], None, [sphere | {"keep": "inside", "radius": 40}], turn)]
+    place = "import('./boxes.js').then((m) => %s.map((point) => m.placed(point, %s)))"
+    for own, clip, of_scene, transform in scenes:
+        changed = {"cuts": own} | ({"clip": {"min": clip["min"], "max": clip["max"]}} if clip else {}) | ({"transform": transform} if transform else {})
+        browser.run(f"""halflight.store.change('cuts of a test', ({{ volumes: [{{ cuts: _, clip: __, ...first }}, ...others], cuts: ___, ...scene }}) =>
+          ({{ ...scene, cuts: {json.dumps(of_scene)}, volumes: [{{ ...first, ...{json.dumps(changed)} }}, ...others] }}))""")
+        places = browser.run(place % (json.dumps([world(voxel) for voxel in voxels]), json.dumps(transform or {})))
+        browser.run(f"halflight.slices.moveTo({json.dumps(browser.run(place % (json.dumps([middle]), json.dumps(transform or {})))[0])})")
+        still(browser)
+        now, dimmed, left, border = reds(browser, voxels), 0, 0, line_pixels(browser)
+        for voxel, there, before, after in zip(voxels, places, bright, now):
+            deep = [(is_inside(cut, there if cut.get("world") else world(voxel)), cut.get("keep")) for cut in own]
+            deep += [(is_inside(shape, world(voxel)), "inside") for shape in [clip] if shape] + [(is_inside(cut, there), cut.get("keep")) for cut in of_scene]
+            if min(abs(away) for away, _ in deep) < (2.5 if transform else 1.6):
+                continue  # at the border lies the line
+            gone = any((away > 0) != (keep == "inside") for away, keep in deep)
+            check(after < 0.5 * before if gone else after == before, f"{own} {clip} {of_scene} {transform}: {voxel} has {after}, before {before}, gone: {gone}")
+            dimmed, left = dimmed + gone, left + (not gone)
+        check(dimmed >= 3 and left >= 3 and border > 60, f"{own} {clip} {of_scene}: {dimmed} voxels dimmed, {left} left, {border} pixels of the line")
+        shot(browser, f"cuts-{scenes.index((own, clip, of_scene, transform))}")
+        browser.run("halflight.store.undo()")
+    browser.run("halflight.slices.window = null")
+    move(browser, (20, 25, 15))
+    still(browser)
+
+
 def clicks_in_the_picture(browser):
     """The crosshair goes to the ball's surface under the cursor, or stays where nothing is seen; a drag only turns."""
     move(browser, (20, 25, 15))
@@ -303,7 +365,7 @@ with tempfile.TemporaryDirectory() as folder:
     values = write_volumes()
     with open("tf.json", "w", encoding="utf-8") as steep:
         json.dump({"opacity": [[0, 0], [500, 1]], "color": [[0, 0.8, 0.7, 0.6]], "unit_distance": 0.5}, steep)
-    made = subprocess.run([PROGRAM, "render", "head.nrrd", "--tf", "tf.json", "--mask", "organs.nrrd", "--show", "3=red", "--sheet-spacing", "1", "--shadows", "hard", "--print-scene"],
+    made = subprocess.run([PROGRAM, "render", "head.nrrd", "--tf", "tf.json", "--mask", "organs.nrrd", "--show", "3=red", "--sheet-spacing", "1", "--smooth", "0", "--shadows", "hard", "--print-scene"],
                           capture_output=True, text=True, check=True)
     scene = json.loads(made.stdout)
     scene["volumes"][0]["mask"]["rest"] = 1
@@ -319,6 +381,7 @@ with tempfile.TemporaryDirectory() as folder:
         window_and_level(page)
         slabs(page, values)
         labels_and_isolines(page)
+        cuts_in_slices(page)
         clicks_in_the_picture(page)
         oblique(page)
         check(page.problems == [], f"the console has errors: {page.problems}")

@@ -3,6 +3,7 @@
 // shift + drag pans, ctrl + wheel or two fingers zoom. With the keyboard, arrow keys move the crosshair.
 
 import { isActive, make } from "./controls.js";
+import { drawSections } from "./cut_sections.js";
 import { planeTitle, sampleAt, samplePoint } from "./sections.js";
 import { isolines, paint } from "./slice_values.js";
 import { subtract } from "./vector.js";
@@ -120,6 +121,7 @@ export class SliceView {
     context.imageSmoothingEnabled = Math.max(fit.x, fit.y) < SMOOTH_UP_TO;
     context.drawImage(this.#greys, fit.left - fit.x / 2, fit.top - fit.y / 2, width * fit.x, height * fit.y);
     this.#drawLines(context, fit);
+    this.#drawCuts(context, fit, density);
     this.#drawCrosshair(wide, tall);
     this.#slices.drawMarks(this);
   }
@@ -135,6 +137,13 @@ export class SliceView {
       }
       context.stroke();
     }
+  }
+
+  // What cuts and clip boxes remove is dimmed.
+  #drawCuts(context, fit, density) {
+    const { width, height } = this.#plane, [x, y, left, top] = [fit.x, fit.y, fit.left, fit.top].map((part) => density * part);
+    context.setTransform(1, 0, 0, 1, 0, 0);
+    drawSections(context, this.#slices.sections(this.#plane), { x, y, left, top }, [left - x / 2, top - y / 2, width * x, height * y], density);
   }
 
   #drawCrosshair(wide, tall) {

@@ -6,6 +6,7 @@
 import { middle, placed, worldBox } from "./boxes.js";
 import { projector } from "./camera.js";
 import { make } from "./controls.js";
+import { cutsOf, sectionsOf } from "./cut_sections.js";
 import { Marks } from "./mark_overlay.js";
 import { pick } from "./pick.js";
 import { holds, planeOf, PLANES, voxelAt } from "./sections.js";
@@ -147,6 +148,12 @@ export class Slices {
   view(name) { return this.#views.find((view) => view.name === name); }
   shown(name) { return this.#values.get(name)?.shown ?? null; }
   drawMarks(view) { this.#marks.drawPlane(view); }
+
+  // The sections of the source's cuts with a plane.
+  sections(plane) {
+    const { source } = this;
+    return sectionsOf(cutsOf(this.#viewer.store.scene, source.volume), plane, source);
+  }
 
   #want(name) {
     const { store, channel } = this.#viewer, { source, cursor, thickness, blend } = this;
