@@ -269,6 +269,8 @@ def is_inside(cut, point):
 
 def cuts_in_slices(browser):
     """What cuts and clip boxes remove is dimmed, with a line at its border: for each shape, in the lengths of the file and in those of the scene."""
+    browser.run("document.getElementById('view').focus()")
+    browser.key("4")
     move(browser, (20, 25, 15))
     browser.run("halflight.slices.window = [0, 1200]")
     still(browser)
@@ -340,6 +342,7 @@ def oblique(browser):
     browser.run("document.getElementById('view').focus()")
     browser.key("2")
     set_control(browser, "Plane", "oblique", "change")
+    browser.wait("halflight.slices.shown('oblique') !== null")
     still(browser)
     at = "import('./sections.js').then((m) => m.sampleAt(halflight.slices.shown('oblique').plane, halflight.slices.source, halflight.slices.cursor))"
     column, row, layer = browser.run(at)
@@ -381,8 +384,8 @@ with tempfile.TemporaryDirectory() as folder:
         window_and_level(page)
         slabs(page, values)
         labels_and_isolines(page)
-        cuts_in_slices(page)
         clicks_in_the_picture(page)
         oblique(page)
+        cuts_in_slices(page)
         check(page.problems == [], f"the console has errors: {page.problems}")
 print(f"{checks.count} checks passed")
