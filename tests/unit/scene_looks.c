@@ -1,34 +1,10 @@
 /* tests/unit/scene_looks.c - what volumes are taken for, and how they are then shown: colours and
  * labels. */
 #include "guess/looks.h"
+#include "looks_volumes.h"
 #include "scene_parts.h"
 
-enum { N = 48, COUNT = N * N * N };
-
-static float values[COUNT];
-
-static double distance(int i, int j, int k, double x, double y, double z) {
-  return hypot(hypot(i - x, j - y), k - z);
-}
-
-/* values[] = each(i, j, k) */
-static void fill(double (*each)(int i, int j, int k)) {
-  for (int v = 0; v < COUNT; v++) values[v] = (float)each(v % N, v / N % N, v / N / N);
-}
-
-static double noise(int i, int j, int k) { /* -0.5..0.5 */
-  unsigned state = (unsigned)((k * N + j) * N + i) * 2654435761u;
-  state = (state ^ (state >> 15)) * 2246822519u;
-  return (double)((state ^ (state >> 13)) & 0xffff) / 65536 - 0.5;
-}
-
-/* A body in Hounsfield units: air, skin and muscle, a bone; and a casting of metal in their place. */
-static double body(int i, int j, int k) {
-  double r = distance(i, j, k, 24, 23, 25), soft = 1 / (1 + exp((r - 17) / 0.6)),
-         bone = 1 / (1 + exp((r - 6) / 0.6));
-  return -1000 + 1040 * soft + 900 * bone + 60 * noise(i, j, k);
-}
-
+/* A casting of metal in place of the body. */
 static double casting(int i, int j, int k) {
   return body(i, j, k) > -400 ? 2400 + 60 * noise(i, j, k) : -1000 + 60 * noise(i, j, k);
 }
@@ -54,10 +30,6 @@ static double regions(int i, int j, int k) {
 
 static double mask(int i, int j, int k) { return distance(i, j, k, 24, 24, 24) < 15; }
 static double whole_noise(int i, int j, int k) { return floor(40 * (noise(i, j, k) + 0.5)); }
-static double ball_of_bytes(int i, int j, int k) {
-  return floor(fmax(0, fmin(255, 128 + 80 * (15 - distance(i, j, k, 24, 24, 24)))));
-}
-
 /* Waves of many directions that fill the grid, about a mean. */
 static double waves(int i, int j, int k) {
   double sum = 0;
