@@ -79,9 +79,6 @@ static void mark_opaque(float *pixels) {
     if (i / 40 % 2) pixels[i] = -LEAST_MARK;
 }
 
-/* The pixel of a number of any size; NaN becomes 0. */
-static field_pixel nearest_pixel(float number) { return (field_pixel)fminf(fmaxf(number, 0), 65535); }
-
 void test_fields(void **unused) {
   (void)unused;
   static const char *const names[] = {

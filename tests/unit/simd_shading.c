@@ -67,7 +67,7 @@ static shadow_map random_map(uint32_t *seed, double steepest) {
 static void set_up_lights(shade_state *s, uint32_t *seed, int round) {
   fill_salted(&s->buffer[0][0][0], sizeof s->buffer / 4, seed, 0, 1);
   for (int i = 0; i < HL_CHANNELS * 64 * 64; i++)
-    (&s->left[0][0][0])[i] = (sublight_pixel)((&s->buffer[0][0][0])[i] * SUBLIGHT_ONE);
+    (&s->left[0][0][0])[i] = nearest_pixel((&s->buffer[0][0][0])[i] * SUBLIGHT_ONE);
   for (int i = 0; i < 3; i++) {
     shade_light *light = &s->lights[i];
     vec3 towards = bench_random_direction(seed);

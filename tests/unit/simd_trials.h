@@ -5,6 +5,8 @@
 #ifndef SIMD_TRIALS_H
 #define SIMD_TRIALS_H
 
+#include <math.h>
+
 #include "sheet_bench.h"
 
 enum { ROUNDS = 40 };
@@ -70,5 +72,8 @@ void test_measure(void **unused);
 void test_maximum(void **unused);
 void test_surface(void **unused);
 void test_shade_beside_nothing(void **unused);
+
+/* A number of any size as a whole number of 16 bits, within its range; NaN becomes 0. */
+static inline uint16_t nearest_pixel(float number) { return (uint16_t)fminf(fmaxf(number, 0), 65535); }
 
 #endif
