@@ -178,7 +178,7 @@ static hl_status read_box(amr_list *list, hl_amr *amr, size_t index, hl_error *e
                           .time = -1,
                           .channel = -1,
                           .level = -1,
-                          .selection = {1, 1, 1, 0, 0, 0}};
+                          .selection = {1, 1, 1, 0, 0, 0, 0}};
   hl_stream *stream = NULL;
   hl_volume *piece = NULL;
   part.array = index == 0 ? request->array : request->arrays[request->chosen].name;

@@ -409,7 +409,7 @@ static hl_status read_parts(const vti_header *header, hl_volume **volume, hl_err
                             .time = -1,
                             .channel = -1,
                             .level = -1,
-                            .selection = {1, 1, 1, 0, 0, 0}};
+                            .selection = {1, 1, 1, 0, 0, 0, 0}};
     bool first = pieces.to.context == NULL;
     size_t at[3];
     part.array = first ? request->array : request->arrays[request->chosen].name;

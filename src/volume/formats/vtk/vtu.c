@@ -170,7 +170,7 @@ static hl_status find_cell(hl_stream **stream, grid_file *file, const hl_vtk_pie
 
 int hl_volume_reads_cells(hl_context *context, const char *path) {
   HL_DOOR;
-  hl_load_request request = {.context = context, .selection = {1, 1, 1, 0, 0, 0}};
+  hl_load_request request = {.context = context, .selection = {1, 1, 1, 0, 0, 0, 0}};
   grid_file file = {.request = &request,
                     .pieces = {.context = context, .types = types, .type_count = TYPES},
                     .chosen_active = -1};
