@@ -56,9 +56,15 @@ static bool read_lines(const char *key, hl_fetched_file *file, char *condition) 
   if (end == NULL || end - line >= FETCH_CONDITION_BYTES) return false;
   *end = '\0';
   snprintf(condition, FETCH_CONDITION_BYTES, "%s", line);
-  return sscanf(end + 1, "%" SCNu64 " %" SCNu64 " %" SCNu64 "\n", &file->size, &file->begin, &file->whole) ==
-             3 &&
-         file->size == (uint64_t)(about.st_size - length);
+  uint64_t *const numbers[3] = {&file->size, &file->begin, &file->whole};
+  const char *text = end + 1;
+  for (int n = 0; n < 3; n++) {
+    char *after;
+    *numbers[n] = strtoull(text, &after, 10);
+    if (after == text) return false;
+    text = after;
+  }
+  return file->size == (uint64_t)(about.st_size - length);
 }
 
 void copies_find(const char *folder, const char *key, hl_fetched_file *file, char *condition) {
