@@ -88,8 +88,8 @@ typedef struct hl_fetched_file {
   uint64_t size;  /* the number of these bytes; what follows them in the descriptor's file is not read */
   uint64_t begin; /* the place of the first of these bytes in the server's file */
   uint64_t whole; /* the size of the server's file in bytes */
-  uint64_t state; /* a number that is another one if the server's file has changed; 0: the server does not
-                   * tell */
+  uint64_t state; /* stands for the version of the server's file: two versions have different numbers; 0: the
+                   * server names no version */
 } hl_fetched_file;
 
 /* All callbacks may be null (a default is used) and receive user_data. The library calls `allocate` and

@@ -15,7 +15,7 @@
  * size of saved files. Voxel (0,0,0) stands at the lattice coordinates `origin`, and the distance between
  * voxels is one. The box reaches from half a voxel before the first voxel to half a voxel behind the last
  * one. Where a source's cells have their corners at the lattice points, the voxels are these cells, and the
- * origin is 1/2. Where the lattice begins before the box, as in some sparse files, the origin is a whole
+ * origin is 1/2. Where voxels stand at the lattice points, as in some sparse files, the origin is a whole
  * number. Beyond the directory's faces, the field keeps its values at the faces.
  *
  * In:  the builders of fields (meshes of cells, adaptive grids, particles, sparse files) make the bricks.

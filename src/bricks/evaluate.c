@@ -99,8 +99,8 @@ static void copy_piece(const hl_bricks *bricks, const float *brick, const int64_
     }
 }
 
-/* Sums a brick's coefficients along x. The rows from low[1] and low[2] to high[1] and high[2] are summed,
- * each once for every point of the piece along x. */
+/* Sums a brick's coefficients along x. The rows are those with y from low[1] to high[1] and
+ * z from low[2] to high[2]. Each row has one sum for each point of the piece along x. */
 static void sum_rows(const hl_bricks *bricks, const float *brick, const piece *piece, taps at[3][RUN],
                      const int64_t low[3], const int64_t high[3], double sums[SPAN][SPAN][RUN]) {
   size_t width = hl_brick_width(bricks);
@@ -213,11 +213,7 @@ double hl_bricks_value(const hl_bricks *bricks, const double point[3]) {
     double place = ldexp(at[axis], -entry->level);
     int64_t end = ((block[axis] >> entry->level) + 1) << bricks->shift, before = (int64_t)place;
     if (before >= end) before = end - 1;
-    double t = place - (double)before, s = 1 - t, *weight = found[axis].weight;
-    weight[0] = s * s * s / 6;
-    weight[1] = (4 - 6 * t * t + 3 * t * t * t) / 6;
-    weight[2] = (4 - 6 * s * s + 3 * s * s * s) / 6;
-    weight[3] = t * t * t / 6;
+    hl_bspline_weights(place - (double)before, found[axis].weight);
     place_taps(bricks, entry->level, block[axis], before, &found[axis]);
   }
   return sum_taps(bricks, hl_brick_pool(bricks, entry->slot), found);

@@ -9,6 +9,16 @@
 
 #include "bricks/bricks.h"
 
+/* The weights of the four coefficients on which a cubic B-spline depends at t, 0 to 1, between the second and
+ * the third of them. */
+static inline void hl_bspline_weights(double t, double weight[4]) {
+  const double s = 1 - t;
+  weight[0] = s * s * s / 6;
+  weight[1] = (4 - 6 * t * t + 3 * t * t * t) / 6;
+  weight[2] = (4 - 6 * s * s + 3 * s * s * s) / 6;
+  weight[3] = t * t * t / 6;
+}
+
 /* Number of coefficients along an axis that a brick stores. */
 static inline size_t hl_brick_width(const hl_bricks *bricks) {
   return ((size_t)1 << bricks->shift) + BRICK_MARGIN;

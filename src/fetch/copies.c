@@ -26,13 +26,17 @@ static hl_status fail(hl_error *error, const char *path) {
   return HL_ERROR_IO;
 }
 
-/* The name of a key's copy: two hashes FNV-1a (Fowler, Noll, Vo) of 64 bits with different beginnings. The
- * key in the copy tells whether two keys have one name. */
+uint64_t copies_hash(uint64_t begin, const char *text) {
+  uint64_t hash = begin;
+  for (const char *c = text; *c != '\0'; c++) hash = (hash ^ (unsigned char)*c) * 0x100000001b3u;
+  return hash;
+}
+
+/* The name of a key's copy: two hashes with different beginnings. The key in the copy tells whether two keys
+ * have one name. */
 static void copy_path(const char *folder, const char *key, char path[COPIES_PATH_BYTES]) {
-  uint64_t hash[2] = {0xcbf29ce484222325u, 0x9e3779b97f4a7c15u};
-  for (int h = 0; h < 2; h++)
-    for (const char *c = key; *c != '\0'; c++) hash[h] = (hash[h] ^ (unsigned char)*c) * 0x100000001b3u;
-  snprintf(path, COPIES_PATH_BYTES, "%.4000s/%016" PRIx64 "%016" PRIx64, folder, hash[0], hash[1]);
+  snprintf(path, COPIES_PATH_BYTES, "%.4000s/%016" PRIx64 "%016" PRIx64, folder,
+           copies_hash(COPIES_HASH_BEGIN, key), copies_hash(0x9e3779b97f4a7c15u, key));
 }
 
 /* ---- one copy ---- */

@@ -120,11 +120,10 @@ static hl_status fail_transfer(const fetching *t, const wanted *file, bool tried
   return fail(t, file->name, what);
 }
 
-/* A number for the state of a server's file that a condition names: FNV-1a of 64 bits; 0 without one. */
+/* A number for the state of a server's file that a condition names; 0 without one. */
 static uint64_t state_of(const char *condition) {
-  uint64_t hash = 0xcbf29ce484222325u;
   if (condition[0] == '\0') return 0;
-  for (const char *c = condition; *c != '\0'; c++) hash = (hash ^ (unsigned char)*c) * 0x100000001b3u;
+  const uint64_t hash = copies_hash(COPIES_HASH_BEGIN, condition);
   return hash != 0 ? hash : 1;
 }
 

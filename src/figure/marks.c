@@ -18,15 +18,11 @@ enum { MEASURE_BYTES = 96 };
 
 /* A difference of two points of the scene's world, in the world of the first volume's file. */
 static vec3 in_file(const hl_scene_description *scene, vec3 difference) {
-  if (scene->volume_count == 0) return difference;
-  const hl_scene_volume *volume = &scene->volumes[0];
-  vec3 turned = difference;
-  if (volume->rotate_angle_deg != 0)
-    turned = mat3_apply(
-        mat3_rotation(vec3_normalise(vec3_of(volume->rotate_axis)), -volume->rotate_angle_deg * HL_PI / 180),
-        difference);
-  return (vec3){turned.x / hl_scene_volume_scale(volume, 0), turned.y / hl_scene_volume_scale(volume, 1),
-                turned.z / hl_scene_volume_scale(volume, 2)};
+  affine3 to_file;
+  if (scene->volume_count == 0 ||
+      !affine3_invert(hl_scene_volume_file_to_world(&scene->volumes[0]), &to_file))
+    return difference;
+  return mat3_apply(to_file.linear, difference);
 }
 
 /* The way from one point of a mark to another, in the world of the first volume's file. */

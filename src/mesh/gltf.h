@@ -37,8 +37,8 @@ typedef struct gltf_accessor {
   const unsigned char *bytes;
   size_t count, stride; /* number of elements; bytes from one element to the next */
   int components, type; /* number of components of an element, and their glTF type */
-  double *numbers;      /* [count][components]; owned by the file; the numbers of a sparse accessor, which
-                         * take the place of `bytes`; null for other accessors */
+  double *numbers;      /* [count][components]; owned by the file; the numbers of a sparse accessor, read
+                         * in place of `bytes`; null for other accessors */
   bool normalized;      /* whether whole numbers stand for fractions of their type's greatest value */
 } gltf_accessor;
 

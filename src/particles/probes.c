@@ -9,10 +9,9 @@
 #include <math.h>
 
 #include "core/memory.h"
+#include "core/vector.h"
 #include "particles/kernel.h"
 #include "particles/levels.h"
-
-#define PI 3.14159265358979323846
 
 enum { CELL = 16, PARTS = 64 };
 
@@ -130,7 +129,7 @@ static void add_in_cell(const summing *s, const probe_cells *cells, ptrdiff_t ce
     const uint32_t q = cells->listed[at];
     const double squared = squared_distance(s->set, n, s->probes->place[q]);
     if (squared < 4 * h * h)
-      sums[q] += weight * (double)hl_sph_kernel((float)(sqrt(squared) / h)) / (PI * h * h * h);
+      sums[q] += weight * (double)hl_sph_kernel((float)(sqrt(squared) / h)) / (HL_PI * h * h * h);
   }
 }
 

@@ -8,6 +8,7 @@
 
 #if SOFT
 
+/* As in shadow_cascade/cascade_lanes.h and shadow/attenuate.h. */
 #define UMBRA         (1.0f / 160)
 #define DARK_AT_START (1.0f / 256)
 #define THIN_MATTER   0.25f

@@ -226,7 +226,7 @@ typedef struct light_depths {
   float close[CHANNELS][NEAR_PIXELS]; /* the optical depths from the face to each of the pixels around the
                                        * sample */
   int face;                           /* the sample is near a face of the box */
-  float beside;                       /* how much the face affects the light at the sample, 0 to 1 */
+  float beside;                       /* the face's weight in the light at the sample, 0 to 1 */
   float before_enter[CHANNELS], before_more[CHANNELS];
 #endif
 } light_depths;

@@ -143,9 +143,10 @@ DEVICE second_surface kept_at_foot(GLOBAL const float *tables, float first, floa
 #define OUTWARDS_POWER   16
 #define ROUNDING_OF_SPAN 1e-3f
 
-/* The fractions k and k' of shadow/attenuate.h. */
+/* The fractions of light at the outside of surfaces that a slab lets pass: k and k' of shadow/attenuate.h. */
 typedef struct kept_light {
-  float before, within;
+  float before; /* k: of the light that matter before the slab has taken */
+  float within; /* k': of the light that the slab takes */
 } kept_light;
 
 DEVICE float power_of_depth(float h1, float h2) {
@@ -227,7 +228,8 @@ DEVICE kept_light kept_in_slab(const volume_data *volume, table_coordinate a, ta
   return kept;
 }
 
-/* Y after a slab. before, after: T before and after the slab. */
+/* The light at the outside of surfaces after a slab (Y in shadow/attenuate.h). outside: this light before the
+ * slab. before, after: the transmittance before and after the slab. */
 DEVICE float pass_outside(float outside, float before, float after, kept_light kept) {
   float light = greater(before, 0.0f), left = greater(after, 0.0f);
   float taken = greater(outside - light, 0.0f);

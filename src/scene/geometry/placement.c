@@ -25,8 +25,7 @@ affine3 hl_scene_mesh_to_world(const hl_scene_mesh *mesh) {
   return (affine3){turn, vec3_of(mesh->translate)};
 }
 
-/* The map from the world of the volume's file to the scene's world. */
-static affine3 world_of_file(const hl_scene_volume *volume) {
+affine3 hl_scene_volume_file_to_world(const hl_scene_volume *volume) {
   mat3 turn = rotation(volume->rotate_axis, volume->rotate_angle_deg);
   const double x = hl_scene_volume_scale(volume, 0), y = hl_scene_volume_scale(volume, 1),
                z = hl_scene_volume_scale(volume, 2);
@@ -35,18 +34,18 @@ static affine3 world_of_file(const hl_scene_volume *volume) {
 }
 
 affine3 hl_scene_volume_index_to_world(const hl_scene_volume *volume) {
-  return affine3_multiply(world_of_file(volume), volume->volume->index_to_world);
+  return affine3_multiply(hl_scene_volume_file_to_world(volume), volume->volume->index_to_world);
 }
 
 void hl_scene_volume_place_point(const hl_scene_volume *volume, double point[3]) {
   HL_DOOR;
   if (volume == NULL || point == NULL) return;
-  vec3 placed = affine3_apply(world_of_file(volume), vec3_of(point));
+  vec3 placed = affine3_apply(hl_scene_volume_file_to_world(volume), vec3_of(point));
   memcpy(point, (const double[3]){placed.x, placed.y, placed.z}, sizeof(double[3]));
 }
 
 affine3 hl_scene_mask_index_to_world(const hl_scene_volume *volume) {
-  return affine3_multiply(world_of_file(volume), volume->mask.volume->index_to_world);
+  return affine3_multiply(hl_scene_volume_file_to_world(volume), volume->mask.volume->index_to_world);
 }
 
 /* Bounds in index space of the clip box, whose corners are in the file's own world. */

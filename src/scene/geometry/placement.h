@@ -11,6 +11,9 @@
 /* The volume's scale along x, y or z (axis 0 to 2) of the world of its file. */
 double hl_scene_volume_scale(const hl_scene_volume *volume, int axis);
 
+/* The map from the world of the volume's file to the scene's world: scale, rotation, translation. */
+affine3 hl_scene_volume_file_to_world(const hl_scene_volume *volume);
+
 /* The map from a volume's index space to the world: the volume's own placement, then scale, rotation,
  * translation. */
 affine3 hl_scene_volume_index_to_world(const hl_scene_volume *volume);

@@ -18,11 +18,8 @@ void hl_particle_truth_release(hl_context *context, hl_particle_truth *truth) {
 /* The four coefficients along an axis on which a place depends, and their weights: the cubic B-spline. Beyond
  * the grid the outermost coefficient repeats. */
 static void find_taps(double place, size_t points, size_t tap[4], double weight[4]) {
-  const double before = fmin(floor(place), (double)points - 1), t = place - before, s = 1 - t;
-  weight[0] = s * s * s / 6;
-  weight[1] = (4 - 6 * t * t + 3 * t * t * t) / 6;
-  weight[2] = (4 - 6 * s * s + 3 * s * s * s) / 6;
-  weight[3] = t * t * t / 6;
+  const double before = fmin(floor(place), (double)points - 1);
+  hl_bspline_weights(place - before, weight);
   for (int n = 0; n < 4; n++) tap[n] = (size_t)fmin(fmax(before + n - 1, 0), (double)points - 1);
 }
 

@@ -11,6 +11,7 @@
 #include "core/context.h"
 #include "core/door.h"
 #include "core/memory.h"
+#include "core/vector.h"
 #include "particles/particles.h"
 #include "volume/formats/particles/difference.h"
 #include "volume/in_bricks.h"
@@ -22,7 +23,6 @@ enum {
 };
 #define LEAST_POINTS ((size_t)1 << 21)
 #define MOST_POINTS  ((size_t)1 << 31)
-#define PI           3.14159265358979323846
 
 void hl_particles_description_defaults(hl_particles_description *description) {
   if (description == NULL) return;
@@ -119,18 +119,16 @@ static float *weights_of(hl_context *context, const hl_particles_description *d,
   return weights;
 }
 
-/* Makes the weights of a sum; null where each of them is 1. */
-static hl_status make_weights(const making *m, bool with_values, float **weights) {
-  *weights = NULL;
-  if (m->d->masses == NULL && !with_values) return HL_OK;
-  *weights = weights_of(m->context, m->d, &m->set, with_values);
-  return *weights != NULL ? HL_OK : hl_fail_memory(m->error, m->set.count * sizeof **weights, m->subject);
-}
-
-static hl_status spread(const making *m, const hl_particle_plan *plan, bool with_values,
-                        hl_particle_field *field) {
-  float *weights = NULL;
-  hl_status status = make_weights(m, with_values, &weights);
+/* Spreads the particles, and adds up their kernels at the truth's places. sums: [truth's places]. */
+static hl_status spread(const making *m, const hl_particle_plan *plan, const hl_particle_truth *truth,
+                        bool with_values, hl_particle_field *field, double *sums) {
+  float *weights = NULL; /* null: each weight is 1 */
+  if (m->d->masses != NULL || with_values) {
+    weights = weights_of(m->context, m->d, &m->set, with_values);
+    if (weights == NULL) return hl_fail_memory(m->error, m->set.count * sizeof *weights, m->subject);
+  }
+  hl_status status = hl_particle_probes_sum(m->context, m->pool, &m->set, weights, plan, &truth->probes,
+                                            m->subject, sums, m->error);
   if (status == HL_OK)
     status = hl_particles_spread(m->context, m->pool, &m->set, weights, plan, m->subject, field, m->error);
   hl_release(m->context, weights);
@@ -143,7 +141,7 @@ static float empty_density(const hl_particles_description *d, const hl_particle_
   double least = INFINITY;
   for (size_t n = 0; n < set->count; n++) {
     double mass = d->masses != NULL ? (double)d->masses[set->order[n]] : 1, h = (double)set->length[n];
-    if (mass > 0) least = fmin(least, mass / (PI * h * h * h));
+    if (mass > 0) least = fmin(least, mass / (HL_PI * h * h * h));
   }
   return isfinite(least) ? (float)(0.1 * least) : 1;
 }
@@ -192,49 +190,39 @@ static void convert(const making *m, hl_particle_field *field, const hl_particle
   field->outside = density != NULL ? c.outside : (float)log10((double)c.least);
 }
 
-static hl_status make_field(const making *m, const hl_particle_plan *plan, hl_particle_field *field) {
-  hl_particle_field density = {.plan = NULL};
-  bool mean = m->d->quantity == HL_PARTICLES_MEAN;
-  hl_status status = spread(m, plan, mean, field);
-  if (status == HL_OK && mean) status = spread(m, plan, false, &density);
-  if (status == HL_OK) convert(m, field, mean ? &density : NULL);
-  hl_particle_field_release(m->context, &density);
-  return status;
-}
-
-/* ---- the exact values ---- */
-
-static hl_status sum_kernels(const making *m, const hl_particle_plan *plan, const hl_particle_probes *probes,
-                             bool with_values, double *sums) {
-  float *weights = NULL;
-  hl_status status = make_weights(m, with_values, &weights);
-  if (status == HL_OK)
-    status = hl_particle_probes_sum(m->context, m->pool, &m->set, weights, plan, probes, m->subject, sums,
-                                    m->error);
-  hl_release(m->context, weights);
-  return status;
-}
-
-/* Finds the exact values of the wanted quantity at a few places. */
-static hl_status find_truth(const making *m, const hl_particle_plan *plan, hl_particle_truth *truth) {
-  hl_particle_probes *probes = &truth->probes;
-  double *densities = NULL;
-  hl_status status = hl_particle_probes_choose(m->context, &m->set, &plan->lattice, m->subject, probes,
-                                               m->error);
-  if (status != HL_OK) return status;
-  const bool mean = m->d->quantity == HL_PARTICLES_MEAN;
-  truth->values = hl_allocate(m->context, probes->count, sizeof(double));
-  if (mean) densities = hl_allocate(m->context, probes->count, sizeof(double));
-  if (truth->values == NULL || (mean && densities == NULL))
-    status = hl_fail_memory(m->error, probes->count * sizeof(double), m->subject);
-  if (status == HL_OK) status = sum_kernels(m, plan, probes, mean, truth->values);
-  if (status == HL_OK && mean) status = sum_kernels(m, plan, probes, false, densities);
+/* Converts sums of kernels as convert() converts the field. densities: for a mean, the sums of the masses;
+ * else null. */
+static void convert_truth(const making *m, const double *densities, hl_particle_truth *truth) {
   const double least = (double)least_density(m);
-  for (size_t q = 0; status == HL_OK && q < probes->count; q++) {
-    if (mean) truth->values[q] /= densities[q];
-    if (m->d->quantity == HL_PARTICLES_LOG_DENSITY) truth->values[q] = log10(fmax(truth->values[q], least));
+  for (size_t q = 0; q < truth->probes.count; q++) {
+    double *value = &truth->values[q];
+    if (densities != NULL) *value /= densities[q];
+    if (m->d->quantity == HL_PARTICLES_LOG_DENSITY) *value = log10(fmax(*value, least));
+  }
+}
+
+/* Makes the field of the wanted quantity, and its exact values at a few places. */
+static hl_status make_field(const making *m, const hl_particle_plan *plan, hl_particle_field *field,
+                            hl_particle_truth *truth) {
+  hl_particle_field density = {.plan = NULL};
+  const bool mean = m->d->quantity == HL_PARTICLES_MEAN;
+  hl_status status = hl_particle_probes_choose(m->context, &m->set, &plan->lattice, m->subject,
+                                               &truth->probes, m->error);
+  if (status != HL_OK) return status;
+  const size_t count = truth->probes.count;
+  double *densities = NULL;
+  truth->values = hl_allocate(m->context, count, sizeof(double));
+  if (mean) densities = hl_allocate(m->context, count, sizeof(double));
+  if (truth->values == NULL || (mean && densities == NULL))
+    status = hl_fail_memory(m->error, count * sizeof(double), m->subject);
+  if (status == HL_OK) status = spread(m, plan, truth, mean, field, truth->values);
+  if (status == HL_OK && mean) status = spread(m, plan, truth, false, &density, densities);
+  if (status == HL_OK) {
+    convert(m, field, mean ? &density : NULL);
+    convert_truth(m, densities, truth);
   }
   hl_release(m->context, densities);
+  hl_particle_field_release(m->context, &density);
   return status;
 }
 
@@ -335,8 +323,7 @@ static hl_status make_volume(making *m, hl_volume **volume) {
   hl_particle_truth truth = {.values = NULL};
   hl_status status = hl_particles_order(m->context, m->pool, &input, m->subject, &m->set, m->error);
   if (status == HL_OK) status = choose_plan(m, &plan);
-  if (status == HL_OK) status = find_truth(m, &plan, &truth);
-  if (status == HL_OK) status = make_field(m, &plan, &field);
+  if (status == HL_OK) status = make_field(m, &plan, &field, &truth);
   if (status == HL_OK && m->set.count < m->d->count)
     hl_log(m->context, HL_LOG_WARNING, "%s: %zu particles without a finite place are left out", m->subject,
            m->d->count - m->set.count);
