@@ -3,6 +3,7 @@
 #ifndef HL_FILL_BLOCK_LANES_H
 #define HL_FILL_BLOCK_LANES_H
 
+#include "core/sheet_constants.h"
 #include "fill/fill.h"
 #include "grid/kernel_lanes.h"
 #include "simd/gathers.h"

@@ -5,6 +5,7 @@
 #ifndef HL_FILL_RELEVANT_BLOCKS_LANES_H
 #define HL_FILL_RELEVANT_BLOCKS_LANES_H
 
+#include "core/sheet_constants.h"
 #include "fill/fill.h"
 #include "simd/gathers.h"
 #include "view/rays_lanes.h"

@@ -2,17 +2,13 @@
 #ifndef HL_FILL_ROW_LANES_H
 #define HL_FILL_ROW_LANES_H
 
+#include "core/sheet_constants.h"
 #include "grid/grid.h"
 #include "simd/gathers.h"
 
 /* ---- weights as integers ---- */
 
-/* Weights along x of u8 and u16 voxels are integers, so that the weighted sum of four taps is exact on every
- * instruction set. The sum is at most 255 * 32766 for u8, which a float holds exactly, and 65535 * 32766 for
- * u16, which 32 bits hold. A weight is never negative and fits a signed 16-bit number. A slope is the
- * derivative of a weight. It fits a signed 16-bit number as well: the slopes of all kernels, and the sums of
- * slopes, are below 1.08 in magnitude. */
-enum { WEIGHT_UNITS = 32766, SLOPE_UNITS = 30000 };
+/* Weights and slopes are integers: see WEIGHT_UNITS. */
 static const float WEIGHT_INVERSE = 1.0f / WEIGHT_UNITS, SLOPE_INVERSE = 1.0f / SLOPE_UNITS;
 
 typedef struct integer_weights {

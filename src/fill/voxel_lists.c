@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/sheet_constants.h"
 
 typedef struct sort_job {
   const grid *grid;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/sheet_constants.h"
 
 /* The extinction sigma that belongs to an opacity alpha: sigma = -ln(1 - alpha) / u. alpha is clamped to
  * 0.9999. */

@@ -15,13 +15,6 @@
 
 enum { CLASSIFIER_ENTRIES = 4096, STEEPNESS_ENTRIES = 4096 };
 
-/* The least bending of a way through the table for which the colour is computed as a mean over the way. The
- * bending is the change of a colour's slope along the way, times the way's length in entries. For less
- * bending, the colour at the mean entry is taken. This colour differs from the mean by at most a quarter of
- * the bending, 1/1024 (derived: the difference is greatest for one bend in the middle and half of the weight
- * at either end). */
-#define CLASSIFIER_LEAST_BENDING (1.0f / 256)
-
 typedef struct classifier {
   float scale, offset; /* table coordinate = density * scale + offset, clamped to [0, CLASSIFIER_ENTRIES] */
   /* The tables have CLASSIFIER_ENTRIES + 2 entries each. They lie in one block, and `sums` owns the block. */

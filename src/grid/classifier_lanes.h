@@ -2,6 +2,7 @@
 #ifndef HL_GRID_CLASSIFIER_LANES_H
 #define HL_GRID_CLASSIFIER_LANES_H
 
+#include "core/sheet_constants.h"
 #include "grid/classifier.h"
 #include "simd/gathers.h"
 
@@ -28,10 +29,6 @@ LANES_INLINE void table_values(float (*table)[4], table_coordinate at, lanes val
   lanes_gather_row_pairs(&table[0][0], at.entry, a, b);
   for (int i = 0; i < 3; i++) values[i] = lanes_fma(b[i] - a[i], at.fraction, a[i]);
 }
-
-/* Where two coordinates are closer than this many entries, the mean of the values at both is used: a
- * difference of integrals would lose digits, and this mean is as accurate. */
-static const float CLOSE_ENTRIES = 4;
 
 /* Integrals of a table from coordinate a to coordinate b. */
 typedef struct way_sums {
@@ -75,15 +72,6 @@ LANES_INLINE lanes integral_to(const classifier *classifier, lanes x) {
   table_values(classifier->sums, split_coordinate(x), values);
   return values[1];
 }
-
-/* Light may come from the matter of one surface into another surface, which begins at the value `foot`. In a
- * blurred edge, values rise through the values of the first surface to the values of the second. There the
- * two are one surface, and the light that the first surface has absorbed lights the second one, too. The
- * optical depth of the first surface on the light's way is compared with the depth of a straight ramp of
- * values. Up to SAME_RAMP times this depth, the two surfaces are such an edge. From OTHER_LAYER times this
- * depth on, the first surface is a layer of its own, and the light that it has absorbed does not light the
- * second one. */
-static const float SAME_RAMP = 1.2f, OTHER_LAYER = 1.6f;
 
 typedef struct second_surface {
   lanes kept;  /* the fraction of the light absorbed by the first surface that counts as absorbed by the

@@ -6,10 +6,6 @@
 #include "core/pool.h"
 #include "grid/classifier.h"
 
-/* The distance behind a face, in voxels, beyond which the face does not affect how matter is lit. Matter
- * nearer to the face is partly lit as a surface at the face. */
-#define FACE_VOXELS 2.0f
-
 /* Finds grid->face_shows. Call it after hl_grid_mark_relevant(). It looks at one point for each voxel of the
  * faces, where relevant bricks reach the faces. */
 void hl_faces_find(hl_pool *pool, const kernel *kernel, const classifier *classifier, grid *grid);

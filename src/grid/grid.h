@@ -22,10 +22,7 @@ enum {
   HL_BRICK_CELLS = 4,
   HL_LOOKUP_CELLS = 2, /* number of cells along an edge of a group of 2x2x2 cells. Such a group is the finer
                         * unit of bounds and look-ups */
-  GRID_COLUMN = 8,     /* width of a column in voxels */
-  /* The distance, in voxels, outside of its box up to which a grid has values. Slabs that cross the box's
-   * faces need them. */
-  GRID_MARGIN = 4
+  GRID_COLUMN = 8      /* width of a column in voxels */
 };
 
 /* A table that tells which small boxes of the grid show something. There are two tables: the unit of one is a

@@ -8,6 +8,7 @@
 #ifndef HL_RENDER_BEFORE_SLAB_LANES_H
 #define HL_RENDER_BEFORE_SLAB_LANES_H
 
+#include "core/sheet_constants.h"
 #include "render/cut_lanes.h"
 #include "render/pack_lanes.h"
 #include "shadow/shadow_lookup_lanes.h"
@@ -15,7 +16,6 @@
 /* The four pixels of a shadow buffer around a sample, and the steps to them. Sub-lights have many buffers.
  * For them, four pixels stand for the pixels of all buffers: their distance from the sample is the mean
  * distance of the buffers' pixels. */
-enum { NEAR_PIXELS = 4 };
 typedef struct near_pixels {
   /* The distances, along u and along v, from the sample to each near pixel; in pixels. */
   lanes u[NEAR_PIXELS], v[NEAR_PIXELS];
@@ -128,12 +128,6 @@ typedef struct ways_before {
 typedef struct faces_of_axis {
   lanes ahead, behind, u, v, along;
 } faces_of_axis;
-
-/* A limit for faces that are nearly parallel to the light. With a step to a near pixel, the distance to such
- * a face changes much. The face counts fully while this change is below ALONG_FACE times the length of the
- * light's way through the box, and not at all from twice this value on: light on both sides of the face
- * enters the box through another face, far away. */
-static const float ALONG_FACE = 0.5f;
 
 /* Does for a cut what find_faces() does for a box, and returns the same kind of number. The face ahead counts
  * as flat: as the plane that touches the cut's shape where the light's ray meets it. */

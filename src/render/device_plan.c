@@ -6,6 +6,7 @@
 
 #include <string.h>
 
+#include "core/sheet_constants.h"
 #include "grid/relevant.h"
 #include "render/view_sheets.h"
 #include "volume/colors.h"

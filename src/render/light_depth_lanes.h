@@ -6,6 +6,7 @@
 #ifndef HL_RENDER_LIGHT_DEPTH_LANES_H
 #define HL_RENDER_LIGHT_DEPTH_LANES_H
 
+#include "core/sheet_constants.h"
 #include "render/before_slab_lanes.h"
 
 typedef struct color_lanes {
@@ -131,15 +132,6 @@ typedef struct light_depths {
    * slab. */
   lanes before_enter[HL_CHANNELS], before_more[HL_CHANNELS];
 } light_depths;
-
-/* The greatest optical depth that is used. It leaves hardly any light, but exp(-depth) is still above 0 as a
- * float. */
-static const float DEEPEST = 80;
-
-/* Differences of the optical depths, from the faces to the slab, between the near pixels. Where the depths
- * differ by less than EVEN_LIGHT, the buffer is read as if there were no face. Where they differ by twice
- * EVEN_LIGHT, the face counts fully. */
-static const float EVEN_LIGHT = 0.1f;
 
 /* Near a face of a volume's box: adds the optical depth of the volume's matter between the face and the slab.
  * before: raised by these depths at the near pixels. */

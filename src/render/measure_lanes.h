@@ -2,6 +2,7 @@
 #ifndef HL_RENDER_MEASURE_LANES_H
 #define HL_RENDER_MEASURE_LANES_H
 
+#include "core/sheet_constants.h"
 #include "render/shade_lanes.h"
 #include "render/slab_lanes.h"
 

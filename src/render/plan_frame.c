@@ -5,6 +5,7 @@
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "core/sheet_constants.h"
 #include "grid/relevant.h"
 #include "render/late/late_surfaces.h"
 #include "render/maximum.h"

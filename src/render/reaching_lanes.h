@@ -3,6 +3,7 @@
 #ifndef HL_RENDER_REACHING_LANES_H
 #define HL_RENDER_REACHING_LANES_H
 
+#include "core/sheet_constants.h"
 #include "render/light_depth_lanes.h"
 #include "simd/gathers.h"
 

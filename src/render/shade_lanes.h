@@ -2,6 +2,7 @@
 #ifndef HL_RENDER_SHADE_LANES_H
 #define HL_RENDER_SHADE_LANES_H
 
+#include "core/sheet_constants.h"
 #include "light/light_texture_lanes.h"
 #include "render/phase_lanes.h"
 #include "render/reaching_lanes.h"

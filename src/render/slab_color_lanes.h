@@ -12,11 +12,8 @@
 #ifndef HL_RENDER_SLAB_COLOR_LANES_H
 #define HL_RENDER_SLAB_COLOR_LANES_H
 
+#include "core/sheet_constants.h"
 #include "render/light_depth_lanes.h"
-
-/* The least difference of T(f2) and T(f1) that is used, as a part of T. A smaller difference of two floats
- * has too few exact digits. */
-static const float LEAST_PART_OF_SHOWN = 0x1p-12f;
 
 /* Looks up the integrals K (red, green, blue) and T, in this order, at a coordinate of the tables. */
 LANES_INLINE void shown_below(const classifier *classifier, lanes x, lanes sums[4]) {

@@ -5,6 +5,7 @@
 #ifndef HL_RENDER_SLAB_LANES_H
 #define HL_RENDER_SLAB_LANES_H
 
+#include "core/sheet_constants.h"
 #include "fill/steepness_lanes.h"
 #include "render/cut_lanes.h"
 #include "render/slab.h"
@@ -80,9 +81,6 @@ typedef struct block_density {
   lanes light_first, light_last; /* lengths of the light's way within the volume's box, to the start and to
                                   * the end of the slab's covered part */
 } block_density;
-
-/* The optical depth below which the gradient has hardly any effect on how much light a slab absorbs. */
-static const float THIN_DEPTH = 1.0f / 64;
 
 /* A block's pixels in which a volume may be visible. */
 LANES_INLINE lanes_int visible_in_patch(const shade_patch *patch, int block) {

@@ -7,6 +7,7 @@
 #include <halflight/render.h>
 
 #include "core/memory.h"
+#include "core/sheet_constants.h"
 #include "grid/faces.h"
 #include "render/light_reads.h"
 #include "render/maximum.h"

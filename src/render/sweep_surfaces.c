@@ -2,6 +2,7 @@
 #include "render/sweep_surfaces.h"
 
 #include "core/memory.h"
+#include "core/sheet_constants.h"
 #include "render/late/late_surfaces.h"
 #include "render/surface_batch.h"
 #include "render/sweep_layers.h"

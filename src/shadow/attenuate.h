@@ -78,26 +78,15 @@ typedef struct attenuate_job {
  * the values behind it are: k = k' = 1 for visible matter up to a voxel behind a face through which the light
  * comes in. Deeper, the k that follows from the values is raised to the power 1 - skin. The skin is 1 up to a
  * voxel behind the face, and falls to 0 at FACE_VOXELS behind the face. Over the same distance the eye sees
- * less and less of the face (render/slab_lanes.h).
- *
- * OUTWARDS_POWER sets how soon a surface has ended for light that leaves it again. Where h has fallen by a
- * tenth, .19 of the absorbed light still lights the surface. Where h has fallen by a third, .0015 of it
- * does. */
-#define OUTWARDS_POWER 16
-
-/* The number of voxels of even matter over which k falls by the factor e. Matter that is even over a voxel is
- * no edge of a surface. So light that a wall has absorbed does not light a floor behind even matter again.
- * For the faces of cuts, behind which matter is often even, skin is used in addition. */
-#define EVEN_VOXELS 1
+ * less and less of the face (render/slab_lanes.h). */
 
 /* Marks of surfaces in the dark. A surface in the dark absorbs no light. But a method that blurs absorbed
  * light needs to know where the surface is, because light from beside the shadow ends at the surface, too.
  * Where less than DARK_AT_START of the light is left, the pixel becomes -DARK_MARK times the transmittance of
  * the chunk's surfaces, but not more than -LEAST_MARK. Where a surface absorbs all light, the pixel becomes
  * -LEAST_MARK. A reader of the light must take marks as 0. */
-#define DARK_AT_START (1.0f / 256)
-#define DARK_MARK     0x1p-64f
-#define LEAST_MARK    0x1p-88f
+#define DARK_MARK  0x1p-64f
+#define LEAST_MARK 0x1p-88f
 
 /* Blocks of a tile, one bit each. */
 typedef struct attenuated_blocks {

@@ -2,15 +2,12 @@
 #ifndef HL_SHADOW_ATTENUATE_LANES_H
 #define HL_SHADOW_ATTENUATE_LANES_H
 
+#include "core/sheet_constants.h"
 #include "fill/face_skin_lanes.h"
 #include "fill/steepness_lanes.h"
 #include "grid/classifier_lanes.h"
 #include "shadow/attenuate.h"
 #include "view/rays_lanes.h"
-
-/* The transmittance below which a pixel of the shadow buffer counts as dark: a quarter of a step of 8
- * bits. */
-static const float DARK = 1.0f / 1024;
 
 /* The lanes in which the sheet lies ahead of the view's origin, or behind it by at most the height
  * `reach`. */
@@ -125,10 +122,6 @@ LANES_INLINE kept_light kept_by_face(const attenuate_volume *volume, kept_light 
   skin = lanes_keep(values[0] > 0.0f, skin);
   return (kept_light){kept_in_skin(kept.before, skin), kept_in_skin(kept.within, skin)};
 }
-
-/* The part of a slab in the box is taken to reach the slab's end if it ends by less than this fraction of the
- * slab before it. Such a difference is only rounding. */
-static const float ROUNDING_OF_SPAN = 1e-3f;
 
 /* The kept light where the matter begins or ends within the slab, at a face of the box. Where matter ends,
  * light leaves the surface, and k = k' = 0. Where matter begins, no surface lies before it. But blurs may

@@ -2,12 +2,9 @@
 #ifndef HL_SHADOW_CASCADE_CASCADE_LANES_H
 #define HL_SHADOW_CASCADE_CASCADE_LANES_H
 
+#include "core/sheet_constants.h"
 #include "shadow/blur_lanes.h"
 #include "shadow_cascade/cascade_field.h"
-
-/* Where an umbra should be dark, blurred sums leave a little light. So a transmittance below UMBRA becomes
- * 0. */
-static const float UMBRA = 1.0f / 160;
 
 /* Prefetches a tile's rows; each row is a cache line of its own. field: null: nothing is prefetched. */
 LANES_INLINE void fetch_rows(const field_pixel *field, size_t stride, int tile_x, int tile_y, tile_rows rows,
@@ -278,10 +275,6 @@ static uint32_t split_tile(const split_job *job, int tile_x, int tile_y) {
     above_zero |= (uint32_t)(is_above_zero(absorbed[i]) | is_above_zero(thin[i]) << 1) << 2 * i;
   return above_zero;
 }
-
-/* Matter counts as thin if it absorbs less than THIN_MATTER of the light in a chunk, and as solid if it
- * absorbs more than SOLID_MATTER. */
-static const float THIN_MATTER = 0.25f, SOLID_MATTER = 0.75f;
 
 /* The light that surfaces absorb in a chunk that began in the dark. job->before must not be null. */
 LANES_INLINE lanes taken_in_dark(const absorbed_job *job, size_t at, lanes start, lanes end) {

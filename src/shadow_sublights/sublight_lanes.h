@@ -9,6 +9,7 @@
 #ifndef HL_SHADOW_SUBLIGHTS_SUBLIGHT_LANES_H
 #define HL_SHADOW_SUBLIGHTS_SUBLIGHT_LANES_H
 
+#include "core/sheet_constants.h"
 #include "shadow/attenuate_lanes.h"
 #include "shadow_sublights/sublight_field.h"
 #include "simd/gathers.h"

@@ -1,5 +1,6 @@
 /* surface/fragment_order.c - see fragment_order.h. */
 #include "surface/fragment_order.h"
+#include "core/sheet_constants.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,6 +3,7 @@
 #ifndef HL_VIEW_BRICK_RANGES_LANES_H
 #define HL_VIEW_BRICK_RANGES_LANES_H
 
+#include "core/sheet_constants.h"
 #include "simd/lanes.h"
 #include "view/occupancy.h"
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/sheet_constants.h"
 #include "grid/relevant.h"
 
 typedef struct occupancy_job {

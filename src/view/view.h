@@ -18,10 +18,6 @@
  * sixteen lanes. */
 enum { TILE = 16, BLOCK = 4, TILE_BLOCKS = 16, BLOCK_PIXELS = 16, TILE_PIXELS = 256, ALL_BLOCKS = 0xffff };
 
-/* The alpha from which on a pixel counts as opaque. Matter behind such a pixel would change it by less than
- * half a step of 10 bits. */
-#define PIXEL_OPAQUE (1.0f - 1.0f / 2048)
-
 /* The functions convert a pixel's column and row in its tile to the pixel's number, and back. Pixels are
  * numbered block by block. */
 static inline int hl_pixel_number(int column, int row) {

@@ -30,12 +30,8 @@
 #define row_of_vector      device_row_of_vector
 #define row_of_point       device_row_of_point
 #define linear_in_view     device_linear_in_view
-#undef WEIGHT_UNITS
-#undef SLOPE_UNITS
-#define WEIGHT_UNITS 32766
-#define SLOPE_UNITS  30000
-#define STORAGE      1
-#define BSPLINE      1
+#define STORAGE            1
+#define BSPLINE            1
 #include "gpu/kernels/taps.h"
 #include "gpu/kernels/trial.h"
 

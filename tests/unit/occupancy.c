@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "core/sheet_constants.h"
 #include "sheet_bench.h"
 
 enum { SIDE = 23, ROUNDS = 120, SHEETS = 5, TILES = 3 };

@@ -3,16 +3,11 @@
 #ifndef HL_GPU_CASCADE_H
 #define HL_GPU_CASCADE_H
 
+#include "core/sheet_constants.h"
 #include "gpu/device_sweep.h"
 #include "gpu/kernels/numbers.h"
 
 #if SOFT
-
-/* As in shadow_cascade/cascade_lanes.h and shadow/attenuate.h. */
-#define UMBRA         (1.0f / 160)
-#define DARK_AT_START (1.0f / 256)
-#define THIN_MATTER   0.25f
-#define SOLID_MATTER  0.75f
 
 /* lanes_store_short() */
 DEVICE word16 rounded_pixel(float x) { return (word16)(int)(lesser(x, 65535.0f) + 0.5f); }

@@ -4,6 +4,7 @@
 #ifndef HL_GPU_CUTS_H
 #define HL_GPU_CUTS_H
 
+#include "core/sheet_constants.h"
 #include "gpu/kernels/rays.h"
 
 /* ---- the part of a pixel's ray that is left ---- */
@@ -166,8 +167,6 @@ DEVICE int is_far_from_cuts(GLOBAL const plan_cut *cuts, int count, vector posit
 }
 
 /* ---- the skin of faces ---- */
-
-#define FACE_VOXELS 2.0f
 
 /* The skin of one face: how much of the matter behind the face belongs to it. before, depth: how deep a ray
  * lies behind the face on a slab's first and last sheet; in voxels. */

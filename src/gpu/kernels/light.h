@@ -5,14 +5,8 @@
 #ifndef HL_GPU_LIGHT_H
 #define HL_GPU_LIGHT_H
 
+#include "core/sheet_constants.h"
 #include "gpu/kernels/matter.h"
-
-#define DARK        (1.0f / 1024)
-#define THIN_DEPTH  (1.0f / 64)
-#define NEAR_PIXELS 4
-#define ALONG_FACE  0.5f
-#define DEEPEST     80.0f
-#define EVEN_LIGHT  0.1f
 
 /* Number of planes of one sheet in a light's buffer, and the first of the planes from which samples fade. */
 #define PLANES_OF_SHEET (CHANNELS * (1 + OUTSIDE + SOFT))

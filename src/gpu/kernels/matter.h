@@ -3,9 +3,8 @@
 #ifndef HL_GPU_MATTER_H
 #define HL_GPU_MATTER_H
 
+#include "core/sheet_constants.h"
 #include "gpu/kernels/sample.h"
-
-#define CLOSE_ENTRIES 4.0f
 
 /* A coordinate in the tables: x = entry + fraction. */
 typedef struct table_coordinate {

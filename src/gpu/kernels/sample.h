@@ -4,10 +4,11 @@
 #ifndef HL_GPU_SAMPLE_H
 #define HL_GPU_SAMPLE_H
 
+#include "core/sheet_constants.h"
 #include "gpu/kernels/cuts.h"
 #include "gpu/kernels/taps.h"
 
-#define GRID_MARGIN    4
+/* The greatest number of `distances` below. */
 #define FARTHEST_BRICK 9
 
 /* A volume on the device. */

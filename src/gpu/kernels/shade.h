@@ -4,11 +4,10 @@
 #ifndef HL_GPU_SHADE_H
 #define HL_GPU_SHADE_H
 
+#include "core/sheet_constants.h"
 #include "gpu/kernels/surface.h"
 
-#define CLASSIFIER_LEAST_BENDING (1.0f / 256)
-#define LEAST_PART_OF_SHOWN      (1.0f / 4096)
-#define LEAST_LIGHT_DISTANCE     1e-3f /* as HL_LEAST_LIGHT_DISTANCE */
+#define LEAST_LIGHT_DISTANCE 1e-3f /* as HL_LEAST_LIGHT_DISTANCE */
 
 /* ---- where the slab is seen ---- */
 

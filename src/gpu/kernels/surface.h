@@ -6,6 +6,7 @@
 #ifndef HL_GPU_SURFACE_H
 #define HL_GPU_SURFACE_H
 
+#include "core/sheet_constants.h"
 #include "gpu/kernels/light.h"
 
 /* ---- the faces of the box ---- */
@@ -110,9 +111,6 @@ DEVICE void find_cut_face(const volume_data *volume, slab_sample *s) {
 
 /* ---- where light comes from one surface into another ---- */
 
-#define SAME_RAMP   1.2f
-#define OTHER_LAYER 1.6f
-
 DEVICE float integral_to(GLOBAL const float *tables, float x) {
   float values[4];
   table_values(sums_table(tables), split_coordinate(x), 2, values);
@@ -138,10 +136,6 @@ DEVICE second_surface kept_at_foot(GLOBAL const float *tables, float first, floa
 }
 
 /* ---- a light's way through a slab ---- */
-
-#define EVEN_VOXELS      1
-#define OUTWARDS_POWER   16
-#define ROUNDING_OF_SPAN 1e-3f
 
 /* The fractions of light at the outside of surfaces that a slab lets pass: k and k' of shadow/attenuate.h. */
 typedef struct kept_light {

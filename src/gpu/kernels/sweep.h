@@ -8,9 +8,8 @@
 #ifndef HL_GPU_SWEEP_H
 #define HL_GPU_SWEEP_H
 
+#include "core/sheet_constants.h"
 #include "gpu/kernels/shade.h"
-
-#define PIXEL_OPAQUE (1.0f - 1.0f / 2048)
 
 /* The state of a pixel's ray on its way from sheet to sheet: the densities on the last two sheets, as far as
  * they are known. */

@@ -4,14 +4,13 @@
 #ifndef HL_GPU_TAPS_H
 #define HL_GPU_TAPS_H
 
+#include "core/sheet_constants.h"
 #include "gpu/device_sweep.h"
 #include "gpu/kernels/numbers.h"
 
-#define STORED_U8    0
-#define STORED_U16   1
-#define STORED_F32   2
-#define WEIGHT_UNITS 32766
-#define SLOPE_UNITS  30000
+#define STORED_U8  0
+#define STORED_U16 1
+#define STORED_F32 2
 
 /* ---- the kernel ---- */
 

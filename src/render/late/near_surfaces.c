@@ -1,5 +1,6 @@
 /* render/late/near_surfaces.c - finds the light that surfaces absorb before it reaches samples of volumes
  * close behind them: see late_surfaces.h. */
+#include "core/sheet_constants.h"
 #include "render/late/late_surfaces.h"
 
 #include "render/surface_point.h"

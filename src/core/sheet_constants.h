@@ -1,0 +1,122 @@
+/* core/sheet_constants.h - numbers of the method. The functions of the sheet loop for processors and the
+ * kernels for devices include this same file, so that both have the same law of light.
+ *
+ * The text is valid C17, OpenCL C 1.2 and CUDA C++: it consists of comments and of macros alone. A macro's
+ * comment says where the number is used, and why it has its value. */
+#ifndef HL_CORE_SHEET_CONSTANTS_H
+#define HL_CORE_SHEET_CONSTANTS_H
+
+/* ---- the grid ---- */
+
+/* The distance, in voxels, outside of its box up to which a grid has values. Slabs that cross the box's faces
+ * need them. */
+#define GRID_MARGIN 4
+
+/* The distance behind a face, in voxels, beyond which the face does not affect how matter is lit. Matter
+ * nearer to the face is partly lit as a surface at the face. */
+#define FACE_VOXELS 2.0f
+
+/* ---- the weights of voxels ---- */
+
+/* Weights along x of u8 and u16 voxels are integers, so that the weighted sum of four taps is exact on every
+ * instruction set. The sum is at most 255 * 32766 for u8, which a float holds exactly, and 65535 * 32766 for
+ * u16, which 32 bits hold. A weight is never negative and fits a signed 16-bit number. A slope is the
+ * derivative of a weight. It fits a signed 16-bit number as well: the slopes of all kernels, and the sums of
+ * slopes, are below 1.08 in magnitude. */
+#define WEIGHT_UNITS 32766
+#define SLOPE_UNITS  30000
+
+/* ---- classification ---- */
+
+/* Where two coordinates of a classifier's table are closer than this number of entries, the mean of the
+ * values at both is used: a difference of integrals would lose digits, and this mean is as accurate. */
+#define CLOSE_ENTRIES 4.0f
+
+/* The least bending of a way through the table for which the colour is computed as a mean over the way. The
+ * bending is the change of a colour's slope along the way, times the way's length in entries. For less
+ * bending, the colour at the mean entry is taken. This colour differs from the mean by at most a quarter of
+ * the bending, 1/1024 (derived: the difference is greatest for one bend in the middle and half of the weight
+ * at either end). */
+#define CLASSIFIER_LEAST_BENDING (1.0f / 256)
+
+/* The colour of a slab comes from differences of the integral T at two coordinates, T(f2) - T(f1). This is
+ * the least difference that is used, as a part of T. A smaller difference of two floats has too few exact
+ * digits. */
+#define LEAST_PART_OF_SHOWN (1.0f / 4096)
+
+/* ---- the picture ---- */
+
+/* The optical depth below which the gradient has hardly any effect on how much light a slab absorbs. */
+#define THIN_DEPTH (1.0f / 64)
+
+/* The alpha from which on a pixel counts as opaque. Matter behind such a pixel would change it by less than
+ * half a step of 10 bits. */
+#define PIXEL_OPAQUE (1.0f - 1.0f / 2048)
+
+/* ---- the shadow buffer ---- */
+
+/* The transmittance below which a pixel of the shadow buffer counts as dark: a quarter of a step of 8
+ * bits. */
+#define DARK (1.0f / 1024)
+
+/* The transmittance at the start of a chunk of slabs below which a surface in the chunk counts as being in
+ * the dark (shadow/attenuate.h, "Marks of surfaces in the dark"). */
+#define DARK_AT_START (1.0f / 256)
+
+/* OUTWARDS_POWER sets how soon a surface has ended for light that leaves it again (shadow/attenuate.h). Where
+ * the depth h has fallen by a tenth, .19 of the absorbed light still lights the surface. Where h has fallen
+ * by a third, .0015 of it does. */
+#define OUTWARDS_POWER 16
+
+/* The number of voxels of even matter over which the kept light k falls by the factor e. Matter that is even
+ * over a voxel is no edge of a surface. So light that a wall has absorbed does not light a floor behind even
+ * matter again. For the faces of cuts, behind which matter is often even, skin is used in addition. */
+#define EVEN_VOXELS 1
+
+/* The part of a slab in the box is taken to reach the slab's end if it ends by less than this fraction of the
+ * slab before it. Such a difference is only rounding. */
+#define ROUNDING_OF_SPAN 1e-3f
+
+/* Light may come from the matter of one surface into another surface, which begins at the value `foot`. In a
+ * blurred edge, values rise through the values of the first surface to the values of the second. There the
+ * two are one surface, and the light that the first surface has absorbed lights the second one, too. The
+ * optical depth of the first surface on the light's way is compared with the depth of a straight ramp of
+ * values. Up to SAME_RAMP times this depth, the two surfaces are such an edge. From OTHER_LAYER times this
+ * depth on, the first surface is a layer of its own, and the light that it has absorbed does not light the
+ * second one. */
+#define SAME_RAMP   1.2f
+#define OTHER_LAYER 1.6f
+
+/* ---- what lies between a face of a box and the slab ---- */
+
+/* The number of pixels of the shadow buffer that lie around a position. A look-up between pixels uses them.
+ */
+#define NEAR_PIXELS 4
+
+/* A limit for faces that are nearly parallel to the light. With a step to a near pixel, the distance to such
+ * a face changes much. The face counts fully while this change is below ALONG_FACE times the length of the
+ * light's way through the box, and not at all from twice this value on: light on both sides of the face
+ * enters the box through another face, far away. */
+#define ALONG_FACE 0.5f
+
+/* The greatest optical depth that is used. It leaves hardly any light, but exp(-depth) is still above 0 as a
+ * float. */
+#define DEEPEST 80.0f
+
+/* Differences of the optical depths, from the faces to the slab, between the near pixels. Where the depths
+ * differ by less than EVEN_LIGHT, the buffer is read as if there were no face. Where they differ by twice
+ * EVEN_LIGHT, the face counts fully. */
+#define EVEN_LIGHT 0.1f
+
+/* ---- the cascade ---- */
+
+/* Where an umbra should be dark, blurred sums leave a little light. So a transmittance below UMBRA becomes
+ * 0. */
+#define UMBRA (1.0f / 160)
+
+/* Matter counts as thin if it absorbs less than THIN_MATTER of the light in a chunk, and as solid if it
+ * absorbs more than SOLID_MATTER. */
+#define THIN_MATTER  0.25f
+#define SOLID_MATTER 0.75f
+
+#endif
