@@ -33,9 +33,9 @@ static void write_solid(hl_function_writer *w, const palette *colors) {
   const double rows[][2] = {{a->faint, 0},
                             {a->faint + 0.35 * ramp, 0.08},
                             {a->faint + 0.7 * ramp, 0.28},
-                            {a->solid, 0.5},
-                            {a->solid + 0.5 * (dense - a->solid), 0.75},
-                            {dense, 0.95}};
+                            {a->solid, 0.85},
+                            {a->solid + 0.5 * (dense - a->solid), 0.93},
+                            {dense, 0.97}};
   for (size_t n = 0; n < sizeof rows / sizeof *rows; n++)
     hl_add_opacity(w, rows[n][0], 1 - pow(1 - rows[n][1], edges));
   hl_add_color(w, a->faint, colors->rim);

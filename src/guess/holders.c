@@ -13,7 +13,7 @@
 
 #define OBJECT_CELLS 0.8 /* least fraction of all visible cells that must belong to the object */
 /* least fraction of the visible cells' optical depth that must belong to the object */
-#define OBJECT_DEPTH 0.95
+#define OBJECT_DEPTH 0.9
 /* Least number of cells of a body, as a fraction of the object's cells; smaller bodies are specks. */
 #define LEAST 0.005
 /* least length of a holder, such as a table, as a fraction of the object's length */
