@@ -224,8 +224,8 @@ LANES_INLINE own_surface find_own_surface(const block_density *d, const way_begi
   second_surface other = kept_at_foot(classifier, begin->first, begin->start, begin->foot,
                                       lanes_abs(begin->change), light, outside);
   lanes passing = exp_of_depth(lanes_min(other.ahead, lanes_set(DEEPEST)));
-  own.kept = lanes_select(second, lanes_max(other.kept, d->skin), own.kept);
-  own.passing = lanes_select(second, lanes_max(passing, d->skin), own.passing);
+  own.kept = lanes_select(second, lanes_max(other.kept, skin_of_face(d->behind)), own.kept);
+  own.passing = lanes_select(second, lanes_max(passing, skin_of_face(d->behind)), own.passing);
   return own;
 }
 

@@ -21,7 +21,7 @@ static const float MOST_TO_OUTSIDE = 8.0f;
 
 /* The length of the way along the normal from a volume's samples to the outside of their surface; frame
  * units. Derived: along this way the values fall by the gradient's length per unit. Behind the face of a cut
- * the length is 0, because there the gradient leads through matter that is cut away. */
+ * the way ends at the face, because there the gradient leads through matter that is cut away. */
 LANES_INLINE lanes way_to_outside(const block_density *d) {
   const shade_volume *volume = d->patch->volume;
   const classifier *classifier = volume->classifier;
@@ -29,8 +29,9 @@ LANES_INLINE lanes way_to_outside(const block_density *d) {
   lanes steepness = lanes_max(lanes_sqrt(dot3(slope, slope)), lanes_set(1e-6f)),
         seen = lanes_clamp(coordinate_seen(d), 0, CLASSIFIER_ENTRIES),
         outside = lanes_gather(classifier->outside, lanes_truncate(seen));
-  return lanes_min(lanes_abs(seen - outside) / steepness, lanes_set(MOST_TO_OUTSIDE * volume->voxel)) *
-         (1.0f - d->skin);
+  lanes way = lanes_min(lanes_abs(seen - outside) / steepness, lanes_set(MOST_TO_OUTSIDE * volume->voxel)),
+        skin = skin_of_face(d->behind);
+  return lanes_fma(way, 1.0f - skin, d->behind * skin * volume->voxel);
 }
 
 /* The sky's light at a sample, in each channel: the light that a medium receives, the light that a surface

@@ -74,8 +74,8 @@ typedef struct block_density {
   lanes3 normal;    /* unit, away from the matter */
   lanes surface;    /* how much of the matter counts as a surface: 1 for a surface, falling to 0 for a medium,
                      * which has no normal */
-  lanes skin;       /* how much of the matter belongs to the face of a cut that is shaded as a surface: 1 at
-                     * the face, 0 two voxels behind it */
+  lanes behind; /* the distance, in voxels, of the matter from the face of a cut that is shaded as a surface,
+                 * along the face's normal; FACE_VOXELS where there is no such face near */
   lanes3 outside; /* the position at which the sky's light is looked up; set if volumes hide the sky from each
                    * other */
   lanes light_first, light_last; /* lengths of the light's way within the volume's box, to the start and to
@@ -320,27 +320,32 @@ LANES_INLINE int is_near_box_face(const shade_volume *volume, lanes3 point, lane
   return lanes_bits(near & seen) != 0;
 }
 
-/* The skin of a point: how much of it belongs to a face of a cut, or of the volume's box, through which it is
- * seen. It is 1 at the face, and 0 two voxels behind the face. There the gradient of even matter is only
- * noise of the data, so the face's normal serves in its place. */
-LANES_INLINE lanes find_skin(const block_slab *slab, const block_density *d, lanes3 *outward) {
+/* The skin of matter `behind` voxels from a face: how much of it belongs to the face. It is 1 at the face,
+ * and 0 two voxels behind it. There the gradient of even matter is only noise of the data, so the face's
+ * normal serves in its place. */
+LANES_INLINE lanes skin_of_face(lanes behind) { return lanes_clamp(FACE_VOXELS - behind, 0, 1); }
+
+/* The distance of a slab's matter, in voxels, from the face of a cut, or of the volume's box, through which
+ * it is seen; FACE_VOXELS where no such face is near. outward: receives the face's normal. */
+LANES_INLINE lanes find_face(const block_slab *slab, const block_density *d, lanes3 *outward) {
   const shade_volume *volume = d->patch->volume;
   const lanes3 point = seen_position(slab, d), towards_eye = slab->geometry.towards_eye;
   const float deepest = FACE_VOXELS * volume->voxel;
   cut_face nearest = {.way = lanes_set(1e30f), .cuts = lanes_set_int(0)};
   nearest.outward = (lanes3){lanes_set(0), lanes_set(0), lanes_set(0)};
   *outward = nearest.outward;
-  if (volume->cut_count == 0 && !is_near_box_face(volume, point, slab->seen)) return lanes_set(0);
+  const lanes none = lanes_set(FACE_VOXELS);
+  if (volume->cut_count == 0 && !is_near_box_face(volume, point, slab->seen)) return none;
   find_box_face(volume, point, towards_eye, &nearest);
   for (int i = 0; i < volume->cut_count; i++)
     find_cut(&volume->cuts[i], point, towards_eye, lanes_set(0.5f * volume->voxel), &nearest);
   *outward = nearest.outward;
   lanes depth = nearest.way * dot3(nearest.outward, towards_eye);
   uint32_t active = lanes_bits(slab->seen & nearest.cuts & (depth < deepest));
-  if (active == 0) return lanes_set(0);
+  if (active == 0) return none;
   lanes3 crossing = add_scaled3(point, towards_eye, lanes_min(nearest.way, lanes_set(1e20f)));
   lanes_int shown = shows_on_face(volume, crossing, active, slab->starts) & lanes_from_bits(active);
-  return lanes_keep(shown, lanes_clamp(FACE_VOXELS - depth * (1.0f / volume->voxel), 0, 1));
+  return lanes_select(shown, depth * (1.0f / volume->voxel), none);
 }
 
 /* Behind a face that cuts matter, turns a volume's normal to the normal of the face, or makes the surface a
@@ -348,12 +353,12 @@ LANES_INLINE lanes find_skin(const block_slab *slab, const block_density *d, lan
 LANES_INLINE void find_cut_face(const block_slab *slab, block_density *d) {
   const shade_volume *volume = d->patch->volume;
   lanes3 outward;
-  d->skin = find_skin(slab, d, &outward);
-  lanes rest = 1.0f - d->skin;
+  d->behind = find_face(slab, d, &outward);
+  const lanes skin = skin_of_face(d->behind), rest = 1.0f - skin;
   if (volume->cut_shading == HL_CUT_SHADING_FACE) {
-    lanes3 sum = add_scaled3(scale3(outward, d->skin), d->normal, d->surface * rest);
+    lanes3 sum = add_scaled3(scale3(outward, skin), d->normal, d->surface * rest);
     d->normal = scale3(sum, 1.0f / lanes_max(lanes_sqrt(dot3(sum, sum)), lanes_set(1e-6f)));
-    d->surface = lanes_fma(d->surface, rest, d->skin);
+    d->surface = lanes_fma(d->surface, rest, skin);
   } else {
     d->surface = d->surface * rest;
   }
@@ -363,7 +368,7 @@ LANES_INLINE void find_normals(const block_slab *slab, block_density *densities,
   for (int i = 0; i < count; i++) {
     if (!densities[i].there || !densities[i].patch->volume->visible) continue;
     find_normal(slab, &densities[i]);
-    densities[i].skin = lanes_set(0);
+    densities[i].behind = lanes_set(FACE_VOXELS);
     const shade_volume *volume = densities[i].patch->volume;
     bool cut = volume->cut_count > 0 || volume->any_face;
     if (cut && volume->phong && volume->cut_shading != HL_CUT_SHADING_GRADIENT)
