@@ -91,6 +91,8 @@ typedef struct field_block {
   float corner[3]; /* the low corner of the first cell; frame space */
   float cell;
   int samples;           /* number of samples along an edge of a cell */
+  int every_other;       /* of 2 x 2 x 2 samples, only the four are taken of which no two lie in one row; each
+                          * counts twice, so that each row along each axis has its depth */
   const uint32_t *cells; /* [count]; the cells that a volume's bricks reach, one bit each */
 } field_block;
 

@@ -51,9 +51,9 @@ typedef struct opacity_job {
   opacity_field *field;
   const field_content *content;
   const field_functions *functions;
-  int samples;
-  const float (*reach)[3]; /* [count]; for each volume, half the extent of the box around a cell along each
-                            * axis of the volume's index space */
+  int samples, every_other; /* as in field_block */
+  const float (*reach)[3];  /* [count]; for each volume, half the extent of the box around a cell along each
+                             * axis of the volume's index space */
   field_share *share;
   int32_t first, end; /* the slabs that this process samples */
 } opacity_job;
@@ -129,6 +129,7 @@ static void find_slab(void *data, size_t index, int worker) {
                            .count = content->count,
                            .cell = cell,
                            .samples = job->samples,
+                           .every_other = job->every_other,
                            .cells = cells};
       for (int a = 0; a < 3; a++) block.corner[a] = low[a] + cell * (float)at[a];
       for (int v = 0; v < content->count; v++) {
@@ -283,8 +284,7 @@ static void find_flags(void *data, size_t slice, int worker) {
   }
 }
 
-/* The number of samples along a cell's edge: enough that they are no farther apart than voxels, but at most
- * FIELD_SAMPLES. */
+/* The number of samples along a cell's edge that are no farther apart than voxels, at most FIELD_SAMPLES. */
 static int samples_of(double cell, double voxel) {
   double samples = ceil(cell / voxel - 0.25);
   return samples < 1 ? 1 : samples > FIELD_SAMPLES ? FIELD_SAMPLES : (int)samples;
@@ -306,9 +306,15 @@ void hl_opacity_find(const field_content *content, const field_functions *functi
     }
   for (int a = 0; a < 3; a++)
     hl_pool_clear(pool, field->depth[a], floats_along(&field->lattice, a) * sizeof *field->depth[a]);
-  opacity_job job = {
-      field, content, functions, samples_of(field->lattice.cell, content->voxel), (const float(*)[3])reach,
-      share, 0,       0};
+  opacity_job job = {.field = field,
+                     .content = content,
+                     .functions = functions,
+                     .samples = samples_of(field->lattice.cell, content->voxel),
+                     .reach = (const float(*)[3])reach,
+                     .share = share};
+  /* A single sample in the middle of a cell would miss the edge of matter that begins beside the middle, and
+   * light would pass through the cell as if it were empty. */
+  if (job.samples == 1) job.samples = 2, job.every_other = 1;
   find_slabs(&job, pool);
   if (content->surfaces != NULL) hl_surface_mark_seen(content->surfaces, field);
   spread(field, scratch->seen, pool);

@@ -172,12 +172,14 @@ LANES_INLINE int cuts_leave_position(const grid *grid, const float at[3]) {
          hl_cuts_leave(grid->cuts, grid->cut_count, (vec3){at[0], at[1], at[2]});
 }
 
-/* point: the position in frame space. */
+/* point: the position in frame space. Samples on the low faces of a volume's box lie in the box, and samples
+ * on its high faces lie outside of it. A box therefore keeps its thickness where samples lie on both faces.
+ */
 LANES_INLINE float extinction_at_position(const field_matter *matter, hl_storage storage,
                                           const voxel_window *window, const float at[3],
                                           const float point[3]) {
   for (int a = 0; a < 3; a++)
-    if (!(at[a] >= matter->low[a] && at[a] <= matter->high[a])) return 0;
+    if (!(at[a] >= matter->low[a] && at[a] < matter->high[a])) return 0;
   if (!cell_shows(matter->grid, at) || !cuts_leave_position(matter->grid, at)) return 0;
   float value = value_at(matter, storage, window, at);
   const classifier *classifier = matter->classifier;
@@ -221,6 +223,7 @@ LANES_INLINE int sample_cell(const field_block *block, const field_matter *matte
   for (int k = 0; k < n; k++)
     for (int j = 0; j < n; j++)
       for (int i = 0; i < n; i++) {
+        if (block->every_other && (i + j + k) % 2 != 0) continue;
         float at[3];
         for (int a = 0; a < 3; a++) {
           const float *row = matter->to_index[a];
@@ -229,7 +232,7 @@ LANES_INLINE int sample_cell(const field_block *block, const field_matter *matte
         const float point[3] = {corner[0] + step * (float)i, corner[1] + step * (float)j,
                                 corner[2] + step * (float)k};
         float extinction = extinction_at_position(matter, storage, &window, at, point);
-        samples[(k * n + j) * n + i][lane] += extinction;
+        samples[(k * n + j) * n + i][lane] += block->every_other ? 2 * extinction : extinction;
         any |= extinction > 0;
       }
   return any;
