@@ -153,6 +153,10 @@ typedef struct hl_context_options {
                              * them anew */
   hl_mpi mpi; /* the library that hl_ranks_join() loads, Open MPI or MPICH: it must be the one that the
                * process's launcher belongs to */
+  /* Non-zero: a smoothed volume keeps the voxels of which it was made, for hl_volume_unsmoothed(). The
+   * library moves voxels that it owns to a scratch file in scratch_folder. Without this folder, and where the
+   * caller has lent the voxels, they stay in memory. 0 (default): a smoothed volume keeps none. */
+  int keep_unsmoothed;
 } hl_context_options;
 
 typedef struct hl_context hl_context; /* several threads may use a context at once */

@@ -204,6 +204,12 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_smooth(hl_volume *volume, double sigma
  * smoothed, or the volume is null. */
 HL_API double hl_volume_smoothing(const hl_volume *volume);
 
+/* The volume with the values that a smoothed volume's voxels had before they were smoothed: those of its
+ * file. It has the same grid. Null if the volume is null or not smoothed, or if its context keeps no such
+ * volumes (hl_context_options.keep_unsmoothed). It belongs to `volume`, and is valid as long as `volume` is.
+ */
+HL_API const hl_volume *hl_volume_unsmoothed(const hl_volume *volume);
+
 HL_API void hl_volume_retain(hl_volume *volume);
 HL_API void hl_volume_release(hl_volume *volume); /* null is allowed */
 

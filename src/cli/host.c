@@ -169,6 +169,7 @@ int host_open(const cli_host_options *options, cli_host *host) {
   context_options.memory_limit = host->memory_limit;
   context_options.instruction_set = options->instruction_set;
   context_options.mpi = options->mpi;
+  context_options.keep_unsmoothed = options->keep_unsmoothed;
   context_options.scratch_folder = choose_scratch_folder();
   context_options.data_folder = choose_data_folder(options->data_folder);
   char cache_folder[1024];

@@ -33,6 +33,7 @@ typedef struct cli_host_options {
   uint64_t memory_limit; /* bytes; 0: the machine's memory */
   hl_instruction_set instruction_set;
   const char *device;      /* null: the processors */
+  bool keep_unsmoothed;    /* see hl_context_options */
   hl_mpi mpi;              /* launcher_mpi() (ranks.h) where processes may join */
   bool (*cancelled)(void); /* asked, in addition to signals, whether the run is to end; called by the thread
                             * that renders; may be null */

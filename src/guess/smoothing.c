@@ -11,6 +11,7 @@
 #include "core/door.h"
 #include "guess/looks.h"
 #include "volume/smooth.h"
+#include "volume/unsmoothed.h"
 
 /* The standard deviation, in voxels, of the Gaussian for all three kinds of volumes that are smoothed. It is
  * the least one that leaves no stairs on the gyri of real brains. */
@@ -76,9 +77,10 @@ hl_status hl_volume_smooth(hl_volume *volume, double sigma, hl_volume **smoothed
     status = hl_volume_convolve(volume, sigma, smoothed, error);
     if (status != HL_OK) return status;
     (*smoothed)->smoothing = hypot(sigma, volume->smoothing);
+    status = hl_volume_keep_unsmoothed(*smoothed, volume, error);
     /* The smoothed volume keeps the analysis of the unsmoothed one, because smoothing removes the noise by
      * which scans are told from fields. */
-    status = hl_data_keep(*smoothed, &analysis, error);
+    if (status == HL_OK) status = hl_data_keep(*smoothed, &analysis, error);
     if (status != HL_OK) {
       hl_volume_release(*smoothed);
       *smoothed = NULL;

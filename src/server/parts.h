@@ -180,8 +180,7 @@ typedef struct film_request {
 typedef struct slice_request {
   long long refined; /* `refined` of the state whose voxels the plane is given in; -1: it is not told */
   long long opened, volume; /* number of the open scene, and index of the volume in it */
-  bool of_mask;             /* the plane is cut out of the label map that masks the volume, not out of the
-                             * volume */
+  slice_source source;
   hl_reslice_options plane;
 } slice_request;
 

@@ -15,7 +15,7 @@ void answer_slice(server *s, const slice_request *request, server_answer *answer
     return;
   }
   const opened_state *now = opened_now(opened);
-  const hl_volume *volume = sliced_volume(now->scene, request->volume, request->of_mask);
+  const hl_volume *volume = sliced_volume(now->scene, request->volume, request->source);
   hl_error error = {0};
   if (request->refined >= 0 && request->refined != now->refined)
     refuse_line(answer, 409, "the plane is given in voxels of a resolution that a finer one has replaced");

@@ -85,7 +85,8 @@ bool overlay_fits(const frame_request *wanted) {
 
 bool query_slice(struct MHD_Connection *connection, slice_request *wanted) {
   static const char *const blends[] = {"maximum", "minimum", "mean", NULL};
-  static const char *const sources[] = {"voxels", "mask", NULL}, *const ways[] = {"nearest", "linear", NULL};
+  static const char *const sources[] = {"voxels", "mask", "picture", NULL}; /* by slice_source */
+  static const char *const ways[] = {"nearest", "linear", NULL};
   hl_reslice_options *plane = &wanted->plane;
   hl_reslice_options_defaults(plane);
   wanted->opened = query_number(connection, "opened", 0, MOST_NUMBER, 0);
@@ -110,7 +111,7 @@ bool query_slice(struct MHD_Connection *connection, slice_request *wanted) {
   plane->depth = (size_t)sides[2];
   plane->blend = (hl_blend)(HL_BLEND_MAXIMUM + blend);
   plane->interpolate = way;
-  wanted->of_mask = source == 1;
+  wanted->source = (slice_source)source;
   return true;
 }
 

@@ -315,7 +315,7 @@ static void post_slice(server *s, struct MHD_Connection *connection, server_answ
   else
     answer_problem(
         answer, 400,
-        "a slice needs ?width=N&height=N (&depth=N&volume=N&of=voxels|mask&origin=I,J,K&across=I,J,K"
+        "a slice needs ?width=N&height=N (&depth=N&volume=N&of=voxels|mask|picture&origin=I,J,K&across=I,J,K"
         "&down=I,J,K&through=I,J,K&blend=maximum|minimum|mean&between=nearest|linear), of 8192 samples "
         "along a side and 16 million in all\n");
 }

@@ -31,11 +31,13 @@ static void pack_floats(double *values, size_t count) {
   }
 }
 
-const hl_volume *sliced_volume(const hl_scene *scene, long long number, bool of_mask) {
+const hl_volume *sliced_volume(const hl_scene *scene, long long number, slice_source source) {
   const hl_scene_description *d = hl_scene_describe(scene);
   if (number < 0 || (size_t)number >= d->volume_count) return NULL;
   const hl_scene_volume *volume = &d->volumes[number];
-  return of_mask ? volume->mask.volume : volume->volume;
+  const hl_volume *of_file = hl_volume_unsmoothed(volume->volume);
+  if (source == SLICE_OF_MASK) return volume->mask.volume;
+  return source == SLICE_OF_VOXELS && of_file != NULL ? of_file : volume->volume;
 }
 
 hl_status slice_values(const hl_volume *volume, const hl_reslice_options *plane, unsigned char **bytes,

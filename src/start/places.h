@@ -16,9 +16,16 @@ enum {
   MOST_DEPTH_SIDE = 64              /* greatest side, in pixels, of a picture from which a depth is read */
 };
 
-/* Finds the volume from which a slice is cut: the scene's volume with this number, or (of_mask) the label map
- * that masks it. Null if there is none. */
-const hl_volume *sliced_volume(const hl_scene *scene, long long number, bool of_mask);
+/* What of a scene's volume a slice is cut from. */
+typedef enum slice_source {
+  SLICE_OF_VOXELS = 0, /* the values of the file: of a smoothed volume those before it was smoothed, if the
+                        * context keeps them */
+  SLICE_OF_MASK = 1,   /* the label map that masks the volume */
+  SLICE_OF_PICTURE = 2 /* the values that the picture shows: of a smoothed volume the smoothed ones */
+} slice_source;
+
+/* Finds the volume from which a slice is cut. number: of the scene's volume. Null if there is none. */
+const hl_volume *sliced_volume(const hl_scene *scene, long long number, slice_source source);
 
 /* Makes the values of a plane, row by row, in the machine's byte order. A value has four bytes if floats hold
  * all values exactly, or if values are interpolated or averaged; otherwise eight. The total number of bytes

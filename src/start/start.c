@@ -56,6 +56,29 @@ static void put_mask(FILE *out, const hl_volume *mask) {
   fputc('}', out);
 }
 
+static void put_histogram(FILE *out, const hl_volume_info *info) {
+  fputs("\"range\":", out);
+  put_numbers(out, info->range, 2);
+  fputs(",\"histogram\":[", out);
+  for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++)
+    fprintf(out, "%s%llu", bin > 0 ? "," : "", (unsigned long long)info->histogram[bin]);
+  fputc(']', out);
+}
+
+/* Writes the range and the histogram of the values before they were smoothed, which slices show; null if the
+ * volume's values are these. */
+static void put_unsmoothed(FILE *out, const hl_volume *volume) {
+  hl_volume_info info = {.struct_size = sizeof info};
+  fputs(",\"unsmoothed\":", out);
+  if (hl_volume_get_info(hl_volume_unsmoothed(volume), &info) != HL_OK) {
+    fputs("null", out);
+    return;
+  }
+  fputc('{', out);
+  put_histogram(out, &info);
+  fputc('}', out);
+}
+
 /* Whether the volume's cuts are the automatic ones, which remove the table or another holder. */
 static bool has_chosen_cuts(hl_context *context, const hl_scene_volume *volume) {
   hl_scene *chosen = NULL;
@@ -91,8 +114,9 @@ static void put_volume(FILE *out, hl_context *context, const hl_scene_volume *vo
   put_grid(out, &info);
   fputs(",\"mask\":", out);
   put_mask(out, volume->mask.volume);
-  fputs(",\"range\":", out);
-  put_numbers(out, info.range, 2);
+  fputc(',', out);
+  put_histogram(out, &info);
+  put_unsmoothed(out, volume->volume);
   const char *space = hl_space_name(info.space);
   fputs(",\"space\":", out);
   if (space != NULL) put_json_text(out, space);
@@ -101,10 +125,7 @@ static void put_volume(FILE *out, hl_context *context, const hl_scene_volume *vo
   fputs(",\"unit\":", out);
   if (unit != NULL) put_json_text(out, unit);
   else fputs("null", out);
-  fputs(",\"histogram\":[", out);
-  for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++)
-    fprintf(out, "%s%llu", bin > 0 ? "," : "", (unsigned long long)info.histogram[bin]);
-  fputs("],\"plane\":", out);
+  fputs(",\"plane\":", out);
   put_plane_histogram(out, volume->volume, &info);
   put_chosen(out, context, volume);
   fputs("}", out);

@@ -141,6 +141,15 @@ hl_volume_description hl_volume_own_grid(const hl_volume *volume) {
   return grid;
 }
 
+void hl_volume_take_about(hl_volume *volume, const hl_volume *from) {
+  volume->index_to_world = from->index_to_world;
+  volume->unit = from->unit;
+  volume->is_anatomical = from->is_anatomical;
+  memcpy(volume->window, from->window, sizeof volume->window);
+  volume->selection = from->selection;
+  volume->component = from->component;
+}
+
 void hl_volume_world_box(const hl_volume_info *info, double low[3], double high[3]) {
   HL_DOOR;
   if (info == NULL || low == NULL || high == NULL) return;

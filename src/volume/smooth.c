@@ -142,15 +142,8 @@ static hl_status adopt(const hl_volume *volume, float *values, hl_volume **smoot
     values = shorter;
   }
   hl_status status = hl_volume_adopt(volume->context, &d, "smoothed voxels", values, smoothed, error);
-  if (status != HL_OK) return status;
-  hl_volume *made = *smoothed;
-  made->index_to_world = volume->index_to_world;
-  made->unit = volume->unit;
-  made->is_anatomical = volume->is_anatomical;
-  memcpy(made->window, volume->window, sizeof made->window);
-  made->selection = volume->selection;
-  made->component = volume->component;
-  return HL_OK;
+  if (status == HL_OK) hl_volume_take_about(*smoothed, volume);
+  return status;
 }
 
 hl_status hl_volume_convolve(const hl_volume *volume, double sigma, hl_volume **smoothed, hl_error *error) {

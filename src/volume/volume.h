@@ -118,6 +118,8 @@ struct hl_volume {
   bool is_log_density;          /* whether values are logarithms of a density of particles (particles.c) */
   double smoothing;             /* standard deviation, in voxels, of the Gaussian with which the voxels were
                                  * smoothed (guess/smoothing.c) */
+  struct hl_volume *unsmoothed; /* owned (unsmoothed.h); the volume before it was smoothed; null if it is not
+                                 * kept, and for volumes that were not smoothed */
   atomic_bool smoothing_chosen; /* whether the volume is a result of hl_volume_smooth(), even if that was no
                                  * change */
   double surface_slope;         /* if values are an occupancy: its slope, per voxel, where it passes 1/2 */
@@ -209,6 +211,10 @@ hl_whole hl_volume_whole(const hl_volume *volume, size_t i, size_t j, size_t k, 
 /* The description of a volume's grid: dimensions, axes, origin and space. Its other members have their
  * defaults. */
 hl_volume_description hl_volume_own_grid(const hl_volume *volume);
+
+/* Gives a volume on the grid of another one what a description does not hold: the exact place of its voxels,
+ * and what the file tells of them. Arrays, channels and segments are not copied. */
+void hl_volume_take_about(hl_volume *volume, const hl_volume *from);
 
 /* Makes a volume of packed voxels that are already in stored form (hl_voxels_store()), in a block of
  * hl_allocate() that the volume takes over, also on failure. description: the grid, the type in the file, and

@@ -89,6 +89,7 @@ int web_begin(uint32_t mebibytes, int threads) {
   hl_context_options_defaults(&options);
   options.cancelled = cancelled;
   options.progress = progress;
+  options.keep_unsmoothed = 1; /* for slices */
   options.memory_limit = (uint64_t)mebibytes << 20;
   hl_status status = hl_context_create(&options, &web.context, &error);
   if (status == HL_OK) status = hl_context_confine(web.context, NULL, &web.sealed, &error);
@@ -321,13 +322,13 @@ static hl_status read_plane(const double numbers[PLANE_NUMBERS], hl_reslice_opti
   return HL_OK;
 }
 
-int web_slice(int number, int of_mask, int blend, int interpolate) {
+int web_slice(int number, int source, int blend, int interpolate) {
   hl_error error = {0};
   hl_reslice_options plane;
   double numbers[PLANE_NUMBERS];
   unsigned char *bytes = NULL;
   size_t count = 0;
-  const hl_volume *volume = sliced_volume(web.scene, number, of_mask != 0);
+  const hl_volume *volume = sliced_volume(web.scene, number, (slice_source)source);
   if (volume == NULL) return answer_text(HL_ERROR_INPUT, "the scene has no such volume or mask");
   memcpy(numbers, web.text, sizeof numbers);
   hl_status status = read_plane(numbers, &plane, &error);

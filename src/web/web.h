@@ -53,9 +53,8 @@ int web_frame(size_t length, const char *format, int depth, int metadata, int mo
 
 /* Answer: the values of a plane of voxels, as slice_values() makes them (start/places.h). The text is 15
  * doubles: width, height, depth, origin, across, down and through of hl_reslice_options. number: of a volume
- * in the open scene; of_mask: 1: the plane is cut out of the volume's mask; blend: an hl_blend; interpolate:
- * 0 or 1. */
-int web_slice(int number, int of_mask, int blend, int interpolate);
+ * in the open scene; source: a slice_source; blend: an hl_blend; interpolate: 0 or 1. */
+int web_slice(int number, int source, int blend, int interpolate);
 
 /* Answer: the depth of what the middle pixel shows in a picture of the text's scene, as middle_depth() writes
  * it. */

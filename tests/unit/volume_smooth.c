@@ -286,6 +286,88 @@ static void what_has_no_mean_is_refused(void **state) {
   hl_volume_release(scan);
 }
 
+/* ---- the voxels before they were smoothed ---- */
+
+static hl_context *keeping(const char *scratch_folder) {
+  hl_context_options options;
+  hl_context *made = NULL;
+  hl_context_options_defaults(&options);
+  options.keep_unsmoothed = 1;
+  options.scratch_folder = scratch_folder;
+  assert_int_equal(hl_context_create(&options, &made, NULL), HL_OK);
+  return made;
+}
+
+/* A volume of noise in a grid whose sides are no multiples of a page's. The numbers are odd, so that floats
+ * round those of 32 bits, which lie beyond 2^24. */
+static hl_volume *make_odd(hl_context *own, hl_voxel_type type) {
+  enum { NI = 70, NJ = 9, NK = 19 };
+  static int32_t numbers[NI * NJ * NK];
+  int16_t *shorter = (int16_t *)numbers;
+  const bool wide = type == HL_VOXEL_I32;
+  for (int v = 0; v < NI * NJ * NK; v++) {
+    const int number = (int)(noise(v % N, v / N % N, v / N / N) * (wide ? 1e9 : 3e4)) | 1;
+    if (wide) numbers[v] = number;
+    else shorter[v] = (int16_t)(number - 15000);
+  }
+  hl_volume_description d = describe_voxels(NI, NJ, NK, type, numbers);
+  d.axis[2][2] = 3;
+  d.origin[1] = -7;
+  d.value_scale = wide ? 1 : 0.25;
+  d.value_offset = wide ? 0 : 12;
+  return create_volume(own, &d);
+}
+
+static bool is_same(const hl_volume *a, const hl_volume *b) {
+  hl_volume_info of_a = {.struct_size = sizeof of_a}, of_b = {.struct_size = sizeof of_b};
+  assert_int_equal(hl_volume_get_info(a, &of_a), HL_OK);
+  assert_int_equal(hl_volume_get_info(b, &of_b), HL_OK);
+  for (size_t k = 0; k < of_a.dimensions[2]; k++)
+    for (size_t j = 0; j < of_a.dimensions[1]; j++)
+      for (size_t i = 0; i < of_a.dimensions[0]; i++)
+        if (hl_volume_value(a, i, j, k) != hl_volume_value(b, i, j, k)) return false;
+  return of_a.type == of_b.type && memcmp(of_a.origin, of_b.origin, sizeof of_a.origin) == 0 &&
+         memcmp(of_a.spacing, of_b.spacing, sizeof of_a.spacing) == 0 &&
+         memcmp(of_a.range, of_b.range, sizeof of_a.range) == 0 &&
+         memcmp(of_a.histogram, of_b.histogram, sizeof of_a.histogram) == 0;
+}
+
+/* The exact voxels are kept, out of memory where there is a scratch folder, and also by a volume that was
+ * smoothed twice. They go with the smoothed volume. */
+static void unsmoothed_voxels_are_kept(void **state) {
+  (void)state;
+  static const hl_voxel_type types[] = {HL_VOXEL_I16, HL_VOXEL_I32};
+  static const char *const folders[] = {"/tmp", NULL, "/nowhere"};
+  for (size_t n = 0; n < 6; n++) {
+    hl_context *own = keeping(folders[n / 2]);
+    hl_volume *volume = make_odd(own, types[n % 2]), *want = make_odd(context, types[n % 2]), *smoothed,
+              *twice;
+    assert_int_equal(hl_volume_is_exact(volume), types[n % 2] == HL_VOXEL_I32);
+    assert_int_equal(hl_volume_smooth(volume, 0.8, &smoothed, NULL), HL_OK);
+    hl_volume_release(volume);
+    assert_int_equal(hl_volume_smooth(smoothed, 0.6, &twice, NULL), HL_OK);
+    assert_false(is_same(smoothed, want));
+    assert_true(is_same(hl_volume_unsmoothed(smoothed), want));
+    assert_int_equal(hl_volume_unsmoothed(smoothed)->pages != NULL, n / 2 == 0);
+    hl_volume_release(smoothed);
+    assert_true(is_same(hl_volume_unsmoothed(twice), want));
+    assert_null(hl_volume_unsmoothed(hl_volume_unsmoothed(twice)));
+    hl_volume_release(twice);
+    hl_volume_release(want);
+    assert_int_equal(hl_context_memory_held(own), 0);
+    hl_context_destroy(own);
+  }
+  assert_null(hl_volume_unsmoothed(NULL));
+}
+
+/* A context that was not told to keep them lets them go. */
+static void unsmoothed_voxels_are_let_go(void **state) {
+  (void)state;
+  hl_volume *smoothed = smooth(1, 0.8);
+  assert_null(hl_volume_unsmoothed(smoothed));
+  hl_volume_release(smoothed);
+}
+
 static int begin(void **state) {
   (void)state;
   context = make_context();
@@ -312,6 +394,8 @@ int main(void) {
       cmocka_unit_test(grain_is_smoothed_and_objects_stay_what_they_are),
       cmocka_unit_test(bare_scenes_are_smoothed),
       cmocka_unit_test(what_has_no_mean_is_refused),
+      cmocka_unit_test(unsmoothed_voxels_are_kept),
+      cmocka_unit_test(unsmoothed_voxels_are_let_go),
   };
   return cmocka_run_group_tests(tests, begin, end);
 }

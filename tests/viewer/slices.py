@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Slices on the page, in a headless Chromium or Firefox: planes lie as radiologists look at them, the crosshair tells the file's values, and
-hands, fingers and keys move it; labels, isolines and slabs; a click in the picture puts the crosshair on what is seen.
+"""Slices on the page, in a headless Chromium or Firefox: planes lie as radiologists look at them, the crosshair tells the file's values, though
+the picture shows smoothed ones, and hands, fingers and keys move it; labels, isolines and slabs; a click in the picture puts the crosshair on what is seen.
 
 usage: slices.py PROGRAM chromium|firefox-esr [FOLDER]
 FOLDER: where screenshots are kept; without it they are not made.
@@ -241,6 +241,9 @@ def labels_and_isolines(browser):
     green = browser.run("""(() => { const canvas = document.querySelector('[data-plane=axial] canvas'), { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
       let count = 0; for (let n = 0; n < data.length; n += 4) count += data[n + 1] > 200 && data[n] < 60 && data[n + 2] < 60; return count; })()""")
     check(green > 50, f"the isoline is drawn: {green} green pixels")
+    # It lies where the picture has its isosurface, which is one of the smoothed values: they make the spot less bright.
+    value, pictured = browser.run("(({ values, pictured }) => [values, pictured].map((all) => Math.max(...all)))(halflight.slices.shown('axial'))")
+    check(value == 3000 and 2500 < pictured < 2900, f"isolines are of smoothed values: {value} {pictured}")
     shot(browser, "labels")
     browser.run("halflight.store.undo()")
 
@@ -368,7 +371,7 @@ with tempfile.TemporaryDirectory() as folder:
     values = write_volumes()
     with open("tf.json", "w", encoding="utf-8") as steep:
         json.dump({"opacity": [[0, 0], [500, 1]], "color": [[0, 0.8, 0.7, 0.6]], "unit_distance": 0.5}, steep)
-    made = subprocess.run([PROGRAM, "render", "head.nrrd", "--tf", "tf.json", "--mask", "organs.nrrd", "--show", "3=red", "--sheet-spacing", "1", "--smooth", "0", "--shadows", "hard", "--print-scene"],
+    made = subprocess.run([PROGRAM, "render", "head.nrrd", "--tf", "tf.json", "--mask", "organs.nrrd", "--show", "3=red", "--sheet-spacing", "1", "--smooth", "0.8", "--shadows", "hard", "--print-scene"],
                           capture_output=True, text=True, check=True)
     scene = json.loads(made.stdout)
     scene["volumes"][0]["mask"]["rest"] = 1

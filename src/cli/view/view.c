@@ -131,6 +131,7 @@ static int run_view(const cli_value *values, char **inputs) {
                               .instruction_set = (hl_instruction_set)render[RENDER_INSTRUCTION_SET].choice,
                               .cancelled = module->is_outdated,
                               .progressed = module->progress,
+                              .keep_unsmoothed = true, /* for slices */
                               .operands = inputs};
   int exit_code = render_check_options(render);
   if (exit_code == EXIT_CODE_OK) exit_code = host_open(&options, &job.host);

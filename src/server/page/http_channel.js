@@ -4,8 +4,8 @@
 // What a channel may have besides start(), completeScene() and fetchFrame(), for a viewer with slices and measuring:
 //
 // - slice({ volume, of, width, height, depth, origin, across, down, through, blend, between }): the values of a plane of
-//   voxels. volume: the number of a volume of what is open; of: "voxels", or "mask" for the label map that masks it. A grid of
-//   width x height samples, of `depth` layers; origin: [i, j, k], the first sample of the first row of the first layer, in
+//   voxels. volume: the number of a volume of what is open; of: "voxels", the file's; "mask", the label map that masks it;
+//   "picture", what the picture shows of it, which is smoothed where the volume is. A grid of width x height samples, of `depth` layers; origin: [i, j, k], the first sample of the first row of the first layer, in
 //   voxels; across, down, through: [i, j, k], the steps to the next sample, row and layer. blend: what of the layers is
 //   told: "maximum", "minimum" or "mean"; between: "nearest" or "linear". Resolves to { values, width, height }: values is a
 //   Float32Array or Float64Array, whichever holds the voxels' values exactly, row after row; NaN: no voxel is there.

@@ -20,6 +20,9 @@ export function automaticWindow({ histogram, range: [low, high] }) {
   return [low + reached(0.005) * width, low + (reached(0.995) + 1) * width];
 }
 
+// { histogram, range } of the values that slices show of a volume: the file's, also where the picture shows smoothed ones.
+export const measured = (about) => about.unsmoothed ?? about;
+
 // The volume of the scene that slices cut: the chosen one, or the first that is no label map.
 export function sourceVolume({ store, start, current }) {
   const { volumes } = store.scene, isGrey = (v) => start.volumes[v] && !volumes[v].labels;
@@ -50,7 +53,7 @@ export class SliceValues {
   #wanted = null;
   #busy = false;
   #known = new Map(); // for each text of a request: its answer; for the newest plane only
-  shown = null; // { plane, values, labels: [{ volume, of, values }] }
+  shown = null; // { plane, values, pictured: what the picture shows of them, labels: [{ volume, of, values }] }
 
   constructor(channel, onLoad, onFail) {
     this.#channel = channel;
@@ -58,9 +61,10 @@ export class SliceValues {
     this.#onFail = onFail;
   }
 
-  // source: { volume, grid, transform }; labels: labelSources().
-  want(plane, source, labels, blend) {
-    const requests = [asked(plane, source.volume, "voxels", blend),
+  // source: { volume, grid, transform }; labels: labelSources(); hasLines: isolines are drawn, which lie where the picture has its
+  // isosurfaces.
+  want(plane, source, labels, blend, hasLines) {
+    const requests = [asked(plane, source.volume, "voxels", blend), asked(plane, source.volume, hasLines && source.grid.unsmoothed ? "picture" : "voxels", blend),
       ...labels.map((map) => asked(planeIn(plane, source, map), map.volume, map.of, "maximum"))].map((request) => JSON.stringify(request));
     this.#wanted = { plane, requests, maps: labels };
     if (!this.#busy) this.#load();
@@ -79,10 +83,10 @@ export class SliceValues {
       this.#wanted = null;
       try {
         const known = new Map();
-        for (const request of requests) known.set(request, this.#known.get(request) ?? (await this.#channel.slice(JSON.parse(request))));
+        for (const request of new Set(requests)) known.set(request, this.#known.get(request) ?? (await this.#channel.slice(JSON.parse(request))));
         this.#known = known;
-        const [values, ...labels] = requests.map((request) => known.get(request));
-        this.shown = { plane, values: values.values, labels: labels.map(({ values: own }, m) => ({ volume: maps[m].volume, of: maps[m].of, values: own })) };
+        const [values, pictured, ...labels] = requests.map((request) => known.get(request));
+        this.shown = { plane, values: values.values, pictured: pictured.values, labels: labels.map(({ values: own }, m) => ({ volume: maps[m].volume, of: maps[m].of, values: own })) };
         this.#onLoad();
       } catch (error) {
         this.#onFail(error);
@@ -123,5 +127,5 @@ function tint(data, values, labels, strength) {
 const rgbOf = (linear) => [1, 3, 5].map((at) => parseInt(hexOf(linear).slice(at, at + 2), 16));
 
 // The isolines of the source's isosurfaces: [{ color, pieces }].
-export const isolines = ({ plane, values }, surfaces) =>
-  surfaces.map((surface) => ({ color: hexOf(surface.color), pieces: contourPieces(values, plane.width, plane.height, surface.value) }));
+export const isolines = ({ plane, pictured }, surfaces) =>
+  surfaces.map((surface) => ({ color: hexOf(surface.color), pieces: contourPieces(pictured, plane.width, plane.height, surface.value) }));

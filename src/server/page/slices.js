@@ -10,7 +10,7 @@ import { cutsOf, sectionsOf } from "./cut_sections.js";
 import { Marks } from "./mark_overlay.js";
 import { pick } from "./pick.js";
 import { holds, planeOf, PLANES, voxelAt } from "./sections.js";
-import { SliceValues, automaticWindow, labelSources, sourceVolume } from "./slice_values.js";
+import { SliceValues, automaticWindow, labelSources, measured, sourceVolume } from "./slice_values.js";
 import { SliceView } from "./slice_view.js";
 
 export const LAYOUTS = [["picture", "Picture"], ["beside", "One slice"], ["four", "Four-up"]];
@@ -62,7 +62,7 @@ export class Slices {
 
   get window() {
     const { store, start } = this.#viewer, { volume } = this.source;
-    return store.page.windows?.[volume] ?? automaticWindow(start.volumes[volume]);
+    return store.page.windows?.[volume] ?? automaticWindow(measured(start.volumes[volume]));
   }
 
   set window(ends) {
@@ -72,7 +72,7 @@ export class Slices {
 
   // right and down: fractions of a plane's sides. To the right the window widens; upwards the level rises.
   changeWindow(right, down) {
-    const [low, high] = this.window, [least, greatest] = this.source.grid.range, whole = Math.max(greatest - least, 1e-30);
+    const [low, high] = this.window, [least, greatest] = measured(this.source.grid).range, whole = Math.max(greatest - least, 1e-30);
     const width = Math.max((high - low) * Math.exp(2 * right), whole * 1e-5), level = (low + high) / 2 - down * Math.max(high - low, whole * 1e-3);
     this.window = [level - width / 2, level + width / 2];
   }
@@ -160,14 +160,19 @@ export class Slices {
     if (!this.#values.has(name))
       this.#values.set(name, new SliceValues(channel, () => this.#views.forEach((view) => { if (view.name === name) view.draw(); }), (error) => this.#viewer.failed(error)));
     const plane = planeOf(name, { ...source, cursor, thickness, camera: store.page.oblique ?? store.scene.camera });
-    this.#values.get(name).want(plane, source, labelSources(this.#viewer, source.volume), blend);
+    this.#values.get(name).want(plane, source, labelSources(this.#viewer, source.volume), blend, this.#surfaces.length > 0);
+  }
+
+  // The isosurfaces of the source that are drawn as isolines.
+  get #surfaces() {
+    const { store } = this.#viewer;
+    return store.page.showIsolines ?? true ? (store.scene.volumes[this.source.volume].iso ?? []) : [];
   }
 
   // The look of planes besides their values; `key` differs where the look does.
   look() {
-    const { store } = this.#viewer, { source, window } = this, { showLabels = true, showIsolines = true } = store.page;
+    const { store } = this.#viewer, { source, window } = this, surfaces = this.#surfaces, { showLabels = true } = store.page;
     const sources = labelSources(this.#viewer, source.volume), maps = showLabels ? sources : [];
-    const surfaces = showIsolines ? (store.scene.volumes[source.volume].iso ?? []) : [];
     const isAlone = sources.some((map) => map.volume === source.volume && map.of === "voxels");
     return { window, maps, surfaces, isAlone, key: JSON.stringify([window, maps.map((map) => map.labels), surfaces]) };
   }

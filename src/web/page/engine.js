@@ -9,6 +9,7 @@ const STACK = 1 << 20, ALIGNED = 64; // bytes of a stack, as src/web/meson.build
 const MOST_THREADS = 8; // of a picture: more wait for each other
 const POOLS = 2; // that keep their threads: of pictures at rest and of those while something moves
 
+const SOURCES = ["voxels", "mask", "picture"]; // slice_source
 const BLENDS = ["maximum", "minimum", "mean"]; // hl_blend, from 1
 
 // As http_channel.js has it: the number of bytes tells whether they are floats or doubles.
@@ -154,7 +155,7 @@ export class Engine {
   // The values of a plane of voxels (slice() of http_channel.js); null: cancelled.
   async slice({ width, height, origin, across, down, through, depth = 1, volume = 0, of = "voxels", blend = "maximum", between = "nearest" }) {
     this.#write(new Uint8Array(Float64Array.of(width, height, depth, ...origin, ...across, ...down, ...through).buffer));
-    const answer = this.#check(await this.#exports.web_slice(volume, +(of === "mask"), 1 + BLENDS.indexOf(blend), +(between === "linear")));
+    const answer = this.#check(await this.#exports.web_slice(volume, SOURCES.indexOf(of), 1 + BLENDS.indexOf(blend), +(between === "linear")));
     return answer && valuesOf(answer.slice().buffer, width, height);
   }
 
