@@ -73,9 +73,9 @@ def center(browser, selector):
 
 
 def set_control(browser, label, value, event="input", section=""):
-    """Moves the slider, list or switch with this label as a hand would; section: the title of the panel, where others have such a label too."""
+    """Moves the slider, list or switch with this label as a hand would, which reaches no hidden panel; section: the title of the panel, where others have such a label too."""
     browser.run(f"""(() => {{
-      const label = [...document.querySelectorAll('aside label')].find((l) => l.textContent.trim() === {json.dumps(label)} &&
+      const label = [...document.querySelectorAll('aside label')].find((l) => l.textContent.trim() === {json.dumps(label)} && l.closest('[hidden]') === null &&
         ({json.dumps(section)} === '' || l.closest('details')?.querySelector('summary').textContent.includes({json.dumps(section)})));
       const control = document.getElementById(label.htmlFor);
       if (control.closest('details')) control.closest('details').open = true;

@@ -388,7 +388,7 @@ with tempfile.TemporaryDirectory() as folder:
         slabs(page, values)
         labels_and_isolines(page)
         clicks_in_the_picture(page)
-        oblique(page)
         cuts_in_slices(page)
+        oblique(page)
         check(page.problems == [], f"the console has errors: {page.problems}")
 print(f"{checks.count} checks passed")
