@@ -168,9 +168,26 @@ class Browser:
     def type(self, text):
         self.call("Input.insertText", text=text)
 
-    def key(self, key, text=None):
-        self.call("Input.dispatchKeyEvent", type="keyDown", key=key, text=text or (key if len(key) == 1 else ""))
-        self.call("Input.dispatchKeyEvent", type="keyUp", key=key)
+    def key(self, key, text=None, modifiers=0):
+        told = {"key": key, "modifiers": modifiers, **({"code": "Tab", "windowsVirtualKeyCode": 9} if key == "Tab" else {})}
+        self.call("Input.dispatchKeyEvent", type="keyDown", text="" if modifiers else text or (key if len(key) == 1 else ""), **told)
+        self.call("Input.dispatchKeyEvent", type="keyUp", **told)
+
+    def reload(self):
+        self.call("Page.reload")
+
+    def save_in(self, folder):
+        """Files that the page saves arrive in this folder."""
+        self.call("Page.setDownloadBehavior", behavior="allow", downloadPath=os.path.abspath(folder))
+
+    def offline(self, is_offline):
+        """Takes the network away, or gives it back."""
+        self.call("Network.emulateNetworkConditions", offline=is_offline, latency=0, downloadThroughput=-1, uploadThroughput=-1)
+
+    def used_memory(self):
+        """Bytes of the page's objects, without those that are garbage; None: the browser does not tell."""
+        self.call("HeapProfiler.collectGarbage")
+        return self.run("performance.memory.usedJSHeapSize")
 
     def choose(self, selector, files):
         """Chooses files in an input of the page."""

@@ -45,6 +45,10 @@ class Socket:
         taken, self._buffer = self._buffer[:count], self._buffer[count:]
         return taken
 
+    def wait(self, seconds):
+        """How long the next texts may take."""
+        self._socket.settimeout(seconds)
+
     def send(self, text):
         payload, mask = text.encode(), os.urandom(4)
         size = len(payload)
@@ -74,7 +78,7 @@ def value_of(remote):
     if kind == "array":
         return [value_of(one) for one in value]
     if kind == "object":
-        return {key: value_of(one) for key, one in value}
+        return {key: value_of(one) for key, one in value or ()}
     if kind == "number" and isinstance(value, str):
         return {"NaN": float("nan"), "-0": -0.0, "Infinity": float("inf"), "-Infinity": float("-inf")}[value]
     return value if kind in ("string", "number", "boolean") else None
@@ -127,8 +131,9 @@ class Firefox:
                     raise BrowserError(f"{method}: {answer['error']}: {answer['message']}")
                 return answer["result"]
 
-    def run(self, script):
+    def run(self, script, timeout=HANG):
         """The value of a JavaScript expression; promises are awaited."""
+        self._socket.wait(timeout)
         answer = self.call("script.evaluate", expression=script, target={"context": self._context}, awaitPromise=True)
         if answer["type"] != "success":
             raise BrowserError(f"{script}: {answer['exceptionDetails']['text']}")
@@ -137,6 +142,7 @@ class Firefox:
     wait = Browser.wait
 
     def resize(self, width, height):
+        self._size = width, height
         self.call("browsingContext.setViewport", context=self._context, viewport={"width": width, "height": height})
 
     def open(self, url):
@@ -155,7 +161,8 @@ class Firefox:
 
     def drag(self, start, end, steps=8, button="left", modifiers=0):
         """Presses at start, moves to end and lets go."""
-        places = [[round(a + (b - a) * step / steps) for a, b in zip(start, end)] for step in range(steps + 1)]
+        # The protocol's pointer cannot leave the window.
+        places = [[min(max(round(a + (b - a) * step / steps), 0), size - 1) for a, b, size in zip(start, end, self._size)] for step in range(steps + 1)]
         moves = [{"type": "pointerMove", "x": x, "y": y} for x, y in places]
         self._held(modifiers, True)
         self._pointer(moves[0], {"type": "pointerDown", "button": BUTTONS[button]}, *moves[1:], {"type": "pointerUp", "button": BUTTONS[button]})
@@ -180,8 +187,33 @@ class Firefox:
         self._perform({"type": "wheel", "id": "wheel", "actions": [{"type": "scroll", "x": round(x), "y": round(y), "deltaX": 0, "deltaY": pixels}]})
         self._held(modifiers, False)
 
-    def key(self, key):
+    def mouse(self, kind, x, y, button="left", modifiers=0):
+        actions = [{"type": "pointerMove", "x": round(x), "y": round(y)}]
+        if kind != "mouseMoved":
+            actions.append({"type": "pointerDown" if kind == "mousePressed" else "pointerUp", "button": BUTTONS[button]})
+        self._held(modifiers, True)
+        self._pointer(*actions)
+        self._held(modifiers, False)
+
+    def key(self, key, modifiers=0):
+        self._held(modifiers, True)
         self.type(KEYS.get(key, key))
+        self._held(modifiers, False)
+
+    def reload(self):
+        self.call("browsingContext.reload", context=self._context, wait="complete")
+
+    def save_in(self, folder):
+        """Files that the page saves arrive in this folder."""
+        self.call("browser.setDownloadBehavior", downloadBehavior={"type": "allowed", "destinationFolder": os.path.abspath(folder)})
+
+    def offline(self, is_offline):
+        """Takes the network away, or gives it back."""
+        self.call("emulation.setNetworkConditions", networkConditions={"type": "offline"} if is_offline else None, contexts=[self._context])
+
+    def used_memory(self):
+        """Bytes of the page's objects, without those that are garbage; None: the browser does not tell."""
+        return None
 
     def type(self, text):
         self._perform({"type": "key", "id": "keys", "actions": [{"type": kind, "value": letter} for letter in text for kind in ("keyDown", "keyUp")]})

@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
-"""Nothing is lost, in a headless Chromium: one step of the history a gesture, menus that follow it, and the whole state after a reload, after
+"""Nothing is lost, in a headless Chromium or Firefox: one step of the history a gesture, menus that follow it, and the whole state after a reload, after
 another start of the viewer, after a lost network and out of a file. What the page says of its picture is true.
 
-usage: session.py PROGRAM [FOLDER]
+usage: session.py PROGRAM chromium|firefox-esr [FOLDER]
 FOLDER: where screenshots are kept; without it they are not made.
 """
 import json
 import os
-import shutil
 import stat
 import subprocess
 import sys
@@ -15,12 +14,12 @@ import tempfile
 import time
 
 import checks
-from browser import Browser
 from checks import check
+from firefox import browser_named
 from hands import PROGRAM, STAGE, center, equals_render, open_section, press, press_named, rest, scene_of, set_control
 from viewer import Viewer, need_viewer
 
-SHOTS = os.path.abspath(sys.argv[2]) if len(sys.argv) > 2 else None
+SHOTS = os.path.abspath(sys.argv[3]) if len(sys.argv) > 3 else None
 BANNER = "document.querySelector('.banner')"
 
 
@@ -122,8 +121,7 @@ def fields_undo_themselves(browser):
     steps = "halflight.store.history[0].length"
     count = browser.run(steps)
     browser.run("document.querySelector('details[open] input.number').focus()")
-    browser.call("Input.dispatchKeyEvent", type="keyDown", key="z", modifiers=2)
-    browser.call("Input.dispatchKeyEvent", type="keyUp", key="z")
+    browser.key("z", modifiers=2)
     check(browser.run(steps) == count and count > 0, f"a field's Ctrl + Z leaves the scene: {count}, {browser.run(steps)}")
     handle = center(browser, ".light-dot")
     browser.drag(handle, [handle[0] + 20, handle[1] + 5])
@@ -187,7 +185,7 @@ def work(browser):
 
 def reload(browser):
     browser.run("globalThis.before = true")
-    browser.call("Page.reload")
+    browser.reload()
     browser.wait("globalThis.before === undefined && globalThis.halflight !== undefined")
     rest(browser)
 
@@ -255,10 +253,10 @@ def after_restart(browser, viewer, options):
 
 def network(browser):
     """Without a network the banner comes, and goes when the network is back, without a hand."""
-    browser.call("Network.emulateNetworkConditions", offline=True, latency=0, downloadThroughput=-1, uploadThroughput=-1)
+    browser.offline(True)
     set_control(browser, "Colours", "magma", "change")
     browser.wait(f"!{BANNER}.hidden")
-    browser.call("Network.emulateNetworkConditions", offline=False, latency=0, downloadThroughput=-1, uploadThroughput=-1)
+    browser.offline(False)
     browser.wait(f"{BANNER}.hidden")
     rest(browser)
 
@@ -272,12 +270,12 @@ def drop(browser, name, text):
 def files(browser):
     """A session as a file brings everything back; a scene of what is open the scene; others are refused in words."""
     os.mkdir("saved")
-    browser.call("Page.setDownloadBehavior", behavior="allow", downloadPath=os.path.abspath("saved"))
+    browser.save_in("saved")
     work(browser)
     state = json.loads(browser.run(STATE))
     press(browser, "save session")
     end = time.monotonic() + 60
-    while not os.path.exists("saved/second-session.json"):
+    while not os.path.exists("saved/second-session.json") or os.path.getsize("saved/second-session.json") == 0:  # Firefox keeps its name first
         check(time.monotonic() < end, "the session is saved")
         time.sleep(0.05)
     with open("saved/second-session.json", encoding="utf-8") as file:
@@ -347,10 +345,7 @@ def private_tokens(folder):
         check(again.token != token, "none is read or kept in a folder that others can enter")
 
 
-chromium = shutil.which("chromium")
-if chromium is None:
-    print("chromium is not installed")
-    sys.exit(77)
+kind = browser_named(sys.argv[2])
 with tempfile.TemporaryDirectory() as place:
     os.chdir(place)
     need_viewer(PROGRAM)
@@ -361,7 +356,7 @@ with tempfile.TemporaryDirectory() as place:
     with Viewer(PROGRAM, "first.nrrd") as chosen:
         port = str(chosen.port)
     arguments = ["first.nrrd", "--sheet-spacing", "2", "--shadows", "hard", "--port", port]
-    with Viewer(PROGRAM, *arguments) as first, Browser(chromium, (900, 620)) as page:
+    with Viewer(PROGRAM, *arguments) as first, kind(size=(900, 620)) as page:
         page.open(first.url)
         rest(page)
         one_step_a_gesture(page)

@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
-"""The page's tools in a headless Chromium: exports, probe, clip handles, labels, and hundreds of random hands.
+"""The page's tools in a headless Chromium or Firefox: exports, probe, clip handles, labels, and hundreds of random hands.
 
-usage: tools.py PROGRAM [FOLDER]
+usage: tools.py PROGRAM chromium|firefox-esr [FOLDER]
 FOLDER: where axe.min.js of axe-core may lie, which judges the page for screen readers; that part is left out without it.
 """
 import glob
 import os
 import random
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -15,8 +14,8 @@ import tempfile
 import numpy
 
 import checks
-from browser import Browser
 from checks import check
+from firefox import browser_named
 from hands import PROGRAM, STAGE, center, changes, copied_command, equals_render, final_picture, resize, rest, scene_of
 from viewer import Viewer, need_viewer
 
@@ -106,8 +105,7 @@ def keyboard_only(browser):
     browser.run("document.querySelectorAll('details').forEach((d) => { d.open = true; }); document.activeElement.blur()")
     reached = set()
     for _ in range(320):
-        browser.call("Input.dispatchKeyEvent", type="keyDown", key="Tab", code="Tab", windowsVirtualKeyCode=9)
-        browser.call("Input.dispatchKeyEvent", type="keyUp", key="Tab", code="Tab", windowsVirtualKeyCode=9)
+        browser.key("Tab")
         reached.add(browser.run("""(() => { const e = document.activeElement; e.dataset.reached = 1;
           return e.id || e.getAttribute('aria-label') || e.getAttribute('class') || e.tagName; })()"""))
     # Of a group of choices Tab reaches the chosen one, arrow keys the others; the lights' handles are one each.
@@ -136,8 +134,10 @@ def random_hands(browser, viewer, count=500):
             browser.run("document.getElementById('view').focus()")
             browser.key(chance.choice(keys))
         elif kind == 3:
-            browser.run("document.querySelector('canvas.function').scrollIntoView({ block: 'center' })")
-            box = browser.run("(({ x, y, width, height }) => [x, y, width, height])(document.querySelector('canvas.function').getBoundingClientRect())")
+            # The drawing of a function of one number or of two; labels have none.
+            box = browser.run("""(() => { const drawing = document.querySelector('.function-area canvas');
+              drawing?.scrollIntoView({ block: 'center' });
+              const { x = 0, y = 0, width = 0, height = 0 } = drawing?.getBoundingClientRect() ?? {}; return [x, y, width, height]; })()""")
             at = [box[0] + chance.random() * box[2], box[1] + chance.random() * box[3]]
             browser.drag(at, [at[0] + chance.randint(-60, 60), at[1] + chance.randint(-40, 40)], 3)
         else:
@@ -157,8 +157,7 @@ def random_hands(browser, viewer, count=500):
     })()""")
 
     def sizes():
-        browser.call("HeapProfiler.collectGarbage")
-        heap = browser.run("performance.memory.usedJSHeapSize")
+        heap = browser.used_memory() or 0
         nodes = browser.run("document.querySelectorAll('*').length")
         with open(f"/proc/{viewer.process.pid}/status") as file:
             resident = next(int(line.split()[1]) for line in file if line.startswith("VmRSS"))
@@ -185,11 +184,8 @@ def write_ball(path):
         file.write(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 32 32 32\nencoding: raw\n\n" + voxels)
 
 
-chromium = shutil.which("chromium")
-if chromium is None:
-    print("chromium is not installed")
-    sys.exit(77)
-AXE = glob.glob(f"{os.path.abspath(sys.argv[2])}/**/axe.min.js", recursive=True) if len(sys.argv) > 2 else []
+chosen = browser_named(sys.argv[2])
+AXE = glob.glob(f"{os.path.abspath(sys.argv[3])}/**/axe.min.js", recursive=True) if len(sys.argv) > 3 else []
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
     need_viewer(PROGRAM)
@@ -200,7 +196,7 @@ with tempfile.TemporaryDirectory() as folder:
                            check=True, capture_output=True).stdout
     with open("ball.json", "wb") as file:
         file.write(scene)
-    with Viewer(PROGRAM, "ball.json") as viewer, Browser(chromium, (720, 420)) as browser:
+    with Viewer(PROGRAM, "ball.json") as viewer, chosen(size=(720, 420)) as browser:
         browser.open(viewer.url)
         rest(browser)
         probe(browser)
