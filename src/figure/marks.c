@@ -123,16 +123,23 @@ static point_on_page anchor_of(const hl_mark *mark, const point_on_page first[3]
   }
 }
 
+/* Whether a ruler's line rises to the right on the page. Its text then lies below the line, and else above,
+ * so that the text covers neither the line nor its end. */
+static bool rises(const hl_mark *mark, const point_on_page first[3]) {
+  return mark->kind == HL_MARK_RULER && (first[1].x - first[0].x) * (first[1].y - first[0].y) < 0;
+}
+
 static void draw_caption(const hl_ink *ink, const hl_overlay_place *place, const hl_mark *mark,
-                         point_on_page at) {
+                         point_on_page at, bool below) {
   char measure[MEASURE_BYTES];
   write_measure(place, mark, measure);
   const char *text = mark->text != NULL ? mark->text : "", *between = *text && *measure ? ": " : "";
   char *caption = g_strconcat(text, between, measure, NULL);
   if (*caption)
-    hl_ink_text(ink,
-                &(hl_line_of_text){
-                    .text = caption, .x = at.x + 0.7 * ink->size, .y = at.y - 0.4 * ink->size, .align_y = 1});
+    hl_ink_text(ink, &(hl_line_of_text){.text = caption,
+                                        .x = at.x + 0.7 * ink->size,
+                                        .y = at.y + (below ? 0.4 : -0.4) * ink->size,
+                                        .align_y = below ? 0 : 1});
   g_free(caption);
 }
 
@@ -168,7 +175,8 @@ hl_status hl_overlay_marks(const hl_ink *ink, const hl_overlay_place *place, hl_
   for (size_t m = 0; m < scene->mark_count; m++) {
     point_on_page first[3] = {{0, 0}}, last = {0, 0};
     if (draw_path(ink, &place->map, &scene->marks[m], first, &last))
-      draw_caption(ink, place, &scene->marks[m], anchor_of(&scene->marks[m], first, last));
+      draw_caption(ink, place, &scene->marks[m], anchor_of(&scene->marks[m], first, last),
+                   rises(&scene->marks[m], first));
   }
   cairo_restore(ink->cairo);
   return HL_OK;

@@ -345,6 +345,16 @@ def places_of_marks():
     plain, drawn = (np.asarray(Image.open(name).convert("L")).astype(int) for name in ("plain.png", "marked.png"))
     middle = [round((seen[k] + seen[k + 2]) / 2 * 400 / page) for k in (0, 1)]
     check(drawn[middle[1] - 1:middle[1] + 2, middle[0]].max() > 150 and plain.shape == drawn.shape and (plain != drawn).mean() < 0.05, "the PNG shows the line over the picture")
+    for high in 0, 1:  # a ruler's text is below a line that rises to the right, and above one that falls
+        ends = sorted([[16, 32, 32], [48, 32, 32]], key=lambda point: np.dot(point, right))
+        ends[high][2] += 24
+        marked(look, [{"kind": "ruler", "points": ends, "text": "xxx"}])
+        halflight("marked.json", "--marks", "-o", "ruler.png", "--quiet")
+        (rows, columns), (one, other) = np.nonzero(np.asarray(Image.open("ruler.png").convert("L")) != plain), (
+            [200 + sign * 400 * np.dot(np.subtract(point, camera["target"]), axis) / camera["height"] for sign, axis in ((1, right), (-1, up))] for point in ends)
+        below = rows - (one[1] + (columns - one[0]) * (other[1] - one[1]) / (other[0] - one[0]))
+        text = below[abs(below) > 8]
+        check(len(text) > 20 and (text > 0).all() == (high == 1) and (text < 0).all() == (high == 0), f"the text of a ruler: {text.min()} to {text.max()} pixels below the line")
     kinds = {"ruler": 2, "angle": 3, "line": 2, "arrow": 2, "text": 1}
     for kind, count in kinds.items():
         marked(look, [{"kind": kind, "points": points[:count], "text": "x"}])

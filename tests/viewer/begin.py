@@ -253,6 +253,22 @@ def real_head():
     return "head.nrrd"
 
 
+def opened_panels_are_seen(browser):
+    """A click on the last panel's title shows what is in it, though the side bar was full."""
+    resize(browser, 900, 600)
+    title = "[...document.querySelectorAll('aside .section > summary')].findLast((one) => one.offsetParent)"
+    browser.run(f"document.querySelectorAll('aside .section').forEach((one) => {{ one.open = one.querySelector('summary').textContent === 'Looks'; }}); {title}.scrollIntoView({{ block: 'end' }})")
+    browser.run("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    box = browser.run(f"(({{ x, y, width, height }}) => [x + width / 2, y + height / 2])({title}.getBoundingClientRect())")
+    browser.click(box)
+    browser.wait(f"{title}.parentElement.open")
+    browser.run("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    seen = "(() => { const part = %s.parentElement.getBoundingClientRect(), bar = document.querySelector('aside').getBoundingClientRect(); return part.bottom <= bar.bottom + 1 || part.top <= bar.top + 1; })()" % title
+    check(browser.run(seen), "the panel is in view")
+    browser.click(browser.run(f"(({{ x, y, width, height }}) => [x + width / 2, y + height / 2])({title}.getBoundingClientRect())"))
+    rest(browser)
+
+
 name = sys.argv[2]
 if shutil.which(name) is None:
     print(f"{name} is not installed")
@@ -273,6 +289,7 @@ with tempfile.TemporaryDirectory() as folder:
             two_pictures(browser)
             links(browser, viewer.url)
             keys_beside_sliders(browser)
+            opened_panels_are_seen(browser)
             check(browser.problems == [], f"the console has errors: {browser.problems}")
         if head is not None:
             with Viewer(PROGRAM, head) as viewer:

@@ -94,6 +94,22 @@ def rulers(browser):
     press_named(browser, "Undo")
 
 
+def texts_of_rulers(browser):
+    """The text of a ruler covers neither its line nor the squares at its ends, whichever way it runs."""
+    before, middle = marks(browser), (19, 19, 20)
+    for step in ((8, 0), (8, 3), (8, 12), (1, 12), (0, 12), (-1, 12), (-8, 12), (-8, 3)):
+        ends = [[middle[0] + sign * step[0], middle[1] + sign * step[1], middle[2]] for sign in (1, -1)]
+        browser.run(f"halflight.store.setMarks('test', [{{ kind: 'ruler', points: {json.dumps([world(end) for end in ends])} }}])")
+        left, top, right, low = browser.run("""(({ x, y, width, height }) => [x, y, x + width, y + height])(document.querySelector('[data-plane=axial] .mark-text').getBoundingClientRect())""")
+        one, other = (pixel(browser, end) for end in ends)
+        line = [[a + (b - a) * part / 200 for a, b in zip(one, other)] for part in range(201)]
+        reach = [5 if part in (0, 200) else 0 for part in range(201)]  # pixels; half a square
+        covered = [place for place, side in zip(line, reach) if left < place[0] + side and place[0] - side < right and top < place[1] + side and place[1] - side < low]
+        check(covered == [], f"a ruler along {step}: its text [{left}, {top}, {right}, {low}] covers {covered[:2]}")
+        press_named(browser, "Undo")
+    check(marks(browser) == before, "undone")
+
+
 def angles(browser):
     press(browser, "Angle")
     for voxel in ((19, 5, 20), (19, 19, 20), (26, 19, 20)):
@@ -270,6 +286,7 @@ with tempfile.TemporaryDirectory() as folder:
         rest(page)
         page.wait("halflight.slices.shown('axial') && halflight.slices.readout")
         rulers(page)
+        texts_of_rulers(page)
         angles(page)
         lines(page)
         arrows_and_texts(page)

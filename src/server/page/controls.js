@@ -127,6 +127,8 @@ export function tabs({ label, noun, count, chosen, choose, add, remove }) {
 // A part of the side bar that can be folded. Returns { element, body }.
 export function section(title, open = true) {
   const body = make("div", { class: "section-body" });
-  const element = make("details", { class: "section", open }, make("summary", {}, title), body);
+  const element = make("details", { class: "section", open }, make("summary", { onclick: () => element.addEventListener("toggle", show, { once: true }) }, title), body);
+  // A person who opens the last section sees what is in it.
+  const show = () => { if (element.open) element.scrollIntoView({ block: "nearest" }); };
   return { element, body };
 }

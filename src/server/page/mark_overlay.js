@@ -7,6 +7,7 @@ import { PictureHandles } from "./picture_handles.js";
 import { add, scale } from "./vector.js";
 
 const HEAD = 9; // pixels of an arrow's head
+const TEXT_HEIGHT = 13; // pixels; of .mark-text in style.css
 const KEY_REACH = 0.25; // fraction of the height of the shown area; a key moves a point by a fiftieth of it
 
 // The head of an arrow that points to [x, y].
@@ -20,8 +21,10 @@ function drawn(mark, places, caption, className) {
   const path = places.map(([x, y], n) => `${n > 0 ? "L" : "M"}${x} ${y}`).join("") + (mark.kind === "arrow" && places.length === 2 ? head(...places) : "");
   const at = mark.kind === "ruler" && places.length === 2 ? [(places[0][0] + places[1][0]) / 2, (places[0][1] + places[1][1]) / 2]
     : mark.kind === "angle" && places.length > 1 ? places[1] : places.at(mark.kind === "arrow" ? 0 : -1);
+  // To the right of a ruler's middle, above a ruler that falls to the right and below one that rises: it covers neither the line nor its end.
+  const rises = mark.kind === "ruler" && places.length === 2 && (places[1][0] - places[0][0]) * (places[1][1] - places[0][1]) < 0;
   return [make("svg:path", { d: path, class: "mark-halo" }), make("svg:path", { d: path, class: className }),
-    make("svg:text", { x: at[0] + 8, y: at[1] - 8, class: "mark-text" }, caption)];
+    make("svg:text", { x: at[0] + 8, y: rises ? at[1] + 8 + TEXT_HEIGHT : at[1] - 8, class: "mark-text" }, caption)];
 }
 
 export class Marks {
