@@ -13,11 +13,13 @@
 
 /* ---- copies of voxels ---- */
 
-/* The source of finite_voxels: the grid's voxels, in the volume's storage type. */
+/* The source of finite_voxels: the volume's voxels. */
 typedef struct copy_job {
   const grid *grid;
-  hl_storage storage;
-  float greatest; /* the parameter of hl_grid_value() with this name */
+  const hl_volume *volume;
+  float greatest;      /* the parameter of hl_grid_value() with this name */
+  unsigned char *rows; /* [threads][volume->row_bytes]; memory for rows of sparse pages; null if the voxels
+                        * are in one array */
 } copy_job;
 
 static float stored_of(hl_storage storage, const void *row, size_t x) {
@@ -27,15 +29,16 @@ static float stored_of(hl_storage storage, const void *row, size_t x) {
 }
 
 static void replace_slice(void *data, size_t index, int worker) {
-  (void)worker;
   const copy_job *job = data;
   const grid *grid = job->grid;
+  const hl_volume *volume = job->volume;
+  void *copy = job->rows != NULL ? job->rows + (size_t)worker * volume->row_bytes : NULL;
   size_t count_x = (size_t)grid->dimension[0], count_y = (size_t)grid->dimension[1];
   float *to = grid->finite_voxels + index * count_x * count_y;
   for (size_t y = 0; y < count_y; y++, to += count_x) {
-    const void *from = hl_grid_row(grid, (int64_t)y, (int64_t)index);
+    const void *from = hl_volume_row_in(volume, y, index, copy);
     for (size_t x = 0; x < count_x; x++) {
-      float value = stored_of(job->storage, from, x);
+      float value = stored_of(volume->storage, from, x);
       to[x] = hl_grid_value(value, job->greatest, grid->empty);
     }
   }
@@ -50,12 +53,20 @@ static void set_voxels(grid *grid, const void *voxels, size_t row_bytes, size_t 
 
 /* Copies voxels as floats, with the empty value in place of every non-finite one. For an interpolating kernel
  * the copies become coefficients. */
-static void replace_voxels(hl_pool *pool, hl_storage storage, const kernel *kernel, grid *grid) {
-  copy_job job = {grid, storage, hl_greatest_value(kernel)};
+static hl_status replace_voxels(hl_pool *pool, const hl_volume *volume, const kernel *kernel, grid *grid,
+                                hl_error *error) {
+  const size_t threads = (size_t)hl_pool_threads(pool);
+  copy_job job = {grid, volume, hl_greatest_value(kernel), NULL};
+  if (volume->voxels == NULL) {
+    job.rows = hl_allocate(volume->context, threads, volume->row_bytes);
+    if (job.rows == NULL) return hl_fail_memory(error, threads * volume->row_bytes, "the grid of a volume");
+  }
   hl_pool_run(pool, (size_t)grid->dimension[2], replace_slice, &job);
+  hl_release(volume->context, job.rows);
   if (kernel->interpolates) hl_prefilter(pool, grid);
   size_t row_bytes = (size_t)grid->dimension[0] * sizeof *grid->finite_voxels;
   set_voxels(grid, grid->finite_voxels, row_bytes, (size_t)grid->dimension[1] * row_bytes);
+  return HL_OK;
 }
 
 /* Rounds the size of slices and columns up to an odd number of cache lines. With sizes that are powers of
@@ -116,8 +127,13 @@ static int32_t greatest_cell(const hl_volume *volume, int axis) {
   return (int32_t)fmin(end, (double)hl_bricks_cells(volume->bricks, axis) - 1);
 }
 
+/* Whether the grid gets one array of values in place of sparse pages. */
+static bool leaves_sparse_pages(const hl_volume *volume, const kernel *kernel) {
+  return volume->pages != NULL && hl_pages_are_sparse(volume->pages) && needs_other_values(volume, kernel);
+}
+
 static void set_size(const hl_volume *volume, const kernel *kernel, grid *grid) {
-  grid->pages = volume->pages;
+  grid->pages = leaves_sparse_pages(volume, kernel) ? NULL : volume->pages;
   grid->bricks = volume->bricks;
   grid->storage = kernel->interpolates ? HL_STORAGE_F32 : volume->storage;
   for (int axis = 0; axis < 3; axis++) {
@@ -140,13 +156,14 @@ static void lay_out_bricks(const hl_bricks *bricks, grid *grid, hl_layout *layou
 /* Lays out the arrays of a grid whose size is set. */
 static void lay_out(grid *grid, const hl_volume *volume, const kernel *kernel,
                     const grid_functions *functions, hl_layout *layout) {
-  if (volume->voxels != NULL && needs_other_values(volume, kernel))
+  const bool one_array = grid->pages == NULL && grid->bricks == NULL;
+  if (one_array && needs_other_values(volume, kernel))
     grid->finite_voxels = hl_layout_take(layout, hl_volume_voxel_count(volume), sizeof *grid->finite_voxels);
-  if (volume->voxels != NULL) lay_out_columns(grid, functions, layout);
+  if (one_array) lay_out_columns(grid, functions, layout);
   if (volume->bricks != NULL && !hl_bricks_are_finite(volume->bricks))
     lay_out_bricks(volume->bricks, grid, layout);
   hl_bricks_lay_out(grid, layout);
-  if (volume->voxels != NULL && kernel->degree == HL_BSPLINE_DEGREE) hl_cell_bits_lay_out(grid, layout);
+  if (one_array && kernel->degree == HL_BSPLINE_DEGREE) hl_cell_bits_lay_out(grid, layout);
   hl_cells_lay_out(grid, layout);
 }
 
@@ -213,7 +230,11 @@ hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_function
     hl_pages_release(grid->value_pages);
     return status;
   }
-  if (grid->finite_voxels != NULL) replace_voxels(pool, volume->storage, source->kernel, grid);
+  if (grid->finite_voxels != NULL) status = replace_voxels(pool, volume, source->kernel, grid, error);
+  if (status != HL_OK) {
+    hl_grid_release(context, grid);
+    return status;
+  }
   if (grid->finite_bricks != NULL) {
     hl_bricks_fill_holes(volume->bricks, grid->empty, grid->finite_bricks);
     grid->bricks = grid->finite_bricks;

@@ -17,6 +17,7 @@
 #include "scene/geometry/cut.h"
 #include "scene/label/draw_labels.h"
 #include "scene/scene.h"
+#include "volume/store/gathered.h"
 
 #define LIGHT_AZIMUTH   -40 /* key light from the upper left, degrees from the line of sight */
 #define LIGHT_ELEVATION 45
@@ -77,7 +78,7 @@ static void choose_lights(const hl_look *look, hl_light lights[2], size_t *count
  * make the same choice. */
 static bool has_room(const hl_volume *volume, uint64_t bytes) {
   uint64_t limit = volume->context->options.memory_limit, taken = 0;
-  if (volume->voxels != NULL)
+  if (hl_volume_is_in_memory(volume))
     taken = 2 * (uint64_t)hl_volume_voxel_count(volume) * hl_storage_bytes(volume->storage);
   return limit == 0 || limit >= bytes + taken;
 }

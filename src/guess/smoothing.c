@@ -11,6 +11,7 @@
 #include "core/door.h"
 #include "guess/looks.h"
 #include "volume/smooth.h"
+#include "volume/store/gathered.h"
 #include "volume/unsmoothed.h"
 
 /* The standard deviation, in voxels, of the Gaussian for all three kinds of volumes that are smoothed. It is
@@ -27,7 +28,7 @@
 #define GRAINY 0.05
 
 double hl_smoothing_for(const hl_volume *volume, const char *file, const hl_data_analysis *analysis) {
-  if (volume->voxels == NULL || volume->colors != NULL || hl_data_is_label_map(volume, analysis) ||
+  if (!hl_volume_is_in_memory(volume) || volume->colors != NULL || hl_data_is_label_map(volume, analysis) ||
       atomic_load(&volume->smoothing_chosen))
     return 0;
   const bool stairs = analysis->cliffs >= HL_CUT_OUT && hl_is_body(volume, file, analysis);
@@ -51,7 +52,7 @@ static hl_status refuse(const hl_volume *volume, const hl_data_analysis *analysi
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "a label map cannot be smoothed: its numbers are names and have no mean: show its labels, "
                    "which are smooth");
-  if (volume->pages != NULL)
+  if (volume->pages != NULL && !hl_volume_is_in_memory(volume))
     return hl_fail(
         error, HL_ERROR_UNSUPPORTED,
         "a volume larger than memory cannot be smoothed: read a coarser level, or raise the memory limit");

@@ -10,6 +10,7 @@
 #include "core/memory.h"
 #include "reference/reference.h"
 #include "scene/label/draw_labels.h"
+#include "volume/store/gathered.h"
 
 /* The positions and weights of the four taps along each axis. */
 typedef struct taps {
@@ -357,9 +358,15 @@ hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume
                              .grid = grid,
                              .kernel = hl_kernel_of_volume(described, all->scene->render.kernel),
                              .index_to_world = to_world};
-  if (grid->pages != NULL)
+  if (grid->pages != NULL && !hl_volume_is_in_memory(grid))
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
                    "the reference needs a volume's voxels in memory: raise the memory limit");
+  if (grid->pages != NULL) {
+    hl_volume *whole;
+    hl_status status = hl_volume_in_memory(grid, &whole, error);
+    if (status != HL_OK) return status;
+    made->grid = grid = whole;
+  }
   if (!affine3_invert(to_world, &made->world_to_index))
     return hl_fail(error, HL_ERROR_INPUT, "volume %s: its axes lie in a plane: give three independent ones",
                    described->name != NULL ? described->name : "without a name");

@@ -10,6 +10,7 @@
 #include "scene/function/function_plane.h"
 #include "scene/geometry/placement.h"
 #include "scene/settings.h"
+#include "volume/store/gathered.h"
 #include "volume/volume.h"
 
 /* ---- lights ---- */
@@ -100,18 +101,18 @@ static int compare_bytes(const void *a, const void *b, size_t count) {
 }
 
 /* Compares the voxels of volumes with equal size and storage. Voxels that are not in memory count as equal,
- * because their histograms are equal here. */
+ * because their histograms are equal here. So do voxels of sparse pages if there is no memory for two rows.
+ */
 static int compare_voxels(const hl_volume *a, const hl_volume *b) {
-  if (a == b || a == NULL || b == NULL || a->voxels == NULL || b->voxels == NULL) return 0;
+  if (a == b || a == NULL || b == NULL || !hl_volume_is_in_memory(a) || !hl_volume_is_in_memory(b)) return 0;
   const size_t row = a->dimension[0] * hl_storage_bytes(a->storage);
-  for (size_t k = 0; k < a->dimension[2]; k++)
-    for (size_t j = 0; j < a->dimension[1]; j++) {
-      const char *of_a = a->voxels, *of_b = b->voxels;
-      int compared = memcmp(of_a + k * a->slice_bytes + j * a->row_bytes,
-                            of_b + k * b->slice_bytes + j * b->row_bytes, row);
-      if (compared != 0) return compared;
-    }
-  return compare_bytes(a->colors, b->colors, 4 * hl_volume_voxel_count(a));
+  unsigned char *buffer = hl_allocate(a->context, 2, row);
+  int compared = 0;
+  for (size_t k = 0; buffer != NULL && compared == 0 && k < a->dimension[2]; k++)
+    for (size_t j = 0; compared == 0 && j < a->dimension[1]; j++)
+      compared = memcmp(hl_volume_row_in(a, j, k, buffer), hl_volume_row_in(b, j, k, buffer + row), row);
+  hl_release(a->context, buffer);
+  return compared != 0 ? compared : compare_bytes(a->colors, b->colors, 4 * hl_volume_voxel_count(a));
 }
 
 static int compare_volumes(const void *a, const void *b) {

@@ -72,6 +72,7 @@ typedef struct walk {
   size_t count, first, piece; /* number of all voxels; number of the current piece's first voxel; number of
                                * voxels in this piece */
   const void *voxels;         /* voxels of the current piece */
+  bool has_one_value;         /* whether all of them have one value */
   bool cancelled;
 } walk;
 
@@ -109,14 +110,21 @@ static bool next_piece(walk *w) {
   w->piece = w->count - w->first < most ? w->count - w->first : most;
   w->cancelled = w->piece > 0 && hl_cancelled(w->volume->context);
   if (w->piece == 0 || w->cancelled) return false;
-  w->voxels = piece_of(w->volume, w->first, w->piece, w->buffer);
+  /* the buffer holds the piece before this one, which is the same if both have the one value of sparse pages
+   */
+  const hl_pages *pages = w->volume->pages;
+  const bool had = w->has_one_value;
+  w->has_one_value = pages != NULL && hl_pages_have_one_value(pages, w->first, w->piece);
+  if (!had || !w->has_one_value) w->voxels = piece_of(w->volume, w->first, w->piece, w->buffer);
   return true;
 }
 
 /* Counts how often each stored value occurs. counts: must be zeros before the call. False if cancelled. */
 static bool count_values(const hl_volume *volume, void *buffer, uint64_t *counts) {
   walk w = {.volume = volume, .buffer = buffer, .count = counted_voxels(volume)};
-  while (next_piece(&w)) hl_values_count(volume->storage, w.voxels, w.piece, counts);
+  while (next_piece(&w))
+    if (w.has_one_value) counts[(size_t)hl_stored_number(volume->storage, w.voxels, 0)] += w.piece;
+    else hl_values_count(volume->storage, w.voxels, w.piece, counts);
   if (!w.cancelled) sum_counts(volume, counts, hl_values_of(volume->storage));
   return !w.cancelled;
 }

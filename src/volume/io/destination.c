@@ -66,6 +66,65 @@ hl_status hl_destination_open(hl_context *context, const hl_volume_description *
   return destination->voxels != NULL ? HL_OK : hl_fail_memory(error, count * bytes, path);
 }
 
+/* ---- sparse pages ---- */
+
+/* CROWDED: the greatest part of all pages that sparse pages hold. If more are stored, the voxels are moved
+ * into one array: pages are slower to sample, and moving a quarter of the voxels takes little time beside
+ * reading all of them. LEAST_SPARSE: the least bytes of a volume in sparse pages; smaller ones gain nothing
+ * that counts. */
+#define CROWDED 0.25
+enum { LEAST_SPARSE = 4 << 20 };
+
+/* Whether floats may round numbers of the type, so that the numbers may be kept in an array beside the voxels
+ * (exact.h). */
+static bool may_be_rounded(hl_voxel_type type) {
+  return hl_voxel_type_storage(type) == HL_STORAGE_F32 && type != HL_VOXEL_F16 && type != HL_VOXEL_F32;
+}
+
+/* Whether the memory limit has room for one array beside the sparse pages that are moved into it. */
+static bool has_room_to_spread(const hl_context *context, double bytes) {
+  const double limit = (double)context->options.memory_limit,
+               taken = (double)atomic_load(&context->whole->held) +
+                       (double)atomic_load(&context->whole->paged);
+  return limit == 0 || taken + bytes * (1 + 2 * CROWDED) <= limit;
+}
+
+/* Addresses of 32 bits are too few to reserve some for pages that stay empty. */
+static bool may_be_sparse(const hl_context *context, const hl_volume_description *grid) {
+  const double bytes = (double)grid->dimensions[0] * (double)grid->dimensions[1] *
+                       (double)grid->dimensions[2] *
+                       (double)hl_storage_bytes(hl_voxel_type_storage(grid->type));
+  return sizeof(void *) > 4 && context->ranks == NULL && !hl_pages_wanted(context, grid) &&
+         !may_be_rounded(grid->type) && bytes >= LEAST_SPARSE && has_room_to_spread(context, bytes);
+}
+
+hl_status hl_destination_open_sparse(hl_context *context, const hl_volume_description *grid,
+                                     const void *value, const char *path, hl_destination *destination,
+                                     hl_error *error) {
+  if (!may_be_sparse(context, grid))
+    return hl_destination_open(context, grid, HL_DESTINATION_PIECES, path, destination, error);
+  const size_t bytes = hl_storage_bytes(hl_voxel_type_storage(grid->type));
+  *destination = (hl_destination){.context = context, .path = path, .voxel_bytes = bytes};
+  hl_exact_begin(context, grid->type, 0, HL_EXACT_IN_MEMORY, &destination->exact);
+  return hl_pages_create_sparse(context, grid, PAGE_SHIFT, value, &destination->pages, error);
+}
+
+bool hl_destination_is_crowded(const hl_destination *destination) {
+  return hl_destination_is_sparse(destination) && hl_pages_share(destination->pages) > CROWDED;
+}
+
+hl_status hl_destination_spread(hl_destination *destination, hl_error *error) {
+  const hl_pages *pages = destination->pages;
+  const size_t *n = pages->dimension, row = n[0] * destination->voxel_bytes, rows = n[1] * n[2];
+  unsigned char *voxels = hl_allocate(destination->context, rows, row);
+  if (voxels == NULL) return hl_fail_memory(error, rows * row, destination->path);
+  hl_pages_spread(destination->pages, voxels);
+  hl_pages_release(destination->pages);
+  destination->pages = NULL;
+  destination->voxels = voxels;
+  return HL_OK;
+}
+
 hl_status hl_destination_take(hl_destination *destination, size_t first, size_t count, void **place,
                               hl_error *error) {
   size_t bytes = destination->voxel_bytes;
@@ -108,7 +167,8 @@ hl_status hl_destination_adopt(hl_destination *destination, const hl_volume_desc
            "one "
            "for exact ones (its labels are exact)",
            given.path);
-  hl_status status = given.pages != NULL
+  hl_status status = hl_destination_is_sparse(destination) ? HL_OK
+                     : given.pages != NULL
                          ? hl_exact_take_file(&destination->exact, &given.pages->exact_file, error)
                          : hl_exact_take(&destination->exact, (const float *)(const void *)voxels, &exact,
                                          error);

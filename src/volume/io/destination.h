@@ -14,7 +14,7 @@ typedef struct hl_destination {
   const char *path;      /* borrowed; starts the error lines */
   size_t voxel_bytes;    /* bytes of a stored value, or of a voxel's colours */
   unsigned char *voxels; /* owned; [k][j][i]; null with pages */
-  hl_pages *pages;       /* owned; null if the voxels are in memory */
+  hl_pages *pages;       /* owned; null if the voxels are in one array in memory */
   hl_exact exact;        /* the file's own numbers, if stored values round any of them */
   hl_own_voxels *own;    /* owned; this rank's slices of a volume over ranks, for which `voxels` is null; null
                           * for other volumes */
@@ -30,6 +30,21 @@ typedef enum hl_destination_kind {
 hl_status hl_destination_open(hl_context *context, const hl_volume_description *grid,
                               hl_destination_kind kind, const char *path, hl_destination *destination,
                               hl_error *error);
+
+/* Opens a destination of HL_DESTINATION_PIECES whose voxels have one value until they are stored, if sparse
+ * pages can hold the voxels. value: the stored value. Otherwise it does what hl_destination_open() does, and
+ * every voxel must be stored. */
+hl_status hl_destination_open_sparse(hl_context *context, const hl_volume_description *grid,
+                                     const void *value, const char *path, hl_destination *destination,
+                                     hl_error *error);
+static inline bool hl_destination_is_sparse(const hl_destination *destination) {
+  return destination->pages != NULL && hl_pages_are_sparse(destination->pages);
+}
+/* Whether so many voxels were stored in sparse pages that one array should hold them. */
+bool hl_destination_is_crowded(const hl_destination *destination);
+/* Moves the voxels of sparse pages into one array, which also holds the value of voxels that are not stored.
+ * No other thread may use the destination meanwhile. */
+hl_status hl_destination_spread(hl_destination *destination, hl_error *error);
 
 /* Gives memory into which the caller writes `count` voxels, of which the first is number `first`. It is the
  * volume's own memory for these voxels, or a separate block. Afterwards the caller must call

@@ -125,6 +125,32 @@ static hl_status gather(const hl_volume *map, hl_volume **whole, hl_error *error
   return status;
 }
 
+/* ---- sparse pages ---- */
+
+/* Makes a copy whose voxels are in one array. Sparse pages have no numbers that the stored values round. */
+static hl_status spread(const hl_volume *map, hl_volume **whole, hl_error *error) {
+  const size_t *n = map->dimension, rows = n[1] * n[2];
+  unsigned char *voxels = hl_allocate(map->context, rows, map->row_bytes);
+  if (voxels == NULL) return hl_fail_memory(error, rows * map->row_bytes, "a volume in one array");
+  for (size_t r = 0; r < rows; r++)
+    hl_pages_load_row(map->pages, r % n[1], r / n[1], voxels + r * map->row_bytes);
+  return adopt(map, voxels, NULL, whole, error);
+}
+
+/* Makes the copy, unless there is one. Several threads may draw labels of one map. */
+static hl_status spread_once(hl_volume *map, hl_error *error) {
+  pthread_mutex_lock(&map->pages->lock);
+  hl_status status = map->gathered != NULL ? HL_OK : spread(map, &map->gathered, error);
+  pthread_mutex_unlock(&map->pages->lock);
+  return status;
+}
+
+/* ---- the whole ---- */
+
+bool hl_volume_is_in_memory(const hl_volume *volume) {
+  return volume->voxels != NULL || (volume->pages != NULL && hl_pages_are_sparse(volume->pages));
+}
+
 hl_status hl_volume_in_memory(const hl_volume *map, hl_volume **whole, hl_error *error) {
   hl_volume *own = (hl_volume *)map;
   *whole = own;
@@ -132,10 +158,12 @@ hl_status hl_volume_in_memory(const hl_volume *map, hl_volume **whole, hl_error 
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
                    "labels of a field in bricks, whose numbers are no names: give a label map of voxels");
   if (map->pages == NULL) return HL_OK;
-  if (map->pages->blocks == NULL)
+  if (map->pages->blocks == NULL && !hl_pages_are_sparse(map->pages))
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
                    "labels of a volume that is larger than memory: raise the memory limit");
-  hl_status status = own->gathered != NULL ? HL_OK : gather(map, &own->gathered, error);
+  hl_status status = hl_pages_are_sparse(map->pages) ? spread_once(own, error)
+                     : own->gathered != NULL         ? HL_OK
+                                                     : gather(map, &own->gathered, error);
   *whole = own->gathered;
   return status;
 }

@@ -1,4 +1,5 @@
-/* volume/store/page_store.c - stores voxels into the pages of a scratch file (pages.h).
+/* volume/store/page_store.c - stores voxels into the pages of a scratch file, and into sparse pages
+ * (pages.h).
  *
  * Whole slices, and whole rows of a slice, are written to the file page by page, in as few pieces as
  * possible. If they were copied into the mapping, the system would first have to map each unit of memory, and
@@ -161,4 +162,61 @@ void hl_pages_store(hl_pages *pages, size_t first, size_t count, const void *val
     taken = n[0] - i < count - done ? n[0] - i : count - done;
     store_in_row(pages, (const size_t[3]){i, row % n[1], row / n[1]}, taken, from);
   }
+}
+
+/* ---- sparse pages ---- */
+
+/* Whether all voxels have the value of voxels that are not stored. */
+static bool all_unstored(const hl_pages *pages, const unsigned char *values, size_t count) {
+  const size_t bytes = hl_storage_bytes(pages->storage);
+  return memcmp(values, pages->value, bytes) == 0 && memcmp(values, values + bytes, (count - 1) * bytes) == 0;
+}
+
+/* Stores the part of a box that lies in one page. */
+static void store_box_in_page(hl_pages *pages, const size_t page[3], const size_t begin[3],
+                              const size_t count[3], const unsigned char *values) {
+  const size_t bytes = hl_storage_bytes(pages->storage), side = ((size_t)1 << pages->shift) + PAGE_OVERLAP,
+               number = (page[2] * pages->count[1] + page[1]) * pages->count[0] + page[0];
+  size_t from[3], to[3];
+  for (int a = 0; a < 3; a++) {
+    const size_t first = page[a] << pages->shift, end = begin[a] + count[a];
+    from[a] = begin[a] > first ? begin[a] : first;
+    to[a] = end < first + side ? end : first + side;
+  }
+  hl_pages_own(pages, number);
+  unsigned char *place = hl_page_first(pages, number) + (from[0] - (page[0] << pages->shift)) * bytes;
+  for (size_t k = from[2]; k < to[2]; k++)
+    for (size_t j = from[1]; j < to[1]; j++)
+      memcpy(place + (k - (page[2] << pages->shift)) * pages->slice_bytes +
+                 (j - (page[1] << pages->shift)) * pages->row_bytes,
+             values + (((k - begin[2]) * count[1] + j - begin[1]) * count[0] + from[0] - begin[0]) * bytes,
+             (to[0] - from[0]) * bytes);
+}
+
+void hl_pages_store_box(hl_pages *pages, const size_t begin[3], const size_t count[3], const void *values) {
+  size_t first[3], last[3], ignored;
+  if (all_unstored(pages, values, count[0] * count[1] * count[2])) return;
+  for (int a = 0; a < 3; a++) {
+    first[a] = first_page(pages, a, begin[a], &ignored);
+    first_page(pages, a, begin[a] + count[a] - 1, &last[a]);
+  }
+  for (size_t z = first[2]; z <= last[2]; z++)
+    for (size_t y = first[1]; y <= last[1]; y++)
+      for (size_t x = first[0]; x <= last[0]; x++)
+        store_box_in_page(pages, (const size_t[3]){x, y, z}, begin, count, values);
+}
+
+bool hl_pages_have_one_value(const hl_pages *pages, size_t first, size_t count) {
+  if (!hl_pages_are_sparse(pages)) return false;
+  const size_t width = pages->dimension[0], rows = pages->dimension[1], end = (first + count - 1) / width + 1;
+  for (size_t row = first / width, next; row < end; row = next) {
+    /* the next row whose pages are others: at the next page along y, or at the next slice */
+    const size_t y = hl_page_of(pages, 1, row % rows), z = hl_page_of(pages, 2, row / rows);
+    const size_t after = y + 1 < pages->count[1] ? (y + 1) << pages->shift : rows;
+    const uint32_t *place = pages->place + (z * pages->count[1] + y) * pages->count[0];
+    for (size_t x = 0; x < pages->count[0]; x++)
+      if (place[x] != 0) return false;
+    next = row + (after - row % rows);
+  }
+  return true;
 }

@@ -32,8 +32,8 @@ static bool multiply_all(const size_t *factors, int count, size_t *product) {
   return true;
 }
 
-/* Sets all sizes. False if they overflow. */
-static bool plan(const hl_volume_description *grid, int shift, bool over_ranks, hl_pages *pages) {
+/* Sets all sizes. in_units: whether all pages begin at a unit of memory. False if sizes overflow. */
+static bool plan(const hl_volume_description *grid, int shift, bool in_units, hl_pages *pages) {
   size_t side = (size_t)1 << shift, voxels[3];
   *pages = (hl_pages){.storage = hl_voxel_type_storage(grid->type), .shift = shift};
   for (int axis = 0; axis < 3; axis++) {
@@ -44,7 +44,7 @@ static bool plan(const hl_volume_description *grid, int shift, bool over_ranks, 
   pages->row_bytes = voxels[0] * hl_storage_bytes(pages->storage);
   pages->slice_bytes = voxels[1] * pages->row_bytes;
   size_t page_bytes = voxels[2] * pages->slice_bytes;
-  pages->page_bytes = round_up(page_bytes, !over_ranks && page_bytes < WHOLE_UNITS ? LINE : UNIT);
+  pages->page_bytes = round_up(page_bytes, !in_units && page_bytes < WHOLE_UNITS ? LINE : UNIT);
   const size_t factors[] = {pages->count[0], pages->count[1], pages->count[2], pages->page_bytes};
   size_t bytes, around = 2 * round_up(SLICES_AROUND * pages->slice_bytes, UNIT);
   return multiply_all(factors, 4, &bytes) && !__builtin_add_overflow(bytes, around, &pages->mapping_bytes) &&
@@ -108,8 +108,41 @@ hl_status hl_pages_create(hl_context *context, const char *folder, const hl_volu
   return status;
 }
 
-/* Reserves addresses for the pages of a volume over ranks. The system gives memory to a page when it is
- * fetched. */
+static void count_held(hl_pages *pages, bool more) {
+  uint64_t bytes = more ? pages->page_bytes : 0 - (uint64_t)pages->page_bytes;
+  __atomic_fetch_add(&pages->held_bytes, bytes, __ATOMIC_RELAXED);
+  atomic_fetch_add(&pages->context->whole->paged, bytes);
+}
+
+/* ---- sparse pages ---- */
+
+/* Takes the next place in the mapping, and gives all voxels there the value of voxels that are not stored.
+ * Returns the place's number. */
+static size_t take_place(hl_pages *pages) {
+  const size_t place = __atomic_fetch_add(&pages->places, 1, __ATOMIC_RELAXED),
+               bytes = hl_storage_bytes(pages->storage);
+  static const unsigned char zero[4] = {0};
+  count_held(pages, true);
+  if (memcmp(pages->value, zero, bytes) == 0) return place; /* as the system gives it */
+  unsigned char *to = pages->first + place * pages->page_bytes;
+  for (size_t at = 0; at < pages->page_bytes; at += bytes) memcpy(to + at, pages->value, bytes);
+  return place;
+}
+
+void hl_pages_own(hl_pages *pages, size_t number) {
+  if (__atomic_load_n(&pages->place[number], __ATOMIC_ACQUIRE) != 0) return;
+  pthread_mutex_lock(&pages->lock);
+  if (pages->place[number] == 0)
+    __atomic_store_n(&pages->place[number], (uint32_t)take_place(pages), __ATOMIC_RELEASE);
+  pthread_mutex_unlock(&pages->lock);
+}
+
+double hl_pages_share(const hl_pages *pages) {
+  return (double)(__atomic_load_n(&pages->places, __ATOMIC_RELAXED) - 1) / (double)page_count(pages);
+}
+
+/* Reserves addresses for the pages of a volume over ranks, or for sparse pages. The system gives memory to a
+ * page when it is written. */
 static hl_status map_nothing(hl_pages *pages, hl_error *error) {
   void *mapping = mmap(NULL, pages->mapping_bytes, PROT_READ | PROT_WRITE,
                        MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
@@ -130,6 +163,37 @@ static hl_status allocate_states(hl_pages *pages, hl_error *error) {
   return pages->state != NULL && pages->version != NULL
              ? HL_OK
              : hl_fail_memory(error, count * (1 + sizeof *pages->version), "a volume's pages");
+}
+
+hl_status hl_pages_create_sparse(hl_context *context, const hl_volume_description *grid, int shift,
+                                 const void *value, hl_pages **pages, hl_error *error) {
+  *pages = NULL;
+  hl_pages *made = hl_allocate_zeroed(context, 1, sizeof *made);
+  if (made == NULL) return hl_fail_memory(error, sizeof *made, "a volume's pages");
+  bool possible = plan(grid, shift, true, made) && page_count(made) < UINT32_MAX;
+  made->mapping_bytes += made->page_bytes; /* place 0 */
+  made->context = context;
+  made->file = made->exact_file = -1;
+  pthread_mutex_init(&made->lock, NULL);
+  pthread_cond_init(&made->came, NULL);
+  hl_status status = possible ? map_nothing(made, error)
+                              : hl_fail(error, HL_ERROR_INPUT, "a volume too large for sparse pages");
+  const size_t count = page_count(made);
+  if (status == HL_OK) {
+    made->state = hl_allocate(context, count, sizeof *made->state);
+    made->place = hl_allocate_zeroed(context, count, sizeof *made->place);
+    if (made->state == NULL || made->place == NULL)
+      status = hl_fail_memory(error, count * (1 + sizeof *made->place), "a volume's pages");
+  }
+  if (status != HL_OK) {
+    hl_pages_release(made);
+    return status;
+  }
+  memcpy(made->value, value, hl_storage_bytes(made->storage));
+  memset(made->state, PAGE_NEEDED, count);
+  take_place(made);
+  *pages = made;
+  return HL_OK;
 }
 
 static hl_status fill_over_ranks(hl_ranks *ranks, const hl_volume_description *grid, int shift,
@@ -181,6 +245,7 @@ void hl_pages_release(hl_pages *pages) {
   hl_release(pages->context, pages->counts);
   hl_release(pages->context, pages->state);
   hl_release(pages->context, pages->version);
+  hl_release(pages->context, pages->place);
   hl_release(pages->context, pages);
 }
 
@@ -225,12 +290,6 @@ static void drop(const hl_pages *pages, size_t number) {
   if (begin < end) madvise((void *)begin, end - begin, MADV_DONTNEED);
 }
 
-static void count_held(hl_pages *pages, bool more) {
-  uint64_t bytes = more ? pages->page_bytes : 0 - (uint64_t)pages->page_bytes;
-  __atomic_fetch_add(&pages->held_bytes, bytes, __ATOMIC_RELAXED);
-  atomic_fetch_add(&pages->context->whole->paged, bytes);
-}
-
 /* Forgets a page if it still is in the state `state`. Other threads may have changed the state. */
 static void forget_if(hl_pages *pages, size_t number, unsigned char state) {
   if (!__atomic_compare_exchange_n(&pages->state[number], &state, (unsigned char)PAGE_FORGOTTEN, false,
@@ -270,6 +329,7 @@ static uint64_t room(const hl_pages *pages, uint64_t bytes) {
  * have, pages are forgotten until they have a sixteenth less than these bytes. In this way the hand moves
  * seldom. */
 static void make_room(hl_pages *pages, uint64_t bytes) {
+  if (hl_pages_are_sparse(pages)) return;
   uint64_t most = room(pages, bytes);
   if (__atomic_load_n(&pages->held_bytes, __ATOMIC_RELAXED) <= most) return;
   size_t count = page_count(pages);
@@ -280,7 +340,7 @@ static void make_room(hl_pages *pages, uint64_t bytes) {
 
 void hl_pages_finish(hl_pages *pages) {
   pages->filled = true;
-  if (pages->blocks != NULL) return;
+  if (pages->blocks != NULL || hl_pages_are_sparse(pages)) return;
   close(pages->file);
   pages->file = -1;
   madvise(pages->mapping, pages->mapping_bytes, MADV_RANDOM); /* from now on the system reads ahead only what
@@ -356,6 +416,7 @@ void hl_pages_leave_room(const hl_pages *pages, uint64_t bytes) {
 }
 
 void hl_pages_forget(const hl_pages *pages) {
+  if (hl_pages_are_sparse(pages)) return;
   size_t count = page_count(pages);
   pthread_mutex_t *lock = (pthread_mutex_t *)&pages->lock;
   pthread_mutex_lock(lock);
@@ -364,6 +425,23 @@ void hl_pages_forget(const hl_pages *pages) {
     if (state == PAGE_HELD || state == PAGE_NEEDED) forget_if((hl_pages *)pages, n, state);
   }
   pthread_mutex_unlock(lock);
+}
+
+/* Gives the memory of all sparse pages at one place along z back. */
+static void drop_layer(hl_pages *pages, size_t z) {
+  const size_t layer = pages->count[0] * pages->count[1];
+  for (size_t number = z * layer; number < (z + 1) * layer; number++)
+    if (pages->place[number] != 0) madvise(hl_page_first(pages, number), pages->page_bytes, MADV_DONTNEED);
+}
+
+void hl_pages_spread(hl_pages *pages, void *voxels) {
+  const size_t *n = pages->dimension, row = n[0] * hl_storage_bytes(pages->storage);
+  unsigned char *to = voxels;
+  for (size_t k = 0; k < n[2]; k++) {
+    if (k > 0 && hl_page_of(pages, 2, k) > hl_page_of(pages, 2, k - 1))
+      drop_layer(pages, hl_page_of(pages, 2, k - 1));
+    for (size_t j = 0; j < n[1]; j++, to += row) hl_pages_load_row(pages, j, k, to);
+  }
 }
 
 /* ---- what was stored ---- */

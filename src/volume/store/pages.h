@@ -1,5 +1,5 @@
 /* volume/store/pages.h - voxels in a scratch file, or in the memory of other ranks, for volumes that are
- * larger than memory.
+ * larger than memory; and voxels in memory of which most have one value.
  *
  * A scratch file holds pages: cubes of voxels. Page p of an axis holds the voxels from p * side to p * side +
  * side + PAGE_OVERLAP - 1, fewer at the grid's end. Therefore any 4x4x4 neighbouring voxels lie completely in
@@ -14,7 +14,10 @@
  *
  * Pages over ranks do not lie in a file: a page is copied from the ranks whose blocks hold it
  * (ranks/blocks.h), and forgotten as a whole. Each page has a version. By it, a thread that reads a page can
- * tell that the page was forgotten meanwhile, and then reads once more: see hl_page_begin(). */
+ * tell that the page was forgotten meanwhile, and then reads once more: see hl_page_begin().
+ *
+ * Sparse pages lie in memory, in the order in which their first voxels were stored. All pages in which
+ * nothing was stored are one page, whose voxels have one value. Sparse pages are never forgotten. */
 #ifndef HL_VOLUME_PAGES_H
 #define HL_VOLUME_PAGES_H
 
@@ -55,7 +58,11 @@ typedef struct hl_pages {
   hl_own_voxels *own;   /* owned; the voxels behind `blocks` */
   uint32_t *version;    /* owned; [pages] over ranks, else null; the version of each page, which rises when
                          * the page is forgotten; atomic */
-  pthread_cond_t came;  /* over ranks: signalled when a page that was being fetched is complete */
+  uint32_t *place;      /* owned; [pages] of sparse pages, else null; the place of each page in the mapping,
+                         * counted in pages; 0 for pages in which nothing was stored; atomic */
+  size_t places;        /* number of places that are taken, with place 0; atomic */
+  unsigned char value[4]; /* of sparse pages: the stored value of voxels that were not stored */
+  pthread_cond_t came;    /* over ranks: signalled when a page that was being fetched is complete */
   pthread_mutex_t lock; /* held while values are counted; over ranks, also while the states of pages change */
   uint64_t *counts; /* owned; [hl_values_of(storage)]; how often each stored value occurs; null for floats,
                      * and after the counts were taken */
@@ -80,6 +87,30 @@ void hl_pages_release(hl_pages *pages); /* null is allowed */
  * failure. All ranks must call this function, and hl_pages_release(). */
 hl_status hl_pages_create_over_ranks(hl_ranks *ranks, hl_own_voxels *own, const hl_volume_description *grid,
                                      int shift, hl_pages **pages, hl_error *error);
+
+/* Makes sparse pages in memory, whose voxels have the stored value `value` until they are stored. Addresses
+ * are reserved for all pages, and memory is taken for pages in which voxels are stored. */
+hl_status hl_pages_create_sparse(hl_context *context, const hl_volume_description *grid, int shift,
+                                 const void *value, hl_pages **pages, hl_error *error);
+static inline bool hl_pages_are_sparse(const hl_pages *pages) { return pages->place != NULL; }
+
+/* The part of all sparse pages in which voxels were stored, 0 to 1. */
+double hl_pages_share(const hl_pages *pages);
+
+/* Gives memory to a sparse page, unless it has some. Several threads may call it. */
+void hl_pages_own(hl_pages *pages, size_t number);
+
+/* Stores a box of voxels in sparse pages. values: [count[2]][count[1]][count[0]]; stored values. Several
+ * threads may store different voxels at the same time. */
+void hl_pages_store_box(hl_pages *pages, const size_t begin[3], const size_t count[3], const void *values);
+
+/* Copies all voxels of sparse pages to `voxels` ([k][j][i]), and gives the memory of pages back as soon as
+ * they are copied. Afterwards the pages can only be released. */
+void hl_pages_spread(hl_pages *pages, void *voxels);
+
+/* Whether none of `count` voxels from number `first` on ([k][j][i]) lies in a sparse page in which voxels
+ * were stored. False for pages of another kind. */
+bool hl_pages_have_one_value(const hl_pages *pages, size_t first, size_t count);
 
 /* Whether a volume should be put into a scratch file: whether its voxels and a renderer's tables for them
  * exceed the memory limit, and there is a scratch folder. */
@@ -132,13 +163,19 @@ typedef struct hl_page_reading {
   uint32_t version; /* set over ranks */
 } hl_page_reading;
 
+/* The first voxel of a page. */
+static inline unsigned char *hl_page_first(const hl_pages *pages, size_t number) {
+  size_t place = pages->place != NULL ? __atomic_load_n(&pages->place[number], __ATOMIC_ACQUIRE) : number;
+  return pages->first + place * pages->page_bytes;
+}
+
 /* Begins to read a page. What was read is valid only if hl_page_stayed() is true afterwards; otherwise, begin
  * again (H.-J. Boehm, Can Seqlocks Get Along with Programming Language Memory Models?, 2012). */
 static inline hl_page_reading hl_page_begin(const hl_pages *pages, const size_t page[3]) {
   size_t number = (page[2] * pages->count[1] + page[1]) * pages->count[0] + page[0];
   uint32_t version = pages->version != NULL ? __atomic_load_n(&pages->version[number], __ATOMIC_ACQUIRE) : 0;
   if (__atomic_load_n(&pages->state[number], __ATOMIC_ACQUIRE) != PAGE_NEEDED) hl_pages_hold(pages, number);
-  return (hl_page_reading){pages->first + number * pages->page_bytes, number, version};
+  return (hl_page_reading){hl_page_first(pages, number), number, version};
 }
 
 /* Whether a page has kept its voxels since hl_page_begin(). This is always true for pages in a file. */

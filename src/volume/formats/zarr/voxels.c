@@ -2,8 +2,10 @@
  *
  * Each part of the work is one chunk. The chunk's file may be a shard, which holds several chunks. The parts
  * of a shard have consecutive numbers. A missing chunk holds the fill value. */
+#define _GNU_SOURCE
 #include "volume/formats/zarr/voxels.h"
 
+#include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
@@ -30,8 +32,8 @@ typedef struct worker {
   char key[KEY_BYTES];  /* name of the open file; "" if there is none */
   hl_source *source;    /* owned; null if the file does not exist */
   unsigned char *index; /* owned; the shard's index: [16 * chunks_in_shard], followed by a checksum */
-  void *row; /* owned; memory for a row of a chunk in stored form, if voxels must be copied to pages or to a
-              * rank's slices; null if all voxels are in memory */
+  void *row; /* owned; memory for a row of a chunk in stored form, or for a whole chunk if pages are sparse;
+              * null if all voxels are in one array in memory from the beginning */
 } worker;
 
 typedef struct reading {
@@ -47,6 +49,9 @@ typedef struct reading {
   size_t stride[HL_ZARR_AXES_MOST]; /* number of bytes from a voxel of a chunk to the next one, along each of
                                      * the array's axes */
   unsigned char fill[4];            /* the fill value in stored form */
+  bool is_filled;                   /* whether voxels that are not stored have the fill value */
+  pthread_rwlock_t lock;            /* held for writing while sparse voxels are moved into one array, and for
+                                     * reading while voxels are stored */
   worker *workers;                  /* owned; [threads] */
   atomic_size_t found;              /* number of chunks that exist */
 } reading;
@@ -155,8 +160,11 @@ static void store_row(const reading *r, const unsigned char *from, size_t step, 
   }
 }
 
-/* Stores the voxels of a part. chunk: the voxels of the part's chunk; null if all get the fill value. */
-static void put(const reading *r, const worker *w, const part *p, const unsigned char *chunk) {
+/* Stores the voxels of a part, row by row. chunk: the voxels of the part's chunk; null if all get the fill
+ * value. box: whether the rows are gathered in the worker's memory as one box, in place of the volume. */
+static void put_rows(const reading *r, const worker *w, const part *p, const unsigned char *chunk, bool box) {
+  const bool apart = hl_destination_is_apart(r->to);
+  unsigned char *row = w->row;
   size_t step[3];
   for (int a = 0; a < 3; a++) step[a] = r->choice->axis[a] < 0 ? 0 : r->stride[r->choice->axis[a]];
   for (int axis = 0; axis < r->array->rank && chunk != NULL; axis++)
@@ -164,11 +172,38 @@ static void put(const reading *r, const worker *w, const part *p, const unsigned
   for (uint64_t k = 0; k < p->count[2]; k++)
     for (uint64_t j = 0; j < p->count[1]; j++) {
       uint64_t first = ((p->begin[2] + k) * r->size[1] + p->begin[1] + j) * r->size[0] + p->begin[0];
-      void *row = w->row != NULL ? w->row : r->to->voxels + first * r->stored_bytes;
+      if (!apart) row = r->to->voxels + first * r->stored_bytes;
       if (chunk == NULL) fill_row(r, row, first, p->count[0]);
       else store_row(r, chunk + k * step[2] + j * step[1], step[0], first, p->count[0], row);
-      if (w->row != NULL) hl_destination_store(r->to, first, p->count[0], row);
+      if (box) row += p->count[0] * r->stored_bytes;
+      else if (apart) hl_destination_store(r->to, first, p->count[0], row);
     }
+}
+
+/* Stores the voxels of a part whose chunk exists. Other voxels have the fill value already. */
+static hl_status put_filled(reading *r, const worker *w, const part *p, const unsigned char *chunk,
+                            hl_error *error) {
+  const size_t begin[3] = {p->begin[0], p->begin[1], p->begin[2]},
+               count[3] = {p->count[0], p->count[1], p->count[2]};
+  hl_status status = HL_OK;
+  pthread_rwlock_rdlock(&r->lock);
+  const bool sparse = hl_destination_is_sparse(r->to);
+  put_rows(r, w, p, chunk, sparse);
+  if (sparse) hl_pages_store_box(r->to->pages, begin, count, w->row);
+  const bool crowded = hl_destination_is_crowded(r->to);
+  pthread_rwlock_unlock(&r->lock);
+  if (!crowded) return HL_OK;
+  pthread_rwlock_wrlock(&r->lock);
+  if (hl_destination_is_sparse(r->to)) status = hl_destination_spread(r->to, error);
+  pthread_rwlock_unlock(&r->lock);
+  return status;
+}
+
+static hl_status put(reading *r, const worker *w, const part *p, const unsigned char *chunk,
+                     hl_error *error) {
+  if (r->is_filled) return chunk != NULL ? put_filled(r, w, p, chunk, error) : HL_OK;
+  put_rows(r, w, p, chunk, false);
+  return HL_OK;
 }
 
 /* ---- files and shards ---- */
@@ -244,8 +279,7 @@ static hl_status read_part(void *data, size_t number, int index, hl_error *error
     status = hl_zarr_chunk_read(&w->unpacker, w->source, offset, length, &chunk, error);
     atomic_fetch_add_explicit(&r->found, 1, memory_order_relaxed);
   }
-  if (status == HL_OK) put(r, w, &p, chunk);
-  return status;
+  return status == HL_OK ? put(r, w, &p, chunk, error) : status;
 }
 
 /* ---- files on a server ---- */
@@ -422,16 +456,21 @@ static void prepare(reading *r) {
   hl_voxels_store(array->type, false, array->fill, 1, r->fill);
 }
 
-/* The greatest number of voxels that a row of a chunk can have in the volume. */
-static size_t longest_row(const reading *r) {
-  int axis = r->choice->axis[0];
+/* The greatest number of voxels that a chunk can have in the volume along an axis. */
+static size_t longest(const reading *r, int a) {
+  int axis = r->choice->axis[a];
   uint64_t chunk = axis < 0 ? 1 : r->array->chunk[axis];
-  return (size_t)(chunk < r->size[0] ? chunk : r->size[0]);
+  return (size_t)(chunk < r->size[a] ? chunk : r->size[a]);
+}
+
+/* The bytes of a worker's row, or of its box. */
+static size_t row_bytes_of(const reading *r) {
+  return longest(r, 0) * (r->is_filled ? longest(r, 1) * longest(r, 2) : 1) * r->stored_bytes;
 }
 
 static hl_status read_parts(reading *r, hl_pool *pool, hl_error *error) {
   hl_context *context = r->bundle->context;
-  size_t threads = (size_t)hl_pool_threads(pool), row_bytes = longest_row(r) * r->stored_bytes;
+  size_t threads = (size_t)hl_pool_threads(pool), row_bytes = row_bytes_of(r);
   hl_status status = HL_OK;
   r->workers = hl_allocate_zeroed(context, threads, sizeof *r->workers);
   if (r->workers == NULL) return hl_fail_memory(error, threads * sizeof *r->workers, "threads");
@@ -476,6 +515,11 @@ hl_status hl_zarr_voxels_read(const hl_bundle *bundle, const hl_zarr_array *arra
   prepare(&r);
   hl_status status = count_parts(&r, error);
   if (status == HL_OK)
-    status = hl_destination_open(bundle->context, grid, HL_DESTINATION_PIECES, bundle->path, to, error);
-  return status == HL_OK ? read_all(&r, error) : status;
+    status = hl_destination_open_sparse(bundle->context, grid, r.fill, bundle->path, to, error);
+  if (status != HL_OK) return status;
+  r.is_filled = hl_destination_is_sparse(to);
+  pthread_rwlock_init(&r.lock, NULL); /* a lock without attributes cannot fail to be made */
+  status = read_all(&r, error);
+  pthread_rwlock_destroy(&r.lock);
+  return status;
 }
