@@ -224,6 +224,11 @@ class Handler(http.server.BaseHTTPRequestHandler):
         """Half of the file, which the server says is the whole."""
         self.answer(200, body[:len(body) // 2])
 
+    def fault_flipped(self, body):
+        """The file with one wrong bit in its middle."""
+        middle = len(body) // 2
+        self.answer(200, body[:middle] + bytes([body[middle] ^ 1]) + body[middle + 1:])
+
     def fault_shifted(self, body):
         """Another part of the file than the one that was asked for."""
         self.part(body, '"1"', shift=-1)
@@ -339,6 +344,8 @@ def changed_files(case, server):
     chunk.unlink()
     absent = case.picture(folder)[0]
     case.ok("a chunk that is gone is the fill value", absent not in (right, changed) and case.picture(store)[0] == absent)
+    said = case.run("render", store, "-o", case.folder / "out.npy", "--size", "32x32").stderr
+    case.ok("and the program says so", "the server has no file for 1 of 8 chunks" in said, said)
     chunk.write_bytes(before)
     copies = sorted((case.cache / "halflight/servers").iterdir())
     for copy in copies:
@@ -365,6 +372,7 @@ def lasting_faults(case, server):
             (2, "1__0__1__1", "403", "/v2.zarr/1/0/1/1: the server answers 403: it wants a permission"),
             (2, "1__0__1__1", "page", "a chunk does not unpack"),
             (2, "1__0__1__1", "half", "a chunk does not unpack"),
+            (2, "1__0__1__1", "flipped", "a chunk does not unpack"),
             (3, "1__c__0__1__1", "page", "a chunk of 27 bytes, its voxels have 4096"),
             (3, "1__c__0__1__1", "endless", "/v3.zarr/1/c/0/1/1: "),
             (2, "1__.zarray", "404", "there is no array, which a level names"),

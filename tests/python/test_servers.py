@@ -2,7 +2,9 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
+import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,6 +17,8 @@ import halflight as hl
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "cli"))
 import servers  # type: ignore[import-not-found]  # the server of the program's tests
+
+from test_pyramids import write_pyramid  # noqa: E402
 
 pytestmark = pytest.mark.skipif(shutil.which("curl") is None, reason="there is no curl")
 
@@ -66,3 +70,14 @@ def test_copies_need_a_place(server: Any, monkeypatch: pytest.MonkeyPatch) -> No
     with pytest.raises(OSError, match="no place for copies"):
         hl.Volume(f"{server.url}/v2.zarr")
     assert server.requests == []
+
+
+def test_bytes_of_a_pyramid(server: Any, tmp_path: Path, program: str) -> None:
+    """A picture of 512 pixels shows no more than 512^3 voxels of 8192^3: it takes at most 3 times the bytes of these, with no copies."""
+    folder = write_pyramid(server.folder / "a.ome.zarr")
+    needed = sum(file.stat().st_size for file in (folder / "4").rglob("*") if file.is_file())
+    server.forget()
+    words = [program, "render", f"{server.url}/a.ome.zarr", "--size", "512x512", "-o", str(tmp_path / "a.npy")]
+    done = subprocess.run(words, capture_output=True, text=True, check=True, env=dict(os.environ))
+    assert needed < server.sent <= 3 * needed
+    assert "the server has no file for 504 of 512 chunks" in done.stderr

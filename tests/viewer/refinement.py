@@ -8,8 +8,10 @@ import http.client
 import json
 import os
 import pathlib
+import shutil
 import sys
 import tempfile
+import threading
 import zlib
 
 import numpy
@@ -69,6 +71,12 @@ def frame(viewer, scene, page="test", **more):
     return request(viewer, "POST", f"frame?page={page}&number={next(numbers)}&format=png{query}", json.dumps(scene))
 
 
+def quick_frame(viewer, scene):
+    """A frame as the page asks for it to show it: it waits for no finer level."""
+    query = f"frame?page=test&number={next(numbers)}&format=jpeg&quality=80&coarse=1"
+    return request(viewer, "POST", query, json.dumps(scene))
+
+
 def small(scene, side=96):
     scene = json.loads(json.dumps(scene))
     scene["image"].update(width=side, height=side)
@@ -98,12 +106,83 @@ def from_disk():
         check(len(picture) > 1000, "a picture")
 
 
+def is_finer(name):
+    """Whether a server's file is a chunk of a finer level than the first one that is read."""
+    return name.startswith(("a.zarr/0/", "a.zarr/1/")) and name[-1].isdigit()
+
+
+def final_picture(path):
+    with Viewer(PROGRAM, path) as viewer:
+        scene = small(told(viewer, "start")["scene"])
+        status, _, picture = frame(viewer, scene, metadata=0)
+        check(status == 200, f"the picture of {path}: {status}")
+    return picture
+
+
+def coarse_first(server, url, right):
+    """While the server holds the finer levels back, the page has the coarsest one."""
+    released = threading.Event()
+    server.forget()
+    server.hold = lambda name: released.wait() if is_finer(name) else None
+    with Viewer(PROGRAM, url) as viewer:
+        start = told(viewer, "start")
+        check(start["refining"] and start["volumes"][0]["dimensions"] == [128] * 3, f"the coarsest level first: {start['refining']}")
+        check(quick_frame(viewer, small(start["scene"]))[0] == 200, "a picture of the coarsest level")
+        check(told(viewer, "refined") == {"refined": 0, "refining": True, "problem": ""}, "finer levels are awaited")
+        released.set()
+        status, _, picture = frame(viewer, small(start["scene"]), metadata=0)
+        check(status == 200 and picture == right, f"the finest level's picture is the folder's: {status}")
+    server.hold = None
+    needed = sum(file.stat().st_size for file in pathlib.Path("stores/a.zarr/0").rglob("*") if file.is_file())
+    check(needed < server.sent < 3 * needed, f"at most 3 times the finest level's bytes: {server.sent}, {needed}")
+
+
+def passing_faults(server, url, right):
+    """A fault that passes does no harm."""
+    for kinds in (["500"], ["cut"]):
+        server.forget(**{"a.zarr__0__3__3__3": kinds})
+        check(final_picture(url) == right, f"{kinds}, then the file")
+
+
+def lasting_faults(server, url):
+    """Where a chunk of the finest level does not come as it is, the page goes on with the level before, and nothing is saved."""
+    for fault, words in (("500", "the server answers 500"), ("403", "the server answers 403"), ("cut", "it does not arrive"),
+                         ("page", "a chunk does not unpack"), ("half", "a chunk does not unpack"),
+                         ("flipped", "a chunk does not unpack")):
+        server.forget(**{"a.zarr__0__3__3__3": ["always", fault]})
+        with Viewer(PROGRAM, url) as viewer:
+            scene = small(told(viewer, "start")["scene"])
+            status, _, line = frame(viewer, scene)
+            check(status == 400 and words in line.decode() and "only a coarser resolution was read" in line.decode(),
+                  f"{fault}: nothing is saved: {status} {line}")
+            now = told(viewer, "refined")
+            check(now["refined"] == 1 and not now["refining"] and words in now["problem"], f"{fault}: the page is told: {now}")
+            check(quick_frame(viewer, scene)[0] == 200, f"{fault}: the page goes on")
+            check(told(viewer, "start")["volumes"][0]["dimensions"] == [256] * 3, f"{fault}: the level before the finest")
+
+
+def from_server():
+    """A store on a server, by its URL on the command line."""
+    server = servers.Server(pathlib.Path("stores"))
+    url = f"{server.url}/a.zarr"
+    os.environ["no_proxy"] = "127.0.0.1"
+    os.environ.pop("http_proxy", None)
+    right = final_picture("stores/a.zarr")
+    for number, part in enumerate((lambda: coarse_first(server, url, right), lambda: passing_faults(server, url, right),
+                                   lambda: lasting_faults(server, url))):
+        os.environ["XDG_CACHE_HOME"] = os.path.abspath(f"cache{number}")
+        os.mkdir(f"cache{number}")
+        part()
+
+
 def main():
     need_viewer(PROGRAM)
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         write_pyramid(pathlib.Path("stores/a.zarr"))
         from_disk()
+        if shutil.which("curl") is not None:
+            from_server()
     print(f"{checks.count} checks")
 
 

@@ -54,6 +54,7 @@ typedef struct reading {
                                      * reading while voxels are stored */
   worker *workers;                  /* owned; [threads] */
   atomic_size_t found;              /* number of chunks that exist */
+  atomic_size_t absent;             /* number of chunks whose files do not exist */
 } reading;
 
 /* Where a part lies: its chunk in the array, and its voxels in the volume. */
@@ -279,6 +280,7 @@ static hl_status read_part(void *data, size_t number, int index, hl_error *error
     status = hl_zarr_chunk_read(&w->unpacker, w->source, offset, length, &chunk, error);
     atomic_fetch_add_explicit(&r->found, 1, memory_order_relaxed);
   }
+  if (status == HL_OK && w->source == NULL) atomic_fetch_add_explicit(&r->absent, 1, memory_order_relaxed);
   return status == HL_OK ? put(r, w, &p, chunk, error) : status;
 }
 
@@ -494,12 +496,25 @@ static hl_status read_parts(reading *r, hl_pool *pool, hl_error *error) {
   return status;
 }
 
+/* Tells how many chunks a server lacks. A store may lack them on purpose, but a server's fault looks the
+ * same, and nobody sees a server's files as those of a folder. */
+static void tell_absent(const reading *r) {
+  const size_t absent = atomic_load(&r->absent), all = absent + atomic_load(&r->found);
+  if (hl_bundle_is_on_server(r->bundle) && absent > 0)
+    hl_log(
+        r->bundle->context, HL_LOG_INFO,
+        "%.300s: the server has no file for %zu of %zu chunks (array \"%.200s\"): their voxels have the fill "
+        "value",
+        r->bundle->path, absent, all, r->array->folder);
+}
+
 static hl_status read_all(reading *r, hl_error *error) {
   hl_pool *pool = NULL;
   bool parallel = r->parts > 1 && r->size[0] * r->size[1] * r->size[2] >= PARALLEL_VOXELS;
   hl_status status = hl_pool_create(r->bundle->context, parallel ? 0 : 1, &pool, error);
   if (status == HL_OK) status = read_parts(r, pool, error);
   hl_pool_destroy(pool);
+  if (status == HL_OK && atomic_load(&r->found) > 0) tell_absent(r);
   if (status == HL_OK && atomic_load(&r->found) == 0)
     return hl_zarr_fail(r->bundle, r->array->folder, error, HL_ERROR_INPUT,
                         "not one of its %llu chunks is there: is the copy whole?",
@@ -512,6 +527,7 @@ hl_status hl_zarr_voxels_read(const hl_bundle *bundle, const hl_zarr_array *arra
                               hl_destination *to, hl_error *error) {
   reading r = {.bundle = bundle, .array = array, .choice = choice, .to = to};
   atomic_init(&r.found, 0);
+  atomic_init(&r.absent, 0);
   prepare(&r);
   hl_status status = count_parts(&r, error);
   if (status == HL_OK)
