@@ -147,11 +147,27 @@ static void test_crowded(void **state) {
   hl_context_destroy(context);
 }
 
+/* A volume beyond the machine's memory gets no sparse pages, however few voxels a file has. */
+static void test_beyond_memory(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  hl_volume_description grid;
+  hl_destination to;
+  const uint8_t value = 0;
+  hl_volume_description_defaults(&grid);
+  grid.dimensions[0] = grid.dimensions[1] = grid.dimensions[2] = (size_t)1 << 14; /* 4 TiB */
+  (void)hl_destination_open_sparse(context, &grid, &value, "a file", &to, NULL);
+  assert_false(hl_destination_is_sparse(&to));
+  hl_destination_close(&to);
+  hl_context_destroy(context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_boxes),
       cmocka_unit_test(test_memory),
       cmocka_unit_test(test_crowded),
+      cmocka_unit_test(test_beyond_memory),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

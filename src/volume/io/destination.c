@@ -2,6 +2,7 @@
 #include "volume/io/destination.h"
 
 #include <string.h>
+#include <unistd.h>
 
 #include "core/context.h"
 #include "core/memory.h"
@@ -81,12 +82,14 @@ static bool may_be_rounded(hl_voxel_type type) {
   return hl_voxel_type_storage(type) == HL_STORAGE_F32 && type != HL_VOXEL_F16 && type != HL_VOXEL_F32;
 }
 
-/* Whether the memory limit has room for one array beside the sparse pages that are moved into it. */
+/* Whether memory has room for one array beside the sparse pages that are moved into it. Without a limit it is
+ * the machine's memory: a file's header may name a volume beyond all memory. */
 static bool has_room_to_spread(const hl_context *context, double bytes) {
   const double limit = (double)context->options.memory_limit,
                taken = (double)atomic_load(&context->whole->held) +
-                       (double)atomic_load(&context->whole->paged);
-  return limit == 0 || taken + bytes * (1 + 2 * CROWDED) <= limit;
+                       (double)atomic_load(&context->whole->paged),
+               machine = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+  return taken + bytes * (1 + 2 * CROWDED) <= (limit > 0 ? limit : machine);
 }
 
 /* Addresses of 32 bits are too few to reserve some for pages that stay empty. */
