@@ -16,6 +16,7 @@ install_zig() {
 # another one. The machine's own lists may have no sources.
 list_sources() {
   lists=$shared_folder/apt
+  rm -rf "$lists"
   mkdir -p "$lists/lists/partial" "$lists/archives/partial" "$sources"
   if [ $# -gt 0 ]; then
     echo "deb-src $*" >"$lists/sources.list"
@@ -27,7 +28,7 @@ list_sources() {
 }
 
 apt_get() {
-  apt-get -q -o Dir::Etc::sourcelist="$(ls "$root"/apt/sources.*)" -o Dir::Etc::sourceparts=/dev/null -o Dir::State="$lists" \
+  apt-get -q -o Dir::Etc::sourcelist="$(ls "$lists"/sources.*)" -o Dir::Etc::sourceparts=/dev/null -o Dir::State="$lists" \
     -o Dir::Cache="$lists" -o Debug::NoLocking=true -o APT::Sandbox::User=root "$@"
 }
 
