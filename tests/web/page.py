@@ -141,6 +141,16 @@ def try_reload(browser, folder, what):
           f"{what}: a page that is loaded anew goes on with what was done")
 
 
+def try_welcome(url):
+    """A phone shows the page's name before a file is open."""
+    with Browser(size=(390, 844)) as browser:
+        browser.open(url)
+        browser.wait("document.querySelector('.tab-welcome h1') !== null")
+        size = browser.run("parseFloat(getComputedStyle(document.querySelector('.tab-welcome h1')).fontSize)")
+        check(size >= 16, f"Chromium, a phone: the page has its name: {size} pixels")
+        check(browser.run("document.scrollingElement.scrollWidth <= innerWidth"), "Chromium, a phone: it is no wider than the screen")
+
+
 def try_chromium(url, what, program, folder):
     with Browser(size=(900, 500)) as browser:
         try_chosen(browser, url, what, program, folder)
@@ -300,6 +310,7 @@ def main():
         write_volumes(folder)
         expected = write_hash_page(web / "page", folder / "page", program)
         if shutil.which("chromium"):
+            try_welcome((web / "halflight.html").as_uri())
             try_chromium((web / "halflight.html").as_uri(), "Chromium, one file", program, folder)
             try_held_scene(Browser, "Chromium", web / "halflight.html", program, folder)
             with serve(web / "page") as (_, url):

@@ -12,6 +12,8 @@
 #include <stdatomic.h>
 #include <stddef.h>
 
+#include "platform/processors.h"
+
 enum { MISSING, FREE, TAKEN, CALLED, RETURNED }; /* states of a helper */
 
 typedef struct helper {
