@@ -28,6 +28,7 @@ from firefox import Firefox  # noqa: E402
 from scenes import SCENES, balls, write_volumes  # noqa: E402
 
 SHOTS = pathlib.Path(sys.argv[3]).resolve() if len(sys.argv) > 3 else None
+MOST = 1.5e6  # bytes of a WebAssembly file as a server sends it, compressed
 HANG = 300  # seconds, for a browser that hangs alone
 number = 0
 
@@ -139,6 +140,13 @@ def try_reload(browser, folder, what):
     browser.wait("globalThis.halflight?.frames.statistics.finals > 0")
     check(browser.run("halflight.store.scene.render.sheet_spacing") == 1.5 and browser.run("halflight.slices.layout") == "four",
           f"{what}: a page that is loaded anew goes on with what was done")
+
+
+def try_sizes(page):
+    """A page that takes the library from a server does not wait long for it."""
+    for file in sorted(page.glob("*.wasm")):
+        size = len(gzip.compress(file.read_bytes(), 9))
+        check(size <= MOST, f"{file.name}: {size} bytes compressed")
 
 
 def try_welcome(url):
@@ -307,6 +315,7 @@ def main():
         return
     with tempfile.TemporaryDirectory(prefix="halflight-web-") as text:
         folder = pathlib.Path(text)
+        try_sizes(web / "page")
         write_volumes(folder)
         expected = write_hash_page(web / "page", folder / "page", program)
         if shutil.which("chromium"):
