@@ -1,6 +1,7 @@
 /* tests/unit/volume_sparse.c - sparse pages: voxels of which most have one value. */
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "core/context.h"
 #include "small_volume.h"
@@ -147,7 +148,8 @@ static void test_crowded(void **state) {
   hl_context_destroy(context);
 }
 
-/* A volume beyond the machine's memory gets no sparse pages, however few voxels a file has. */
+/* Without a limit, a volume gets no sparse pages for which the machine's memory has no room, however few
+ * voxels a file has. */
 static void test_beyond_memory(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -155,7 +157,10 @@ static void test_beyond_memory(void **state) {
   hl_destination to;
   const uint8_t value = 0;
   hl_volume_description_defaults(&grid);
-  grid.dimensions[0] = grid.dimensions[1] = grid.dimensions[2] = (size_t)1 << 14; /* 4 TiB */
+  /* four fifths of the memory: room for the voxels, but not for sparse pages beside them */
+  grid.dimensions[0] = (size_t)sysconf(_SC_PAGESIZE);
+  grid.dimensions[1] = 1024;
+  grid.dimensions[2] = (size_t)sysconf(_SC_PHYS_PAGES) / 1280;
   (void)hl_destination_open_sparse(context, &grid, &value, "a file", &to, NULL);
   assert_false(hl_destination_is_sparse(&to));
   hl_destination_close(&to);
