@@ -1,12 +1,17 @@
 /* tests/unit/volume_sparse.c - sparse pages: voxels of which most have one value. */
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "core/context.h"
 #include "small_volume.h"
 #include "volume/io/destination.h"
 #include "volume/store/pages.h"
+
+#if defined(__has_feature) && !defined(__SANITIZE_ADDRESS__) /* clang's way to tell */
+#if __has_feature(address_sanitizer)
+#define __SANITIZE_ADDRESS__
+#endif
+#endif
 
 enum { SHIFT = 2, MOST = 23 * 19 * 17 };
 
@@ -152,15 +157,15 @@ static void test_crowded(void **state) {
  * voxels a file has. */
 static void test_beyond_memory(void **state) {
   (void)state;
+#ifdef __SANITIZE_ADDRESS__
+  skip(); /* the address sanitizer ends a program that asks for more than 1 TiB */
+#endif
   hl_context *context = make_context();
   hl_volume_description grid;
   hl_destination to;
   const uint8_t value = 0;
   hl_volume_description_defaults(&grid);
-  /* four fifths of the memory: room for the voxels, but not for sparse pages beside them */
-  grid.dimensions[0] = (size_t)sysconf(_SC_PAGESIZE);
-  grid.dimensions[1] = 1024;
-  grid.dimensions[2] = (size_t)sysconf(_SC_PHYS_PAGES) / 1280;
+  grid.dimensions[0] = grid.dimensions[1] = grid.dimensions[2] = (size_t)1 << 14; /* 4 TiB */
   (void)hl_destination_open_sparse(context, &grid, &value, "a file", &to, NULL);
   assert_false(hl_destination_is_sparse(&to));
   hl_destination_close(&to);
