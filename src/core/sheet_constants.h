@@ -103,14 +103,14 @@
  * float. */
 #define DEEPEST 80.0f
 
-/* Differences of the optical depths, from the faces to the slab, between the near pixels. Where the depths
- * differ by less than EVEN_LIGHT, the buffer is read as if there were no face. Where they differ by twice
- * EVEN_LIGHT, the face counts fully. */
+/* Each near pixel has an optical depth, from the face to the slab. EVEN_LIGHT is a difference between these
+ * depths. Where they differ by less, the buffer is read as if there were no face. Where they differ by at
+ * least twice as much, the face counts fully. */
 #define EVEN_LIGHT 0.1f
 
 /* ---- the cascade ---- */
 
-/* Where an umbra should be dark, blurred sums leave a little light. So a transmittance below UMBRA becomes
+/* Blurred sums leave a little light in umbrae, which should be dark. So a transmittance below UMBRA becomes
  * 0. */
 #define UMBRA (1.0f / 160)
 
