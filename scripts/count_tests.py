@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Sums the tests of several build folders and prints "N passed, N failed, N skipped".
+"""Sums the tests of several build folders, names what failed, and prints "N passed, N failed, N skipped".
 
 usage: count_tests.py BUILD_FOLDER ...
 A test that speaks TAP counts as its parts, and one that failed without a failing part (a crash, a timeout) as one
@@ -12,6 +12,11 @@ import sys
 
 passed = failed = skipped = 0
 names = []
+
+
+def failed_parts(test):
+    """The names of the parts of a test that failed, as it printed them."""
+    return re.findall(r"^not ok\b[ \d-]*([^\n]*)", test.get("stdout") or "", re.M)
 
 
 def count(test):
@@ -38,7 +43,7 @@ for folder in sys.argv[1:]:
         good, bad, skips = count(test)
         passed, failed, skipped = passed + good, failed + bad, skipped + skips
         if bad:
-            names.append(f"{folder}: {test['name']}")
+            names.append(f"{folder}: {test['name']}: " + (", ".join(failed_parts(test)) or "ended early"))
 for name in names:
     print(f"failed: {name}")
 print(f"{passed} passed, {failed} failed, {skipped} skipped")
