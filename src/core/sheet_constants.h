@@ -119,4 +119,44 @@
 #define THIN_MATTER  0.25f
 #define SOLID_MATTER 0.75f
 
+/* ---- the light of a sky ---- */
+
+/* The greatest magnitude of a number stored in a cell of the sky's field. It has 16 bits. */
+#define SKY_MOST 32767
+
+/* A cell is SKY_CELL numbers of 16 bits. lanes_unpack_shorts() joins the numbers of two cells, and changes
+ * their order. SKY_PLACE() gives the index at which a harmonic must be stored so that it becomes number
+ * `harmonic` of the sums. The indices SKY_PASSING and SKY_PASSING + 1 hold no harmonic, but the
+ * transmittances of the cell and of the next cell along x; SKY_MOST stands for 1. */
+#define SKY_CELL            32
+#define SKY_PASSING         28
+#define SKY_PLACE(harmonic) ((harmonic) % 16 / 4 * 8 + (harmonic) % 4 + ((harmonic) < 16 ? 0 : 4))
+
+/* The indices, among a cell's numbers, of three more numbers that are no harmonics: the fractions of the ways
+ * to the next cell along x, y and z (axis 0, 1 and 2) at which a surface cuts the ways; SKY_MOST stands for
+ * 1, and 0 for no surface. */
+#define SKY_CUT(axis) ((axis) == 0 ? 23 : 29 + (axis))
+
+/* The number of spherical harmonics, up to the second degree, and their factors. The harmonics have unit norm
+ * over the sphere. */
+#define FIELD_HARMONICS 9
+#define HARMONIC_0      0.28209479177387814 /* 1 / sqrt(4 pi) */
+#define HARMONIC_1      0.48860251190291992 /* sqrt(3 / (4 pi)) x, y, z */
+#define HARMONIC_2      1.09254843059207907 /* sqrt(15 / (4 pi)) x y, y z, z x */
+#define HARMONIC_20     0.31539156525252000 /* sqrt(5 / (16 pi)) (3 z^2 - 1) */
+#define HARMONIC_22     0.54627421529603953 /* sqrt(15 / (16 pi)) (x^2 - y^2) */
+
+/* The least factor by which a cell's trilinear weight is multiplied. It is also the least weight of the cell
+ * that no surface separates from the position. */
+#define LEAST_COUNTED (1.0f / 1024)
+
+/* The field holds the light that reaches a cell, before the cell itself absorbs light. On its way to a
+ * medium's sample, light crosses half of the cell. For a direction with the slopes u and v
+ * (field/sky_lanes.h), this is half of sqrt(1 + u^2 + v^2) edges of a cell. The mean of this length over all
+ * directions is 3 / (4 pi) times the integral of 1 / (1 + u^2 + v^2) over -1 < u, v < 1 (derived). */
+#define HALF_CELL 0.6107f
+
+/* The greatest distance, in voxels, by which a sample is moved to the outside of its surface. */
+#define MOST_TO_OUTSIDE 8.0f
+
 #endif

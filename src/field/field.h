@@ -20,7 +20,6 @@
 
 enum {
   FIELD_LANES = 16,
-  FIELD_HARMONICS = 9,   /* spherical harmonics up to the second degree */
   FIELD_DIRECTIONS = 36, /* number of directions of light that come from one end of an axis */
   FIELD_SAMPLES = 4      /* the most samples along an edge of a cell */
 };

@@ -27,10 +27,6 @@ LANES_INLINE lanes place_between_cells(const sky_light *sky, int axis, lanes pos
   return whole;
 }
 
-/* The least factor by which a cell's trilinear weight is multiplied. It is also the least weight of the cell
- * that no surface separates from the position. */
-static const float LEAST_COUNTED = 1.0f / 1024;
-
 /* The weight of a cell among the cells around a position. In media and on meshes (surface: 0) it is the
  * trilinear weight times the cell's transmittance. On a volume's surface (surface: 1) it is the trilinear
  * weight times the sixth power of the transmittance, so that cells half filled with matter do not darken the
@@ -78,7 +74,7 @@ static int cell_on_side(const int16_t *cell, const sky_steps *steps, const float
     float sum = 0, most = 0;
     int across = 0;
     for (int axis = 0; axis < 3; axis++) {
-      const int16_t cut = cell[step_to_cell(steps, corner & ~(1 << axis)) + SKY_CUTS[axis]];
+      const int16_t cut = cell[step_to_cell(steps, corner & ~(1 << axis)) + SKY_CUT(axis)];
       if (cut == 0) continue;
       const float place = (float)cut * (1.0f / SKY_MOST), far = corner >> axis & 1 ? 1 - place : place,
                   way = corner >> axis & 1 ? 1 - fraction[axis] : fraction[axis];
@@ -114,7 +110,7 @@ static void weigh_parted_cells(const sky_light *sky, const int16_t *cell, const 
   uint32_t open[3] = {first[0], first[1], first[2]}, all = 0;
   for (int corner = 0; corner < 8; corner++)
     for (int axis = 0; axis < 3; axis++)
-      if ((first[axis] >> corner & 1) && cell[step_to_cell(&steps, corner) + SKY_CUTS[axis]] != 0)
+      if ((first[axis] >> corner & 1) && cell[step_to_cell(&steps, corner) + SKY_CUT(axis)] != 0)
         open[axis] &= ~(1u << corner), all = 1;
   if (all == 0) return;
   const int own = cell_on_side(cell, &steps, fraction);

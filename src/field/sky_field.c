@@ -440,13 +440,13 @@ static void store(const sky_content *content, void *memory, sky_light *light, hl
   for (int i = 0; i < harmonics; i++) {
     const int channel = i / FIELD_HARMONICS;
     rows.scale[i] = light->stored_unit[channel] > 0 ? 1 / light->stored_unit[channel] : 0;
-    rows.place[i] = hl_sky_place(i % FIELD_HARMONICS * light->channels + channel);
+    rows.place[i] = SKY_PLACE(i % FIELD_HARMONICS * light->channels + channel);
   }
   rows.scale[harmonics] = SKY_MOST;
   rows.place[harmonics] = SKY_PASSING;
   for (int a = 0; a < 3; a++) {
     rows.scale[harmonics + 1 + a] = SKY_MOST;
-    rows.place[harmonics + 1 + a] = SKY_CUTS[a];
+    rows.place[harmonics + 1 + a] = SKY_CUT(a);
   }
   hl_pool_run(pool, (size_t)light->count[1] * (size_t)light->count[2], store_row, &rows);
   light->cells = memory;
@@ -460,7 +460,8 @@ hl_status hl_sky_make(hl_context *context, hl_pool *pool, const sky_content *con
   sky_light *light = &made->light;
   passing_arrays arrays;
   const size_t bytes = field_bytes(content);
-  *light = (sky_light){.channels = content->channels,
+  *light = (sky_light){.version = light->version + 1,
+                       .channels = content->channels,
                        .cell = (float)content->lattice.cell,
                        .color = {1, 1, 1},
                        .cut = content->content.surfaces != NULL};
@@ -498,5 +499,5 @@ hl_status hl_sky_make(hl_context *context, hl_pool *pool, const sky_content *con
 void hl_sky_release(hl_context *context, sky_field *field) {
   hl_release(context, field->memory);
   hl_key_release(context, &field->key);
-  *field = (sky_field){0};
+  *field = (sky_field){.light.version = field->light.version};
 }

@@ -5,38 +5,23 @@
 #include "core/key.h"
 #include "core/memory.h"
 #include "core/pool.h"
+#include "core/sheet_constants.h"
 #include "field/opacity.h"
 #include "scene/scene.h"
-
-/* The greatest magnitude of a stored number, which has 16 bits. */
-enum { SKY_MOST = 32767 };
-
-/* A cell is SKY_CELL numbers of 16 bits. lanes_unpack_shorts() joins the numbers of two cells, and changes
- * their order. hl_sky_place() gives the index at which a harmonic must be stored so that it becomes number
- * `harmonic` of the sums. The indices SKY_PASSING and SKY_PASSING + 1 hold no harmonic, but the
- * transmittances of the cell and of the next cell along x; SKY_MOST stands for 1. */
-enum { SKY_CELL = 32, SKY_PASSING = 28 };
-/* The indices, among a cell's numbers, of three more numbers that are no harmonics: the fractions of the ways
- * to the next cell along x, y and z at which a surface cuts the ways; SKY_MOST stands for 1, and 0 for no
- * surface. */
-static const int SKY_CUTS[3] = {23, 30, 31};
-static inline int hl_sky_place(int harmonic) {
-  int low = harmonic < 16, i = low ? harmonic : harmonic - 16;
-  return i / 4 * 8 + i % 4 + (low ? 0 : 4);
-}
 
 /* The sky's light that samples look up. */
 typedef struct sky_light {
   /* [z][y][x][SKY_CELL]; a row has row_numbers numbers. A cell has FIELD_HARMONICS x channels harmonics at
-   * the indices of hl_sky_place(), the channels of a harmonic beside each other. It is zero where nothing
+   * the indices of SKY_PLACE(), the channels of a harmonic beside each other. It is zero where nothing
    * visible is near. Null: there is no sky. */
   const int16_t *cells;
+  uint64_t version;   /* of the cells; rises each time that the field is made */
   size_t row_numbers; /* numbers of 16 bits from row to row */
   int32_t count[3];
   float low[3], inverse_cell, cell; /* low corner and cell of the lattice */
   float lift; /* distance by which look-ups are moved off a surface, along its normal; frame units */
   int channels;
-  int cut;                        /* surfaces may cut the ways between cells (SKY_CUTS) */
+  int cut;                        /* surfaces may cut the ways between cells (SKY_CUT) */
   float stored_unit[3];           /* [channels]; the amount of light for which the number 1 in a cell
                                    * stands */
   float color[3];                 /* a factor on the field's light */

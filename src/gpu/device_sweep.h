@@ -11,6 +11,7 @@
 #define PLAN_KERNEL_POWERS 6
 #define PLAN_SECTORS       6
 #define PLAN_CODES         256
+#define PLAN_HARMONICS     9
 
 /* The rays of pixels at one sheet: the members of sheet_rays (view/view.h), and the sheet's height above the
  * first sheet. */
@@ -134,6 +135,14 @@ typedef struct plan_volume {
   float voxel;
 } plan_volume;
 
+/* The field of the sky's light: the members of sky_light (field/sky_field.h), but for the cells. */
+typedef struct plan_sky {
+  int count[3], channels, cut;
+  unsigned row_numbers;
+  float low[3], inverse_cell, cell, lift;
+  float stored_unit[3], color[3], open[3][PLAN_HARMONICS];
+} plan_sky;
+
 /* One sweep: all slabs of one slicing direction, from the first to the last. */
 typedef struct device_sweep {
   int sheets, ring;                  /* sheets: number of sheets; ring: number of sheets whose planes a shadow
@@ -144,6 +153,7 @@ typedef struct device_sweep {
   float through[3], towards_eye[3], normal[3];
   float ambient[3], emission;
   plan_volume volume;
+  plan_sky sky;          /* set where the variant has a sky */
   plan_box box, content; /* box: the rays in the volume's box; content: the rays in the box around the bricks
                           * that show something */
   plan_light lights[PLAN_LIGHTS];
@@ -211,6 +221,7 @@ typedef struct plan_variant {
   int steep;   /* the volume has gradient opacity */
   int colored; /* the voxels have colours of their own */
   int soft;    /* some lights are soft */
+  int sky;     /* the sky's light is added in this sweep */
   int back_to_front;
   int channels; /* number of channels of light attenuation: 1 or 3 */
 } plan_variant;

@@ -67,6 +67,13 @@ void hl_gpu_forget(hl_gpu *gpu);
  * [count][result_count]. */
 bool hl_gpu_try(hl_gpu *gpu, const float *numbers, uint32_t count, float *results, uint32_t result_count);
 
+/* The cells of the sky's field; borrowed. */
+typedef struct gpu_sky {
+  uint64_t version;     /* of the cells */
+  const int16_t *cells; /* null: there is no sky */
+  size_t bytes;
+} gpu_sky;
+
 /* A sweep as plain data; borrowed until hl_gpu_read(). */
 typedef struct gpu_sweep gpu_sweep;
 struct gpu_sweep {
@@ -77,8 +84,9 @@ struct gpu_sweep {
   size_t cut_count;
   const int32_t *shown_from; /* [tiles][16 blocks]; where slabs are composited from back to front: the first
                               * visible slab of each block; null: slab 1 for all blocks */
-  size_t plane_floats;       /* floats of the planes of all lights together */
-  int slabs;                 /* number of slabs of a run, at most */
+  gpu_sky sky;
+  size_t plane_floats; /* floats of the planes of all lights together */
+  int slabs;           /* number of slabs of a run, at most */
   /* Soft lights; zeros where there are none: */
   const unsigned char *ends;       /* [sheets]; not 0 for sheets at which a chunk of some light ends */
   size_t field_pixels, row_floats; /* of the fields of all soft lights; of the rows of a blur */

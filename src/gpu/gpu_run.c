@@ -27,7 +27,7 @@ static const char *const kernel_names[KERNELS] = {"fill_floats",       "try_arit
                                                   "composite_samples", "pass_rows",      "pass_fields",
                                                   "pass_absorbed",     "pass_refill"};
 
-enum { VARIANT_DEFINES = 15, SAMPLE_COUNTERS = 256, TILE_SIDE = 16 };
+enum { VARIANT_DEFINES = 16, SAMPLE_COUNTERS = 256, TILE_SIDE = 16 };
 
 /* ---- memory ---- */
 
@@ -145,7 +145,7 @@ bool hl_gpu_prepare(hl_gpu *gpu, const gpu_volume *volume) {
   return true;
 }
 
-void hl_gpu_forget(hl_gpu *gpu) { gpu->version = gpu->tables_version = 0; }
+void hl_gpu_forget(hl_gpu *gpu) { gpu->version = gpu->tables_version = gpu->sky_version = 0; }
 
 /* ---- programs ---- */
 
@@ -153,12 +153,22 @@ static void define_variant(const plan_variant *v, char defines[VARIANT_DEFINES][
   const struct {
     const char *name;
     int value;
-  } all[VARIANT_DEFINES] = {
-      {"STORAGE", v->storage},   {"BSPLINE", v->bspline}, {"EYE_PERSPECTIVE", v->eye_perspective},
-      {"PHONG", v->phong},       {"LIT", v->lit},         {"SHADOWED", v->shadowed},
-      {"OUTSIDE", v->outside},   {"BOXED", v->boxed},     {"BACK_TO_FRONT", v->back_to_front},
-      {"CHANNELS", v->channels}, {"CUTS", v->cuts},       {"BRICKS", v->bricks},
-      {"STEEP", v->steep},       {"COLORED", v->colored}, {"SOFT", v->soft}};
+  } all[VARIANT_DEFINES] = {{"STORAGE", v->storage},
+                            {"BSPLINE", v->bspline},
+                            {"EYE_PERSPECTIVE", v->eye_perspective},
+                            {"PHONG", v->phong},
+                            {"LIT", v->lit},
+                            {"SHADOWED", v->shadowed},
+                            {"OUTSIDE", v->outside},
+                            {"BOXED", v->boxed},
+                            {"BACK_TO_FRONT", v->back_to_front},
+                            {"CHANNELS", v->channels},
+                            {"CUTS", v->cuts},
+                            {"BRICKS", v->bricks},
+                            {"STEEP", v->steep},
+                            {"COLORED", v->colored},
+                            {"SOFT", v->soft},
+                            {"SKY", v->sky}};
   for (int i = 0; i < VARIANT_DEFINES; i++)
     snprintf(defines[i], sizeof defines[i], "%s=%d", all[i].name, all[i].value);
 }
@@ -285,6 +295,15 @@ static bool reset_soft(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *p
          fill(gpu, program, BUFFER_FIELDS, field_floats(sweep), 0);
 }
 
+/* Brings the cells of the sky's field to the device, unless the device has them already. */
+static bool prepare_sky(hl_gpu *gpu, const gpu_sky *sky) {
+  if (sky->cells == NULL || sky->version == gpu->sky_version) return reserve(gpu, BUFFER_SKY, 0);
+  gpu->sky_version = 0;
+  if (!reserve_and_upload(gpu, BUFFER_SKY, sky->cells, sky->bytes)) return false;
+  gpu->sky_version = sky->version;
+  return true;
+}
+
 static bool make_room(hl_gpu *gpu, const gpu_sweep *sweep) {
   const device_sweep *plan = sweep->plan;
   const size_t views = 2 + 2 * (size_t)plan->light_count, tiles = (size_t)plan->tiles,
@@ -301,7 +320,8 @@ static bool make_room(hl_gpu *gpu, const gpu_sweep *sweep) {
               reserve(gpu, BUFFER_SLOTS, slots * 4 * sizeof(float)) &&
               reserve(gpu, BUFFER_LIST, slots * sizeof(uint32_t)) &&
               reserve(gpu, BUFFER_MASKS, 2 * tiles * 256 * sizeof(uint32_t)) &&
-              reserve(gpu, BUFFER_CUTS, sweep->cut_count * sizeof *sweep->cuts) && make_soft_room(gpu, sweep);
+              reserve(gpu, BUFFER_CUTS, sweep->cut_count * sizeof *sweep->cuts) &&
+              make_soft_room(gpu, sweep) && prepare_sky(gpu, &sweep->sky);
   if (done && sweep->shown_from != NULL)
     done = upload(gpu, BUFFER_SHOWN_FROM, 0, sweep->shown_from, tiles * 16 * sizeof(int32_t));
   if (done && sweep->cut_count > 0)
@@ -358,6 +378,7 @@ static bool launch_kernel(hl_gpu *gpu, const gpu_program *program, int kernel, s
                                     memory(gpu, BUFFER_COLORS),
                                     memory(gpu, BUFFER_SOFT),
                                     memory(gpu, BUFFER_TOUCHED),
+                                    memory(gpu, BUFFER_SKY),
                                     number(run.first),
                                     number(run.end),
                                     number(run.number)};

@@ -35,6 +35,7 @@ enum buffer_use {
   BUFFER_PASSES,
   BUFFER_BOXES,
   BUFFER_MARKS,
+  BUFFER_SKY,
   BUFFERS
 };
 
@@ -49,8 +50,8 @@ struct hl_gpu {
   gpu_device device;
   const char *cache_folder;
   gpu_buffer buffers[BUFFERS];
-  uint64_t version, tables_version; /* versions of the voxels and of the tables on the device; 0: there are
-                                     * none */
+  uint64_t version, tables_version, sky_version; /* versions of the voxels, of the tables and of the sky's
+                                                  * cells on the device; 0: there are none */
   known_program programs[MOST_VARIANTS];
   int program_count, launches;
   int32_t brick_count[3];

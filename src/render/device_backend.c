@@ -8,6 +8,7 @@
 #include "core/context.h"
 #include "core/memory.h"
 #include "render/device_plan.h"
+#include "render/device_reasons.h"
 #include "render/device_trial.h"
 #include "render/sweep.h"
 

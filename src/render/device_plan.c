@@ -15,6 +15,7 @@ _Static_assert(PLAN_LIGHTS >= MAXIMUM_SWEEP_LIGHTS && PLAN_SECTORS == LIGHT_SECT
                    PLAN_ENTRIES == CLASSIFIER_ENTRIES && PLAN_ENTRIES == STEEPNESS_ENTRIES &&
                    PLAN_KERNEL_POWERS == HL_KERNEL_DEGREE + 1,
                "plans hold what sweeps hold");
+_Static_assert(PLAN_HARMONICS == FIELD_HARMONICS, "skies of plans are skies of fields");
 _Static_assert(sizeof(plan_brick) == sizeof(hl_brick_entry) &&
                    offsetof(plan_brick, level) == offsetof(hl_brick_entry, level) &&
                    offsetof(plan_brick, value) == offsetof(hl_brick_entry, constant),
@@ -24,115 +25,6 @@ _Static_assert(CUT_PLANE == (int)HL_CUT_PLANE && CUT_BOX == (int)HL_CUT_BOX &&
                "cuts of plans are cuts of scenes");
 _Static_assert(offsetof(plan_rays, height) == sizeof(sheet_rays) && sizeof(plan_box) == sizeof(box_rays),
                "rays of plans are rays of views");
-
-/* ---- what devices do not make yet ---- */
-
-static const frame_volume *volume_of(const frame_plan *plan) { return &plan->volumes.list[0]; }
-
-static bool has_no_volume(const frame_plan *plan) {
-  return plan->volumes.count == 0 || plan->frame.content.point_count == 0;
-}
-static bool has_volumes(const frame_plan *plan) { return plan->volumes.count > 1; }
-static bool is_hidden(const frame_plan *plan) { return !volume_of(plan)->visible; }
-static bool is_maximum(const frame_plan *plan) { return hl_is_maximum(&plan->settings); }
-static bool has_layers(const frame_plan *plan) { return plan->picture.layers != NULL; }
-static bool is_shared(const frame_plan *plan) { return plan->picture.share.parts > 1; }
-static bool has_surfaces(const frame_plan *plan) { return plan->frame.surfaces != NULL; }
-static bool has_sky(const frame_plan *plan) { return plan->fields.sky != NULL; }
-static bool scatters(const frame_plan *plan) { return plan->fields.scatters; }
-static bool splats(const frame_plan *plan) { return plan->volumes.splat; }
-static bool is_over_ranks(const frame_plan *plan) {
-  return plan->volumes.grids[0].pages != NULL && plan->volumes.grids[0].pages->blocks != NULL;
-}
-static bool is_thin(const frame_plan *plan) {
-  const int32_t *dimension = plan->volumes.grids[0].dimension;
-  if (plan->volumes.grids[0].bricks != NULL) return false;
-  return dimension[0] < 4 || dimension[1] < 4 || dimension[2] < 4;
-}
-static bool is_masked(const frame_plan *plan) { return volume_of(plan)->classifier->mask.factors != NULL; }
-static bool has_two_numbers(const frame_plan *plan) {
-  return volume_of(plan)->classifier->plane.sums != NULL;
-}
-static bool has_soft(const frame_plan *plan) {
-  for (int i = 0; i < plan->frame.light_count; i++)
-    if (plan->frame.lights[i].shadows == HL_SHADOWS_SOFT) return true;
-  return false;
-}
-static bool is_soft_otherwise(const frame_plan *plan) {
-  for (int i = 0; i < plan->frame.light_count; i++)
-    if (plan->frame.lights[i].shadows == HL_SHADOWS_SOFT &&
-        hl_shadow_method(&plan->frame.lights[i]) != &hl_shadow_cascade)
-      return true;
-  return false;
-}
-
-/* Soft shadows of a medium have been held to the processors' bytes. What is named here has not been. */
-static bool has_soft_matter(const frame_plan *plan) {
-  const frame_volume *volume = volume_of(plan);
-  return has_soft(plan) && (volume->look.shading != HL_SHADING_NONE || plan->volumes.grids[0].cut ||
-                            volume->classifier->steepness != NULL || plan->channels > 1);
-}
-static bool has_other_lights(const frame_plan *plan) {
-  bool other = false;
-  for (int i = 0; i < plan->frame.light_count; i++)
-    other = other || plan->frame.lights[i].shadows == HL_SHADOWS_HARD || !plan->frame.lights[i].parallel;
-  return has_soft(plan) && other;
-}
-
-/* Whether the frame has cut surfaces with gradient opacity that cast shadows. A device cannot make these
- * shadows as the processors do: matter that gradient opacity hides ends surfaces for all pixels of a block
- * (shadow/attenuate_lanes.h). Behind a cut the processors skip whole blocks, and a pixel of a device does not
- * know which blocks are skipped. */
-static bool hides_cut_surfaces(const frame_plan *plan) {
-  bool shadows = false;
-  for (int i = 0; i < plan->frame.light_count; i++)
-    shadows = shadows || plan->frame.lights[i].shadows != HL_SHADOWS_OFF;
-  return shadows && volume_of(plan)->classifier->steepness != NULL && plan->volumes.grids[0].cut &&
-         volume_of(plan)->look.shading == HL_SHADING_PHONG;
-}
-
-static bool has_images(const frame_plan *plan) {
-  for (int i = 0; i < plan->light_count; i++)
-    if (plan->lights[i].has_image) return true;
-  return false;
-}
-static bool has_phase_tables(const frame_plan *plan) {
-  return hl_phase_table(plan->fields.phases, volume_of(plan)->look.anisotropy) != NULL;
-}
-
-/* The reasons why a device cannot make a frame, each with a function that tells whether it applies. The user
- * gets the first reason that applies. */
-static const struct {
-  bool (*applies)(const frame_plan *plan);
-  const char *reason;
-} reasons[] = {
-    {has_no_volume, "it shows no volume"},
-    {is_maximum, "a maximum projection"},
-    {has_layers, "layers"},
-    {is_shared, "a part of a shared picture"},
-    {has_surfaces, "meshes or isosurfaces"},
-    {has_volumes, "several volumes"},
-    {is_hidden, "a volume that only casts shadows"},
-    {has_sky, "the light of a sky"},
-    {scatters, "multiple scattering"},
-    {splats, "splatting in place of gathering"},
-    {is_over_ranks, "voxels of several processes"},
-    {is_thin, "a volume less than four voxels thick"},
-    {is_masked, "a mask"},
-    {has_two_numbers, "a function of two numbers"},
-    {hides_cut_surfaces, "gradient opacity of cut surfaces that cast shadows"},
-    {is_soft_otherwise, "soft shadows by another method than the cascade"},
-    {has_other_lights, "soft shadows beside hard ones, or of near lights"},
-    {has_soft_matter, "soft shadows of surfaces, cuts, gradient opacity or coloured extinction"},
-    {has_images, "lights with images"},
-    {has_phase_tables, "wide lights in media that scatter unevenly"},
-};
-
-const char *hl_reason_for_processors(const frame_plan *plan) {
-  for (size_t i = 0; i < sizeof reasons / sizeof *reasons; i++)
-    if (reasons[i].applies(plan)) return reasons[i].reason;
-  return NULL;
-}
 
 /* ---- the volume ---- */
 
@@ -252,6 +144,28 @@ static void plan_material(const shade_volume *shade, const frame_volume *of, pla
     volume->cast[c] = shade->cast[c];
     volume->weight[c] = of->casts_shadow ? (float)of->look.attenuation_color[c] : 0;
   }
+}
+
+/* ---- the light of a sky ---- */
+
+static void plan_sky_light(const sky_light *sky, plan_sky *planned) {
+  memcpy(planned->count, sky->count, sizeof planned->count);
+  planned->channels = sky->channels;
+  planned->cut = sky->cut;
+  planned->row_numbers = (unsigned)sky->row_numbers;
+  memcpy(planned->low, sky->low, sizeof planned->low);
+  planned->inverse_cell = sky->inverse_cell;
+  planned->cell = sky->cell;
+  planned->lift = sky->lift;
+  memcpy(planned->stored_unit, sky->stored_unit, sizeof planned->stored_unit);
+  memcpy(planned->color, sky->color, sizeof planned->color);
+  memcpy(planned->open, sky->open, sizeof planned->open);
+}
+
+static gpu_sky cells_of_sky(const sky_light *sky) {
+  if (sky == NULL) return (gpu_sky){0};
+  const size_t rows = (size_t)sky->count[1] * (size_t)sky->count[2];
+  return (gpu_sky){sky->version, sky->cells, rows * sky->row_numbers * sizeof *sky->cells};
 }
 
 /* ---- the lights ---- */
@@ -522,6 +436,7 @@ static plan_variant variant_of(const sweep_task *task, const device_sweep *plan)
                         .boxed = grid->cut,
                         .cuts = shade->cut_count > 0,
                         .soft = has_soft_lights(task),
+                        .sky = task->constants->shade.sky != NULL,
                         .colored = shade->colors.voxels != NULL,
                         .steep = shade->classifier->steepness != NULL,
                         .back_to_front = task->plan->geometry->back_to_front,
@@ -567,6 +482,7 @@ hl_status hl_plan_sweep(const sweep_means *means, const frame_plan *frame_plan, 
   plan_matter(shade, &plan->volume);
   plan_colors(shade, &plan->volume);
   plan_material(shade, &frame_plan->volumes.list[0], &plan->volume);
+  if (job->sky != NULL) plan_sky_light(job->sky, &plan->sky);
   const gpu_volume volume = hl_volume_for_device(frame_plan);
   plan->volume.row_bytes = (unsigned)hl_gpu_row_bytes(&volume);
   plan_box_rays(&task->frame_plan->frame.eye, task, &plan->box);
@@ -580,6 +496,7 @@ hl_status hl_plan_sweep(const sweep_means *means, const frame_plan *frame_plan, 
   planned->sweep = (gpu_sweep){.plan = plan,
                                .variant = variant_of(task, plan),
                                .shown_from = shown_from,
+                               .sky = cells_of_sky(job->sky),
                                .plane_floats = floats,
                                .slabs = slabs};
   status = plan_all_rays(context, task, planned, error);

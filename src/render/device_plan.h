@@ -1,5 +1,5 @@
-/* render/device_plan.h - describes a sweep of a plan for a device by numbers of 32 bits (gpu/device_sweep.h),
- * and says which frames a device can make. */
+/* render/device_plan.h - describes a sweep of a plan for a device by numbers of 32 bits (gpu/device_sweep.h).
+ */
 #ifndef HL_RENDER_DEVICE_PLAN_H
 #define HL_RENDER_DEVICE_PLAN_H
 
@@ -7,10 +7,6 @@
 #include "plan/frame_plan.h"
 #include "render/device_cascade.h"
 #include "render/sweep_constants.h"
-
-/* The reason why a device does not make a frame, as a part of a sentence: "its meshes are not there yet".
- * Null: a device can make the frame. */
-const char *hl_reason_for_processors(const frame_plan *plan);
 
 /* The volume that the frame shows. */
 gpu_volume hl_volume_for_device(const frame_plan *plan);

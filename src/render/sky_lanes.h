@@ -10,15 +10,6 @@
 #include "render/light_depth_lanes.h"
 #include "render/sky_phase_lanes.h"
 
-/* The field holds the light that reaches a cell, before the cell itself absorbs light. On its way to a
- * medium's sample, light crosses half of the cell. For a direction with the slopes u and v
- * (field/sky_lanes.h), this is half of sqrt(1 + u^2 + v^2) edges of a cell. The mean of this length over all
- * directions is 3 / (4 pi) times the integral of 1 / (1 + u^2 + v^2) over -1 < u, v < 1 (derived). */
-static const float HALF_CELL = 0.6107f;
-
-/* The greatest distance, in voxels, by which a sample is moved to the outside of its surface. */
-static const float MOST_TO_OUTSIDE = 8.0f;
-
 /* The length of the way along the normal from a volume's samples to the outside of their surface; frame
  * units. Derived: along this way the values fall by the gradient's length per unit. Behind the face of a cut
  * the way ends at the face, because there the gradient leads through matter that is cut away. */

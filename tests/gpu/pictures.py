@@ -31,9 +31,10 @@ def run(folder, *arguments):
 
 
 def scene(opacity=OPACITY, shadows="hard", shading="none", direction=(0.4, -0.7, 0.5), volume=None, light=None, camera=None,
-          render=None, function=None):
+          render=None, function=None, sky=None):
     view = {"type": "perspective", "position": [50, 32, -88], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 30}
     return {"halflight": 1, "image": {"width": SIZE, "height": SIZE}, "camera": camera or view, "ambient": [0.1, 0.1, 0.1],
+            **({"sky": sky} if sky else {}),
             "lights": [{"color": [1, 0.9, 0.8], "intensity": 1.2, "shadows": shadows,
                         **(light or {"type": "directional", "direction": list(direction)})}],
             "volumes": [{"file": "cloud.nrrd", "shading": shading,
@@ -54,6 +55,9 @@ BLOCK = {"type": "box", "min": [-9, -5, -13], "max": [7, 9, 3]}
 STEEP = {"gradient_opacity": [[0.02, 0], [0.12, 1]]}
 SUN = {"type": "directional", "direction": [0.4, -0.7, 0.5], "angular_diameter_deg": 7}
 LAMP = {"type": "point", "position": [40, 50, -50], "radius": 9}
+BEHIND = {**SUN, "direction": [0.2, -0.3, -0.9]}
+EVEN_SKY = {"type": "uniform", "color": [0.6, 0.8, 1], "strength": 0.8}
+SKY = {"type": "gradient", "zenith": [0.36, 0.4, 0.5], "horizon": [0.32, 0.33, 0.36], "ground": [0.16, 0.14, 0.12]}
 GRAINS = {"file": "grains.csv", "array": "density"}
 THIN = [[0.001, 0], [0.05, 0.2], [1, 0.6]]
 FAR = {"type": "perspective", "position": [70, 50, -120], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 30}
@@ -94,6 +98,26 @@ MADE = {
                                                        volume={"cuts": [BALL, plane(1, 0.4, -0.2)]}),
     "soft shadows": scene(shadows="soft", light=SUN),
     "soft shadows of a wide light": scene(shadows="soft", opacity=DENSE, light={**SUN, "angular_diameter_deg": 25}),
+    "soft shadows of surfaces": scene(shadows="soft", shading="phong", opacity=LAYERS, light=SUN),
+    "soft shadows of surfaces, light from behind": scene(shadows="soft", shading="phong", opacity=DENSE, light=BEHIND),
+    "soft shadows of colours": scene(shadows="soft", light=SUN, volume={"attenuation_color": [1, 0.5, 0.2]}),
+    "soft shadows of cuts": scene(shadows="soft", shading="phong", opacity=AROUND, light=SUN,
+                                  volume={"cuts": [plane(1, 0.3, 0.2), BALL, {**BLOCK, "keep": "inside"}]}),
+    "soft shadows of cuts that cast, gradient opacity": scene(shadows="soft", opacity=DENSE, light=SUN, function=STEEP,
+                                                              volume={"cuts": [BALL], "cut_casts_shadow": True}),
+    "soft shadows, a clip box": scene(shadows="soft", shading="phong", opacity=AROUND, light=SUN, volume={"clip": CLIP}),
+    "soft shadows of a near light": scene(shadows="soft", shading="phong", opacity=DENSE, light=LAMP),
+    "soft shadows beside hard ones": scene(shadows="soft", shading="phong", opacity=DENSE, light=SUN),
+    "an even sky": scene(sky=EVEN_SKY),
+    "a sky, surfaces": scene(sky=SKY, shading="phong", opacity=DENSE),
+    "a sky, soft shadows of surfaces, colours": scene(sky=SKY, shadows="soft", shading="phong", opacity=LAYERS, light=SUN,
+                                                      volume={"attenuation_color": [1, 0.5, 0.2]}),
+    "a sky, cuts, light from behind": scene(sky=SKY, shadows="soft", shading="phong", opacity=AROUND, light=BEHIND,
+                                            volume={"cuts": [plane(1, 0.3, 0.2), BALL]}),
+    "a sky on a volume that receives no shadows": scene(sky=EVEN_SKY, shading="phong", opacity=LAYERS,
+                                                        volume={"receives_shadow": False}),
+    "a sky, a field at levels": scene(sky=SKY, opacity=[[0.02, 0], [0.06, 0.6]], shading="phong", camera=FAR, volume=GRAINS),
+    "a sky, a medium that absorbs": scene(sky=SKY, shadows="soft", light=SUN, volume={"scattering": {"albedo": [0.9, 0.7, 0.5]}}),
     "coloured voxels": scene(opacity=[[20, 0], [200, 0.3]], volume={"file": "colors.nrrd"}),
     "near light, colours, flat view": scene(light={"type": "point", "position": [40, 50, -50]}, camera=FLAT,
                                             volume={"attenuation_color": [1, 0.5, 0.2]}),
@@ -101,15 +125,15 @@ MADE = {
 LABELS = scene(shading="phong")
 LABELS["volumes"] = [{"file": "labels.nrrd", "labels": [{"value": 1, "color": [0.8, 0.2, 0.1]}, {"value": 2, "color": [0.1, 0.4, 0.8]}]}]
 MADE["labels"] = LABELS
+MADE["soft shadows beside hard ones"]["lights"].append({"type": "directional", "direction": [-0.5, -0.5, 0.5], "shadows": "hard"})
 LARGE = scene(volume={"file": "large.nrrd"}, render={"sheet_spacing": 4},
               camera={"type": "perspective", "position": [380, 250, -680], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 30})
 # One scene of each feature.
 FEW = ("medium", "several surfaces, colours, near light", "cuts, surfaces", "a field at levels, surfaces", "gradient opacity, surfaces",
-       "coloured voxels", "labels", "soft shadows")
+       "coloured voxels", "labels", "a sky, soft shadows of surfaces, colours")
 LEFT = {
     "soft shadows by another method than the cascade": scene(shadows="soft", light=SUN, render={"soft_method": "paper"}),
-    "soft shadows of surfaces, cuts, gradient opacity or coloured extinction": scene(shadows="soft", shading="phong", light=SUN),
-    "soft shadows beside hard ones, or of near lights": scene(shadows="soft", light=LAMP),
+    "meshes or isosurfaces": {**scene(), "meshes": [{"spheres": [[0, -12, 0, 3]]}]},
     "gradient opacity of cut surfaces that cast shadows": scene(opacity=DENSE, shading="phong", function=STEEP,
                                                                 volume={"cuts": [BALL]}),
     "splatting in place of gathering": scene(render={"reconstruction": "splat"}),
@@ -127,8 +151,10 @@ def drawn(seed):
                                  {"type": "sphere", "center": at, "radius": draw.uniform(5, 14), **kept},
                                  {"type": "box", "min": [a - draw.uniform(2, 12) for a in at],
                                   "max": [a + draw.uniform(2, 12) for a in at], **kept})))
-    return scene(opacity=draw.choice((AROUND, LAYERS, DENSE)), shading="phong",
-                 direction=[draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(0.1, 1)],
+    light = {**SUN, "direction": [draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(0.1, 1)],
+             "angular_diameter_deg": draw.choice((1, 7, 30))}
+    return scene(opacity=draw.choice((AROUND, LAYERS, DENSE)), shading="phong", light=light,
+                 shadows=draw.choice(("hard", "soft")), sky=draw.choice((None, EVEN_SKY, SKY)),
                  volume={"cuts": cuts, "cut_casts_shadow": draw.random() < 0.3, "cut_shading": draw.choice(("face", "none"))},
                  render={"slabs_at_once": draw.choice((0, 4, 9))})
 

@@ -27,6 +27,8 @@ typedef struct slab_sample {
   vector slope, normal;
   float factor; /* the factor by which gradient opacity has multiplied extinction and the sums */
   float surface;
+  float behind; /* the distance, in voxels, of the matter from a face that cuts it and is shaded as a surface;
+                 * FACE_VOXELS where no such face is near */
   float skin; /* how much of the matter belongs to a face that cuts it: 1 at the face, 0 two voxels behind the
                * face */
 } slab_sample;

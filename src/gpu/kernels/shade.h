@@ -5,6 +5,7 @@
 #define HL_GPU_SHADE_H
 
 #include "core/sheet_constants.h"
+#include "gpu/kernels/sky.h"
 #include "gpu/kernels/surface.h"
 
 #define LEAST_LIGHT_DISTANCE 1e-3f /* as HL_LEAST_LIGHT_DISTANCE */
@@ -79,6 +80,7 @@ DEVICE void find_normal(const volume_data *volume, float density, slab_sample *s
   s->sloped = s->sums.extinction > 0.0f;
   s->normal = vector_of(0.0f, 0.0f, 0.0f);
   s->surface = s->skin = 0.0f;
+  s->behind = FACE_VOXELS;
 #if !STEEP
   s->slope = s->normal;
 #if !PHONG
@@ -282,11 +284,12 @@ DEVICE void add_light(GLOBAL const device_sweep *plan, const volume_data *volume
   *lit = vector_of(sum[0], sum[1], sum[2]);
 }
 
-/* The light that a sample sends to the eye. slot: the slot, in the buffers' rings, of the sheet before the
- * slab. rays: the eye's rays in index space at the slab's second sheet. */
+/* The light that a sample sends to the eye. sky: the cells of the sky's field. slot: the slot, in the
+ * buffers' rings, of the sheet before the slab. rays: the eye's rays in index space at the slab's second
+ * sheet. */
 DEVICE vector color_of_slab(GLOBAL const device_sweep *plan, const volume_data *volume,
-                            GLOBAL const float *planes, GLOBAL const plan_rays *rays, int slot,
-                            const slab_sample *s) {
+                            GLOBAL const short *sky, GLOBAL const float *planes, GLOBAL const plan_rays *rays,
+                            int slot, const slab_sample *s) {
   GLOBAL const plan_volume *matter = volume->plan;
   vector color = color_of_way(volume, s);
 #if COLORED
@@ -308,6 +311,14 @@ DEVICE vector color_of_slab(GLOBAL const device_sweep *plan, const volume_data *
 #else
   (void)planes;
   (void)slot;
+#endif
+#if SKY
+  const sky_data field = {&plan->sky, sky};
+  const vector of_sky = sky_of_sample(&field, volume, s);
+  lit = vector_of(fused(of_sky.x, color.x, lit.x), fused(of_sky.y, color.y, lit.y),
+                  fused(of_sky.z, color.z, lit.z));
+#else
+  (void)sky;
 #endif
   (void)rays;
   return lit;

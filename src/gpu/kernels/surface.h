@@ -60,15 +60,15 @@ DEVICE void find_cut(GLOBAL const plan_cut *cut, const slab_sample *s, float lea
   nearest->cuts = 1;
 }
 
-/* The skin of a sample: how much of it belongs to the face through which the eye's ray comes last before it
- * meets the sample. */
-DEVICE float find_skin(const volume_data *volume, const slab_sample *s, vector *outward) {
+/* The distance of a sample, in voxels, from the face that cuts matter and through which the eye's ray comes
+ * last before it meets the sample; FACE_VOXELS where no such face is near. */
+DEVICE float find_face(const volume_data *volume, const slab_sample *s, vector *outward) {
   GLOBAL const plan_volume *plan = volume->plan;
   cut_face nearest;
   nearest.way = 1e30f;
   nearest.cuts = 0;
   nearest.outward = *outward = vector_of(0.0f, 0.0f, 0.0f);
-  if (!CUTS && !is_near_face(plan, s->position)) return 0.0f;
+  if (!CUTS && !is_near_face(plan, s->position)) return FACE_VOXELS;
   for (int axis = 0; axis < 3; axis++) {
     GLOBAL const float *row = plan->to_index[axis];
     float speed = row_of_vector(row, s->towards_eye);
@@ -86,11 +86,11 @@ DEVICE float find_skin(const volume_data *volume, const slab_sample *s, vector *
 #endif
   *outward = nearest.outward;
   float depth = nearest.way * dot3(nearest.outward, s->towards_eye);
-  if (!(nearest.cuts && depth < FACE_VOXELS * plan->voxel)) return 0.0f;
+  if (!(nearest.cuts && depth < FACE_VOXELS * plan->voxel)) return FACE_VOXELS;
   vector crossing = add_scaled(s->position, s->towards_eye, lesser(nearest.way, 1e20f));
   table_coordinate there = coordinate_of_density(plan, density_on_face(*volume, crossing));
-  if (!may_be_visible(plan, there, there)) return 0.0f;
-  return limited(FACE_VOXELS - depth * divided(1.0f, plan->voxel), 0.0f, 1.0f);
+  if (!may_be_visible(plan, there, there)) return FACE_VOXELS;
+  return depth * divided(1.0f, plan->voxel);
 }
 
 /* Treats a sample behind a face that cuts matter. Depending on the cut shading, it turns the sample's normal
@@ -98,8 +98,8 @@ DEVICE float find_skin(const volume_data *volume, const slab_sample *s, vector *
  * says how much. */
 DEVICE void find_cut_face(const volume_data *volume, slab_sample *s) {
   vector outward;
-  float skin = find_skin(volume, s, &outward), rest = 1.0f - skin;
-  s->skin = skin;
+  s->behind = find_face(volume, s, &outward);
+  const float skin = s->skin = limited(FACE_VOXELS - s->behind, 0.0f, 1.0f), rest = 1.0f - skin;
   if (volume->plan->cut_shading == CUT_SHADING_FACE) {
     vector sum = add_scaled(scaled(outward, skin), s->normal, s->surface * rest);
     s->normal = scaled(sum, divided(1.0f, greater(root(dot3(sum, sum)), 1e-6f)));

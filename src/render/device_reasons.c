@@ -1,0 +1,90 @@
+/* render/device_reasons.c - see device_reasons.h. */
+#include "render/device_reasons.h"
+
+#include "light/phase_table.h"
+#include "volume/store/pages.h"
+
+static const frame_volume *volume_of(const frame_plan *plan) { return &plan->volumes.list[0]; }
+
+static bool has_no_volume(const frame_plan *plan) {
+  return plan->volumes.count == 0 || plan->frame.content.point_count == 0;
+}
+static bool has_volumes(const frame_plan *plan) { return plan->volumes.count > 1; }
+static bool is_hidden(const frame_plan *plan) { return !volume_of(plan)->visible; }
+static bool is_maximum(const frame_plan *plan) { return hl_is_maximum(&plan->settings); }
+static bool has_layers(const frame_plan *plan) { return plan->picture.layers != NULL; }
+static bool is_shared(const frame_plan *plan) { return plan->picture.share.parts > 1; }
+static bool has_surfaces(const frame_plan *plan) { return plan->frame.surfaces != NULL; }
+static bool scatters(const frame_plan *plan) { return plan->fields.scatters; }
+static bool splats(const frame_plan *plan) { return plan->volumes.splat; }
+static bool is_over_ranks(const frame_plan *plan) {
+  return plan->volumes.grids[0].pages != NULL && plan->volumes.grids[0].pages->blocks != NULL;
+}
+static bool is_thin(const frame_plan *plan) {
+  const int32_t *dimension = plan->volumes.grids[0].dimension;
+  if (plan->volumes.grids[0].bricks != NULL) return false;
+  return dimension[0] < 4 || dimension[1] < 4 || dimension[2] < 4;
+}
+static bool is_masked(const frame_plan *plan) { return volume_of(plan)->classifier->mask.factors != NULL; }
+static bool has_two_numbers(const frame_plan *plan) {
+  return volume_of(plan)->classifier->plane.sums != NULL;
+}
+static bool is_soft_otherwise(const frame_plan *plan) {
+  for (int i = 0; i < plan->frame.light_count; i++)
+    if (plan->frame.lights[i].shadows == HL_SHADOWS_SOFT &&
+        hl_shadow_method(&plan->frame.lights[i]) != &hl_shadow_cascade)
+      return true;
+  return false;
+}
+
+/* Whether the frame has cut surfaces with gradient opacity that cast shadows. A device cannot make these
+ * shadows as the processors do: matter that gradient opacity hides ends surfaces for all pixels of a block
+ * (shadow/attenuate_lanes.h). Behind a cut the processors skip whole blocks, and a pixel of a device does not
+ * know which blocks are skipped. */
+static bool hides_cut_surfaces(const frame_plan *plan) {
+  bool shadows = false;
+  for (int i = 0; i < plan->frame.light_count; i++)
+    shadows = shadows || plan->frame.lights[i].shadows != HL_SHADOWS_OFF;
+  return shadows && volume_of(plan)->classifier->steepness != NULL && plan->volumes.grids[0].cut &&
+         volume_of(plan)->look.shading == HL_SHADING_PHONG;
+}
+
+static bool has_images(const frame_plan *plan) {
+  for (int i = 0; i < plan->light_count; i++)
+    if (plan->lights[i].has_image) return true;
+  return false;
+}
+static bool has_phase_tables(const frame_plan *plan) {
+  return hl_phase_table(plan->fields.phases, volume_of(plan)->look.anisotropy) != NULL;
+}
+
+/* The reasons why a device cannot make a frame, each with a function that tells whether it applies. The user
+ * gets the first reason that applies. */
+static const struct {
+  bool (*applies)(const frame_plan *plan);
+  const char *reason;
+} reasons[] = {
+    {has_no_volume, "it shows no volume"},
+    {is_maximum, "a maximum projection"},
+    {has_layers, "layers"},
+    {is_shared, "a part of a shared picture"},
+    {has_surfaces, "meshes or isosurfaces"},
+    {has_volumes, "several volumes"},
+    {is_hidden, "a volume that only casts shadows"},
+    {scatters, "multiple scattering"},
+    {splats, "splatting in place of gathering"},
+    {is_over_ranks, "voxels of several processes"},
+    {is_thin, "a volume less than four voxels thick"},
+    {is_masked, "a mask"},
+    {has_two_numbers, "a function of two numbers"},
+    {hides_cut_surfaces, "gradient opacity of cut surfaces that cast shadows"},
+    {is_soft_otherwise, "soft shadows by another method than the cascade"},
+    {has_images, "lights with images"},
+    {has_phase_tables, "wide lights in media that scatter unevenly"},
+};
+
+const char *hl_reason_for_processors(const frame_plan *plan) {
+  for (size_t i = 0; i < sizeof reasons / sizeof *reasons; i++)
+    if (reasons[i].applies(plan)) return reasons[i].reason;
+  return NULL;
+}
