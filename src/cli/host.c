@@ -11,6 +11,7 @@
 
 #include "fetch/asking.h"
 #include "openvdb.h"
+#include "platform/memory.h"
 #include "platform/paths.h"
 
 /* Set by the signal handler, read by the library's cancel callback. */
@@ -125,13 +126,6 @@ static void listen_to_signals(void) {
     sigaction(SIGHUP, &action, NULL);
 }
 
-/* The default memory limit, bytes: the machine's memory. A run that needs more fails with a message instead
- * of being killed by the system. 0: unknown. */
-static uint64_t physical_memory(void) {
-  long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
-  return pages > 0 && page_bytes > 0 ? (uint64_t)pages * (uint64_t)page_bytes : 0;
-}
-
 /* The folder of the files that scenes call "data:...". */
 static const char *choose_data_folder(const char *asked) {
   const char *named = getenv("HALFLIGHT_DATA");
@@ -148,7 +142,9 @@ int host_open(const cli_host_options *options, cli_host *host) {
   memset(host, 0, sizeof *host);
   host->quiet = options->quiet;
   host->cancelled = options->cancelled;
-  host->memory_limit = options->memory_limit > 0 ? options->memory_limit : physical_memory();
+  /* The default limit is the machine's memory. A run that needs more fails with a message instead of being
+   * killed by the system. */
+  host->memory_limit = options->memory_limit > 0 ? options->memory_limit : hl_machine_memory();
   host->progressed = options->progressed;
   host->bar = options->progress && !options->quiet && terminal_can_redraw();
   host->color = color_wanted();

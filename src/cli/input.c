@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "output.h"
+#include "platform/memory.h"
 
 #define STANDARD_INPUT "/dev/stdin" /* the volume's file in a scene made from standard input */
 
@@ -71,8 +72,7 @@ static int read_piece(cli_input *input, int descriptor, size_t *capacity, uint64
 
 static int read_whole(cli_input *input, int descriptor, uint64_t limit) {
   size_t capacity = 0;
-  long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
-  if (limit == 0 && pages > 0 && page_bytes > 0) limit = (uint64_t)pages * (uint64_t)page_bytes / 2;
+  if (limit == 0) limit = hl_machine_memory() / 2;
   enum { LONGEST_SCENE = 16 << 20 }; /* the most bytes of a scene's text; the library refuses longer texts */
   enum { TELLING = 65536 };          /* bytes at the beginning of an input that suffice to tell its kind */
   bool ended = false, scene = false;

@@ -15,6 +15,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "platform/memory.h"
 #include "platform/paths.h"
 #include "platform/processors.h"
 #include "platform/windows/names.h"
@@ -39,9 +40,12 @@ long sysconf(int name) {
   SYSTEM_INFO about;
   GetSystemInfo(&about);
   if (name == _SC_PAGESIZE) return (long)about.dwPageSize;
-  if (name == _SC_NPROCESSORS_ONLN) return hl_cpu_count();
+  return name == _SC_NPROCESSORS_ONLN ? hl_cpu_count() : -1;
+}
+
+uint64_t hl_machine_memory(void) {
   MEMORYSTATUSEX memory = {.dwLength = sizeof memory};
-  return GlobalMemoryStatusEx(&memory) ? (long)(memory.ullTotalPhys / about.dwPageSize) : -1;
+  return GlobalMemoryStatusEx(&memory) ? memory.ullTotalPhys : 0;
 }
 
 int getrusage(int who, struct rusage *usage) {

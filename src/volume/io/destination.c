@@ -2,10 +2,10 @@
 #include "volume/io/destination.h"
 
 #include <string.h>
-#include <unistd.h>
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "platform/memory.h"
 #include "volume/brick_bounds.h"
 #include "volume/convert.h"
 
@@ -88,7 +88,7 @@ static bool has_room_to_spread(const hl_context *context, double bytes) {
   const double limit = (double)context->options.memory_limit,
                taken = (double)atomic_load(&context->whole->held) +
                        (double)atomic_load(&context->whole->paged),
-               machine = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+               machine = (double)hl_machine_memory();
   return taken + bytes * (1 + 2 * CROWDED) <= (limit > 0 ? limit : machine);
 }
 

@@ -23,7 +23,7 @@ unsigned geteuid(void); /* 0: a process has no user's number */
 ssize_t readlink(const char *path, char *text, size_t size);
 int symlink(const char *path, const char *name); /* fails */
 
-enum { _SC_PAGESIZE, _SC_PHYS_PAGES, _SC_NPROCESSORS_ONLN };
+enum { _SC_PAGESIZE, _SC_NPROCESSORS_ONLN };
 long sysconf(int name);
 
 #define read(descriptor, bytes, count)  hl_posix_read(descriptor, bytes, count)
