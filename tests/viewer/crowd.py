@@ -149,7 +149,7 @@ def idle_browsers(viewer):
         connection.request("GET", f"/{viewer.token}/opening.json")
         connection.getresponse().read()
         clients.append(connection)
-    check(state(viewer)["waiting"] <= MOST_WAITING, "few idle connections are kept")
+    wait_for("few idle connections are kept", lambda: state(viewer)["waiting"] <= MOST_WAITING)
     clients[-1].request("GET", f"/{viewer.token}/opening.json")
     check(clients[-1].getresponse().status == 200, "the last of them is")
     for connection in clients:
