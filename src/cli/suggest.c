@@ -174,6 +174,12 @@ static const struct {
     {"format", "png", "jpg jpeg webp bmp gif"},
     {"format", "tif", "tiff"},
     {"device", "gpu", "cuda opencl"},
+    {"preset", "--tf ct-bone", "ct-bone bone"},
+    {"preset", "--tf ct-skin", "ct-skin skin"},
+    {"preset", "--tf ct-soft-tissue", "ct-soft-tissue"},
+    {"preset", "--tf mr-brain", "mr-brain brain"},
+    {"preset", "--tf smoke", "smoke"},
+    {"preset", "--tf electron-density", "electron-density"},
 };
 
 const char *value_meant_by(const char *option, const char *word) {

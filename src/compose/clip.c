@@ -21,7 +21,7 @@ hl_status hl_check_clip(const hl_asked *clip, hl_error *error) {
           error, HL_ERROR_ARGUMENT,
           "--clip: '%.300s' is not AXIS=LO:HI with LO below HI: fractions from 0 to 1 (x=0:0.5), or "
           "coordinates in the "
-          "file's own unit, which is written mm or u whatever it is (x=10mm:40mm)",
+          "file's world with their unit (x=10mm:40mm; u is the file's own unit, whatever it is)",
           clip->texts[n]);
   return HL_OK;
 }
@@ -30,6 +30,7 @@ hl_status hl_compose_clip(const hl_composer *composer, hl_scene_volume *volume) 
   const hl_asked *clip = &composer->asked[HL_ASK_CLIP];
   hl_error *error = composer->error;
   double low[3], high[3];
+  const double metres = hl_metres_of_volume(volume->volume);
   hl_volume_info info = {.struct_size = sizeof info};
   if (hl_volume_get_info(volume->volume, &info) != HL_OK)
     return hl_fail(error, HL_ERROR_INTERNAL, "--clip: the volume's place is not known");
@@ -43,8 +44,8 @@ hl_status hl_compose_clip(const hl_composer *composer, hl_scene_volume *volume) 
     hl_axis_range range;
     if (!read_range(clip->texts[n], &range)) continue; /* hl_check_clip() has refused such a text before */
     double *least = &volume->clip_min[range.axis], *greatest = &volume->clip_max[range.axis];
-    *least = hl_coordinate_of(&range.ends[0], *least, low[range.axis], high[range.axis]);
-    *greatest = hl_coordinate_of(&range.ends[1], *greatest, low[range.axis], high[range.axis]);
+    *least = hl_coordinate_of(&range.ends[0], *least, low[range.axis], high[range.axis], metres);
+    *greatest = hl_coordinate_of(&range.ends[1], *greatest, low[range.axis], high[range.axis], metres);
     if (!(*least < *greatest))
       return hl_fail(
           error, HL_ERROR_ARGUMENT,

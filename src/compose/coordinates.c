@@ -5,6 +5,20 @@
 #include <string.h>
 
 #include "text/plain.h"
+#include "text/units.h"
+
+/* Reads the name of a unit, if one is there. False if the name is not known. */
+static bool read_unit(const char **text, hl_coordinate *coordinate) {
+  char name[16] = "";
+  const size_t length = strcspn(*text, ":,");
+  if (length == 0) return true;
+  if (length >= sizeof name) return false;
+  memcpy(name, *text, length);
+  *text += length;
+  const hl_unit *unit = strcmp(name, "u") == 0 ? NULL : hl_unit_find(name);
+  coordinate->metres = unit != NULL ? unit->metres : 0;
+  return unit != NULL || strcmp(name, "u") == 0;
+}
 
 bool hl_read_coordinate(const char **text, hl_coordinate *coordinate) {
   size_t length = strspn(*text, "0123456789+-.eE");
@@ -13,7 +27,8 @@ bool hl_read_coordinate(const char **text, hl_coordinate *coordinate) {
   if (length == 0) return true;
   coordinate->number = hl_plain_number(*text, &rest);
   if (rest != *text + length || !isfinite(coordinate->number)) return false;
-  *text = rest + (strncmp(rest, "mm", 2) == 0 ? 2 : *rest == 'u' ? 1 : 0);
+  *text = rest;
+  if (!read_unit(text, coordinate)) return false;
   coordinate->fraction = *text == rest;
   return !coordinate->fraction || (coordinate->number >= 0 && coordinate->number <= 1);
 }
@@ -24,11 +39,25 @@ bool hl_read_range(const char **text, hl_axis_range *range) {
   hl_coordinate *low = &range->ends[0], *high = &range->ends[1];
   *text += 2;
   if (!hl_read_coordinate(text, low) || *(*text)++ != ':' || !hl_read_coordinate(text, high)) return false;
-  bool comparable = low->given && high->given && low->fraction == high->fraction;
+  bool comparable = low->given && high->given && low->fraction == high->fraction &&
+                    low->metres == high->metres;
   return (low->given || high->given) && (!comparable || low->number < high->number);
 }
 
-double hl_coordinate_of(const hl_coordinate *end, double otherwise, double low, double high) {
+double hl_metres_of_volume(const hl_volume *volume) {
+  const char *name = hl_volume_unit(volume);
+  const hl_unit *unit = name != NULL ? hl_unit_find(name) : NULL;
+  return unit != NULL ? unit->metres : 0;
+}
+
+double hl_length_of(const hl_coordinate *coordinate, double metres) {
+  if (!(metres > 0) || !(coordinate->metres > 0)) return coordinate->number;
+  const double ratio = coordinate->metres / metres, times = round(ratio), parts = round(1 / ratio);
+  if (fabs(ratio - times) < 1e-9 * ratio) return coordinate->number * times;
+  return fabs(1 - parts * ratio) < 1e-9 ? coordinate->number / parts : coordinate->number * ratio;
+}
+
+double hl_coordinate_of(const hl_coordinate *end, double otherwise, double low, double high, double metres) {
   if (!end->given) return otherwise;
-  return end->fraction ? low + end->number * (high - low) : end->number;
+  return end->fraction ? low + end->number * (high - low) : hl_length_of(end, metres);
 }

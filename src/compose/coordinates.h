@@ -11,14 +11,24 @@
 typedef struct hl_coordinate {
   bool given, fraction;
   double number;
+  double metres; /* the length of the number's unit; 0: the number is in the file's own unit */
 } hl_coordinate;
 
-/* Reads "0.25", "10mm" or nothing, and moves *text past it. False if something else is there. */
+/* Reads "0.25", "10mm", "10u" or nothing, and moves *text past it. False if something else is there. "u"
+ * stands for the file's own unit. */
 bool hl_read_coordinate(const char **text, hl_coordinate *coordinate);
 
+/* The length of a unit of the volume's world in metres; 0 if the volume's file does not tell its unit. */
+double hl_metres_of_volume(const hl_volume *volume);
+
+/* A number with a unit in the file's world. metres: the length of a unit of this world, as
+ * hl_metres_of_volume() gives it; if it is 0, the number counts as one of the file's own unit. */
+double hl_length_of(const hl_coordinate *coordinate, double metres);
+
 /* The coordinate in the file's world. otherwise: the result if the text has no number. low, high: the ends of
- * the box around the volume's voxels. */
-double hl_coordinate_of(const hl_coordinate *coordinate, double otherwise, double low, double high);
+ * the box around the volume's voxels. metres: as above. */
+double hl_coordinate_of(const hl_coordinate *coordinate, double otherwise, double low, double high,
+                        double metres);
 
 /* Reads a range along an axis, as "x=LO:HI", and moves *text past it. False if the text has something else
  * there. */

@@ -106,25 +106,28 @@ size_t hl_count_cuts(const hl_asked *asked) {
   return count;
 }
 
-/* Places a cut. low, high: the box around the volume's voxels. Where the text gives no end for a side of a
+/* Places a cut. low, high: the box around the volume's voxels. metres:
+ * as hl_metres_of_volume() gives it; 0 in the world of a scene. Where the text gives no end for a side of a
  * cut box, the box ends beyond the voxels there. */
-static void place_cut(const typed_cut *typed, const double low[3], const double high[3], hl_cut *cut) {
+static void place_cut(const typed_cut *typed, const double low[3], const double high[3], double metres,
+                      hl_cut *cut) {
   double longest = 0;
   for (int a = 0; a < 3; a++) {
     double side = high[a] - low[a];
     const hl_coordinate *ends = typed->box[a].ends;
     longest = fmax(longest, side);
-    cut->point[a] = cut->center[a] = hl_coordinate_of(&typed->point[a], 0, low[a], high[a]);
-    cut->min[a] = hl_coordinate_of(&ends[0], low[a] - side, low[a], high[a]);
-    cut->max[a] = hl_coordinate_of(&ends[1], high[a] + side, low[a], high[a]);
+    cut->point[a] = cut->center[a] = hl_coordinate_of(&typed->point[a], 0, low[a], high[a], metres);
+    cut->min[a] = hl_coordinate_of(&ends[0], low[a] - side, low[a], high[a], metres);
+    cut->max[a] = hl_coordinate_of(&ends[1], high[a] + side, low[a], high[a], metres);
     cut->normal[a] = typed->normal[a];
   }
-  cut->radius = typed->radius.fraction ? typed->radius.number * longest : typed->radius.number;
+  cut->radius = typed->radius.fraction ? typed->radius.number * longest
+                                       : hl_length_of(&typed->radius, metres);
 }
 
 /* Converts the options' cuts to places in the box, and adds them. */
-static void add_cuts(const hl_asked *asked, const double low[3], const double high[3], hl_cut *cuts,
-                     size_t *count) {
+static void add_cuts(const hl_asked *asked, const double low[3], const double high[3], double metres,
+                     hl_cut *cuts, size_t *count) {
   for (int type = 0; type < CUT_TYPES; type++)
     for (int n = 0; n < asked[option_of[type]].count; n++) {
       hl_cut *cut = &cuts[*count];
@@ -133,7 +136,7 @@ static void add_cuts(const hl_asked *asked, const double low[3], const double hi
       cut->type = (hl_cut_type)type;
       /* hl_check_cuts() has refused a text that cannot be read. */
       if (!read_cut(cut->type, asked[option_of[type]].texts[n], &typed)) continue;
-      place_cut(&typed, low, high, cut);
+      place_cut(&typed, low, high, metres, cut);
       ++*count;
     }
 }
@@ -162,7 +165,7 @@ hl_status hl_compose_cuts(const hl_composer *composer, hl_scene_volume *volume, 
     return hl_fail(composer->error, HL_ERROR_INTERNAL, "--cut-plane: the volume's place is not known");
   hl_volume_world_box(&info, low, high);
   if (count > 0) memcpy(cuts, volume->cuts, count * sizeof *cuts);
-  add_cuts(composer->asked, low, high, cuts, &count);
+  add_cuts(composer->asked, low, high, hl_metres_of_volume(volume->volume), cuts, &count);
   volume->cuts = cuts;
   volume->cut_count = count;
   return HL_OK;
@@ -176,7 +179,7 @@ hl_status hl_compose_scene_cuts(const hl_composer *composer, hl_scene_descriptio
     status = extend_box(&scene->volumes[v], low, high, composer->error);
   if (status != HL_OK) return status;
   if (count > 0) memcpy(cuts, scene->cuts, count * sizeof *cuts);
-  add_cuts(composer->asked, low, high, cuts, &count);
+  add_cuts(composer->asked, low, high, 0, cuts, &count);
   scene->cuts = cuts;
   scene->cut_count = count;
   return HL_OK;

@@ -4,6 +4,7 @@
 
 #include "compose/composer.h"
 #include "compose/shown_labels.h"
+#include "core/context.h"
 #include "core/door.h"
 #include "core/memory.h"
 
@@ -160,6 +161,7 @@ static hl_status add_mask(const hl_composer *composer, hl_shown_list *show, hl_l
   const hl_scene_description *description = hl_scene_describe(*scene);
   const char *path = composer->asked[HL_ASK_MASK].text;
   const double rest = rest_of(show);
+  show->of_mask = true;
   if (description->volume_count == 0)
     return hl_fail(composer->error, HL_ERROR_ARGUMENT, "--mask is for volumes: the scene has none");
   const hl_volume_load_options reading = reading_of(description, false);
@@ -194,6 +196,14 @@ static hl_status add_map(const hl_composer *composer, hl_shown_list *show, hl_la
                    "--%s is for a label map: give its file as --labels FILE, or alone as INPUT",
                    asked[HL_ASK_SHOW].given ? "show" : "label-table");
   hl_volume_load_options reading = reading_of(description, itself);
+  if (itself && description->volumes[0].label_count == 0)
+    hl_log(
+        composer->context, HL_LOG_WARNING,
+        "'%.300s' does not look like a label map, and --%s takes it as one: a label map over a scan is given "
+        "by --labels FILE",
+        path, asked[HL_ASK_SHOW].given ? "show" : "label-table");
+  /* Without a mask, the rest is what the other labels hold. */
+  for (size_t s = 0; s < show->count; s++) show->labels[s].all |= strcmp(show->labels[s].name, "rest") == 0;
   hl_status status = load_layers(composer, path, asked[HL_ASK_LABEL_TABLE].text, &reading, show, layers);
   if (status == HL_OK) status = hl_check_shown(show, layers, composer->error);
   return status == HL_OK ? add_layers(composer, layers, itself ? 0 : description->volume_count, scene)

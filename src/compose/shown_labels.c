@@ -2,6 +2,7 @@
 #include "compose/shown_labels.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -74,27 +75,44 @@ static bool is_named(const hl_label *label, const hl_shown_label *shown, bool ex
          (hl_text_whole(shown->name, &number) && number == label->value);
 }
 
-/* Shows the labels that the list names. An empty list changes nothing. "all" shows every label except those
- * that a table hides. */
+/* Shows a label as an item of the list says, if the item names the label. exactly: as in has_name(). */
+static void show_label(hl_shown_label *shown, double opacity, bool exactly, hl_label *label) {
+  if (!is_named(label, shown, exactly)) return;
+  const bool whole = is_whole(label, shown);
+  shown->found = true;
+  label->visible = 1;
+  label->opacity = whole ? 1 : opacity;
+  if (!shown->colored || whole) return;
+  memcpy(label->color, shown->color, sizeof label->color);
+  label->tint = 1; /* in a mask, matter takes the label's colour */
+}
+
+/* The opacity of each of `count` bodies that the list shows together, by "all". The item's opacity is the
+ * opacity of all of them along a typical path. Derived: a path through n equal bodies that fill a space meets
+ * the cube root of n of them, and the parts of the light that these let pass multiply. */
+static double opacity_of_each(double opacity, size_t count) {
+  return opacity < 1 && count > 1 ? -expm1(log1p(-opacity) / cbrt((double)count)) : opacity;
+}
+
 void hl_show_labels(hl_shown_list *list, hl_label *labels, size_t count) {
   bool exactly[HL_MOST_SHOWN] = {false}; /* whether an item is exactly the name of a label; atlases have names
                                           * that differ only in case */
+  size_t bodies = 0;
+  if (list->count == 0) return;
+  for (size_t n = 0; n < count; n++) bodies += labels[n].visible != 0;
   for (size_t s = 0; s < list->count; s++)
     for (size_t n = 0; n < count; n++) exactly[s] |= has_name(&labels[n], &list->labels[s], true);
-  for (size_t n = 0; n < count && list->count > 0; n++) {
+  for (size_t n = 0; n < count; n++) {
     const bool hidden = !labels[n].visible;
     labels[n].visible = 0;
     for (size_t s = 0; s < list->count; s++) {
-      hl_shown_label *shown = &list->labels[s];
-      if (!is_named(&labels[n], shown, exactly[s]) || (shown->all && hidden)) continue;
-      const bool whole = is_whole(&labels[n], shown);
-      shown->found = true;
-      labels[n].visible = 1;
-      labels[n].opacity = whole ? 1 : shown->opacity;
-      if (!shown->colored || whole) continue;
-      memcpy(labels[n].color, shown->color, sizeof labels[n].color);
-      labels[n].tint = 1; /* in a mask, matter takes the label's colour */
+      hl_shown_label *all = &list->labels[s];
+      if (!all->all || hidden) continue;
+      show_label(all, list->of_mask ? all->opacity : opacity_of_each(all->opacity, bodies), exactly[s],
+                 &labels[n]);
     }
+    for (size_t s = 0; s < list->count; s++)
+      if (!list->labels[s].all) show_label(&list->labels[s], list->labels[s].opacity, exactly[s], &labels[n]);
   }
 }
 
@@ -149,9 +167,6 @@ hl_status hl_check_shown(const hl_shown_list *list, const hl_label_layers *layer
       return hl_fail(error, HL_ERROR_ARGUMENT,
                      "--show: there is no label \"%.100s\": did you mean \"%.100s\"?", list->labels[s].name,
                      near);
-    if (strcmp(list->labels[s].name, "rest") == 0)
-      return hl_fail(error, HL_ERROR_ARGUMENT,
-                     "--show: \"rest\" is the matter beside a mask: give the label map by --mask");
     char known[1000];
     list_labels(layers, known, sizeof known);
     int64_t number;

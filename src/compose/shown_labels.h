@@ -19,6 +19,7 @@ enum { HL_MOST_SHOWN = 512, HL_MOST_LABEL_LAYERS = 64 };
 typedef struct hl_shown_list {
   hl_shown_label labels[HL_MOST_SHOWN];
   size_t count;
+  bool of_mask; /* the labels are parts of a mask; else they are bodies of their own */
 } hl_shown_list;
 
 /* The layers of a label map's file as volumes. The structure owns their labels and voxels. */
@@ -30,7 +31,8 @@ typedef struct hl_label_layers {
 hl_status hl_read_shown(const hl_asked *show, hl_shown_list *list, hl_error *error);
 
 /* Shows the labels that the list names. An empty list changes nothing. "all" shows every label except those
- * that a table hides. */
+ * that a table hides. What the list says of a label by name or number counts more than "all", wherever it
+ * stands in the list. */
 void hl_show_labels(hl_shown_list *list, hl_label *labels, size_t count);
 
 /* Refuses names that no label of any layer has. The error suggests the nearest name, or lists all names. */

@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "figure/overlay.h"
-#include "figure/units.h"
 #include "text/plain.h"
+#include "text/units.h"
 
 enum { LABEL_BYTES = 96 };
 

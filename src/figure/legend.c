@@ -9,9 +9,9 @@
 #include <string.h>
 
 #include "figure/overlay.h"
-#include "figure/units.h"
 #include "scene/function/transfer_function.h"
 #include "text/plain.h"
+#include "text/units.h"
 
 enum { STEPS_BETWEEN_POINTS = 8, CURVE_STEPS = 256, TICKS_MOST = 6, NUMBER_BYTES = 40 };
 

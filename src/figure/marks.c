@@ -8,9 +8,9 @@
 #include <string.h>
 
 #include "figure/overlay.h"
-#include "figure/units.h"
 #include "scene/geometry/placement.h"
 #include "text/plain.h"
+#include "text/units.h"
 
 enum { MEASURE_BYTES = 96 };
 

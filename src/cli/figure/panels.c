@@ -130,8 +130,9 @@ static int add_json_option(const page_reading *reading, figure_panel *panel, con
                 meant != NULL ? meant : "", meant != NULL ? "'?" : "");
   }
   if (is_of_the_page(which))
-    return fail(EXIT_CODE_INPUT, "%s: '%s' is not for a panel: it holds for the whole page", reading->path,
-                key);
+    return fail(
+        EXIT_CODE_INPUT, "%s: '%s' is not for a panel: it holds for the whole page%s", reading->path, key,
+        which == RENDER_SIZE ? ", whose \"width\", \"dpi\" and \"columns\" give the panels' sizes" : "");
   if (json_is_true(value) && render_options[which].kind == OPTION_SWITCH)
     return add_option(panel, name, NULL);
   if (json_is_null(value) || json_is_false(value))

@@ -271,16 +271,18 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_CLIP] = {.name = "clip",
                      .kind = OPTION_TEXT,
                      .argument = "AXIS=LO:HI",
-                     .help = "keep a part along x, y or z: fractions\n(x=0:0.5), or the file's own units "
-                             "(x=10mm:40mm);\ngive it again for other axes",
+                     .help = "keep a part along x, y or z: fractions\n(x=0:0.5), or lengths (x=10mm:40mm; u: "
+                             "the\nfile's own unit);\ngive it again for other axes",
                      .repeatable = true},
-    [RENDER_CUT_PLANE] = {.name = "cut-plane",
-                          .kind = OPTION_TEXT,
-                          .argument = "X,Y,Z:NX,NY,NZ",
-                          .help = "cut away everything beyond a plane through a point\n(fractions, or the "
-                                  "file's own units), in a direction;\nx=0.5 is short for a plane across x, "
-                                  "and x=:0.5 cuts\nthe other side away; give it again for more planes",
-                          .repeatable = true},
+    [RENDER_CUT_PLANE] =
+        {.name = "cut-plane",
+         .kind = OPTION_TEXT,
+         .argument = "X,Y,Z:NX,NY,NZ",
+         .help =
+             "cut away everything beyond a plane through a point\n(fractions, or lengths such as 40mm), in "
+             "a direction;\nx=0.5 is short for a plane across x, "
+             "and x=:0.5 cuts\nthe other side away; give it again for more planes",
+         .repeatable = true},
     [RENDER_CUT_BOX] =
         {.name = "cut-box",
          .kind = OPTION_TEXT,
@@ -343,13 +345,14 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                             .help =
                                 "names and colours of labels: FreeSurfer's, Slicer's\nor ITK-SNAP's table, "
                                 "or CSV"},
-    [RENDER_SHOW] = {.name = "show",
-                     .kind = OPTION_TEXT,
-                     .argument = "LABEL[=COLOR][:OPACITY],...",
-                     .help = "labels to show, by name or number, or all:\nliver,tumour=red:0.5; with --mask "
-                             "also rest:0.1;\nwithout "
-                             "either INPUT is the label map",
-                     .repeatable = true},
+    [RENDER_SHOW] =
+        {.name = "show",
+         .kind = OPTION_TEXT,
+         .argument = "LABEL[=COLOR][:OPACITY],...",
+         .help = "labels to show, by name or number:\nliver,tumour=red:0.5,rest:0.1; rest: all others "
+                 "together,\nwith --mask what lies beside it; without "
+                 "either\nINPUT is the label map",
+         .repeatable = true},
 
     [RENDER_AMBIENT] = {.name = "ambient",
                         .kind = OPTION_COLOR,

@@ -128,11 +128,6 @@ int render_overlay_check_options(const cli_value *values, const char *path) {
       exit_code = fail(EXIT_CODE_USAGE, "--%s is drawn with 8 bits per channel: leave --depth 16 out",
                        render_options[drawn[n]].name);
   }
-  if (exit_code == EXIT_CODE_OK && values[RENDER_UNIT].given && !values[RENDER_SCALE_BAR].given &&
-      !values[RENDER_MARKS].given)
-    exit_code = fail(
-        EXIT_CODE_USAGE,
-        "--unit is the unit of lengths that are drawn over the picture: add --scale-bar or --marks");
   if (exit_code == EXIT_CODE_OK && values[RENDER_FONT_SIZE].given && !overlay.drawn)
     exit_code = fail(EXIT_CODE_USAGE,
                      "--font-size is the size of letters drawn over the picture: add --scale-bar, --legend, "

@@ -53,8 +53,11 @@ static hl_status choose_named(hl_load_request *request, const char *path, hl_err
       }
   char list[600], shown[HL_PRINTABLE_BYTES];
   list_arrays(request, list, sizeof list);
-  return hl_fail(error, HL_ERROR_INPUT, "%s: there is no array \"%s\": there is %s", path,
-                 hl_text_printable(shown, request->array), list);
+  return hl_fail(error, HL_ERROR_INPUT, "%s: there is no array \"%s\": there is %s%s", path,
+                 hl_text_printable(shown, request->array), list,
+                 strchr(request->array, ',') != NULL
+                     ? ": a volume shows one array; a scene shows several, by a volume for each"
+                     : "");
 }
 
 /* Whether an array is one of those by which VTK marks points and cells that are duplicates or hidden. Such an

@@ -1,5 +1,5 @@
-/* figure/units.c - units of length: their names, and the choice of a unit for a length. */
-#include "figure/units.h"
+/* text/units.c - units of length: their names, and the choice of a unit for a length. */
+#include "text/units.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
-/* figure/units.h - units of length. */
-#ifndef HL_FIGURE_UNITS_H
-#define HL_FIGURE_UNITS_H
+/* text/units.h - units of length. */
+#ifndef HL_TEXT_UNITS_H
+#define HL_TEXT_UNITS_H
 
 #include <stddef.h>
 
