@@ -76,9 +76,11 @@ void hl_write_body(hl_function_writer *w) {
   write_solid(w, &skin);
 }
 
+/* Grey matter hardly differs from the surface in colour, and white matter is nearly white: the two differ on
+ * the faces of cuts. */
 void hl_write_brain(hl_function_writer *w) {
   static const palette brain = {
-      {0.60, 0.40, 0.35}, {0.72, 0.53, 0.46}, {0.86, 0.78, 0.70}, {0.92, 0.88, 0.82}};
+      {0.60, 0.40, 0.35}, {0.69, 0.49, 0.42}, {0.72, 0.54, 0.47}, {0.97, 0.94, 0.90}};
   write_solid(w, &brain);
 }
 
