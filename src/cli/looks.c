@@ -16,6 +16,7 @@
 enum looks_option {
   LOOKS_OUTPUT,
   LOOKS_SIZE,
+  LOOKS_LOOK,
   LOOKS_ARRAY,
   LOOKS_COMPONENT,
   LOOKS_SERIES,
@@ -47,6 +48,10 @@ static const cli_option looks_options[LOOKS_OPTION_COUNT] = {
                     .whole = true,
                     .low = 16,
                     .high = 2048},
+    [LOOKS_LOOK] = {.name = "look",
+                    .kind = OPTION_TEXT,
+                    .argument = "NAME,...",
+                    .help = "only these looks, side by side: surface,translucent\n(default: all)"},
     INPUT_OPTIONS(LOOKS_ARRAY, "What of VOLUME"),
     [LOOKS_CHANNEL] = INPUT_OPTION_CHANNEL,
     [LOOKS_SPACING] = INPUT_OPTION_SPACING,
@@ -58,7 +63,7 @@ static const cli_option looks_options[LOOKS_OPTION_COUNT] = {
 
 /* ---- the sheet ---- */
 
-enum { COLUMNS = 4, CAPTION = 20, LETTER_TOP = 1, LETTER_LEFT = 4 };
+enum { COLUMNS = 4, CAPTION = 20, LETTER_TOP = 1, LETTER_LEFT = 4, MOST_LOOKS = 32 };
 
 typedef struct looks_job {
   cli_host host;
@@ -68,7 +73,10 @@ typedef struct looks_job {
   hl_volume *volume;
   hl_renderer *renderer;
   hl_image *sheet;
-  int side; /* pixels of a picture */
+  int side;                 /* pixels of a picture */
+  size_t shown[MOST_LOOKS]; /* [shown_count]; the looks of the sheet, by their places among the choices of
+                             * --look */
+  size_t shown_count;
 } looks_job;
 
 static void put_pixel(hl_image *sheet, int x, int y, const float color[3]) {
@@ -111,11 +119,28 @@ static void put_picture(const looks_job *job, const hl_scene_description *scene,
 
 /* ---- the looks ---- */
 
-/* The number of looks; the last one is the maximum projection. */
-static size_t count_looks(void) {
-  size_t count = 0;
-  while (hl_option_choices("look")[count].name != NULL) count++;
-  return count;
+/* Reads the names of the looks that are to be shown. Without names, all looks are. */
+static int choose_looks(looks_job *job, const cli_value *names) {
+  const hl_setting_choice *all = hl_option_choices("look");
+  for (size_t n = 0; !names->given && all[n].name != NULL && n < MOST_LOOKS; n++)
+    job->shown[job->shown_count++] = n;
+  for (const char *name = names->given ? names->text : NULL; name != NULL;) {
+    const char *comma = strchr(name, ',');
+    const size_t length = comma != NULL ? (size_t)(comma - name) : strlen(name);
+    size_t n = 0;
+    while (all[n].name != NULL && (strlen(all[n].name) != length || strncmp(all[n].name, name, length) != 0))
+      n++;
+    if (all[n].name == NULL || job->shown_count == MOST_LOOKS)
+      return fail(EXIT_CODE_USAGE, "--look: '%.*s' is no look: see 'halflight help render'", (int)length,
+                  name);
+    job->shown[job->shown_count++] = n;
+    name = comma != NULL ? comma + 1 : NULL;
+  }
+  return EXIT_CODE_OK;
+}
+
+static size_t columns_of(const looks_job *job) {
+  return job->shown_count < COLUMNS ? job->shown_count : COLUMNS;
 }
 
 /* Makes *scene a maximum projection, as --look mip does. */
@@ -149,10 +174,13 @@ static hl_status scene_of(const looks_job *job, size_t index, hl_scene **scene, 
   return status;
 }
 
-static hl_status add_look(looks_job *job, size_t index, hl_error *error) {
+/* place: of the look in the sheet. */
+static hl_status add_look(looks_job *job, size_t place, hl_error *error) {
+  const size_t index = job->shown[place];
   hl_scene *scene = NULL;
   hl_image *picture = NULL;
-  int left = (int)(index % COLUMNS) * job->side, top = (int)(index / COLUMNS) * (job->side + CAPTION);
+  int left = (int)(place % columns_of(job)) * job->side,
+      top = (int)(place / columns_of(job)) * (job->side + CAPTION);
   hl_status status = scene_of(job, index, &scene, error);
   if (status == HL_OK) status = hl_image_create(job->host.context, job->side, job->side, &picture, error);
   if (status == HL_OK)
@@ -170,8 +198,8 @@ static hl_status add_look(looks_job *job, size_t index, hl_error *error) {
 /* Makes the sheet, on a ground as dark as a bare volume's. */
 static hl_status make_sheet(looks_job *job, hl_error *error) {
   static const float ground[3] = {0.01f, 0.011f, 0.013f};
-  size_t count = count_looks(), rows = (count + COLUMNS - 1) / COLUMNS;
-  int width = COLUMNS * job->side, height = (int)rows * (job->side + CAPTION);
+  const size_t count = job->shown_count, columns = columns_of(job), rows = (count + columns - 1) / columns;
+  const int width = (int)columns * job->side, height = (int)rows * (job->side + CAPTION);
   hl_status status = hl_image_create(job->host.context, width, height, &job->sheet, error);
   if (status == HL_OK) status = hl_renderer_create(job->host.context, &job->renderer, error);
   for (int y = 0; y < height && status == HL_OK; y++)
@@ -206,7 +234,8 @@ static int make_and_write(looks_job *job) {
   if (status == HL_OK) status = hl_image_write(job->host.context, job->sheet, job->output, NULL, &error);
   host_clear_bar(&job->host);
   if (status != HL_OK) return host_fail(&job->host, PHASE_RUN, status, &error);
-  if (!job->host.quiet) say("%s: %zu looks in %.1f s", job->output, count_looks(), clock_seconds() - started);
+  if (!job->host.quiet)
+    say("%s: %zu looks in %.1f s", job->output, job->shown_count, clock_seconds() - started);
   return EXIT_CODE_OK;
 }
 
@@ -222,6 +251,7 @@ static int run_looks(const cli_value *values, char **operands) {
   job.side = values[LOOKS_SIZE].given ? (int)values[LOOKS_SIZE].number[0] : 256;
   if (job.output == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
   int exit_code = output_check(job.output, picture_extensions, operands, 1);
+  if (exit_code == EXIT_CODE_OK) exit_code = choose_looks(&job, &values[LOOKS_LOOK]);
   cli_host_options host_options = {.quiet = values[LOOKS_QUIET].given,
                                    .progress = true,
                                    .subject = base_name(operands[0]),

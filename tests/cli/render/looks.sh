@@ -20,3 +20,9 @@ for input in plain.json absent.nrrd; do
   halflight looks $input --quiet -o no.png 2>message || code=$?
   echo $code $(cat message)
 done
+# Some of them, side by side.
+halflight looks a_16x16x16_uint8.raw --size 32 --quiet --look translucent,surface,mip -o three.npy
+"$PYTHON" -c "print(b\"'shape': (52, 96, 4)\" in open('three.npy','rb').read(128))"
+code=0
+halflight looks a_16x16x16_uint8.raw --look surface,glass --quiet -o no.png 2>message || code=$?
+echo $code $(cat message)
