@@ -81,7 +81,7 @@ def cancelled_frames(browser):
     """A refinement that a newer change makes useless is cancelled, and counted."""
     before = browser.run("halflight.frames.statistics.cancelled")
     for _ in range(3):
-        browser.run("halflight.store.changeRender('sheet_spacing', 0.05)")
+        browser.run("halflight.store.changeRender('sheet_spacing', 0.01)")
         browser.wait(f"{STAGE} === 'refining'")
         browser.run("halflight.store.changeRender('sheet_spacing', 1)")
         rest(browser)
