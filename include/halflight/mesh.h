@@ -59,8 +59,8 @@ HL_API HL_WARN_UNUSED hl_status hl_mesh_load(hl_context *context, const char *pa
                                              hl_error *error);
 
 /* Whether hl_mesh_load() reads files with this name, by the name's ending. A .vtk file may also hold a
- * volume; for such a name, the file's first kilobyte decides. */
-HL_API int hl_mesh_reads_name(const char *path);
+ * volume; for such a name, the first kilobyte of the file decides, if the context may open it. 0 for null. */
+HL_API int hl_mesh_reads_name(hl_context *context, const char *path);
 
 /* The mesh's arrays, which include the triangles of its tubes; valid as long as the mesh. Null for null. */
 HL_API const hl_mesh_description *hl_mesh_describe(const hl_mesh *mesh);

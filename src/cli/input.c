@@ -262,7 +262,7 @@ hl_status input_load(hl_context *context, const cli_input *input, const hl_volum
 }
 
 bool is_mesh_file(hl_context *context, const char *path) {
-  return hl_mesh_reads_name(path) && !hl_volume_reads_cells(context, path) &&
+  return hl_mesh_reads_name(context, path) && !hl_volume_reads_cells(context, path) &&
          !hl_volume_reads_particles(context, path);
 }
 

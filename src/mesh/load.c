@@ -1,7 +1,7 @@
 /* mesh/load.c - hl_mesh_load: chooses the reader of a file by its content, or else by its name. */
-#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "core/context.h"
 #include "core/door.h"
@@ -32,23 +32,29 @@ hl_status hl_mesh_get_format(size_t index, hl_file_format *format) {
 }
 
 /* Whether a file's first bytes say that it is PolyData. Other .vtk files are volumes. */
-static bool begins_as_polydata(const char *path) {
+static bool begins_as_polydata(hl_context *context, const char *path) {
   char bytes[1025];
   struct stat about;
-  FILE *file = stat(path, &about) == 0 && S_ISREG(about.st_mode) ? fopen(path, "rb") : NULL;
-  if (file == NULL) return false;
-  size_t length = fread(bytes, 1, sizeof bytes - 1, file);
+  hl_error unused;
+  int file;
+  if (hl_file_open_again(context, path, &file, &unused) != HL_OK) return false;
+  bool regular = fstat(file, &about) == 0 && S_ISREG(about.st_mode); /* the bytes of a pipe are read once */
+  size_t length = 0, got = regular ? 1 : 0;
+  for (; got > 0 && length < sizeof bytes - 1; length += got)
+    if (hl_file_pull(context, file, path, bytes + length, sizeof bytes - 1 - length, &got, &unused) != HL_OK)
+      got = 0;
   bytes[length] = 0;
-  fclose(file);
+  close(file);
   for (size_t n = 0; n + 16 < length; n++)
     if (hl_text_starts(bytes + n, "DATASET POLYDATA")) return true;
   return false;
 }
 
-int hl_mesh_reads_name(const char *path) {
-  for (size_t n = 0; path != NULL && n < FORMAT_COUNT; n++)
+int hl_mesh_reads_name(hl_context *context, const char *path) {
+  if (context == NULL || path == NULL) return 0;
+  for (size_t n = 0; n < FORMAT_COUNT; n++)
     if (hl_text_ends(path, formats[n].ending)) return 1;
-  return path != NULL && hl_text_ends(path, ".vtk") && begins_as_polydata(path);
+  return hl_text_ends(path, ".vtk") && begins_as_polydata(context, path);
 }
 
 static mesh_reader *reader_of(const char *path, mesh_text text) {

@@ -125,7 +125,7 @@ static hl_status load_by_name(const char *path, hl_scene **scene, hl_error *erro
   hl_scene_mesh mesh;
   *scene = NULL;
   if (ends_in(path, ".json")) return hl_scene_load(web.context, path, scene, error);
-  if (hl_mesh_reads_name(path) && !hl_volume_reads_cells(web.context, path)) {
+  if (hl_mesh_reads_name(web.context, path) && !hl_volume_reads_cells(web.context, path)) {
     hl_status status = load_mesh(web.context, path, 0, &mesh, error);
     if (status == HL_OK) status = join_meshes(web.context, &mesh, 1, true, scene, error);
     hl_mesh_release(mesh.mesh);

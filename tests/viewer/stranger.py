@@ -59,6 +59,32 @@ def detached_nrrd(name):
     return f"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nencoding: raw\ndata file: {name}\n".encode()
 
 
+def listed_meta_image(name):
+    return f"ObjectType = Image\nNDims = 3\nDimSize = 8 8 1\nElementType = MET_UCHAR\nElementDataFile = LIST\n{name}\n".encode()
+
+
+def listed_nrrd(name):
+    return f"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 1\nencoding: raw\ndata file: LIST\n{name}\n".encode()
+
+
+EXTENT = "0 8 0 8 0 8"
+
+
+def image_data(numbers):
+    return (f'<VTKFile type="ImageData"><ImageData WholeExtent="{EXTENT}" Origin="0 0 0" Spacing="1 1 1"><Piece Extent="{EXTENT}"><CellData>'
+            f'<DataArray type="UInt8" Name="v" format="ascii">{" ".join(map(str, numbers))}</DataArray></CellData></Piece></ImageData></VTKFile>').encode()
+
+
+def parallel_image_data(name):
+    return (f'<VTKFile type="PImageData"><PImageData WholeExtent="{EXTENT}" Origin="0 0 0" Spacing="1 1 1"><PCellData>'
+            f'<PDataArray type="UInt8" Name="v"/></PCellData><Piece Extent="{EXTENT}" Source="{name}"/></PImageData></VTKFile>').encode()
+
+
+def adaptive_grid(name):
+    return ('<VTKFile type="vtkOverlappingAMR"><vtkOverlappingAMR origin="0 0 0"><Block level="0" spacing="1 1 1">'
+            f'<DataSet index="0" amr_box="0 7 0 7 0 7" file="{name}"/></Block></vtkOverlappingAMR></VTKFile>').encode()
+
+
 def ome_tiff(name):
     text = ('<?xml version="1.0"?><OME xmlns="http://www.openmicroscopy.org/Schemas/OME/2016-06"><Image ID="Image:0"><Pixels ID="Pixels:0" '
             'DimensionOrder="XYZCT" Type="uint8" SizeX="8" SizeY="8" SizeZ="2" SizeC="1" SizeT="1"><TiffData FirstZ="0" IFD="0" PlaneCount="1">'
@@ -94,6 +120,10 @@ WINDOW = {"type": "rect", "position": [0, 0, 50], "edge1": [9, 0, 0], "edge2": [
 CARRIERS = [
     ("mhd.mhd", meta_image, VOLUME),
     ("nrrd.nhdr", detached_nrrd, VOLUME),
+    ("list.mhd", listed_meta_image, VOLUME),
+    ("list.nhdr", listed_nrrd, VOLUME),
+    ("pieces.pvti", parallel_image_data, ".vti"),
+    ("boxes.vthb", adaptive_grid, ".vti"),
     ("ome.tif", ome_tiff, ".tif"),
     ("disc.dcm", dicomdir, ".dcm"),
     ("volume.json", volume_scene, VOLUME),
@@ -139,6 +169,7 @@ def write(path, content):
 SECRETS = {
     VOLUME: bytes(n % 7 for n in range(512)),
     ".nhdr": detached_nrrd("own" + VOLUME),
+    ".vti": image_data(n % 7 for n in range(512)),
     ".txt": b"1 one 255 0 0 255\n2 two 0 255 0 255\n3 three 0 0 255 255\n",
     ".tf.json": b'{"opacity": [[0, 0], [6, 1]]}',
     ".ply": b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
@@ -284,6 +315,26 @@ def pages_scenes(viewer, outside):
         check(status == 200 and json.loads(line)["volumes"][0]["dimensions"] != [8, 8, 8], f"a stand-in takes the place of {name}: {status}")
 
 
+def kinds_of_vtk_files(viewer):
+    """The first bytes of a .vtk file tell whether it holds a mesh: those of the opened file, and of no other file of its name."""
+    begin = b"# vtk DataFile Version 3.0\nt\nASCII\nDATASET "
+    mesh = begin + b"POLYDATA\nPOINTS 3 float\n0 0 0 9 0 0 0 9 9\nPOLYGONS 1 4\n3 0 1 2\n"
+    grid = (begin + b"STRUCTURED_POINTS\nDIMENSIONS 2 2 2\nORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA 8\n"
+            b"SCALARS v unsigned_char\nLOOKUP_TABLE default\n0 1 2 3 4 5 6 7\n")
+    write("inner/thing.vtk", mesh)
+    write("../outside/mesh.vtk", mesh)
+    os.symlink("../outside/mesh.vtk", "linked.vtk")
+    attempts = [("open in a folder", request(viewer, "open", file="inner/thing.vtk"), 0),
+                ("upload", request(viewer, "upload", mesh, name="thing.vtk"), 0)]
+    write("thing.vtk", grid)
+    attempts += [("upload beside a grid", request(viewer, "upload", mesh, name="thing.vtk"), 0), ("open a grid", request(viewer, "open", file="thing.vtk"), 1)]
+    write("thing.vtk", mesh)
+    attempts += [("upload a grid beside a mesh", request(viewer, "upload", grid, name="thing.vtk"), 1),
+                 ("upload a grid beside a link that leads out", request(viewer, "upload", grid, name="linked.vtk"), 1)]
+    for what, (status, line), volumes in attempts:
+        check(status == 200 and len(json.loads(line)["volumes"]) == volumes, f"{what}: {volumes} volumes, not {status}: {line[:200]}")
+
+
 def odd_files(viewer):
     """Pipes and devices are not waited for; names with zero bytes are refused."""
     os.mkfifo(f"pipe{VOLUME}")
@@ -322,6 +373,7 @@ with tempfile.TemporaryDirectory() as folder:
         every_format(viewer, outside)
         links_of_known_names(viewer)
         pages_scenes(viewer, outside)
+        kinds_of_vtk_files(viewer)
         odd_files(viewer)
         data_folder(viewer, outside)
         left = [name for name in os.listdir(os.environ["TMPDIR"]) if name.startswith("halflight-view")]
