@@ -170,13 +170,20 @@ static void trim(DIR *folder, uint64_t limit) {
   free(list);
 }
 
+/* Makes a folder of an absolute path, and the folders above it. Any of them may be there. */
+static void make_folders(const char *folder) {
+  char path[COPIES_PATH_BYTES];
+  snprintf(path, sizeof path, "%s", folder);
+  for (char *at = strchr(path + 1, '/'); at != NULL; at = strchr(at + 1, '/')) {
+    *at = '\0';
+    mkdir(path, 0700);
+    *at = '/';
+  }
+  mkdir(path, 0700);
+}
+
 hl_status copies_open(const char *folder, uint64_t limit, hl_error *error) {
-  char parent[COPIES_PATH_BYTES];
-  snprintf(parent, sizeof parent, "%s", folder);
-  char *slash = strrchr(parent, '/');
-  if (slash != NULL) *slash = '\0';
-  if (slash != NULL && parent[0] != '\0') mkdir(parent, 0700); /* it may be there */
-  mkdir(folder, 0700);
+  make_folders(folder);
   DIR *opened = opendir(folder);
   if (opened == NULL) return fail(error, folder);
   trim(opened, limit);

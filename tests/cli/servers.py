@@ -465,6 +465,17 @@ def who_is_asked(case, server):
     case.ok("info of a URL", found.get("levels") == 3 and found.get("file") == store, (done.stdout, done.stderr))
 
 
+def new_home(case, server):
+    """The folder of copies is made with the folders above it."""
+    home = case.folder / "new home"
+    home.mkdir()
+    server.forget()
+    picture, said = case.picture(f"{server.url}/v2.zarr", XDG_CACHE_HOME="", HOME=str(home))
+    copies = home / ".cache/halflight/servers"
+    case.ok("a home without a folder .cache", picture is not None and copies.is_dir(), said)
+    case.ok("the folder is private", copies.is_dir() and (home / ".cache").stat().st_mode & 0o77 == 0)
+
+
 def viewer(case, server):
     """The viewer opens a URL of its command line, and fails like `render` where the server does."""
     case.fresh()
@@ -502,6 +513,7 @@ def main():
         passing_faults(case, server)
         lasting_faults(case, server)
         who_is_asked(case, server)
+        new_home(case, server)
         viewer(case, server)
         print(f"1..{case.number}")
         return 1 if case.failed else 0
