@@ -34,8 +34,8 @@ static void write_list(FILE *list, const curl_transfer *transfers, size_t count,
     if (n > 0) fputs("next\n", list);
     /* A server that sends less than 1000 bytes a second for 10 seconds is given up. */
     fprintf(list,
-            "no-progress-meter\nsilent\ngloboff\nlocation\nmax-redirs = 5\nproto = \"=http,https\"\n"
-            "proto-redir = \"=http,https\"\nconnect-timeout = 15\nspeed-limit = 1000\nspeed-time = 10\n"
+            "no-progress-meter\nsilent\ngloboff\nproto = \"=http,https\"\n"
+            "connect-timeout = 15\nspeed-limit = 1000\nspeed-time = 10\n"
             "max-filesize = %llu\n",
             (unsigned long long)most);
     write_option(list, "url", transfers[n].url);
@@ -44,7 +44,7 @@ static void write_list(FILE *list, const curl_transfer *transfers, size_t count,
     if (transfers[n].range[0] != '\0') write_option(list, "range", transfers[n].range);
     fprintf(list,
             "write-out = \"%%{stderr}\\ntransfer %zu %%{exitcode} %%{http_code}\\n%%header{etag}\\n"
-            "%%header{last-modified}\\n%%header{content-range}\\n%%{errormsg}\\n\"\n",
+            "%%header{last-modified}\\n%%header{content-range}\\n%%{redirect_url}\\n%%{errormsg}\\n\"\n",
             n);
   }
 }
@@ -83,7 +83,7 @@ static void read_condition(const char *tag, const char *date, char condition[FET
     snprintf(condition, FETCH_CONDITION_BYTES, "If-Modified-Since: %s", text);
 }
 
-enum { TAG, DATE, RANGE, SAID, LINES };
+enum { TAG, DATE, RANGE, MOVED, SAID, LINES };
 
 /* Reads the lines that curl writes about a transfer, except the first one. */
 static void read_result(FILE *said, curl_transfer *transfer) {
@@ -95,6 +95,7 @@ static void read_result(FILE *said, curl_transfer *transfer) {
     read_condition(lines[TAG], lines[DATE], transfer->next_condition);
     if (!copy_line(lines[RANGE], transfer->content_range, sizeof transfer->content_range))
       transfer->content_range[0] = '\0';
+    if (!copy_line(lines[MOVED], transfer->moved, sizeof transfer->moved)) transfer->moved[0] = '\0';
     snprintf(transfer->said, sizeof transfer->said, "%.*s", (int)strcspn(lines[SAID], "\r\n"), lines[SAID]);
   }
   for (int n = 0; n < LINES; n++) free(lines[n]);
@@ -152,7 +153,7 @@ hl_status curl_run(const fetcher *f, curl_transfer *transfers, size_t count, uin
   for (size_t n = 0; n < count; n++) {
     transfers[n].problem = -1;
     transfers[n].answer = 0;
-    transfers[n].next_condition[0] = transfers[n].content_range[0] = '\0';
+    transfers[n].next_condition[0] = transfers[n].content_range[0] = transfers[n].moved[0] = '\0';
     snprintf(transfers[n].said, sizeof transfers[n].said, "curl ended before");
   }
   FILE *list = make_list(transfers, count, most);

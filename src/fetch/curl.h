@@ -23,6 +23,7 @@ typedef struct curl_transfer {
   char content_range[RANGE_BYTES]; /* which part of the file the server says that it has sent; "" if it says
                                     * none
                                     */
+  char moved[FETCH_URL_BYTES];     /* the URL to which the server redirects; "" if it does not */
   char said[FETCH_SAID_BYTES];     /* curl's words about the problem */
 } curl_transfer;
 

@@ -2,8 +2,8 @@
  * asked again if a transfer failed for a reason that may be temporary.
  *
  * The server answers 304 if the copy is up to date. It answers 404 or 410 where there is no file. It answers
- * 200 with a whole file, and 206 with the wanted part of one. Any other answer is an error, because an absent
- * file has a meaning in a store. */
+ * 200 with a whole file, and 206 with the wanted part of one. It may redirect to another URL of its own. Any
+ * other answer is an error, because an absent file has a meaning in a store. */
 #define _GNU_SOURCE
 #include "fetch.h"
 
@@ -17,8 +17,9 @@
 
 #include "copies.h"
 #include "curl.h"
+#include "moves.h"
 
-enum { TRIES = 4 };
+enum { TRIES = 4, MOVES_MOST = 5 };
 
 /* A file that is wanted. */
 typedef struct wanted {
@@ -28,7 +29,8 @@ typedef struct wanted {
   char key[COPIES_KEY_BYTES];   /* the key of its copy */
   char path[COPIES_PATH_BYTES]; /* the file that curl writes to; "" if there is none */
   hl_fetched_file copy;         /* the copy that an earlier run left; its descriptor is -1 if there is none */
-  bool done;
+  int moves;                    /* how often the server has redirected the request in this try */
+  bool done, moved; /* moved: the request is to be made of the URL to which the server has redirected it */
 } wanted;
 
 typedef struct fetching {
@@ -147,6 +149,29 @@ static hl_status keep(fetching *t, wanted *file, hl_fetched_file *result) {
   return HL_OK;
 }
 
+static bool is_move(int answer) {
+  return answer == 301 || answer == 302 || answer == 303 || answer == 307 || answer == 308;
+}
+
+/* Lets the request be made again, of the URL to which the server redirects it. */
+static hl_status follow(const fetching *t, wanted *file) {
+  curl_transfer *transfer = &file->transfer;
+  char what[300];
+  if (!move_is_allowed(transfer->url, transfer->moved) || !is_plain(transfer->moved)) {
+    snprintf(what, sizeof what, "the server redirects to %.*s: if you trust that server, give its URL",
+             (int)(strcspn(transfer->moved, "?#") < 200 ? strcspn(transfer->moved, "?#") : 200),
+             transfer->moved);
+    return fail(t, file->name, what);
+  }
+  if (file->moves++ == MOVES_MOST) {
+    snprintf(what, sizeof what, "the server redirects more than %d times", MOVES_MOST);
+    return fail(t, file->name, what);
+  }
+  strcpy(transfer->url, transfer->moved);
+  file->moved = true;
+  return HL_OK;
+}
+
 /* Takes the result of a transfer: the file has come, is absent, or must be asked for again. */
 static hl_status take(fetching *t, wanted *file, hl_fetched_file *result) {
   curl_transfer *transfer = &file->transfer;
@@ -161,20 +186,28 @@ static hl_status take(fetching *t, wanted *file, hl_fetched_file *result) {
     return keep(t, file, result);
   } else if (whole && (transfer->answer == 404 || transfer->answer == 410)) {
     file->done = true;
+  } else if (whole && is_move(transfer->answer) && transfer->moved[0] != '\0') {
+    return follow(t, file);
   } else if (!may_pass(transfer)) {
     return fail_transfer(t, file, false);
   }
   return HL_OK;
 }
 
-/* Runs curl on all files that are not done. */
-static hl_status run(fetching *t, hl_fetched_file *results) {
+/* Whether a file takes part in the next run: it was redirected in the run before, or, at the beginning of a
+ * try, it is not done. */
+static bool takes_part(const wanted *file, bool begins) { return begins ? !file->done : file->moved; }
+
+/* Runs curl on files that are not done. begins: on all of them, at the store's URLs; otherwise on those that
+ * were redirected. */
+static hl_status run(fetching *t, bool begins, hl_fetched_file *results) {
   curl_transfer *transfers = calloc(t->count, sizeof *transfers);
   size_t count = 0;
   hl_status problem = HL_OK;
   if (transfers == NULL) return fail(t, "", "out of memory");
   for (size_t n = 0; n < t->count; n++) {
-    if (t->files[n].done) continue;
+    if (!takes_part(&t->files[n], begins)) continue;
+    if (begins) join_url(t->url, t->files[n].name, t->files[n].transfer.url), t->files[n].moves = 0;
     transfers[count++] = t->files[n].transfer;
     if (truncate(t->files[n].path, 0) != 0)
       problem = fail(t, t->files[n].name, "its copy cannot be made anew");
@@ -182,8 +215,9 @@ static hl_status run(fetching *t, hl_fetched_file *results) {
   hl_status status = problem != HL_OK ? problem : curl_run(t->f, transfers, count, t->most, t->error);
   count = 0;
   for (size_t n = 0; n < t->count && status == HL_OK; n++) {
-    if (t->files[n].done) continue;
+    if (!takes_part(&t->files[n], begins)) continue;
     t->files[n].transfer = transfers[count++];
+    t->files[n].moved = false;
     status = take(t, &t->files[n], &results[n]);
   }
   free(transfers);
@@ -194,6 +228,12 @@ static const wanted *first_pending(const fetching *t) {
   for (size_t n = 0; n < t->count; n++)
     if (!t->files[n].done) return &t->files[n];
   return NULL;
+}
+
+static bool any_moved(const fetching *t) {
+  for (size_t n = 0; n < t->count; n++)
+    if (t->files[n].moved) return true;
+  return false;
 }
 
 /* Waits before the next try, longer each time. */
@@ -213,7 +253,8 @@ static hl_status run_tries(fetching *t, hl_fetched_file *results) {
   hl_status status = HL_OK;
   for (int tries = 0; tries < TRIES && status == HL_OK && first_pending(t) != NULL; tries++) {
     if (tries > 0) status = pause_before(t, tries);
-    if (status == HL_OK) status = run(t, results);
+    if (status == HL_OK) status = run(t, true, results);
+    while (status == HL_OK && any_moved(t)) status = run(t, false, results);
   }
   const wanted *left = first_pending(t);
   return status == HL_OK && left != NULL ? fail_transfer(t, left, true) : status;

@@ -177,7 +177,7 @@ class Handler(http.server.BaseHTTPRequestHandler):
             fault = self.store.fault(name)
         if self.store.hold is not None:
             self.store.hold(name)
-        file = self.store.folder / name
+        file = self.store.folder / name.removeprefix("moved/")
         body = file.read_bytes() if file.is_file() else b""
         if self.store.key is not None and query != self.store.key:
             return self.answer(403, b"no")
@@ -209,6 +209,15 @@ class Handler(http.server.BaseHTTPRequestHandler):
 
     def fault_403(self, body):
         self.answer(403, b"<html>forbidden</html>")
+
+    def fault_moved(self, body):
+        self.answer(307, b"", [("Location", f"/moved/{self.path.lstrip('/')}")])
+
+    def fault_elsewhere(self, body):
+        self.answer(302, b"", [("Location", f"http://{self.store.other}{self.path}?secret=1")])
+
+    def fault_file(self, body):
+        self.answer(301, b"", [("Location", f"file://{self.store.folder}{self.path}")])
 
     def fault_404(self, body):
         self.answer(404, b"<html>none</html>")
@@ -465,6 +474,29 @@ def who_is_asked(case, server):
     case.ok("info of a URL", found.get("levels") == 3 and found.get("file") == store, (done.stdout, done.stderr))
 
 
+def redirected(case, server):
+    """A server may redirect to URLs of its own, and to no other server."""
+    folder, store, chunk = server.folder / "v2.zarr", f"{server.url}/v2.zarr", "1/0/1/1"
+    right = case.picture(folder)[0]
+    case.fresh()
+    server.forget(**{f"v2.zarr/{chunk}": ["500", "moved"], "v2.zarr/.zattrs": ["moved"]})
+    picture, said = case.picture(store)
+    case.ok("redirected to the same server: the same picture", picture == right and f"moved/v2.zarr/{chunk}" in server.requests, said)
+    case.fresh()
+    server.forget(**{f"{'moved/' * n}v2.zarr/{chunk}": ["always", "moved"] for n in range(9)})
+    case.refused("redirected without end: refused", server, store, f"/v2.zarr/{chunk}: the server redirects more than 5 times")
+    other = Server(server.folder)
+    port = other.url.rsplit(":", 1)[1]
+    for kind, place in (("elsewhere", f"127.0.0.1:{port}"), ("elsewhere", f"localhost:{port}"), ("elsewhere", f"{server.url[7:]}@localhost:{port}"),
+                        ("file", "")):
+        case.fresh()
+        server.other = place
+        server.forget(**{f"v2.zarr/{chunk}": ["always", kind]})
+        case.refused(f"redirected to {place or 'a file'}: refused", server, store, f"/v2.zarr/{chunk}: the server redirects to ")
+        case.ok("without the query, which may be a secret", "secret" not in case.picture(store)[1])
+    case.ok("no other server was asked", other.requests == [], other.requests)
+
+
 def new_home(case, server):
     """The folder of copies is made with the folders above it."""
     home = case.folder / "new home"
@@ -513,6 +545,7 @@ def main():
         passing_faults(case, server)
         lasting_faults(case, server)
         who_is_asked(case, server)
+        redirected(case, server)
         new_home(case, server)
         viewer(case, server)
         print(f"1..{case.number}")
