@@ -46,6 +46,74 @@ int ranks_begin(cli_host *host, const char *option, hl_ranks **ranks) {
   return EXIT_CODE_OK;
 }
 
+/* ---- whether all make the same picture ---- */
+
+static uint64_t add_bytes(uint64_t hash, const void *bytes, size_t count) {
+  const unsigned char *at = bytes;
+  for (size_t n = 0; n < count; n++) hash = (hash ^ at[n]) * 0x100000001b3u;
+  return hash;
+}
+
+/* Adds a scene's text without the names of files, which may differ from machine to machine. */
+static uint64_t add_text(uint64_t hash, const char *text) {
+  static const char key[] = "\"file\": \"";
+  for (const char *name; (name = strstr(text, key)) != NULL;) {
+    hash = add_bytes(hash, text, (size_t)(name - text));
+    text = name + sizeof key - 1;
+    while (*text != '\0' && *text != '"') text += text[0] == '\\' && text[1] != '\0' ? 2 : 1;
+  }
+  return add_bytes(hash, text, strlen(text));
+}
+
+/* Adds what is known of all voxels of a volume. */
+static uint64_t add_volume(uint64_t hash, const hl_volume *volume) {
+  hl_volume_info info = {.struct_size = sizeof info};
+  if (volume == NULL || hl_volume_get_info(volume, &info) != HL_OK) return hash;
+  hash = add_bytes(hash, info.dimensions, sizeof info.dimensions);
+  hash = add_bytes(hash, info.range, sizeof info.range);
+  hash = add_bytes(hash, &info.mean, sizeof info.mean);
+  return add_bytes(hash, info.histogram, sizeof info.histogram);
+}
+
+/* Sets *hash to a number for the picture of a scene. */
+static hl_status number_scene(hl_context *context, const hl_scene *scene, uint64_t *hash, hl_error *error) {
+  const hl_scene_description *description = hl_scene_describe(scene);
+  char *text = NULL;
+  hl_status status = hl_scene_to_json(context, scene, &text, error);
+  if (status != HL_OK) return status;
+  *hash = add_text(0xcbf29ce484222325u, text);
+  for (size_t v = 0; v < description->volume_count; v++) {
+    *hash = add_volume(*hash, description->volumes[v].volume);
+    *hash = add_volume(*hash, description->volumes[v].mask.volume);
+  }
+  hl_text_release(context, text);
+  return HL_OK;
+}
+
+int ranks_compare(cli_host *host, hl_ranks *ranks, const hl_scene *scene) {
+  enum { PIECES = 4, BITS = 16 }; /* a float holds each piece exactly */
+  uint64_t hash = 0;
+  hl_error error = {0};
+  int size = hl_ranks_size(ranks), rank = hl_ranks_rank(ranks);
+  if (ranks == NULL) return EXIT_CODE_OK;
+  hl_status status = number_scene(host->context, scene, &hash, &error);
+  if (status != HL_OK) return host_fail(host, PHASE_RUN, status, &error);
+  float *pieces = calloc((size_t)size * PIECES, sizeof *pieces);
+  if (pieces == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
+  for (int n = 0; n < PIECES; n++) pieces[rank * PIECES + n] = (float)(hash >> (n * BITS) & 0xffff);
+  hl_ranks_sum(ranks, pieces, (size_t)size * PIECES); /* rank 0 has the pieces of all */
+  int other = 0;
+  for (int r = 1; rank == 0 && r < size && other == 0; r++)
+    if (memcmp(pieces, pieces + r * PIECES, PIECES * sizeof *pieces) != 0) other = r;
+  free(pieces);
+  if (other == 0) return EXIT_CODE_OK;
+  return fail(
+      EXIT_CODE_INPUT,
+      "rank %d has another scene or other voxels than rank 0: give all processes the same options and "
+      "equal files",
+      other);
+}
+
 void ranks_check(hl_ranks *ranks, int exit_code) {
   if (ranks == NULL || exit_code == EXIT_CODE_OK) return;
   if (exit_code != EXIT_CODE_INTERRUPTED)

@@ -22,6 +22,10 @@ hl_mpi launcher_mpi(void);
  * call hl_ranks_leave() in any case. */
 int ranks_begin(cli_host *host, const char *option, hl_ranks **ranks);
 
+/* Collective: compares the scenes and volumes of all ranks, which must be equal, since each rank makes a part
+ * of the picture and waits for what the others send. Returns the exit code. ranks: may be null. */
+int ranks_compare(cli_host *host, hl_ranks *ranks, const hl_scene *scene);
+
 /* If the exit code stands for a failure, ends the other ranks, too, so that no rank waits for this one. Call
  * it before anything that the other ranks use is released. ranks: may be null. */
 void ranks_check(hl_ranks *ranks, int exit_code);

@@ -86,8 +86,6 @@ static int choose_output(render_job *job) {
 static int job_open(render_job *job) {
   const cli_value *values = job->values;
   int exit_code = render_check_options(values);
-  if (exit_code == EXIT_CODE_OK) exit_code = choose_output(job);
-  if (exit_code == EXIT_CODE_OK) exit_code = render_overlay_read(values, &job->overlay);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   cli_host_options options = {.quiet = values[RENDER_QUIET].given,
                               .progress = true,
@@ -103,6 +101,10 @@ static int job_open(render_job *job) {
   if (exit_code == EXIT_CODE_OK && values[over_ranks].given)
     exit_code = ranks_begin(&job->host, render_options[over_ranks].name, &job->ranks);
   if (exit_code == EXIT_CODE_OK && values[RENDER_VOLUME].given) hl_ranks_hold_volumes(job->ranks);
+  /* What may fail on one machine alone comes after the ranks have joined: the others would wait for a rank
+   * that does not join. */
+  if (exit_code == EXIT_CODE_OK) exit_code = choose_output(job);
+  if (exit_code == EXIT_CODE_OK) exit_code = render_overlay_read(values, &job->overlay);
   return exit_code;
 }
 
@@ -184,6 +186,8 @@ static int job_render(render_job *job) {
   const hl_scene_description *description = hl_scene_describe(job->scene);
   hl_error error = {0};
   job->result.statistics.struct_size = sizeof job->result.statistics;
+  int exit_code = ranks_compare(&job->host, job->ranks, job->scene);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
   hl_status status = hl_image_create(job->host.context, description->width, description->height, &job->image,
                                      &error);
   if (status == HL_OK && job->values[RENDER_LAYERS].given)

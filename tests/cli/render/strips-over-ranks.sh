@@ -24,6 +24,25 @@ cat >killed.sh <<'END'
 if [ "${OMPI_COMM_WORLD_RANK-$PMI_RANK}" = 1 ]; then (sleep 0.7; kill -KILL $$) & fi
 exec "$HALFLIGHT" render rings.nrrd --size 900x1600 --sheet-spacing 0.04 --quiet --strips-over-ranks -o shared.npy
 END
+# Ranks that make different pictures, as with an older copy of a file on one machine, would wait for each other without end;
+# equal files may have different names.
+halflight make rings --size 20 --quiet -o older.nrrd
+cp rings.nrrd "copy of rings.nrrd"
+cat >different.sh <<'END'
+if [ "${OMPI_COMM_WORLD_RANK-$PMI_RANK}" = 1 ]; then input=$one options=$more; fi
+exec "$HALFLIGHT" render "${input:-rings.nrrd}" --size 60x100 --sheet-spacing 2 --quiet --strips-over-ranks -o "${options:-shared.npy}"
+END
+for one in older.nrrd missing.nrrd; do
+  export one
+  ! run 3 timeout 60 sh different.sh
+  grep -o -m 1 "rank 1 has another scene or other voxels than rank 0\|missing.nrrd: cannot open" mpirun.txt
+done
+export one="copy of rings.nrrd"
+runs 3 sh different.sh
+cmp whole.npy shared.npy && rm shared.npy
+export one= more=none/shared.npy
+! run 3 timeout 60 sh different.sh
+grep -o -m 1 "its folder 'none' cannot be written\|rank 1 of 3 has failed" mpirun.txt
 ! run 4 sh failing.sh
 grep -o -m 1 "rank 2 of 4 has failed and ends them all" mpirun.txt
 ! run 4 sh killed.sh
