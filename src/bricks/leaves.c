@@ -12,6 +12,7 @@ typedef struct descent {
   void *data;
   hl_bricks_leaf *leaves; /* owned; [room] */
   size_t count, room;
+  size_t visited; /* bricks that the descent has visited */
   hl_error *error;
 } descent;
 
@@ -33,6 +34,9 @@ static size_t bricks_along(const hl_bricks_source *source, int level, int axis) 
 }
 
 static hl_status descend(descent *d, int level, const size_t brick[3]) {
+  enum { BRICKS_AT_ONCE = 1024 }; /* bricks between two questions whether the call was cancelled */
+  if (d->visited++ % BRICKS_AT_ONCE == 0 && hl_cancelled(d->context))
+    return hl_fail(d->error, HL_ERROR_CANCELLED, "cancelled");
   for (int axis = 0; axis < 3; axis++)
     if (brick[axis] >= bricks_along(d->source, level, axis)) return HL_OK;
   hl_bricks_choice choice = d->choose(d->data, level, brick);
@@ -56,12 +60,10 @@ hl_status hl_bricks_choose(hl_context *context, const hl_bricks_source *source,
   size_t b[3];
   *leaves = NULL;
   *count = 0;
-  for (b[2] = 0; status == HL_OK && b[2] < bricks_along(source, level, 2); b[2]++) {
-    if (hl_cancelled(context)) status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled");
+  for (b[2] = 0; status == HL_OK && b[2] < bricks_along(source, level, 2); b[2]++)
     for (b[1] = 0; status == HL_OK && b[1] < bricks_along(source, level, 1); b[1]++)
       for (b[0] = 0; status == HL_OK && b[0] < bricks_along(source, level, 0); b[0]++)
         status = descend(&d, level, b);
-  }
   if (status != HL_OK) {
     hl_release(context, d.leaves);
     return status;
