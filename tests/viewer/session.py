@@ -16,7 +16,7 @@ import time
 import checks
 from checks import check
 from firefox import browser_named
-from hands import PROGRAM, STAGE, center, equals_render, open_section, press, press_named, rest, scene_of, set_control
+from hands import PROGRAM, STAGE, center, equals_render, final_picture, open_section, press, press_named, resize, rest, scene_of, set_control
 from viewer import Viewer, need_viewer
 
 SHOTS = os.path.abspath(sys.argv[3]) if len(sys.argv) > 3 else None
@@ -213,6 +213,39 @@ def after_reload(browser):
     equals_render(browser, "reloaded")
 
 
+KEYS = "[...document.querySelectorAll('.timeline .key')].map((key) => [key.dataset.path, +key.dataset.frame])"
+
+
+def film_after_reload(browser):
+    """The film is kept with the tab: after a reload its timeline lies open under the picture, which so has the size that it had."""
+    resize(browser, 500, 900)  # higher than wide: the camera depends on the picture's shape
+    open_section(browser, "Film")
+    rest(browser)
+    browser.run("(() => { const n = document.querySelector('[aria-label=\"Frames of the film\"]'); n.value = 41; n.dispatchEvent(new Event('change')); })()")
+    press(browser, "key of the camera now")
+    press_named(browser, "Add a key of Intensity")
+    browser.run("(() => { const s = document.querySelector('[aria-label=Frame]'); s.value = 40; s.dispatchEvent(new Event('input')); })()")
+    browser.wait("halflight.store.page.film.frame === 40")
+    set_control(browser, "Intensity", 0.5)
+    press_named(browser, "Add a key of Intensity")
+    rest(browser)
+    keys, state, picture = browser.run(KEYS), browser.run(STATE), final_picture(browser)
+    check(keys == [["camera", 0], ["lights.0.intensity", 0], ["lights.0.intensity", 40]], f"three keys: {keys}")
+    reload(browser)
+    check(browser.run("!document.querySelector('.timeline').hidden && document.querySelector('.viewer').classList.contains('filming')"), "the timeline lies open")
+    check(browser.run(KEYS) == keys and browser.run("document.querySelector('[aria-label=Frame]').value") == "40", f"with its keys and frame: {browser.run(KEYS)}")
+    after = browser.run(STATE)
+    check(after == state, f"a reload with an open timeline: all is as it was: {after}, {state}")
+    check(final_picture(browser) == picture, "and so is the picture")
+    browser.run("(() => { const n = document.querySelector('[aria-label=\"Frames of the film\"]'); n.value = 11; n.dispatchEvent(new Event('change')); })()")
+    check(browser.run(KEYS) == [["camera", 0], ["lights.0.intensity", 0], ["lights.0.intensity", 10]], f"a shorter film has all its keys: {browser.run(KEYS)}")
+    open_section(browser, "Session")
+    browser.wait("document.querySelector('.timeline').hidden")
+    resize(browser, 900, 620)
+    undo(browser)
+    rest(browser)
+
+
 def shot(browser, name):
     if SHOTS is not None:
         browser.screenshot(f"{SHOTS}/{name}.png")
@@ -301,10 +334,14 @@ def files(browser):
         drop(browser, name, text)
         browser.wait(f"document.getElementById('message').textContent.includes({json.dumps(words)})")
         check(browser.run(STATE) == before, f"{name} changes nothing")
-    hostile = {**json.loads(session), "marks": [{"kind": "<img>", "points": [[0, 0, 0]]}, {"kind": "text", "points": [[0, None, 0]]}, {"kind": "text", "points": [[1, 2, 3]], "text": "<b>"}]}
+    hostile = {**json.loads(session), "marks": [{"kind": "<img>", "points": [[0, 0, 0]]}, {"kind": "text", "points": [[0, None, 0]]}, {"kind": "text", "points": [[1, 2, 3]], "text": "<b>"}],
+               "page": {"film": {"frames": 1e9, "fps": "2", "frame": -1, "format": "exe", "open": True, "turns": True, "from": {"camera": {}, "image": None},
+                                 "tracks": [{"path": "camera", "points": [[0, {"position": 1}]]}, {"path": 7}, None, {"path": "lights.0.intensity", "points": [[2, 1], [9, 3]]}]}}}
     drop(browser, "f.json", json.dumps(hostile))
     browser.wait("halflight.store.marks.length === 1 && halflight.store.marks[0].text === '<b>'")
     rest(browser)
+    check(browser.run(KEYS) == [["lights.0.intensity", 2], ["lights.0.intensity", 9]] and browser.run("document.querySelector('[aria-label=\"Frames of the film\"]').value") == "120",
+          f"of its film what is right: {browser.run(KEYS)}")
     browser.problems.clear()  # refused requests
 
 
@@ -366,6 +403,7 @@ with tempfile.TemporaryDirectory() as place:
         zoom_goes_on(page)
         true_status(page)
         after_reload(page)
+        film_after_reload(page)
         check(page.problems == [], f"the console has errors: {page.problems}")
         after_restart(page, first, arguments)
     private_tokens("runtime")

@@ -2,9 +2,10 @@
 // timeline shows. `halflight animate` makes the same film. "Pictures" are numbered PNGs in a zip archive,
 // which need no ffmpeg.
 
-import { button, make, row, section, select, toggle } from "./controls.js";
+import { reshaped } from "./camera.js";
+import { button, isActive, make, row, section, select, toggle } from "./controls.js";
 import { download, fileWord, quoted, sceneText, stem } from "./export.js";
-import { CAMERA, keyTexts, withKey } from "./timeline.js";
+import { CAMERA, FORMATS, MOST_FPS, MOST_FRAMES, keyTexts, readFilm, stretched, withKey } from "./timeline.js";
 import { timelineStrip } from "./timeline_strip.js";
 
 const ASK_EVERY = 300; // milliseconds between questions for the film's progress
@@ -26,18 +27,16 @@ function timeLeft(seconds) {
   return seconds < 90 ? `${Math.ceil(seconds)} s` : `${Math.ceil(seconds / 60)} min`;
 }
 
+const NEW = { tracks: [], frames: 120, fps: 30, turns: false, frame: 0, format: "mp4", open: false };
+
 // The film that a person makes: its tracks and length, the frame that the page shows, and the scene without
-// the changes of this frame.
+// the changes of this frame. It stands in store.page.film, and so is kept with the session.
 class Film {
-  tracks = [];
-  frames = 120;
-  fps = 30;
-  turns = false;
-  frame = 0;
-  format = "mp4";
   playing = false;
   scene;
   changed = () => {};
+  taken = () => {}; // the film is another one: that of a session
+  #kept; // the film in store.page when this one was last kept or taken
   #viewer;
   #edits = 0; // number of changes by a person; a new window size is none
   #asking = false;
@@ -45,13 +44,33 @@ class Film {
 
   constructor(viewer) {
     this.#viewer = viewer;
-    this.scene = viewer.store.scene;
+    this.#take();
     viewer.store.listen((scene, name) => this.#follow(scene, name));
+  }
+
+  // Takes the film of the page's state. A film that turns starts from another camera than the one of the frame that is shown.
+  #take() {
+    const { scene, page } = this.#viewer.store, { from, ...film } = readFilm(page.film);
+    this.#kept = page.film;
+    Object.assign(this, NEW, film);
+    this.scene = this.turns && from !== undefined ? { ...scene, camera: reshaped(from.camera, from.image, scene.image) } : scene;
+  }
+
+  #keep() {
+    const { tracks, frames, fps, turns, frame, format, open, scene } = this, { camera, image: { width, height } } = scene;
+    this.#kept = { tracks, frames, fps, turns, frame, format, open, ...(turns ? { from: { camera, image: { width, height } } } : {}) };
+    this.#viewer.store.setPage({ film: this.#kept });
   }
 
   // A turn starts from the camera that a person has chosen, not from the place where the turn has taken it.
   #follow(scene, name) {
-    if (name === "time") return;
+    if (this.#viewer.store.page.film !== this.#kept) {
+      this.#edits++;
+      this.#take();
+      this.taken();
+      return;
+    }
+    if (name === "time" || name === "page") return;
     if (name !== "size") {
       this.#edits++;
       this.playing = false;
@@ -66,8 +85,13 @@ class Film {
   }
 
   set(part) {
+    const before = this.frames;
     Object.assign(this, part);
-    this.frame = Math.min(this.frame, this.frames - 1);
+    if (this.frames !== before) {
+      this.tracks = stretched(this.tracks, before, this.frames);
+      this.frame = Math.round((this.frame * (this.frames - 1)) / (before - 1));
+    }
+    if (!this.playing) this.#keep();
     this.changed();
   }
 
@@ -144,11 +168,12 @@ export function filmPanel(viewer) {
     type: "number", min: low, max: high, step: 1, value: film[key], "aria-label": label,
     onchange: (event) => film.set({ [key]: Math.min(Math.max(Math.round(+event.target.value) || film[key], low), high) }),
   });
+  const lengths = [number("Frames of the film", "frames", 2, MOST_FRAMES), number("Frames a second", "fps", 1, MOST_FPS)];
   const names = make("datalist", { id: "film-paths" });
   const path = make("input", { type: "text", list: "film-paths", "aria-label": "A number of the scene", placeholder: "lights.0.intensity" });
   const turn = toggle({ label: "Whole turn", get: () => film.turns, set: (turns) => film.set({ turns }) });
   const kind = select({
-    label: "Format", choices: [["mp4", "MP4"], ["webm", "WebM"], ["gif", "GIF"], ["zip", "Pictures"]], get: () => film.format, set: (format) => film.set({ format }),
+    label: "Format", choices: FORMATS, get: () => film.format, set: (format) => film.set({ format }),
   });
   const strip = timelineStrip({ get: () => film, setTracks: (tracks) => film.set({ tracks }), show: (frame) => film.show(frame), play: () => film.play(), canShow: channel.sceneAt !== undefined });
 
@@ -165,23 +190,36 @@ export function filmPanel(viewer) {
     else report("Choose a number of the scene first: the list has all of them.");
   }
 
-  element.addEventListener("toggle", () => {
+  function unfold() {
     strip.element.hidden = !element.open;
     root.classList.toggle("filming", element.open);
     if (element.open) names.replaceChildren(...numberPaths(store.scene).map((value) => make("option", { value })));
     strip.update();
+  }
+  element.addEventListener("toggle", () => {
+    unfold();
+    if (element.open !== film.open) film.set({ open: element.open });
   });
   find("workspace").after(strip.element);
   body.append(
-    row(make("span", { class: "name" }, "Length"), make("span", { class: "pair" }, number("Frames of the film", "frames", 2, 100000), "frames, at", number("Frames a second", "fps", 1, 240), "/ s")),
+    row(make("span", { class: "name" }, "Length"), make("span", { class: "pair" }, lengths[0], "frames, at", lengths[1], "/ s")),
     turn.element,
     row(make("span", { class: "name" }, "Keys"), button("key of the camera now", () => addKey(CAMERA, store.scene.camera))),
     names, row("", path), row("", button("key of this number now", addNumber)),
     ...(channel.film ? [kind.element, ...maker(film, viewer)] : []),
     row("", button("copy animate command", () => copy(animateCommand(film.scene, store.title, film.wanted), "the command"))),
     make("p", { class: "facts" }, "Choose a frame below the picture. Turn the camera, drag a light or move a slider. Then add a key: the button above for the camera, ◆ in the row of the slider or of the light's place."));
-  film.changed = () => { strip.update(); turn.update(); };
-  kind.update();
-  film.changed();
+  film.changed = () => {
+    strip.update();
+    turn.update();
+    kind.update();
+    lengths.forEach((one, n) => { if (!isActive(one)) one.value = film[["frames", "fps"][n]]; });
+  };
+  film.taken = () => {
+    element.open = film.open;
+    unfold();
+    film.changed();
+  };
+  film.taken();
   return { element, update: () => {}, film };
 }

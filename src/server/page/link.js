@@ -52,7 +52,7 @@ async function unpacked(word) {
 
 // The scene with the picture's size at the beginning, so that a link does not tell how large a window is.
 function comparable(store, start) {
-  const { scene, marks, page: { bookmarks: _, ...page } } = store, { width, height } = start.scene.image;
+  const { scene, marks, page: { bookmarks: _, film: __, ...page } } = store, { width, height } = start.scene.image;
   return { scene: { ...scene, camera: reshaped(scene.camera, scene.image, { width, height }), image: { ...scene.image, width, height } }, marks, page };
 }
 
@@ -77,6 +77,6 @@ export async function follow(text, { store, start, channel }) {
   const marks = readMarks(told?.marks), page = told?.page;
   const scene = await channel.completeScene(told?.scene ?? {});
   store.replace({
-    scene, marks, page: { ...(page !== null && typeof page === "object" && !Array.isArray(page) ? page : {}), bookmarks: store.page.bookmarks },
+    scene, marks, page: { ...(page !== null && typeof page === "object" && !Array.isArray(page) ? page : {}), bookmarks: store.page.bookmarks, ...(store.page.film ? { film: store.page.film } : {}) },
   });
 }

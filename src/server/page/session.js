@@ -1,5 +1,5 @@
 // The whole state of a page as one object, kept in the tab while it is open and saved as a file: the scene,
-// the marks, the layout, the crosshair, bookmarks, and the history. It holds a person's changes and the names
+// the marks, the layout, the crosshair, bookmarks, the film, and the history. It holds a person's changes and the names
 // of the volumes, but not their voxels.
 
 import { readMarks } from "./marks.js";

@@ -72,7 +72,7 @@ export function sessionPanel(viewer) {
     row(make("span", { class: "name" }, "Session"), make("span", { class: "buttons" }, button("save session", save),
       ...(openSession ? [button("open …", () => chooser.click(), { "aria-label": "Open a session or a scene" }), button("start afresh", afresh, { title: "As the viewer began: what was done in this tab is forgotten" })] : []))),
     row(make("span", { class: "name" }, "Link"), make("span", { class: "pair" }, pasted, button("copy link", copyLink, { title: "What you see now, as the end of an address: for whoever has the same file open" }))),
-    chooser, ...(openSession ? [make("p", { class: "facts" }, "A session holds the scene, marks, bookmarks and layout, and names its volumes. This tab keeps it, for when the page is reloaded and the same files are open again.")] : []));
+    chooser, ...(openSession ? [make("p", { class: "facts" }, "A session holds the scene, marks, bookmarks, film and layout, and names its volumes. This tab keeps it, for when the page is reloaded and the same files are open again.")] : []));
   function update() {
     bookmarks.update();
     backwards.disabled = !store.canUndoCamera;

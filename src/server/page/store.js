@@ -28,7 +28,7 @@ export class Store {
   #lastCamera = -1; // number of the gesture in which the camera was last moved
 
   // scene: a scene file, which may have marks. marks: a person's measures and texts (marks.js) in place of those of the file. page: settings that are no part of pictures: layout,
-  // crosshair, bookmarks. source: by which the scene's files are opened (http_channel.js, open()), or null. title: what they are called.
+  // crosshair, bookmarks, film. source: by which the scene's files are opened (http_channel.js, open()), or null. title: what they are called.
   constructor({ marks: own, ...scene }, { marks = readMarks(own), page = {}, history = null, source = null, title = "" } = {}) {
     this.scene = { volumes: [], ...scene }; // a scene may consist of meshes only
     this.marks = marks;

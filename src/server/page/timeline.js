@@ -5,6 +5,8 @@ import { axes, distance, withType } from "./camera.js";
 import { add, rotate, scale, subtract, turnOfFrames } from "./vector.js";
 
 export const CAMERA = "camera";
+export const MOST_FRAMES = 100000, MOST_FPS = 240;
+export const FORMATS = [["mp4", "MP4"], ["webm", "WebM"], ["gif", "GIF"], ["zip", "Pictures"]];
 // Angle between two points of a turning camera's keys: the chord is 0.14 % nearer than the arc.
 const STEP = Math.PI / 30;
 const ZOOM_STEP = 0.1; // step of the logarithm of its distance
@@ -30,6 +32,32 @@ export function withoutKey(tracks, path, frame) {
 export function withMovedKey(tracks, path, from, to) {
   const value = tracks.find((track) => track.path === path).points.find(([at]) => at === from)[1];
   return withKey(withoutKey(tracks, path, from), path, to, value);
+}
+
+// The tracks of a film that is made longer or shorter: keys keep their part of it. Of keys that come to one frame, the last one stays.
+export function stretched(tracks, before, frames) {
+  const to = (frame) => Math.round((frame * (frames - 1)) / Math.max(before - 1, 1));
+  return tracks.map(({ path, points }) => ({ path, points: [...new Map(points.map(([frame, value]) => [to(frame), value]))] }));
+}
+
+const isVector = (value) => Array.isArray(value) && value.length === 3 && value.every(Number.isFinite);
+const isCamera = (value) => typeof value === "object" && value !== null && ["position", "target", "up"].every((key) => isVector(value[key])) &&
+  Number.isFinite(value.type === "orthographic" ? value.height : value.fovy_deg);
+const isTrack = (track) => typeof track?.path === "string" && Array.isArray(track.points) && track.points.length > 0 &&
+  track.points.every((point, n, all) => Array.isArray(point) && Number.isInteger(point[0]) && point[0] >= 0 && (n === 0 || point[0] > all[n - 1][0]) &&
+    (track.path === CAMERA ? isCamera(point[1]) : Number.isFinite(point[1])));
+
+// What is right of a film in a file: its numbers within their bounds, and its tracks that are tracks. from: { camera, image }, the view from
+// which a film turns.
+export function readFilm(object) {
+  const { frames, fps, frame, turns, open, format, tracks, from } = object ?? {};
+  const within = (value, low, high) => Number.isInteger(value) && value >= low && value <= high;
+  return {
+    ...(within(frames, 2, MOST_FRAMES) ? { frames } : {}), ...(within(fps, 1, MOST_FPS) ? { fps } : {}),
+    ...(within(frame, 0, (within(frames, 2, MOST_FRAMES) ? frames : 2) - 1) ? { frame } : {}),
+    ...(FORMATS.some(([name]) => name === format) ? { format } : {}), turns: turns === true, open: open === true,
+    tracks: Array.isArray(tracks) ? tracks.filter(isTrack) : [], ...(isCamera(from?.camera) && from.image?.width > 0 && from.image.height > 0 ? { from } : {}),
+  };
 }
 
 // The camera on its way from one camera to another. It turns about its target at an even speed; part: from 0

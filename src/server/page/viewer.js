@@ -208,7 +208,6 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
   const connection = watchConnection(find("view"), channel, report, () => { frames.move(); viewer.slices.update(); });
   viewer.failed = connection.failed;
   if (restore !== null) viewer.openSession = (file) => openSession(file, restore, viewer);
-  followSize(store, find("view"), ended.signal);
   followGestures(root, store, ended.signal);
   viewer.overlay = new Overlay(find("overlay"), viewer);
   viewer.slices = new Slices(viewer, find("workspace"), find("view"));
@@ -235,6 +234,8 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
     else panels.forEach((panel) => panel.updateView?.());
   });
   viewer.probe = new Probe(viewer, find("view"));
+  viewer.slices.update();
+  followSize(store, find("view"), ended.signal); // once all stands where it is to be
   const status = statusLine(find, channel);
   const frames = new Frames(viewer, find("picture"), (frame) => {
     // A picture is not final as long as finer voxels are still to come.
@@ -253,7 +254,6 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
   find("open").hidden = !channel.open && choose === null;
   viewer.overlay.showsLights = true;
   followFiles(store, whole, source, reopen);
-  viewer.slices.update();
   update();
   const endRefinement = followRefinement(whole, channel, {
     tell: (text) => { find("resolution").textContent = text; }, failed: viewer.failed,
