@@ -245,6 +245,31 @@ def saved_with_bar(browser):
     check(browser.run(f"{figure}.hidden"), "nothing is drawn any more")
 
 
+def messages_cover_nothing(browser):
+    """A message over the picture covers no scale bar, no axes and no legend, neither the page's own nor those of a figure, also on a phone."""
+    covered = """(() => { const message = document.getElementById('message').getBoundingClientRect(), view = document.getElementById('view').getBoundingClientRect();
+      const meets = (b) => b.width > 0 && b.left < message.right && message.left < b.right && b.top < message.bottom && message.top < b.bottom;
+      const own = [...document.querySelectorAll('.scale, .marker, .side')].filter((e) => meets(e.getBoundingClientRect())).map((e) => e.getAttribute('class'));
+      const figure = document.querySelector('.figure'), part = figure.width / view.width;
+      const [left, top, width, height] = [message.left - view.left, message.top - view.top, message.width, message.height].map((x) => Math.round(part * x));
+      const drawn = !figure.hidden && figure.getContext('2d').getImageData(left, top, width, height).data.some((x) => x > 0);
+      return [document.getElementById('message').hidden, message.left >= view.left && message.right <= view.right, own, drawn]; })()"""
+    for size in ((390, 844), (600, 900), (1280, 720)):
+        resize(browser, *size)
+        rest(browser)
+        for axes in ("none", "arrows"):
+            set_control(browser, "Axes", axes, "change")
+            if axes == "arrows":
+                browser.run("['scale-bar', 'legend'].forEach((id) => document.getElementById(id).click())")
+                browser.wait("!document.querySelector('.figure').hidden")
+            for text in ("saved rings.png", "a line of many words, as long as those that say why a file was refused and what would mend it"):
+                browser.run(f"halflight.report({json.dumps(text)})")
+                found = browser.run(covered)
+                check(found == [False, True, [], False], f"{size}, axes {axes}: {found}")
+        browser.run("['scale-bar', 'legend'].forEach((id) => document.getElementById(id).click())")
+        set_control(browser, "Axes", "none", "change")
+
+
 def reach(browser):
     """On a phone, on a tablet and on a desk all buttons are in reach, and none is smaller than 24 pixels."""
     for size in ((390, 844), (820, 1180), (1280, 720)):
@@ -297,5 +322,6 @@ with tempfile.TemporaryDirectory() as folder:
             facts = browser.run("[...document.querySelectorAll('details')].find((d) => d.querySelector('summary').textContent === 'Volume').querySelector('.facts').textContent")
             check(re.match(r"\d+ × \d+ × \d+ voxels of ([\d.]+) × \1 × \1 Å, ", facts), f"the size of voxels: {facts}")
             saved_with_bar(browser)
+            messages_cover_nothing(browser)
         check(browser.problems == [], f"the console has errors: {browser.problems}")
         print(f"{checks.count} checks passed; frames: {counts}")
