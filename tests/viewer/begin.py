@@ -59,8 +59,18 @@ def pictures_of(browser, label):
 def compared_with_before(browser, button, volumes):
     """One click in the panel shows the look before beside this one, the next click ends that."""
     browser.run("(() => { const own = window.fetch; window.beside = []; window.fetch = (path, options) => { if (/^frame\\?page=\\w+-compared&/.test(path)) beside.push(options.body); return own(path, options); }; })()")
+    making = "getComputedStyle(document.querySelector('.side'), '::after').content.includes('being made')"
     browser.run(f"{button}.click()")
+    check(browser.run(f"document.querySelector('.compared').hidden === {making}"), "as long as the other picture is made, the page says so")
+    browser.run("window.fetchNow = window.fetch, window.fetch = async (path, ...more) => { if (path.includes('-compared&')) await new Promise((go) => { window.goOn = go; }); return fetchNow(path, ...more); }, 0")
+    browser.run("import('./camera.js').then((m) => halflight.store.setCamera(m.turn(halflight.store.scene.camera, 0.1, 0)))")
+    browser.wait("window.goOn !== undefined")
+    check(browser.run(f"document.querySelector('.compared').hidden && {making}"), "also after another view")
+    browser.run("window.fetch = fetchNow, goOn(), 0")
     browser.wait("!document.querySelector('.compared').hidden")
+    check(not browser.run(making), "it is made")
+    browser.run("halflight.store.undoCamera()")
+    rest(browser)
     check(json.loads(browser.run("beside.at(-1)"))["volumes"] == volumes, "the other picture has the look before")
     check(browser.run("[...document.querySelectorAll('.side')].map((s) => s.textContent)") == ["before", "now"], "both sides are named")
     check(browser.run(f"{button}.getAttribute('aria-pressed')") == "true", "the button says so")

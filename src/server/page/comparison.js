@@ -24,6 +24,7 @@ export function comparison({ store, channel, failed, find, report }) {
   find("overlay").after(line);
 
   function place() {
+    left.toggleAttribute("data-making", canvas.hidden); // the present picture is on both sides
     canvas.style.clipPath = `inset(0 ${100 * (1 - part)}% 0 0)`;
     line.style.left = `${100 * part}%`;
     line.setAttribute("aria-valuenow", Math.round(100 * part));
@@ -71,6 +72,7 @@ export function comparison({ store, channel, failed, find, report }) {
       canvas.getContext("2d").drawImage(bitmap, 0, 0);
       bitmap.close();
       canvas.hidden = false;
+      place();
     } catch (error) {
       failed(error);
     } finally {
@@ -97,6 +99,7 @@ export function comparison({ store, channel, failed, find, report }) {
     if (asked === null || store.scene === asked) return;
     asked = null;
     canvas.hidden = true; // the canvas shows another view until the picture has come to rest
+    place();
   });
   const choice = select({
     label: "Compare", choices: [["", "nothing"], ...CHOICES.map((name) => [name, NAMES[name]])], get: () => what,
