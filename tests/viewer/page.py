@@ -184,9 +184,22 @@ def saved_as_seen(browser):
     set_control(browser, "For", "2", "change")
     sides = browser.run("[...document.querySelectorAll('[aria-label$=\"in pixels\"]')].map((input) => +input.value)")
     check(sides[0] == 2 * seen, f"twice as seen: {sides}")
+    chosen = """(() => { const label = [...document.querySelectorAll('aside label')].find((l) => l.textContent === 'For'); return document.getElementById(label.htmlFor); })()"""
+    check(browser.run(f"{chosen}.value") == "2", "the list says so")
+    width, height = browser.run("[innerWidth, innerHeight]")
+    resize(browser, width - 100, height)
+    check(browser.run("+document.querySelector('[aria-label=\"Width in pixels\"]').value === 2 * halflight.store.scene.image.width"), "also in another window")
+    resize(browser, width, height)
+    browser.run(f"{chosen}.value = '', {chosen}.dispatchEvent(new Event('change')), {chosen}.scrollIntoView({{ block: 'center' }}), {chosen}.focus()")
+    for purpose in ("1", "2", "4", "8.5cm"):
+        for kind in ("rawKeyDown", "keyUp"):
+            browser.call("Input.dispatchKeyEvent", type=kind, key="ArrowDown", code="ArrowDown", windowsVirtualKeyCode=40)
+        browser.wait(f"{chosen}.value === '{purpose}'", timeout=20)  # the keyboard reaches each size
     set_control(browser, "For", "8.5cm", "change")
     check(browser.run("+document.querySelector('[aria-label=\"Width in pixels\"]').value") == 1004, "8.5 cm at 300 dpi")
-    browser.run("""['Width', 'Height'].forEach((side, n) => { document.querySelector(`[aria-label="${side} in pixels"]`).value = [120, 300][n]; })""")
+    browser.run("""['Width', 'Height'].forEach((side, n) => { const input = document.querySelector(`[aria-label="${side} in pixels"]`);
+      input.value = [120, 300][n]; input.dispatchEvent(new Event('input')); })""")
+    check(browser.run(f"{chosen}.value") == "", "what is typed is for these pixels")
     set_control(browser, "Transparent", "")
     press(browser, "save picture")
     set_control(browser, "Transparent", "")

@@ -56,7 +56,7 @@ export function exportPanel(viewer) {
   const { store, channel, report, failed, copy } = viewer;
   const { element, body } = section("Save", false);
   const name = () => stem(store.title);
-  let format = "png";
+  let format = "png", purpose = "";
   const side = (label) => make("input", { type: "number", min: 16, max: 8192, step: 1, "aria-label": label });
   const width = side("Width in pixels"), height = side("Height in pixels");
   const kind = select({
@@ -66,12 +66,17 @@ export function exportPanel(viewer) {
   // The picture's sides by its purpose: multiples of the shown size, or a width in print.
   const sizes = select({
     label: "For", choices: [["", "these pixels"], ["1", "as seen"], ["2", "twice as seen"], ["4", "four times as seen"], ["8.5cm", "8.5 cm at 300 dpi"], ["17cm", "17 cm at 300 dpi"]],
-    get: () => "", set: (choice) => {
-      const { image } = store.scene, factor = choice.endsWith("cm") ? (parseFloat(choice) / 2.54) * 300 / image.width : +choice;
-      if (factor > 0) [width.value, height.value] = [Math.round(image.width * factor), Math.round(image.height * factor)];
-      sizes.update();
+    get: () => purpose, set: (choice) => {
+      purpose = choice;
+      followPurpose();
     },
   });
+  function followPurpose() {
+    const { image } = store.scene, factor = purpose.endsWith("cm") ? (parseFloat(purpose) / 2.54) * 300 / image.width : +purpose;
+    if (factor > 0) [width.value, height.value] = [Math.round(image.width * factor), Math.round(image.height * factor)];
+  }
+  // A number that is typed is for these pixels.
+  [width, height].forEach((input) => input.addEventListener("input", () => { purpose = ""; sizes.update(); }));
   const transparent = make("input", { type: "checkbox", id: "transparent" });
   const bare = make("input", { type: "checkbox", id: "bare", title: "A PNG without the scene, and without the names of its files" });
 
@@ -115,6 +120,7 @@ export function exportPanel(viewer) {
       button("copy Python", () => copy(pythonProgram(store.file, store.title, figure.saved()), "the program")))),
     same);
   function update() {
+    followPurpose();
     for (const [input, key] of [[width, "width"], [height, "height"]])
       if (!isActive(input) && !input.value) input.placeholder = store.scene.image[key];
     kind.update();
