@@ -79,6 +79,14 @@ static void put_unsmoothed(FILE *out, const hl_volume *volume) {
   fputc('}', out);
 }
 
+/* Writes how many chunks of the volume and of its mask a server lacks, and how many there are. */
+static void put_absence(FILE *out, const hl_scene_volume *volume) {
+  size_t chunks = 0, of_mask = 0;
+  size_t absent = hl_volume_absent_chunks(volume->volume, &chunks);
+  absent += hl_volume_absent_chunks(volume->mask.volume, &of_mask);
+  fprintf(out, ",\"absent_chunks\":[%zu,%zu]", absent, chunks + of_mask);
+}
+
 /* Whether the volume's cuts are the automatic ones, which remove the table or another holder. */
 static bool has_chosen_cuts(hl_context *context, const hl_scene_volume *volume) {
   hl_scene *chosen = NULL;
@@ -117,6 +125,7 @@ static void put_volume(FILE *out, hl_context *context, const hl_scene_volume *vo
   fputc(',', out);
   put_histogram(out, &info);
   put_unsmoothed(out, volume->volume);
+  put_absence(out, volume);
   const char *space = hl_space_name(info.space);
   fputs(",\"space\":", out);
   if (space != NULL) put_json_text(out, space);

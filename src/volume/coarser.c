@@ -142,6 +142,7 @@ static void place(const coarsening *c, hl_volume_description *d) {
  * content, the window, and what the file states about units, space and labels. */
 static void inherit(const hl_volume *volume, hl_volume *made) {
   made->unit = volume->unit;
+  made->absence = volume->absence;
   made->is_anatomical = volume->is_anatomical;
   made->says_labels = volume->says_labels;
   made->has_surroundings = volume->has_surroundings;

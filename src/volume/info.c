@@ -118,6 +118,12 @@ const char *hl_volume_label_map(const hl_volume *volume, size_t index) {
 
 const char *hl_volume_unit(const hl_volume *volume) { return volume != NULL ? volume->unit : NULL; }
 
+size_t hl_volume_absent_chunks(const hl_volume *volume, size_t *chunks) {
+  HL_DOOR;
+  if (chunks != NULL) *chunks = volume != NULL ? volume->absence.chunks : 0;
+  return volume != NULL ? volume->absence.absent : 0;
+}
+
 hl_status hl_volume_get_selection(const hl_volume *volume, hl_volume_selection *selection) {
   if (volume == NULL || selection == NULL || selection->struct_size != sizeof *selection)
     return HL_ERROR_ARGUMENT;
@@ -144,6 +150,7 @@ hl_volume_description hl_volume_own_grid(const hl_volume *volume) {
 void hl_volume_take_about(hl_volume *volume, const hl_volume *from) {
   volume->index_to_world = from->index_to_world;
   volume->unit = from->unit;
+  volume->absence = from->absence;
   volume->is_anatomical = from->is_anatomical;
   memcpy(volume->window, from->window, sizeof volume->window);
   volume->selection = from->selection;

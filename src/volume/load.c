@@ -340,6 +340,7 @@ static hl_status finish(hl_load_request *request, const char *path, hl_status st
   (*volume)->says_labels = request->says_labels;
   /* A spacing that the caller gives has no unit. */
   (*volume)->unit = request->spacing[0] > 0 ? NULL : request->unit;
+  (*volume)->absence = request->absence;
   (*volume)->selection = request->selection;
   (*volume)->series = request->series_list;
   (*volume)->series_count = request->series_count;

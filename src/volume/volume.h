@@ -31,6 +31,11 @@ typedef struct hl_selection {
   int aim; /* the resolution that is read where no coarser one is wanted for a first picture */
 } hl_selection;
 
+/* Of how many chunks of a store a server has no file. */
+typedef struct hl_absence {
+  size_t absent, chunks; /* 0 where the file is no store on a server */
+} hl_absence;
+
 /* One of the DICOM series in the input of a volume. All texts are printable. */
 typedef struct hl_series_entry {
   char uid[HL_SERIES_TEXT_BYTES], modality[HL_SERIES_TEXT_BYTES], description[HL_SERIES_TEXT_BYTES];
@@ -91,7 +96,8 @@ struct hl_volume {
   affine3 index_to_world; /* voxel centres at integer indices */
   hl_voxel_type type;     /* the type in the file */
   hl_space space;
-  const char *unit;   /* unit of lengths in the world, static; null if unknown */
+  const char *unit; /* unit of lengths in the world, static; null if unknown */
+  hl_absence absence;
   bool is_anatomical; /* whether the file states `space` on purpose, as DICOM and NIfTI do; other programs
                        * write left-posterior-superior for any data */
   bool says_labels;   /* whether the file says that its values are labels */

@@ -17,6 +17,7 @@ import zlib
 import numpy
 
 import checks
+from browser import Browser
 from checks import check
 from viewer import Viewer, need_viewer
 
@@ -161,6 +162,31 @@ def lasting_faults(server, url):
             check(told(viewer, "start")["volumes"][0]["dimensions"] == [256] * 3, f"{fault}: the level before the finest")
 
 
+def absent_chunks(server, url):
+    """A server that has no file for a chunk: its voxels have the fill value, and the page says so for as long as it shows them."""
+    (pathlib.Path("stores/a.zarr/0/3/3/3")).rename("kept")
+    server.forget()
+    try:
+        with Viewer(PROGRAM, url) as viewer:
+            check(told(viewer, "start")["refining"], "it is read from coarse to fine")
+            line = "the server has no file for 505 of 512 chunks: their voxels have the fill value"
+            if shutil.which("chromium"):
+                with Browser(size=(390, 844)) as browser:
+                    browser.open(viewer.url)
+                    browser.wait(f"document.getElementById('message')?.hidden === false && document.getElementById('message').textContent.includes({json.dumps(line)})")
+                    browser.wait("globalThis.halflight.frames.statistics.stage === 'final'")
+                    said = browser.run("[document.getElementById('resolution').title, ...[...document.querySelectorAll('.facts')].map((one) => one.textContent)].join('|')")
+                    check(said.count(line) == 2, f"the line below the picture and the panel say it: {said}")
+                    check(browser.run("(({ left, right }) => left >= 0 && right <= innerWidth)(document.getElementById('resolution').getBoundingClientRect())"), "within the page")
+            status, _, _ = frame(viewer, small(told(viewer, "start")["scene"]))
+            check(status == 200 and told(viewer, "start")["volumes"][0]["absent_chunks"] == [505, 512], f"seven of eight chunks are there: {told(viewer, 'start')['volumes'][0]['absent_chunks']}")
+    finally:
+        pathlib.Path("kept").rename("stores/a.zarr/0/3/3/3")
+    with Viewer(PROGRAM, "stores/a.zarr") as viewer:
+        frame(viewer, small(told(viewer, "start")["scene"]))
+        check(told(viewer, "start")["volumes"][0]["absent_chunks"] == [0, 0], "a folder's files can be seen: nothing is said")
+
+
 def from_server():
     """A store on a server, by its URL on the command line."""
     server = servers.Server(pathlib.Path("stores"))
@@ -169,7 +195,7 @@ def from_server():
     os.environ.pop("http_proxy", None)
     right = final_picture("stores/a.zarr")
     for number, part in enumerate((lambda: coarse_first(server, url, right), lambda: passing_faults(server, url, right),
-                                   lambda: lasting_faults(server, url))):
+                                   lambda: lasting_faults(server, url), lambda: absent_chunks(server, url))):
         os.environ["XDG_CACHE_HOME"] = os.path.abspath(f"cache{number}")
         os.mkdir(f"cache{number}")
         part()

@@ -5,10 +5,29 @@ import { Lost } from "./connection.js";
 
 const ASK_EVERY = 250; // milliseconds
 
+// What a server lacks of the store that a volume (of start.json) was read from: a line, "" where it lacks nothing.
+export function absenceOf(volume) {
+  const [absent = 0, chunks = 0] = volume?.absent_chunks ?? [];
+  return absent > 0 ? `the server has no file for ${absent} of ${chunks} chunks: their voxels have the fill value` : "";
+}
+
+// The same for all volumes, with their names where there are several.
+export const absenceIn = ({ volumes, scene }) => volumes.map((volume, v) => [absenceOf(volume), (scene.volumes?.[v]?.file ?? "").split("/").pop()])
+  .filter(([line]) => line !== "").map(([line, name]) => `${name}: ${line}`).join("; ");
+
 // whole: start.json, whose volumes the viewer's panels have; its entries are changed in place. tell(text): shows what the picture is
-// of, "" for the voxels that it shall be of. renew(): called when the volumes have changed. Returns end().
-export function followRefinement(whole, channel, { tell, renew, failed }) {
-  let timer = 0, ended = false;
+// of, "" for the voxels that it shall be of. warn(text): called once for each line about voxels that a server lacks. renew(): called when
+// the volumes have changed. Returns end().
+export function followRefinement(whole, channel, { tell, warn, renew, failed }) {
+  let timer = 0, ended = false, warned = "";
+
+  // Tells what the server lacks, where all is read.
+  function tellAbsence() {
+    const line = absenceIn(whole);
+    tell(line);
+    if (line !== "" && line !== warned) warn(line);
+    warned = line;
+  }
 
   async function take() {
     const fresh = await channel.start();
@@ -25,7 +44,9 @@ export function followRefinement(whole, channel, { tell, renew, failed }) {
       if (refined !== whole.refined) await take();
       if (ended) return;
       whole.refining = refining;
-      tell(problem ? `a coarser resolution is shown: ${problem}` : refining ? "finer voxels are being read" : "");
+      if (problem) tell(`a coarser resolution is shown: ${problem}`);
+      else if (refining) tell("finer voxels are being read");
+      else tellAbsence();
       if (problem) failed(new Error(problem));
     } catch (error) {
       if (!(error instanceof Lost)) return failed(error);
@@ -35,6 +56,7 @@ export function followRefinement(whole, channel, { tell, renew, failed }) {
   }
 
   if (whole.refining && channel.refinement) ask();
+  else tellAbsence();
   return () => {
     ended = true;
     clearTimeout(timer);

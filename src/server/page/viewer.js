@@ -84,7 +84,7 @@ const MARKUP = `
 
 const MOST_SIDE = 4096; // the most pixels along a side of the picture
 const NEAR = 0.02; // fraction of a volume's diagonal
-const MESSAGE_TIME = 5000; // milliseconds
+const MESSAGE_TIME = 5000, WARNING_TIME = 15000; // milliseconds
 const SWEEP_TIME = 1800; // milliseconds of the moving light that shows, once, what shadows tell
 
 // Returns the function that shows a line over the picture for a while, in milliseconds.
@@ -256,7 +256,7 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
   followFiles(store, whole, source, reopen);
   update();
   const endRefinement = followRefinement(whole, channel, {
-    tell: (text) => { find("resolution").textContent = text; }, failed: viewer.failed,
+    tell: (text) => { find("resolution").textContent = find("resolution").title = text; }, warn: (line) => report(line, WARNING_TIME), failed: viewer.failed,
     renew: () => {
       frames.refine(start);
       viewer.slices.refine();

@@ -3,6 +3,7 @@
 import { worldBox } from "./boxes.js";
 import { hexOf, linearOf } from "./color.js";
 import { button, color, keyButton, make, row, section, segments, select, shortNumber, slider, toggle } from "./controls.js";
+import { absenceOf } from "./refinement.js";
 import { symbolOf } from "./units.js";
 import { length } from "./vector.js";
 
@@ -105,7 +106,7 @@ export function volumePanel({ store, start, current, overlay, channel, report })
     const casts = toggle({ label: "Casts shadows", get: () => volume().casts_shadow !== false, set: (on) => change("casts", (v) => ({ ...v, casts_shadow: on })) });
     const material = materialSliders();
     const unit = about.unit ? ` ${symbolOf(about.unit)}` : "", edges = about.axes.map((axis) => shortNumber(length(axis))).join(" × ");
-    const facts = make("p", { class: "facts" }, `${about.dimensions.join(" × ")} voxels of ${edges}${unit}, ${about.type}, values ${about.range.map(shortNumber).join(" to ")}`);
+    const facts = make("p", { class: "facts" }, `${about.dimensions.join(" × ")} voxels of ${edges}${unit}, ${about.type}, values ${about.range.map(shortNumber).join(" to ")}${absenceOf(about) ? `; ${absenceOf(about)}` : ""}`);
     parts = [...rows, labelled, shading, ...scattering, visible, casts, ...material];
     body.replaceChildren(facts, ...rows.map((r) => r.element), reset, labelled.element, shading.element,
       ...[...material, ...scattering, visible, casts].map((part) => part.element));

@@ -27,6 +27,7 @@ typedef struct hl_load_request {
                              * channels */
   const char *unit;         /* set by readers: the unit of lengths, static; null if the file does not state
                              * it */
+  hl_absence absence;       /* set by readers of stores on servers */
   bool is_anatomical;       /* set by readers of medical formats: whether the file states its anatomical space
                              * on purpose */
   bool says_labels;         /* set by readers: whether the file says that its values are labels */

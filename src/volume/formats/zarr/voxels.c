@@ -498,9 +498,11 @@ static hl_status read_parts(reading *r, hl_pool *pool, hl_error *error) {
 
 /* Tells how many chunks a server lacks. A store may lack them on purpose, but a server's fault looks the
  * same, and nobody sees a server's files as those of a folder. */
-static void tell_absent(const reading *r) {
+static void tell_absent(const reading *r, hl_absence *absence) {
+  if (!hl_bundle_is_on_server(r->bundle)) return;
   const size_t absent = atomic_load(&r->absent), all = absent + atomic_load(&r->found);
-  if (hl_bundle_is_on_server(r->bundle) && absent > 0)
+  *absence = (hl_absence){absent, all};
+  if (absent > 0)
     hl_log(
         r->bundle->context, HL_LOG_INFO,
         "%.300s: the server has no file for %zu of %zu chunks (array \"%.200s\"): their voxels have the fill "
@@ -508,13 +510,13 @@ static void tell_absent(const reading *r) {
         r->bundle->path, absent, all, r->array->folder);
 }
 
-static hl_status read_all(reading *r, hl_error *error) {
+static hl_status read_all(reading *r, hl_absence *absence, hl_error *error) {
   hl_pool *pool = NULL;
   bool parallel = r->parts > 1 && r->size[0] * r->size[1] * r->size[2] >= PARALLEL_VOXELS;
   hl_status status = hl_pool_create(r->bundle->context, parallel ? 0 : 1, &pool, error);
   if (status == HL_OK) status = read_parts(r, pool, error);
   hl_pool_destroy(pool);
-  if (status == HL_OK && atomic_load(&r->found) > 0) tell_absent(r);
+  if (status == HL_OK && atomic_load(&r->found) > 0) tell_absent(r, absence);
   if (status == HL_OK && atomic_load(&r->found) == 0)
     return hl_zarr_fail(r->bundle, r->array->folder, error, HL_ERROR_INPUT,
                         "not one of its %llu chunks is there: is the copy whole?",
@@ -524,7 +526,7 @@ static hl_status read_all(reading *r, hl_error *error) {
 
 hl_status hl_zarr_voxels_read(const hl_bundle *bundle, const hl_zarr_array *array,
                               const hl_zarr_choice *choice, const hl_volume_description *grid,
-                              hl_destination *to, hl_error *error) {
+                              hl_destination *to, hl_absence *absence, hl_error *error) {
   reading r = {.bundle = bundle, .array = array, .choice = choice, .to = to};
   atomic_init(&r.found, 0);
   atomic_init(&r.absent, 0);
@@ -535,7 +537,7 @@ hl_status hl_zarr_voxels_read(const hl_bundle *bundle, const hl_zarr_array *arra
   if (status != HL_OK) return status;
   r.is_filled = hl_destination_is_sparse(to);
   pthread_rwlock_init(&r.lock, NULL); /* a lock without attributes cannot fail to be made */
-  status = read_all(&r, error);
+  status = read_all(&r, absence, error);
   pthread_rwlock_destroy(&r.lock);
   return status;
 }

@@ -14,9 +14,10 @@ typedef struct hl_zarr_choice {
 } hl_zarr_choice;
 
 /* Opens the destination and reads all voxels into it. Fails if all chunks are missing. grid: the volume's
- * grid, which must fit the choice. *to must be zero before, and is to be closed also after a failure. */
+ * grid, which must fit the choice. *to must be zero before, and is to be closed also after a failure.
+ * *absence: which chunks a server lacks; unchanged for a store that is on no server. */
 hl_status hl_zarr_voxels_read(const hl_bundle *bundle, const hl_zarr_array *array,
                               const hl_zarr_choice *choice, const hl_volume_description *grid,
-                              hl_destination *to, hl_error *error);
+                              hl_destination *to, hl_absence *absence, hl_error *error);
 
 #endif

@@ -140,7 +140,7 @@ static hl_status load_image(const hl_bundle *bundle, const hl_zarr_image *image,
   if (status != HL_OK) return status;
   hl_volume_description grid = hl_payload_grid(&payload, request->spacing);
   hl_destination to = {.context = NULL};
-  status = hl_zarr_voxels_read(bundle, array, &choice, &grid, &to, error);
+  status = hl_zarr_voxels_read(bundle, array, &choice, &grid, &to, &request->absence, error);
   if (status == HL_OK) status = hl_destination_adopt(&to, &grid, volume, error);
   hl_destination_close(&to);
   return status;
