@@ -7,6 +7,7 @@ import { PictureHandles } from "./picture_handles.js";
 import { add, scale } from "./vector.js";
 
 const HEAD = 9; // pixels of an arrow's head
+const DOT = 4; // pixels; radius
 const TEXT_HEIGHT = 13; // pixels; of .mark-text in style.css
 const KEY_REACH = 0.25; // fraction of the height of the shown area; a key moves a point by a fiftieth of it
 
@@ -56,7 +57,10 @@ export class Marks {
       if (places.length === 0 || places.includes(null) || style === null) return [];
       if (m < this.#viewer.store.marks.length)
         mark.points.forEach((point, n) => { if (inside(places[n])) points.push(this.#handle(m, n, mark, point, ways)); });
-      return drawn(mark, places, captionOf(mark, this.#viewer), `mark ${style}`);
+      if (m < this.#viewer.store.marks.length) return drawn(mark, places, captionOf(mark, this.#viewer), `mark ${style}`);
+      // Of a mark that is being made, a single point has no length yet; its points are seen as dots.
+      return [...drawn(mark, places, places.length > 1 ? captionOf(mark, this.#viewer) : mark.text ?? "", `mark ${style}`),
+        ...places.map(([x, y]) => make("svg:circle", { cx: x, cy: y, r: DOT, class: "mark-dot" }))];
     }));
     handles.draw(points, project, points[0]?.at ?? [0, 0, 0], width, height);
   }
