@@ -251,6 +251,16 @@ def shot(browser, name):
         browser.screenshot(f"{SHOTS}/{name}.png")
 
 
+def saved_json(path):
+    """The file that the page saves, once it is there."""
+    end = time.monotonic() + 60
+    while not os.path.exists(path) or os.path.getsize(path) == 0:  # Firefox keeps its name first
+        check(time.monotonic() < end, f"{path} is saved")
+        time.sleep(0.05)
+    with open(path, encoding="utf-8") as file:
+        return json.load(file)
+
+
 def after_restart(browser, viewer, options):
     """Another viewer on the same port goes on with the page, and with the file that it had opened."""
     browser.run("fetch('open?file=second.nrrd', { method: 'POST' })")  # numbers of the first viewer are not those of the second
@@ -268,6 +278,13 @@ def after_restart(browser, viewer, options):
     check("Retry" in browser.run(f"{BANNER}.textContent"), "the banner offers to try again")
     shot(browser, "banner")
     before = browser.run(STATE)
+    os.mkdir("lost")
+    browser.save_in("lost")
+    browser.run(f"[...{BANNER}.querySelectorAll('button')].find((b) => b.textContent === 'save session').click()")
+    saved = saved_json("lost/second-session.json")
+    check([saved["scene"], saved["marks"], saved["page"]] == json.loads(before), "the session is saved without a viewer")
+    low, top = browser.run(f"[{BANNER}.getBoundingClientRect().bottom, document.getElementById('message').getBoundingClientRect().top]")
+    check(browser.run("document.getElementById('message').textContent") == "saved second-session.json" and top >= low, f"the page says so below the banner: {top}, {low}")
     with Viewer(PROGRAM, *options) as again:
         check(again.url == viewer.url, f"the same URL: {again.url}")
         browser.run(f"[...{BANNER}.querySelectorAll('button')][0].click()")
@@ -306,13 +323,8 @@ def files(browser):
     browser.save_in("saved")
     work(browser)
     state = json.loads(browser.run(STATE))
-    press(browser, "save session")
-    end = time.monotonic() + 60
-    while not os.path.exists("saved/second-session.json") or os.path.getsize("saved/second-session.json") == 0:  # Firefox keeps its name first
-        check(time.monotonic() < end, "the session is saved")
-        time.sleep(0.05)
-    with open("saved/second-session.json", encoding="utf-8") as file:
-        session = file.read()
+    browser.run("[...document.querySelectorAll('aside button')].find((b) => b.textContent === 'save session').click()")
+    session = json.dumps(saved_json("saved/second-session.json"))
     press(browser, "start afresh")
     rest(browser)
     check(json.loads(browser.run(STATE))[1:] == [[], {}] and not browser.run("halflight.store.canUndo"), "as it began")

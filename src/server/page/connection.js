@@ -1,5 +1,6 @@
 // The banner that says that the viewer does not answer. It stays until the viewer answers: the viewer is
-// asked again and again, and at once by Retry.
+// asked again and again, and at once by Retry. A viewer at another port is another site, to which the browser shows nothing of this
+// tab's session: the banner also saves the session as a file.
 
 import { button, make } from "./controls.js";
 
@@ -9,13 +10,13 @@ export class Lost extends Error {}
 
 const ASK_EVERY = 2000; // milliseconds
 
-// place: the element for the banner. onBack() is called when the viewer answers again. Returns failed(error),
+// place: the element for the banner. onBack() is called when the viewer answers again; save() saves the session. Returns failed(error),
 // which takes any error of a request, and end().
-export function watchConnection(place, channel, report, onBack) {
+export function watchConnection(place, channel, report, { onBack, save }) {
   const text = make("span"), retry = button("Retry", () => ask(), { class: "primary" });
-  const banner = make("div", { class: "banner", role: "alert", hidden: true }, text, retry);
+  const banner = make("div", { class: "banner", role: "alert", hidden: true }, text, make("span", { class: "buttons" }, retry, button("save session", save)));
   let timer = 0, ended = false;
-  place.append(banner);
+  place.prepend(banner);
 
   async function ask() {
     clearTimeout(timer);

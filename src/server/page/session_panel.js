@@ -54,6 +54,7 @@ export function sessionPanel(viewer) {
     download(new Blob([JSON.stringify(sessionOf(store, start, source ?? null), null, 1)], { type: "application/json" }), name);
     report(`saved ${name}`);
   };
+  viewer.saveSession = save;
   const chooser = make("input", { type: "file", accept: ".json", hidden: true, "aria-label": "A session or a scene", onchange: async () => {
     const [file] = chooser.files;
     chooser.value = "";

@@ -205,7 +205,7 @@ export function mount(element, channel, whole, { keyboard = element, reopen = ()
   const start = startOf(kept?.scene ?? whole.scene, whole);
   const store = new Store(kept?.scene ?? start.scene, { ...kept, source: kept?.own ?? source, title: kept?.title ?? whole.title }), report = messageBox(find("message"));
   const viewer = { store, start, channel, smallPicture: smallPictures(channel), report, reopen, root, find, source, startAfresh, choose, copy: copier(report, store), current: { volume: 0, light: 0 }, address, atRest: [], frames: () => frames };
-  const connection = watchConnection(find("view"), channel, report, () => { frames.move(); viewer.slices.update(); });
+  const connection = watchConnection(find("view"), channel, report, { onBack: () => { frames.move(); viewer.slices.update(); }, save: () => viewer.saveSession() });
   viewer.failed = connection.failed;
   if (restore !== null) viewer.openSession = (file) => openSession(file, restore, viewer);
   followGestures(root, store, ended.signal);
