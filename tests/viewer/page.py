@@ -110,6 +110,24 @@ def hands_on_the_light(browser):
     changes(browser, "method", lambda: set_control(browser, "Method", "sublights", "change"), "render")
 
 
+def scrolled_over(browser):
+    """The wheel turned downwards over the drawing scrolls the side bar as long as all values are shown; turned upwards it zooms the values."""
+    browser.run("document.querySelector('canvas.function').scrollIntoView({ block: 'center' })")
+    x, y = center(browser, "canvas.function")
+    top = browser.run("document.getElementById('panels').scrollTop")
+    browser.wheel(x, y, 60)
+    browser.wait(f"document.getElementById('panels').scrollTop > {top}", timeout=20)
+    browser.run("document.querySelector('canvas.function').scrollIntoView({ block: 'center' })")
+    x, y = center(browser, "canvas.function")
+    top = browser.run("document.getElementById('panels').scrollTop")
+    browser.wheel(x, y, -60)
+    browser.wheel(x, y, 30)
+    browser.run("new Promise((done) => setTimeout(done, 500))")
+    check(browser.run("document.getElementById('panels').scrollTop") == top, "while values are zoomed, the side bar stays")
+    browser.wheel(x, y, 600)
+    browser.run("new Promise((done) => setTimeout(done, 500))")
+
+
 def hands_on_the_function(browser):
     browser.run("document.querySelector('canvas.function').scrollIntoView({ block: 'center' })")
     box = browser.run("(({ x, y, width, height }) => [x, y, width, height])(document.querySelector('canvas.function').getBoundingClientRect())")
@@ -321,6 +339,7 @@ with tempfile.TemporaryDirectory() as folder:
         hands_on_the_camera(browser)
         fingers_on_the_camera(browser)
         hands_on_the_light(browser)
+        scrolled_over(browser)
         hands_on_the_function(browser)
         other_panels(browser)
         equals_render(browser, "last")

@@ -138,8 +138,9 @@ export class FunctionCanvas {
     this.#canvas.title = `value ${shortNumber(this.#value(x))}, opacity ${shortNumber(Math.min(Math.max(this.#opacity(y), 0), 1))}`;
   }
 
-  // Zooms the shown values about the pointer.
+  // Zooms the shown values about the pointer. Where all values are shown already, the side bar scrolls on.
   #wheel(event) {
+    if (event.deltaY >= 0 && this.#shown.every((value, n) => value === this.#range[n])) return;
     event.preventDefault();
     const [x] = this.#place(event), at = this.#value(x), factor = 1.0015 ** event.deltaY;
     const [low, high] = this.#shown.map((value) => at + (value - at) * factor);
