@@ -114,6 +114,69 @@ char *output_default_name(const char *input, const char *extension) {
   return name;
 }
 
+/* ---- names of pictures that are made of the inputs' names ---- */
+
+bool output_has_name(const char *text) {
+  int names = 0;
+  for (const char *at = strchr(text, '%'); at != NULL; at = strchr(at + 2, '%')) {
+    if (at[1] == 's') names++;
+    else if (at[1] != '%') return false;
+  }
+  return names == 1;
+}
+
+bool output_is_folder(const char *path) {
+  struct stat about;
+  size_t length = strlen(path);
+  return (length > 0 && path[length - 1] == '/') || (stat(path, &about) == 0 && S_ISDIR(about.st_mode));
+}
+
+char *output_pattern(const char *folder, const char *extension) {
+  size_t length = strlen(folder), doubled = length;
+  for (const char *c = folder; *c != '\0'; c++) doubled += *c == '%';
+  char *pattern = malloc(doubled + strlen("/%s") + strlen(extension) + 1);
+  if (pattern == NULL) return NULL;
+  char *end = pattern;
+  for (const char *c = folder; *c != '\0'; c++) {
+    if (*c == '%') *end++ = '%';
+    *end++ = *c;
+  }
+  sprintf(end, "%s%%s%s", length > 0 && folder[length - 1] == '/' ? "" : "/", extension);
+  return pattern;
+}
+
+char *output_name_picture(const char *pattern, const char *input) {
+  char *stem = output_default_name(input, ""), *name = NULL;
+  if (stem != NULL) name = malloc(strlen(pattern) + strlen(stem) + 1);
+  for (char *end = name; name != NULL; pattern++) {
+    if (pattern[0] == '%' && pattern[1] == 's') {
+      end = stpcpy(end, stem);
+      pattern++;
+      continue;
+    }
+    if (pattern[0] == '%' && pattern[1] == '%') pattern++;
+    *end++ = *pattern;
+    if (*pattern == '\0') break;
+  }
+  free(stem);
+  return name;
+}
+
+int output_make_folder(const char *path) {
+  int exit_code = EXIT_CODE_OK;
+  char *folder = strdup(path);
+  if (folder == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
+  char *slash = strrchr(folder, '/');
+  if (slash != NULL && slash != folder) {
+    *slash = '\0';
+    if (mkdir(folder, 0777) != 0 && errno != EEXIST)
+      exit_code = fail(EXIT_CODE_FAILURE, "%s: no folder for the pictures can be made: %s", folder,
+                       strerror(errno));
+  }
+  free(folder);
+  return exit_code;
+}
+
 /* ---- files that the run has read ---- */
 
 static bool make_room(cli_read_files *read) {

@@ -33,6 +33,25 @@ hl_status output_scene_text(hl_context *context, const hl_scene *scene, const ch
  * A URL's query does not become part of the name. Owned by the caller (free); null without memory. */
 char *output_default_name(const char *input, const char *extension);
 
+/* ---- names of pictures that are made of the inputs' names ---- */
+
+/* True if the text has one "%s", which stands for an input's name, and no other '%' but "%%". */
+bool output_has_name(const char *text);
+
+/* True if the path names a folder: it ends in '/', or a folder is there. */
+bool output_is_folder(const char *path);
+
+/* The pattern "FOLDER/%s.png" of the pictures in a folder. extension: ".png". Owned by the caller (free);
+ * null without memory. */
+char *output_pattern(const char *folder, const char *extension);
+
+/* Makes the name of an input's picture: the pattern with the input's name, without folder and extension, in
+ * place of its "%s" (output_has_name()). Owned by the caller (free); null without memory. */
+char *output_name_picture(const char *pattern, const char *input);
+
+/* Makes the folder of the file at this path, if it is missing. Returns the exit code. */
+int output_make_folder(const char *path);
+
 /* ---- files that the run has read: it must write over none of them ---- */
 
 /* Identifies a file, by whichever of its names or links it is opened. */

@@ -29,8 +29,10 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                        .kind = OPTION_TEXT,
                        .argument = "OUT",
                        .group = "Picture",
-                       .help = "file to write: .png, .exr, .npy, .tif, .pdf or .svg\n(default: INPUT's name "
-                               "with .png, in this folder)"},
+                       .help =
+                           "file to write: .png, .exr, .npy, .tif, .pdf or .svg\n(default: INPUT's name with "
+                           ".png, in this folder). %s in\nit is INPUT's name, and a folder OUT is "
+                           "OUT/%s.png; of\nseveral files each has a picture: %s.png, %04d.png"},
     [RENDER_FORMAT] = {.name = "format",
                        .kind = OPTION_CHOICE,
                        .choices = formats,

@@ -63,11 +63,17 @@ static char *default_output(const render_job *job) {
   return output_default_name(nameable(job->input.first), again ? "-again.png" : extension);
 }
 
+/* The picture's name by --output, in which %s is INPUT's name. Null without memory. */
+static char *named_output(const render_job *job) {
+  const char *output = job->values[RENDER_OUTPUT].text;
+  return output_has_name(output) ? output_name_picture(output, nameable(job->input.first)) : strdup(output);
+}
+
 /* Decides where the picture goes: to the path of --output, or to a name made from INPUT. */
 static int choose_output(render_job *job) {
   const cli_value *values = job->values, *output = &values[RENDER_OUTPUT];
   job->to_stdout = output->given && strcmp(output->text, "-") == 0;
-  job->output = output->given ? strdup(output->text) : default_output(job);
+  job->output = output->given ? named_output(job) : default_output(job);
   if (job->output == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
   if (prints_text(values)) return EXIT_CODE_OK;
   if (job->to_stdout && isatty(STDOUT_FILENO))
@@ -80,6 +86,10 @@ static int choose_output(render_job *job) {
   if (values[RENDER_FORMAT].given && !has_extension(job->output, wanted_extension(values)))
     return fail(EXIT_CODE_USAGE, "--format %s: '%s' does not end in %s: rename OUT, or leave --format out",
                 values[RENDER_FORMAT].text, job->output, wanted_extension(values));
+  if (output->given && output_has_name(output->text)) {
+    int exit_code = output_make_folder(job->output);
+    if (exit_code != EXIT_CODE_OK) return exit_code;
+  }
   return output_check(job->output, figure_extensions, job->input.all, job->input.count);
 }
 
@@ -334,9 +344,28 @@ static int render_one(const cli_value *values, char **operands) {
   return exit_code;
 }
 
-static int run_render(const cli_value *values, char **operands) {
+static int run_with_pattern(const cli_value *values, char **operands) {
   if (render_are_scenes(operands)) return render_scenes(values, operands, render_one);
   return render_one(values, operands);
+}
+
+/* An OUT that names a folder becomes "OUT/%s.png". */
+static int run_render(const cli_value *values, char **operands) {
+  const cli_value *output = &values[RENDER_OUTPUT];
+  if (!output->given || !output_is_folder(output->text)) return run_with_pattern(values, operands);
+  cli_value *own = malloc(RENDER_OPTION_COUNT * sizeof *own);
+  char *pattern = output_pattern(output->text, wanted_extension(values));
+  int exit_code = EXIT_CODE_FAILURE;
+  if (own != NULL && pattern != NULL) {
+    memcpy(own, values, RENDER_OPTION_COUNT * sizeof *own);
+    own[RENDER_OUTPUT].text = pattern;
+    exit_code = run_with_pattern(own, operands);
+  } else {
+    fail(exit_code, "out of memory");
+  }
+  free(pattern);
+  free(own);
+  return exit_code;
 }
 
 const cli_command render_command = {

@@ -16,31 +16,19 @@
 #include "cli/output.h"
 #include "render.h"
 
-enum { PATH_BYTES = 4096 };
-
 bool render_are_scenes(char **operands) {
   const char *pattern = operands[0];
   return operands[1] == NULL && strpbrk(pattern, "*?[") != NULL && access(pattern, F_OK) != 0 &&
          has_extension(pattern, ".json");
 }
 
-/* Writes the picture's name: -o 'folder/%s.png' with the scene's name in place of %s. */
-static int name_picture(const char *output, const char *scene, char path[PATH_BYTES]) {
-  const char *slash = strrchr(scene, '/'), *name = slash != NULL ? slash + 1 : scene,
-             *mark = strstr(output, "%s");
-  int stem = (int)(strlen(name) - strlen(".json"));
-  int length = snprintf(path, PATH_BYTES, "%.*s%.*s%s", (int)(mark - output), output, stem, name, mark + 2);
-  return length < PATH_BYTES ? EXIT_CODE_OK
-                             : fail(EXIT_CODE_USAGE, "%s: the picture's name is too long", scene);
-}
-
 static int check_options(const cli_value *values) {
   const cli_value *output = &values[RENDER_OUTPUT];
-  if (output->given && strstr(output->text, "%s") == NULL)
+  if (output->given && !output_has_name(output->text))
     return fail(
         EXIT_CODE_USAGE,
         "--output: '%s' is one file, and there may be several scenes: put %%s into its name, for each "
-        "scene's own",
+        "scene's own, or name a folder",
         output->text);
   return EXIT_CODE_OK;
 }
@@ -54,13 +42,9 @@ int render_scenes(const cli_value *values, char **operands, render_one_fn *rende
     exit_code = fail(EXIT_CODE_INPUT, "%s: there is no such file", operands[0]);
   if (found.gl_pathc > 0) qsort(found.gl_pathv, found.gl_pathc, sizeof *found.gl_pathv, compare_by_number);
   for (size_t n = 0; n < found.gl_pathc && exit_code == EXIT_CODE_OK; n++) {
-    char path[PATH_BYTES], *one[] = {found.gl_pathv[n], NULL};
-    memcpy(own, values, RENDER_OPTION_COUNT * sizeof *own);
-    if (values[RENDER_OUTPUT].given) {
-      exit_code = name_picture(values[RENDER_OUTPUT].text, one[0], path);
-      own[RENDER_OUTPUT].text = path;
-    }
-    if (exit_code == EXIT_CODE_OK) exit_code = render_one(own, one);
+    char *one[] = {found.gl_pathv[n], NULL};
+    memcpy(own, values, RENDER_OPTION_COUNT * sizeof *own); /* render_one() puts the scene's name for %s */
+    exit_code = render_one(own, one);
     bool goes_on = exit_code == EXIT_CODE_INPUT || exit_code == EXIT_CODE_UNSUPPORTED;
     failed += goes_on;
     if (goes_on) exit_code = EXIT_CODE_OK;

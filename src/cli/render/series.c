@@ -3,11 +3,11 @@
  *
  * Look, camera and lights come from the first file that can be read. All other files that the options name
  * (label maps, masks, meshes, skies) are read with this file, before the first picture. Files are in the
- * order of the numbers in their names, and pictures are numbered from 0 in this order. */
+ * order of the numbers in their names. Pictures are numbered from 0 in this order, or have the files' names.
+ */
 #define _GNU_SOURCE
 #include "series.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,11 +18,23 @@
 
 enum { PATH_BYTES = 4096 };
 
-static void picture_path(const series_job *job, int number, char *path, size_t size) {
+static int picture_path(const series_job *job, int number, char *path, size_t size) {
+  char *name = NULL;
+  int length;
+  if (output_has_name(job->pattern)) {
+    name = output_name_picture(job->pattern, job->files.names[number]);
+    if (name == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
+    length = snprintf(path, size, "%s", name);
+    free(name);
+  } else {
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wformat-nonliteral"
-  snprintf(path, size, job->pattern, number); /* series_has_number() */
+    length = snprintf(path, size, job->pattern, number); /* series_has_number() */
 #pragma GCC diagnostic pop
+  }
+  return length >= 0 && (size_t)length < size
+             ? EXIT_CODE_OK
+             : fail(EXIT_CODE_USAGE, "%s: the picture's name is too long", job->files.names[number]);
 }
 
 /* ---- before the first picture ---- */
@@ -35,25 +47,17 @@ static int check_options(series_job *job) {
     if (job->values[alone[n]].given)
       return fail(EXIT_CODE_USAGE, "--%s is for one picture, not for a series",
                   render_options[alone[n]].name);
-  if (!output->given || !series_has_number(output->text) || !has_extension(output->text, ".png"))
-    return fail(EXIT_CODE_USAGE,
-                "a series of files needs a number in its pictures' names: -o 'frames/%%04d.png'");
   job->pattern = output->text;
+  if (!output->given || !(series_has_number(job->pattern) || output_has_name(job->pattern)) ||
+      !has_extension(job->pattern, ".png"))
+    return fail(
+        EXIT_CODE_USAGE,
+        "a series of files needs a name for each picture: -o 'pictures/%%s.png' (or -o pictures/) for "
+        "the files' own names, -o 'frames/%%04d.png' for numbers");
   int exit_code = frames_read_part(&job->values[RENDER_PART], &job->values[RENDER_RANKS], &job->part,
                                    &job->parts);
   if (exit_code == EXIT_CODE_OK) exit_code = render_check_options(job->values);
   return exit_code == EXIT_CODE_OK ? render_overlay_read(job->values, &job->overlay) : exit_code;
-}
-
-/* Makes the folder of the pictures if it is missing. */
-static int make_folder(const series_job *job) {
-  char path[PATH_BYTES];
-  picture_path(job, 0, path, sizeof path);
-  char *slash = strrchr(path, '/');
-  if (slash == NULL || slash == path) return EXIT_CODE_OK;
-  *slash = '\0';
-  if (mkdir(path, 0777) == 0 || errno == EEXIST) return EXIT_CODE_OK;
-  return fail(EXIT_CODE_FAILURE, "%s: no folder for the pictures can be made: %s", path, strerror(errno));
 }
 
 /* --range-of-all: sets --range to the range of all files that can be read. */
@@ -166,12 +170,13 @@ static int make_picture(series_job *job, hl_renderer *renderer, int number) {
   hl_scene *scene = NULL;
   hl_error error = {0};
   double began = clock_seconds();
-  picture_path(job, number, path, sizeof path);
+  int exit_code = picture_path(job, number, path, sizeof path);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
   if (is_made(job, number, path)) {
     job->progress.done++;
     return EXIT_CODE_OK;
   }
-  int exit_code = read_files_protect(&job->host.read, path, job->files.names[number]);
+  exit_code = read_files_protect(&job->host.read, path, job->files.names[number]);
   if (exit_code == EXIT_CODE_OK) exit_code = series_scene(job, number, &scene);
   if (exit_code != EXIT_CODE_OK) {
     bool bad = job->files.bad[number];
@@ -222,7 +227,9 @@ static int make_pictures(series_job *job) {
 }
 
 static int run(series_job *job) {
-  int exit_code = make_folder(job);
+  char path[PATH_BYTES];
+  int exit_code = picture_path(job, 0, path, sizeof path);
+  if (exit_code == EXIT_CODE_OK) exit_code = output_make_folder(path);
   job->host.own_bar = true;
   if (exit_code == EXIT_CODE_OK) exit_code = find_range(job);
   if (exit_code == EXIT_CODE_OK) exit_code = make_scene(job);

@@ -17,7 +17,7 @@ typedef struct series_progress {
 typedef struct series_job {
   cli_host host;
   cli_value values[RENDER_OPTION_COUNT]; /* --range is set by --range-of-all */
-  const char *pattern;                   /* pattern of OUT, with one %d */
+  const char *pattern; /* pattern of OUT, with one %d for a number or one %s for the file's name */
   struct {
     char **names; /* owned; [count]: paths of volumes, or of meshes where there is no volume */
     int count;

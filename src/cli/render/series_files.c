@@ -47,7 +47,9 @@ bool render_has_pattern(char **operands) {
 bool render_is_series(const cli_value *values, char **operands) {
   const cli_value *output = &values[RENDER_OUTPUT];
   return render_has_pattern(operands) || values[RENDER_PART].given || values[RENDER_RANKS].given ||
-         values[RENDER_RANGE_OF_ALL].given || (output->given && series_has_number(output->text));
+         values[RENDER_RANGE_OF_ALL].given || (output->given && series_has_number(output->text)) ||
+         (operands[1] != NULL && output->given && !values[RENDER_VIEWS].given &&
+          output_has_name(output->text));
 }
 
 static int fail_names(int count) {
@@ -88,6 +90,40 @@ static int part_meshes(series_job *job) {
               "by its whole name");
 }
 
+/* A file and the name that its picture takes from it. */
+typedef struct named_file {
+  const char *file;
+  char *picture; /* owned */
+} named_file;
+
+static int compare_pictures(const void *a, const void *b) {
+  const named_file *x = a, *y = b;
+  int order = strcmp(x->picture, y->picture);
+  return order != 0 ? order : strcmp(x->file, y->file);
+}
+
+/* Refuses files whose pictures would have one name. */
+static int check_picture_names(const series_job *job) {
+  int exit_code = EXIT_CODE_OK, count = 0;
+  if (!output_has_name(job->pattern)) return EXIT_CODE_OK;
+  named_file *named = calloc((size_t)job->files.count, sizeof *named);
+  for (; named != NULL && count < job->files.count; count++) {
+    named[count].file = job->files.names[count];
+    named[count].picture = output_name_picture(job->pattern, job->files.names[count]);
+    if (named[count].picture == NULL) break;
+  }
+  if (count < job->files.count) exit_code = fail_names(job->files.count);
+  else qsort(named, (size_t)count, sizeof *named, compare_pictures);
+  for (int n = 1; n < count && exit_code == EXIT_CODE_OK; n++)
+    if (strcmp(named[n - 1].picture, named[n].picture) == 0)
+      exit_code = fail(EXIT_CODE_USAGE,
+                       "'%s' and '%s' would both be drawn to '%s': number the pictures, as in -o '%%04d.png'",
+                       named[n - 1].file, named[n].file, named[n].picture);
+  for (int n = 0; n < count; n++) free(named[n].picture);
+  free(named);
+  return exit_code;
+}
+
 int series_find_files(series_job *job, char **operands) {
   int exit_code = EXIT_CODE_OK, operand_count = 0;
   for (; operands[operand_count] != NULL && exit_code == EXIT_CODE_OK; operand_count++) {
@@ -107,7 +143,7 @@ int series_find_files(series_job *job, char **operands) {
   if (exit_code != EXIT_CODE_OK) return exit_code;
   qsort(job->files.names, (size_t)job->files.count, sizeof *job->files.names, compare_by_number);
   job->files.bad = calloc((size_t)job->files.count, sizeof *job->files.bad);
-  return job->files.bad != NULL ? EXIT_CODE_OK : fail(EXIT_CODE_FAILURE, "out of memory");
+  return job->files.bad != NULL ? check_picture_names(job) : fail(EXIT_CODE_FAILURE, "out of memory");
 }
 
 void series_release_files(series_job *job) {

@@ -54,16 +54,6 @@ static int read_views(views_job *job) {
   return EXIT_CODE_OK;
 }
 
-/* Whether OUT has one %s, and no other '%' but "%%". */
-static bool has_name(const char *text) {
-  int names = 0;
-  for (const char *at = strchr(text, '%'); at != NULL; at = strchr(at + 2, '%')) {
-    if (at[1] == 's') names++;
-    else if (at[1] != '%') return false;
-  }
-  return names == 1;
-}
-
 static int check_options(views_job *job) {
   static const int alone[] = {RENDER_VIEW,        RENDER_LAYERS,     RENDER_REFERENCE,
                               RENDER_PRINT_SCENE, RENDER_PRINT_PLAN, RENDER_JSON,
@@ -76,7 +66,7 @@ static int check_options(views_job *job) {
     return fail(EXIT_CODE_USAGE,
                 "--views: give --output a name: SHEET.png, or NAME-%%s.png for a file of each side");
   job->output = output->text;
-  job->files = has_name(job->output);
+  job->files = output_has_name(job->output);
   if (!job->files && (has_extension(job->output, ".exr") || has_extension(job->output, ".npy")))
     return fail(EXIT_CODE_USAGE,
                 "--views: a sheet is a drawn picture, and '%s' would hold linear light: put %%s into its "
@@ -86,6 +76,7 @@ static int check_options(views_job *job) {
   int exit_code = render_check_options(job->values);
   if (exit_code == EXIT_CODE_OK) exit_code = read_views(job);
   if (exit_code == EXIT_CODE_OK) exit_code = render_overlay_read(job->values, &job->overlay);
+  if (exit_code == EXIT_CODE_OK && job->files) exit_code = output_make_folder(job->output);
   int count = 0;
   while (job->inputs[count] != NULL) count++;
   return exit_code == EXIT_CODE_OK ? output_check(job->output, figure_extensions, job->inputs, count)
@@ -139,7 +130,7 @@ static hl_status write_file(views_job *job, size_t v, hl_error *error) {
   hl_status status = HL_OK;
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wformat-nonliteral"
-  snprintf(path, sizeof path, job->output, job->names[v]); /* has_name() */
+  snprintf(path, sizeof path, job->output, job->names[v]); /* output_has_name() */
 #pragma GCC diagnostic pop
   if (!job->values[RENDER_NO_METADATA].given)
     status = output_scene_text(job->host.context, job->scenes[v], path, &text, error);
