@@ -44,6 +44,10 @@ bool hl_text_is_for(const hl_composer *composer, const char *text, const hl_scen
 const char *hl_text_for(const hl_composer *composer, hl_ask option, const hl_scene_volume *volume,
                         size_t index);
 
+/* Whether options of values without NAME= leave volume number `index` out: it is a label map beside volumes
+ * of values, and no "tf", "colormap" or "iso" names it. */
+bool hl_is_left_out(const hl_composer *composer, const hl_scene_description *description, size_t index);
+
 /* ---- isosurfaces.c ---- */
 
 /* Refuses values of "iso" that cannot be read. */

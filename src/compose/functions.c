@@ -169,6 +169,22 @@ const char *hl_text_for(const hl_composer *composer, hl_ask option, const hl_sce
   return chosen;
 }
 
+bool hl_is_left_out(const hl_composer *composer, const hl_scene_description *description, size_t index) {
+  static const hl_ask named[] = {HL_ASK_TF, HL_ASK_COLORMAP, HL_ASK_ISO};
+  const hl_scene_volume *volume = &description->volumes[index];
+  bool values = false;
+  for (size_t v = 0; v < description->volume_count; v++) values |= description->volumes[v].label_count == 0;
+  if (volume->label_count == 0 || !values) return false;
+  for (size_t k = 0; k < sizeof named / sizeof *named; k++) {
+    const hl_asked *given = &composer->asked[named[k]];
+    const char *rest;
+    for (int n = 0; n < given->count; n++)
+      if (hl_text_is_for(composer, given->texts[n], volume, index, &rest) && rest != given->texts[n])
+        return false;
+  }
+  return true;
+}
+
 /* ---- colormaps in a list ---- */
 
 /* Whether the value of "colormap" is a list, with a colormap or a colour for each volume. R,G,B is one

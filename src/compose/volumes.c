@@ -22,8 +22,10 @@ static hl_status change_volume(const hl_composer *composer, const hl_scene_descr
   hl_status status = asked[HL_ASK_CLIP].given ? hl_compose_clip(composer, volume) : HL_OK;
   if (status == HL_OK && changed->cuts != NULL && description->volume_count == 1)
     status = hl_compose_cuts(composer, volume, changed->cuts);
-  bool looks = hl_look_replaces_functions(composer), iso = asked[HL_ASK_ISO].given;
-  if (status != HL_OK || (!looks && !iso && !hl_asks_for_functions(asked))) return status;
+  const bool left_out = hl_is_left_out(composer, description, index);
+  bool looks = hl_look_replaces_functions(composer), iso = asked[HL_ASK_ISO].given && !left_out,
+       functions = hl_asks_for_functions(asked) && !left_out;
+  if (status != HL_OK || (!looks && !iso && !functions)) return status;
   hl_transfer_function look = {0};
   if (looks) status = hl_compose_volume_look(composer, volume);
   if (status != HL_OK) return status;
