@@ -261,9 +261,10 @@ static int refuse_missing(const cli_option *option) {
   if (option->argument == NULL) list_choices(option, ", ", accepted, sizeof accepted);
   else if (option->kind == OPTION_NUMBERS && option->count == 1)
     describe_numbers(option, accepted, sizeof accepted);
-  return fail(EXIT_CODE_USAGE, "--%s needs a value: %s%s%s", option->name,
+  return fail(EXIT_CODE_USAGE, "--%s needs a value: %s%s%s%s", option->name,
               option->argument != NULL ? option->argument : "",
-              option->argument != NULL && accepted[0] != '\0' ? ", " : "", accepted);
+              option->argument != NULL && accepted[0] != '\0' ? ", " : "", accepted,
+              option->hint != NULL ? option->hint : "");
 }
 
 /* Parses the option at arguments[*index] and its value. *index becomes the index of the last argument that

@@ -37,6 +37,7 @@ typedef struct cli_option {
   const char *argument; /* the option's value as help shows it; null: the option is a switch, or help lists
                          * its choices */
   const char *help;     /* lines, the first one short */
+  const char *hint;     /* added to the error where the option has no value; null: none */
   const char *group;    /* heading above this option in help; null: the option belongs to the same group as
                          * the option before it */
   const cli_choice *choices;

@@ -1,0 +1,1 @@
+halflight render none.nrrd --depth -o d.exr
