@@ -74,22 +74,42 @@ static json_t *number_like(const json_t *before, double value) {
   return json_is_integer(before) ? json_integer(llround(value)) : json_real(value);
 }
 
-/* Writes a value at a path. A key that is absent from its object is added, as the scene has the key's default
- * there. The library refuses unknown keys. */
-static hl_status write_value(json_t *root, const char *path, double value, hl_error *error) {
-  char *names = strdup(path), *rest = names, *name;
+/* Whether a scene has a setting with this name that is a colour. */
+static bool is_color(const char *name) {
+  const hl_setting *setting;
+  for (int kind = 0; (setting = hl_setting_get((hl_setting_kind)kind, 0)) != NULL; kind++) {
+    setting = hl_setting_find((hl_setting_kind)kind, name);
+    if (setting != NULL && setting->type == HL_SETTING_COLOR) return true;
+  }
+  return false;
+}
+
+/* The value of a key at a frame as JSON: a number like the scene's own, or the three numbers of a colour. */
+static json_t *value_at(const film_key *key, int frame, const json_t *before) {
+  return key->components == 1 ? number_like(before, film_key_value(key, frame, 0))
+                              : json_pack("[f, f, f]", film_key_value(key, frame, 0),
+                                          film_key_value(key, frame, 1), film_key_value(key, frame, 2));
+}
+
+/* Writes a key's value at its path. A key that is absent from its object is added, as the scene has the key's
+ * default there. The library refuses unknown keys. */
+static hl_status write_value(json_t *root, const film_key *key, int frame, hl_error *error) {
+  char *names = strdup(key->path), *rest = names, *name;
   if (names == NULL) return no_memory(error);
+  const bool color = key->components == 3;
   json_t *at = root;
   while ((name = strsep(&rest, ".")) != NULL && rest != NULL && at != NULL) at = step_into(at, name);
   json_t *before = at != NULL ? step_into(at, name) : NULL;
-  bool good = before != NULL ? json_is_number(before) : json_is_object(at) && name[0] != '\0';
+  bool good = color            ? json_is_object(at) && is_color(name)
+              : before != NULL ? json_is_number(before)
+                               : json_is_object(at) && name[0] != '\0';
   int written = -1;
-  if (good && json_is_object(at)) written = json_object_set_new(at, name, number_like(before, value));
-  else if (good) written = json_array_set_new(at, strtoul(name, NULL, 10), number_like(before, value));
+  if (good && json_is_object(at)) written = json_object_set_new(at, name, value_at(key, frame, before));
+  else if (good) written = json_array_set_new(at, strtoul(name, NULL, 10), value_at(key, frame, before));
   if (!good)
     snprintf(error->message, sizeof error->message,
-             "%s: the scene has no number there: `halflight render SCENE --print-scene` shows its keys",
-             path);
+             "%s: the scene has no %s there: `halflight render SCENE --print-scene` shows its keys",
+             key->path, color ? "colour" : "number");
   free(names);
   if (!good) return HL_ERROR_ARGUMENT;
   return written == 0 ? HL_OK : no_memory(error);
@@ -98,8 +118,7 @@ static hl_status write_value(json_t *root, const char *path, double value, hl_er
 static hl_status read_frame(const film *f, json_t *text, int frame, hl_scene **scene, hl_error *error) {
   hl_status status = HL_OK;
   for (size_t k = 0; status == HL_OK && k < f->key_count; k++)
-    if (!is_turn(f->keys[k].path))
-      status = write_value(text, f->keys[k].path, film_key_value(&f->keys[k], frame), error);
+    if (!is_turn(f->keys[k].path)) status = write_value(text, &f->keys[k], frame, error);
   if (status != HL_OK) return status;
   char *written = hl_plain_json_dump(text, JSON_COMPACT);
   if (written == NULL) return no_memory(error);
@@ -129,7 +148,7 @@ static hl_status turn_camera(const film *f, int frame, hl_camera *camera,
   if (status == HL_OK && f->turntable > 0) view.azimuth_deg += 360.0 * frame / f->turntable;
   for (size_t k = 0; status == HL_OK && k < f->key_count; k++) {
     int turn = turn_of(f->keys[k].path);
-    double value = film_key_value(&f->keys[k], frame);
+    double value = film_key_value(&f->keys[k], frame, 0);
     if (turn == TURN_ZOOM && !(value >= 1e-6 && value <= 1e6)) status = HL_ERROR_ARGUMENT;
     else if (turn == TURN_ZOOM) zoom(camera, value);
     else if (turn >= 0) *angles[turn] = value, turns = true;
@@ -179,7 +198,7 @@ static hl_status turn_lights(const film *f, int frame, hl_light *lights, const h
       return HL_ERROR_ARGUMENT;
     }
     angles_of(&lights[number], &scene->camera, &angles[0], &angles[1]);
-    angles[azimuth ? 0 : 1] = film_key_value(&f->keys[k], frame);
+    angles[azimuth ? 0 : 1] = film_key_value(&f->keys[k], frame, 0);
     direction_at(&lights[number], &scene->camera, angles[0], angles[1], lights[number].direction);
   }
   return HL_OK;
@@ -225,6 +244,11 @@ static hl_status read_keys(film *f, const film_options *options, hl_error *error
   for (; status == HL_OK && f->key_count < options->key_count; f->key_count++) {
     status = film_key_read(options->keys[f->key_count], &f->keys[f->key_count], error);
     f->keys[f->key_count].smooth = options->smooth;
+    if (status == HL_OK && is_turn(f->keys[f->key_count].path) && f->keys[f->key_count].components != 1) {
+      snprintf(error->message, sizeof error->message, "%s: a turn is a number, not a colour",
+               f->keys[f->key_count].path);
+      status = HL_ERROR_ARGUMENT;
+    }
     for (size_t k = 0; status == HL_OK && k < f->key_count; k++)
       if (strcmp(f->keys[k].path, f->keys[f->key_count].path) == 0) {
         snprintf(error->message, sizeof error->message, "%s: it has two keys: join them by commas",

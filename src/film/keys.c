@@ -1,6 +1,7 @@
 /* film/keys.c - reads keys, and finds their values at a frame. */
 #define _GNU_SOURCE
 #include "keys.h"
+#include "text/color.h"
 #include "text/plain.h"
 
 #include <errno.h>
@@ -18,9 +19,19 @@ __attribute__((format(printf, 2, 3))) static hl_status refuse(hl_error *error, c
   return HL_ERROR_ARGUMENT;
 }
 
-/* Reads "FRAME:VALUE" at *at, and moves *at past it. */
-static hl_status read_point(const char **at, const film_key *key, int *frame, double *value,
-                            hl_error *error) {
+/* Reads a number, or a colour as #rrggbb or a CSS name. Returns how many components it has; 0: it is neither.
+ */
+static int read_value(const char *text, int length, double value[3]) {
+  char *end, color[64];
+  value[0] = hl_plain_number(text, &end);
+  if (end == text + length && length > 0) return isfinite(value[0]) ? 1 : 0;
+  if (length >= (int)sizeof color) return 0;
+  snprintf(color, sizeof color, "%.*s", length, text);
+  return hl_parse_color(color, 0, 1, value) ? 3 : 0;
+}
+
+/* Reads "FRAME:VALUE" at *at, and moves *at past it. The first point of a key sets its components. */
+static hl_status read_point(const char **at, film_key *key, int *frame, double *values, hl_error *error) {
   char *end;
   int length = (int)strcspn(*at, ",");
   long number = strtol(*at, &end, 10);
@@ -29,9 +40,17 @@ static hl_status read_point(const char **at, const film_key *key, int *frame, do
                   key->path, length, *at);
   const char *text = end + 1;
   *frame = (int)number;
-  *value = hl_plain_number(text, &end);
-  if (end == text || (*end != ',' && *end != '\0') || !isfinite(*value))
-    return refuse(error, "%s: '%.*s' has no finite number after its frame", key->path, length, *at);
+  end += 1 + strcspn(text, ",");
+  double value[3];
+  int components = read_value(text, (int)(end - text), value);
+  if (components == 0)
+    return refuse(error,
+                  "%s: '%.*s' has no finite number after its frame, and no colour (#rrggbb or a CSS name)",
+                  key->path, length, *at);
+  if (key->count > 0 && components != key->components)
+    return refuse(error, "%s: '%.*s': a key has either numbers or colours", key->path, length, *at);
+  key->components = components;
+  memcpy(values + key->count * (size_t)components, value, (size_t)components * sizeof *value);
   if (key->count > 0 && *frame <= key->frames[key->count - 1])
     return refuse(error, "%s: frame %d does not come after frame %d", key->path, *frame,
                   key->frames[key->count - 1]);
@@ -49,7 +68,7 @@ hl_status film_key_read(const char *text, film_key *key, hl_error *error) {
   if (most > FILM_MOST_POINTS) return refuse(error, "more than %d points", (int)FILM_MOST_POINTS);
   key->path = strndup(text, (size_t)(equals - text));
   key->frames = calloc(most, sizeof *key->frames);
-  key->values = calloc(most, sizeof *key->values);
+  key->values = calloc(3 * most, sizeof *key->values);
   if (key->path == NULL || key->frames == NULL || key->values == NULL) {
     refuse(error, "out of memory for keys");
     return HL_ERROR_MEMORY;
@@ -57,7 +76,7 @@ hl_status film_key_read(const char *text, film_key *key, hl_error *error) {
   const char *at = equals + 1;
   hl_status status = HL_OK;
   while (status == HL_OK && *at != '\0') {
-    status = read_point(&at, key, &key->frames[key->count], &key->values[key->count], error);
+    status = read_point(&at, key, &key->frames[key->count], key->values, error);
     if (status == HL_OK) key->count++;
   }
   return status;
@@ -70,15 +89,17 @@ void film_key_release(film_key *key) {
   *key = (film_key){0};
 }
 
-double film_key_value(const film_key *key, int frame) {
-  if (frame <= key->frames[0]) return key->values[0];
-  for (size_t p = 1; p < key->count; p++) {
+double film_key_value(const film_key *key, int frame, int component) {
+  const double *values = key->values + component; /* of the first point */
+  const int stride = key->components;
+  if (frame <= key->frames[0]) return values[0];
+  for (size_t p = 1; p < key->count; p++, values += stride) {
     if (frame > key->frames[p]) continue;
     double span = key->frames[p] - key->frames[p - 1], past = frame - key->frames[p - 1];
-    if (frame == key->frames[p]) return key->values[p]; /* returns exactly the given value */
+    if (frame == key->frames[p]) return values[stride]; /* returns exactly the given value */
     double part = past / span;
     if (key->smooth) part = part * part * (3 - 2 * part); /* Hermite: no speed at both ends */
-    return key->values[p - 1] + (key->values[p] - key->values[p - 1]) * part;
+    return values[0] + (values[stride] - values[0]) * part;
   }
-  return key->values[key->count - 1];
+  return values[0];
 }

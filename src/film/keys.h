@@ -7,14 +7,15 @@
 
 enum { FILM_MOST_FRAMES = 1000000, FILM_MOST_POINTS = 1000 };
 
-/* A number that changes from frame to frame. Between two given frames it changes linearly, or smoothly
- * (slowly near both). It is constant before the first given frame and after the last. */
+/* A number or a colour that changes from frame to frame. Between two given frames it changes linearly, or
+ * smoothly (slowly near both). It is constant before the first given frame and after the last. */
 typedef struct film_key {
   char *path;     /* owned; path of a number: "camera.azimuth", or keys and numbers of elements as in
                      "lights.0.intensity" */
   int *frames;    /* owned; [count]; frame numbers in rising order */
-  double *values; /* owned; [count] */
+  double *values; /* owned; [count][components] */
   size_t count;   /* at least 1 */
+  int components; /* 1: a number; 3: a colour, linear RGB */
   bool smooth;
 } film_key;
 
@@ -23,6 +24,7 @@ typedef struct film_key {
 hl_status film_key_read(const char *text, film_key *key, hl_error *error);
 void film_key_release(film_key *key);
 
-double film_key_value(const film_key *key, int frame);
+/* The value at a frame; of a colour, its component 0, 1 or 2. */
+double film_key_value(const film_key *key, int frame, int component);
 
 #endif

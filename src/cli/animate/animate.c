@@ -67,17 +67,19 @@ static const cli_option animate_options[ANIMATE_OPTION_COUNT] = {
                            .whole = true,
                            .low = 1,
                            .high = 1e6},
-    [ANIMATE_KEY] = {.name = "key",
-                     .kind = OPTION_TEXT,
-                     .argument = "PATH=FRAME:VALUE,...",
-                     .help = "change a number of the scene from frame to frame:\n"
-                             "lights.0.intensity=0:1,48:3 goes from 1 in frame 0 to\n"
-                             "3 in frame 48. camera.azimuth, .elevation, .roll\n"
-                             "(degrees) and .zoom (factor) turn the camera;\n"
-                             "lights.0.azimuth and .elevation turn a light, as --light\n"
-                             "does. With several files FRAME is the number of a file,\n"
-                             "from 0. May be given again",
-                     .repeatable = true},
+    [ANIMATE_KEY] =
+        {.name = "key",
+         .kind = OPTION_TEXT,
+         .argument = "PATH=FRAME:VALUE,...",
+         .help = "change a number of the scene from frame to frame:\n"
+                 "lights.0.intensity=0:1,48:3 goes from 1 in frame 0 to\n"
+                 "3 in frame 48. camera.azimuth, .elevation, .roll\n"
+                 "(degrees) and .zoom (factor) turn the camera;\n"
+                 "lights.0.azimuth and .elevation turn a light, as --light\n"
+                 "does. Settings that are colours go from colour to colour:\n"
+                 "lights.0.color=0:orange,48:#2060ff. With several files FRAME is the number of a file,\n"
+                 "from 0. May be given again",
+         .repeatable = true},
     [ANIMATE_EASE] =
         {.name = "ease",
          .kind = OPTION_CHOICE,
