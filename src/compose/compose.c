@@ -18,9 +18,10 @@
 typedef struct scene_change {
   hl_scene_description description;
   hl_changed_volumes volumes;
-  hl_light *lights;      /* owned; [description.light_count] */
-  hl_scene_mesh *meshes; /* owned; the last mesh is the floor; null: no floor is added */
-  float *sky;            /* owned; the pixels of the image of "sky"; null: none */
+  hl_light *lights;       /* owned; [description.light_count] */
+  hl_scene_mesh *colored; /* owned; the meshes, some in colours that "colormap" gives; null: it gives none */
+  hl_scene_mesh *meshes;  /* owned; the last mesh is the floor; null: no floor is added */
+  float *sky;             /* owned; the pixels of the image of "sky"; null: none */
 } scene_change;
 
 /* "floor": adds a floor, a mesh below everything that is seen. The camera must have been placed before. */
@@ -44,6 +45,20 @@ static hl_status add_floor(const hl_composer *composer, scene_change *change) {
   description->meshes = change->meshes;
   description->mesh_count = count + 1;
   return HL_OK;
+}
+
+/* "colormap" NAME=COLOR: gives meshes their colours. */
+static hl_status color_meshes(const hl_composer *composer, scene_change *change) {
+  hl_scene_description *description = &change->description;
+  const size_t count = description->mesh_count;
+  if (!hl_colors_meshes(composer, description)) return HL_OK;
+  change->colored = hl_allocate(composer->context, count, sizeof *change->colored);
+  if (change->colored == NULL)
+    return hl_fail_memory(composer->error, count * sizeof *change->colored, "the scene's meshes");
+  memcpy(change->colored, description->meshes, count * sizeof *change->colored);
+  hl_status status = hl_color_meshes(composer, description, change->colored);
+  description->meshes = change->colored;
+  return status;
 }
 
 /* Sets each render setting for which an option is given. */
@@ -87,6 +102,7 @@ static hl_status change_all(const hl_composer *composer, scene_change *change) {
   bool seen = change->volumes.seen || (composer->flags & HL_COMPOSE_CHANGED) != 0;
   if (status == HL_OK) smooth_labels(composer, description);
   if (status == HL_OK) status = hl_compose_camera(composer, seen, description);
+  if (status == HL_OK) status = color_meshes(composer, change);
   if (status == HL_OK) status = add_floor(composer, change);
   if (status == HL_OK) status = hl_compose_lights(composer, description, &change->lights);
   if (status == HL_OK) status = hl_compose_sky(composer, description, &change->sky);
@@ -106,6 +122,7 @@ static void change_release(hl_context *context, scene_change *change) {
   hl_release(context, change->sky);
   if (change->meshes != NULL) hl_mesh_release(change->meshes[change->description.mesh_count - 1].mesh);
   hl_release(context, change->meshes);
+  hl_release(context, change->colored);
   hl_release(context, change->lights);
 }
 

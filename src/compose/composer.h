@@ -39,6 +39,13 @@ hl_status hl_check_volume_names(const hl_composer *composer, const hl_scene_desc
 bool hl_text_is_for(const hl_composer *composer, const char *text, const hl_scene_volume *volume,
                     size_t index, const char **rest);
 
+/* "colormap" NAME=COLOR: whether one of its values names a mesh. */
+bool hl_colors_meshes(const hl_composer *composer, const hl_scene_description *description);
+
+/* Gives meshes the colours that "colormap" NAME=COLOR asks for. meshes: [description->mesh_count]. */
+hl_status hl_color_meshes(const hl_composer *composer, const hl_scene_description *description,
+                          hl_scene_mesh *meshes);
+
 /* The value of an option for one volume. The option may be given several times, and the last value for this
  * volume counts; null: there is none. */
 const char *hl_text_for(const hl_composer *composer, hl_ask option, const hl_scene_volume *volume,

@@ -82,18 +82,23 @@ static hl_status refuse_name(const char *option, const char *name, const char *k
 
 /* ---- names ---- */
 
-/* The name by which "tf" NAME=... and other options call a volume: its name in the scene, or the name of its
- * file without folder and extensions, or "volume1" and so on. */
-static void name_of(const hl_scene_volume *volume, size_t index, char *name, size_t size) {
-  if (volume->name != NULL) {
-    snprintf(name, size, "%s", volume->name);
-  } else if (volume->file != NULL) {
-    const char *slash = strrchr(volume->file, '/'), *base = slash != NULL ? slash + 1 : volume->file;
+/* The name by which "tf" NAME=... and other options call a volume or a mesh: its name in the scene, or the
+ * name of its file without folder and extensions, or "volume1" and so on. */
+static void name_like(const char *own, const char *file, const char *kind, size_t index, char *name,
+                      size_t size) {
+  if (own != NULL) {
+    snprintf(name, size, "%s", own);
+  } else if (file != NULL) {
+    const char *slash = strrchr(file, '/'), *base = slash != NULL ? slash + 1 : file;
     const char *dot = strchr(base + (base[0] == '.'), '.');
     snprintf(name, size, "%.*s", dot != NULL ? (int)(dot - base) : (int)strlen(base), base);
   } else {
-    snprintf(name, size, "volume%zu", index + 1);
+    snprintf(name, size, "%s%zu", kind, index + 1);
   }
+}
+
+static void name_of(const hl_scene_volume *volume, size_t index, char *name, size_t size) {
+  name_like(volume->name, volume->file, "volume", index, name, size);
 }
 
 /* The text after "NAME="; null: the text has no name, and is for every volume. If a file has the whole text
@@ -122,6 +127,25 @@ static bool is_for_any(const hl_composer *composer, const char *text,
   return false;
 }
 
+/* Whether a value "NAME=..." is for a mesh. *rest: the text after NAME=. */
+static bool is_for_mesh(const hl_composer *composer, const char *text, const hl_scene_mesh *mesh,
+                        size_t index, const char **rest) {
+  char own[256];
+  *rest = after_name(composer->context, text);
+  if (*rest == NULL) return false;
+  name_like(mesh->name, mesh->file, "mesh", index, own, sizeof own);
+  size_t length = strlen(own);
+  return length == (size_t)(*rest - text) - 1 && memcmp(own, text, length) == 0;
+}
+
+static bool is_for_any_mesh(const hl_composer *composer, const char *text,
+                            const hl_scene_description *description) {
+  const char *rest;
+  for (size_t m = 0; m < description->mesh_count; m++)
+    if (is_for_mesh(composer, text, &description->meshes[m], m, &rest)) return true;
+  return false;
+}
+
 static void list_names(const hl_scene_description *description, char *names, size_t size) {
   size_t used = 0;
   names[0] = '\0';
@@ -129,6 +153,16 @@ static void list_names(const hl_scene_description *description, char *names, siz
     char own[256];
     name_of(&description->volumes[v], v, own, sizeof own);
     used += (size_t)snprintf(names + used, size - used, "%s%s", v > 0 ? ", " : "", own);
+  }
+}
+
+/* Adds the names of the meshes to the list. */
+static void list_meshes(const hl_scene_description *description, char *names, size_t size) {
+  size_t used = strlen(names);
+  for (size_t m = 0; m < description->mesh_count && used < size; m++) {
+    char own[256];
+    name_like(description->meshes[m].name, description->meshes[m].file, "mesh", m, own, sizeof own);
+    used += (size_t)snprintf(names + used, size - used, "%s%s", used > 0 ? ", " : "", own);
   }
 }
 
@@ -147,9 +181,14 @@ static hl_status check_names(const hl_composer *composer, hl_ask option, bool ma
       return hl_fail(composer->error, HL_ERROR_ARGUMENT,
                      "--%s: '%.200s' beside another --%s: say whose each is, NAME=... (volumes: %s)", name,
                      text, name, names);
-    if (named && !is_for_any(composer, text, description))
+    if (option == HL_ASK_COLORMAP && is_for_any_mesh(composer, text, description)) continue;
+    if (named && !is_for_any(composer, text, description)) {
+      bool meshes = option == HL_ASK_COLORMAP && description->mesh_count > 0;
+      if (meshes) list_meshes(description, names, sizeof names);
       return hl_fail(composer->error, HL_ERROR_ARGUMENT,
-                     "--%s: '%.200s': no volume has the name before '=': there is %s", name, text, names);
+                     "--%s: '%.200s': no volume%s has the name before '=': there is %s", name, text,
+                     meshes ? " or mesh" : "", names);
+    }
   }
   return HL_OK;
 }
@@ -158,6 +197,30 @@ hl_status hl_check_volume_names(const hl_composer *composer, const hl_scene_desc
   hl_status status = check_names(composer, HL_ASK_TF, false, description);
   if (status == HL_OK) status = check_names(composer, HL_ASK_COLORMAP, false, description);
   return status == HL_OK ? check_names(composer, HL_ASK_ISO, true, description) : status;
+}
+
+bool hl_colors_meshes(const hl_composer *composer, const hl_scene_description *description) {
+  const hl_asked *given = &composer->asked[HL_ASK_COLORMAP];
+  for (int n = 0; n < given->count; n++)
+    if (is_for_any_mesh(composer, given->texts[n], description)) return true;
+  return false;
+}
+
+hl_status hl_color_meshes(const hl_composer *composer, const hl_scene_description *description,
+                          hl_scene_mesh *meshes) {
+  const hl_asked *given = &composer->asked[HL_ASK_COLORMAP];
+  const char *color;
+  for (int n = 0; n < given->count; n++)
+    for (size_t m = 0; m < description->mesh_count; m++) {
+      if (!is_for_mesh(composer, given->texts[n], &meshes[m], m, &color) ||
+          hl_parse_color(color, 0, 1, meshes[m].color) || is_for_any(composer, given->texts[n], description))
+        continue;
+      return hl_fail(
+          composer->error, HL_ERROR_ARGUMENT,
+          "--colormap: '%.200s': a mesh has one colour%s: give #rrggbb, linear R,G,B or a CSS name",
+          given->texts[n], find_known(color, colormap_name) != NULL ? " and no colour map" : "");
+    }
+  return HL_OK;
 }
 
 const char *hl_text_for(const hl_composer *composer, hl_ask option, const hl_scene_volume *volume,

@@ -66,9 +66,10 @@ static void tell_of_holders(const hl_composer *composer, const hl_scene_descript
 }
 
 /* Refuses options for the look of volumes in a scene without volumes. */
-static hl_status refuse_looks(const hl_composer *composer) {
+static hl_status refuse_looks(const hl_composer *composer, const hl_scene_description *description) {
   for (int which = HL_ASK_LOOK; which <= HL_ASK_SHADING; which++)
-    if (composer->asked[which].given)
+    if (composer->asked[which].given &&
+        !(which == HL_ASK_COLORMAP && hl_colors_meshes(composer, description)))
       return hl_fail(composer->error, HL_ERROR_ARGUMENT, "--%s is for volumes: the picture has none",
                      hl_option_rows[which].name);
   return HL_OK;
@@ -110,7 +111,7 @@ hl_status hl_compose_volumes(const hl_composer *composer, hl_scene_description *
   changed->seen = description->volume_count > 0 && (whole || changes_any(composer));
   tell_of_holders(composer, description);
   hl_tell_of_function(composer);
-  if (description->volume_count == 0) return refuse_looks(composer);
+  if (description->volume_count == 0) return refuse_looks(composer, description);
   if (!changed->seen && !masked) return HL_OK;
   hl_status status = make_room(composer, description, changed);
   if (status != HL_OK) return status;

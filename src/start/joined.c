@@ -13,6 +13,16 @@ hl_status frame_anew(hl_scene_description *description, hl_error *error) {
   return status == HL_OK ? hl_camera_frame_view(description, &view, 1, &description->camera, error) : status;
 }
 
+/* Gives meshes with the first standard colour, which is that of volumes and their surfaces, a grey blue. */
+static void set_apart(hl_scene_mesh *meshes, size_t count) {
+  static const double grey_blue[3] = {0.24, 0.33, 0.45};
+  double first[3];
+  hl_surface_color(0, first);
+  for (size_t m = 0; m < count; m++)
+    if (memcmp(meshes[m].color, first, sizeof first) == 0)
+      memcpy(meshes[m].color, grey_blue, sizeof grey_blue);
+}
+
 /* Replaces *scene by a copy with more meshes. replaced: whether the scene's own meshes are left out. */
 static hl_status add_meshes(hl_context *context, const hl_scene_mesh *added, size_t count, bool bare,
                             bool replaced, hl_scene **scene, hl_error *error) {
@@ -26,6 +36,7 @@ static hl_status add_meshes(hl_context *context, const hl_scene_mesh *added, siz
   }
   if (before > 0) memcpy(meshes, description.meshes, before * sizeof *meshes);
   memcpy(meshes + before, added, count * sizeof *meshes);
+  if (bare && description.volume_count > 0) set_apart(meshes + before, count);
   description.meshes = meshes;
   description.mesh_count = before + count;
   hl_status status = bare ? frame_anew(&description, error) : HL_OK;

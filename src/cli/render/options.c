@@ -234,7 +234,8 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
          .kind = OPTION_TEXT,
          .argument = "[NAME=]MAP|COLOR",
          .help = "colours over the visible values, see\n'halflight help colormaps'; or one colour as #rrggbb "
-                 "or\na CSS name (in a maximum projection from black to it);\nNAME as for --tf; or one for "
+                 "or\na CSS name (in a maximum projection from black to it);\nNAME as for --tf, or a mesh's "
+                 "(a COLOR); or one for "
                  "each volume or\nchannel, in order (magma,viridis)",
          .repeatable = true},
     [RENDER_RANGE] =
