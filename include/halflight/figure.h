@@ -60,7 +60,9 @@ typedef struct hl_overlay {
               * known, no unit is written. Refused where the scene has no marks */
   const hl_annotation *annotations; /* [annotation_count] */
   size_t annotation_count;
-  const char *letter; /* the panel's letter, such as "a", drawn in bold at the upper left; may be null */
+  const char *letter;     /* the panel's letter, such as "a", drawn in bold at the upper left; may be null */
+  double legend_range[2]; /* the values over which the legend's strips go, the lower first; equal (the
+                           * default): each goes over the values with opacity that its volume has */
 } hl_overlay;
 
 HL_API void hl_overlay_defaults(hl_overlay *overlay);

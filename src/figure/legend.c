@@ -2,8 +2,9 @@
  * its transfer function's colours and opacity over its values, or rows for its isosurfaces or its labels.
  *
  * The strip shows the function's own colours, as a fully lit surface has them. Its range begins at the least
- * value with opacity and ends at the greatest. The curve beside the strip shows the opacity: it touches the
- * strip where the opacity is 0, and lies farthest from it at the greatest opacity in the range. */
+ * value with opacity and ends at the greatest, unless the overlay states it. The curve beside the strip shows
+ * the opacity: it touches the strip where the opacity is 0, and lies farthest from it at the greatest opacity
+ * in the range. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -234,6 +235,8 @@ static hl_status draw_strip(legend *made, const hl_scene_volume *volume, hl_erro
   double range[2];
   hl_status status = hl_transfer_function_visible_range(volume->volume, function, range, error);
   if (status != HL_OK) return status;
+  const double *stated = made->place->overlay->legend_range;
+  if (stated[0] < stated[1]) memcpy(range, stated, sizeof range);
   double numbers = draw_numbers(made, range, 0, bottom, top, false), x = made->right - numbers;
   cairo_t *cairo = made->ink->cairo;
   cairo_save(cairo);
