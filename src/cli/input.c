@@ -32,7 +32,10 @@ static input_kind kind_by_content(const unsigned char *bytes, size_t length) {
   if (length >= sizeof png && memcmp(bytes, png, sizeof png) == 0) return INPUT_PICTURE;
   size_t at = length >= 3 && memcmp(bytes, byte_order_mark, 3) == 0 ? 3 : 0;
   while (at < length && isspace(bytes[at])) at++;
-  return at < length && bytes[at] == '{' ? INPUT_SCENE : INPUT_VOLUME;
+  if (at >= length || bytes[at] != '{') return INPUT_VOLUME;
+  size_t word = at + 1; /* a .vgi header begins with a word in braces, which JSON cannot */
+  while (word < length && isalnum(bytes[word])) word++;
+  return word > at + 1 && word < length && bytes[word] == '}' ? INPUT_VOLUME : INPUT_SCENE;
 }
 
 /* Waits until there is something to read; false: the user asked to stop. */
@@ -91,9 +94,9 @@ static int read_whole(cli_input *input, int descriptor, uint64_t limit) {
 
 /* Finds the kind of an input by the ending of its name. False where the name does not tell the kind. */
 static bool kind_by_name(const char *path, input_kind *kind) {
-  static const char *const volumes[] = {".raw",  ".gz",  ".nrrd", ".nhdr", ".mha",  ".mhd",
-                                        ".nii",  ".vti", ".vtk",  ".npy",  ".mrc",  ".map",
-                                        ".ccp4", ".tif", ".tiff", ".rec",  ".nvdb", ".vdb"};
+  static const char *const volumes[] = {".raw", ".gz",   ".nrrd", ".nhdr", ".mha", ".mhd", ".vgi",
+                                        ".nii", ".vti",  ".vtk",  ".npy",  ".mrc", ".map", ".ccp4",
+                                        ".tif", ".tiff", ".rec",  ".nvdb", ".vdb"};
   *kind = has_extension(path, ".json")  ? INPUT_SCENE
           : has_extension(path, ".png") ? INPUT_PICTURE
                                         : INPUT_VOLUME;

@@ -150,6 +150,37 @@ static void raw_samples(sample_function *function, void *data) {
   function(&made, data);
 }
 
+/* ---- VGStudio ---- */
+
+static void vgi_samples(sample_function *function, void *data) {
+  static const struct {
+    hl_voxel_type type;
+    const char *name;
+    int bits;
+  } types[] = {{HL_VOXEL_U8, "unsigned integer", 8},
+               {HL_VOXEL_U16, "unsigned integer", 16},
+               {HL_VOXEL_U32, "unsigned integer", 32},
+               {HL_VOXEL_I8, "signed integer", 8},
+               {HL_VOXEL_I16, "signed integer", 16},
+               {HL_VOXEL_I32, "signed integer", 32},
+               {HL_VOXEL_F32, "float", 32}};
+  for (size_t n = 0; n < sizeof types / sizeof *types; n++) {
+    volume_sample made = begin_sample(types[n].type, "part_%zu.vgi", n);
+    add_text(&made.file,
+             "{volume1}\r\n[representation]\r\nsize = 3 2 2\r\ndatatype = %s\r\nbitsperelement = %d\r\n"
+             "[file1]\r\nSkipHeader = %d\r\nFileFormat = raw\r\nSize = 3 2 2\r\nName = part.vol\r\n"
+             "Datatype = %s\r\nBitsPerElement = %d\r\n{volumeprimitive12}\r\n[geometry]\r\n"
+             "resolution = 0.5 1 2\r\nunit = mm\r\n[volume]\r\nvolume = volume1\r\n",
+             types[n].name, types[n].bits, n % 2 == 0 ? 0 : 7, types[n].name, types[n].bits);
+    strcpy(made.other_name, "part.vol");
+    if (n % 2 != 0) add_text(&made.other, "7 bytes");
+    add_voxels(&made.other, types[n].type, false);
+    made.axis[0][0] = 0.5;
+    made.axis[2][2] = 2;
+    function(&made, data);
+  }
+}
+
 /* ---- NRRD ---- */
 
 static const char *nrrd_type(hl_voxel_type type) {
@@ -542,6 +573,7 @@ void for_each_sample(sample_function *function, void *data) {
   raw_samples(function, data);
   nrrd_samples(function, data);
   nrrd_variants(function, data);
+  vgi_samples(function, data);
   meta_samples(function, data);
   nifti_samples(function, data);
   vti_samples(function, data);

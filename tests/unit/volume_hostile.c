@@ -11,6 +11,7 @@
 
 #define NRRD       "NRRD0004\n"
 #define NRRD_SIZES NRRD "dimension: 3\nsizes: 3 2 2\n"
+#define VGI        "{volumeprimitive1}\n[geometry]\nresolution = 1 1 1\n{volume1}\n[file1]\nName = a\n"
 #define META       "NDims = 3\nDimSize = 3 2 2\n"
 #define VTK        "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 3 2 2\n"
 #define VTI        "<VTKFile type=\"ImageData\">"
@@ -148,6 +149,23 @@ static const malformed files[] = {
      "promises 24 bytes of voxels (3 x 2 x 2 int16), the file has only 12"},
     {"zlib.mha", META "CompressedData = True\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n" TWELVE,
      HL_ERROR_INPUT, "damaged"},
+    /* VGStudio */
+    {"nothing.vgi", "{volume1}\n[file1]\nName = a\n", HL_ERROR_INPUT, "needs a part {volume1}"},
+    {"size.vgi", "{volume1}\n[file1]\nSize = 3 2\n", HL_ERROR_INPUT, "line 3: Size cannot be \"3 2\""},
+    {"vast.vgi", VGI "Size = 18446744073709551615 9 9\nDatatype = float\nBitsPerElement = 32\n",
+     HL_ERROR_INPUT, "beyond any memory"},
+    {"zero.vgi", VGI "Size = 3 0 2\nDatatype = float\nBitsPerElement = 32\n", HL_ERROR_INPUT, "3 x 0 x 2"},
+    {"type.vgi", VGI "Size = 3 2 2\nDatatype = float\nBitsPerElement = 8\n", HL_ERROR_UNSUPPORTED,
+     "\"float\" of 8 bits"},
+    {"packed.vgi", VGI "FileFormat = zip\n", HL_ERROR_UNSUPPORTED, "FileFormat \"zip\" is not read"},
+    {"several.vgi", VGI "[file2]\nName = b\n", HL_ERROR_UNSUPPORTED, "voxels in several files"},
+    {"sizes.vgi", "{volume1}\n[representation]\nsize = 3 2 1\n[file1]\nName = a\nSize = 3 2 2\n",
+     HL_ERROR_UNSUPPORTED, "different sizes"},
+    {"part.vgi", "{volume1}\n[file1\n", HL_ERROR_INPUT, "a section's name cannot be"},
+    {"cut.vgi", "{volume1}\n[file1]\nName = a\nSize = 3 2 2\nDatatype = float\nBitsPerElement = 32\n",
+     HL_ERROR_INPUT, "no resolution"},
+    {"missing.vgi", VGI "Size = 3 2 2\nDatatype = signed integer\nBitsPerElement = 16\n", HL_ERROR_IO,
+     "cannot open"},
     /* NumPy; a mark, version 1.0, the header's length as its two bytes */
     {"version.npy", "\x93NUMPY\4.\1\1", HL_ERROR_UNSUPPORTED, "version 4 of the format"},
     {"length.npy", "\x93NUMPY\1.\1a{", HL_ERROR_INPUT, "the file ends here"},

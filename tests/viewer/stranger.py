@@ -59,6 +59,10 @@ def detached_nrrd(name):
     return f"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nencoding: raw\ndata file: {name}\n".encode()
 
 
+def vg_header(name):
+    return f"{{volume1}}\n[file1]\nFileFormat = raw\nSize = 8 8 8\nName = {name}\nDatatype = unsigned integer\nBitsPerElement = 8\n{{volumeprimitive1}}\n[geometry]\nresolution = 1 1 1\n".encode()
+
+
 def listed_meta_image(name):
     return f"ObjectType = Image\nNDims = 3\nDimSize = 8 8 1\nElementType = MET_UCHAR\nElementDataFile = LIST\n{name}\n".encode()
 
@@ -119,6 +123,7 @@ WINDOW = {"type": "rect", "position": [0, 0, 50], "edge1": [9, 0, 0], "edge2": [
 # The file that names another one, what it holds for a name, and how the name ends.
 CARRIERS = [
     ("mhd.mhd", meta_image, VOLUME),
+    ("header.vgi", vg_header, VOLUME),
     ("nrrd.nhdr", detached_nrrd, VOLUME),
     ("list.mhd", listed_meta_image, VOLUME),
     ("list.nhdr", listed_nrrd, VOLUME),

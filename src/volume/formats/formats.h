@@ -7,6 +7,7 @@
   HL_FORMAT(raw)       \
   HL_FORMAT(nrrd)      \
   HL_FORMAT(metaimage) \
+  HL_FORMAT(vgi)       \
   HL_FORMAT(nifti)     \
   HL_FORMAT(mgh)       \
   HL_FORMAT(vtu)       \

@@ -1,6 +1,6 @@
 // The files of a drop or of a file chooser, and which of them is opened.
 
-const HEADERS = [".json", ".nhdr", ".nrrd", ".mhd", ".mha", ".hdr", ".pvti", ".vti", ".dat"]; // files that name others, first
+const HEADERS = [".json", ".nhdr", ".nrrd", ".mhd", ".mha", ".vgi", ".hdr", ".pvti", ".vti", ".dat"]; // files that name others, first
 
 const readEntries = (reader) => new Promise((resolve, reject) => reader.readEntries(resolve, reject));
 const fileOf = (entry) => new Promise((resolve, reject) => entry.file(resolve, reject));
