@@ -367,14 +367,15 @@ static hl_status find_range(const hl_composer *composer, const hl_volume *volume
   return HL_OK;
 }
 
-/* Moves a function's points so that the range of values with opacity becomes the range that "range" gives. */
+/* Moves a function's points so that the range of values with opacity, or in a maximum projection the range of
+ * its colours, becomes the range that "range" gives. */
 static hl_status spread(const hl_composer *composer, const hl_volume *volume, const value_range *range,
-                        hl_transfer_function *function) {
+                        bool maximum, hl_transfer_function *function) {
   hl_transfer_function moved = {0};
-  double visible[2];
-  hl_status status = hl_transfer_function_visible_range(volume, function, visible, composer->error);
+  double graded[2];
+  hl_status status = hl_transfer_function_graded_range(volume, function, maximum, graded, composer->error);
   if (status == HL_OK)
-    status = hl_transfer_function_spread(composer->context, function, visible, range->ends, range->scale,
+    status = hl_transfer_function_spread(composer->context, function, graded, range->ends, range->scale,
                                          &moved, composer->error);
   if (status == HL_OK) status = replace(composer, &moved, function);
   hl_transfer_function_release(composer->context, &moved);
@@ -425,7 +426,7 @@ static hl_status change_function(const hl_composer *composer, const hl_volume *v
   value_range range;
   hl_status status = find_range(composer, volume, &range);
   if (status == HL_OK && range.given && !threshold->given)
-    status = spread(composer, volume, &range, function);
+    status = spread(composer, volume, &range, maximum, function);
   if (status == HL_OK && threshold->given)
     status = make_opaque_from(composer, volume, threshold->number[0], function);
   if (status == HL_OK && colormap != NULL)

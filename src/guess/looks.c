@@ -320,15 +320,44 @@ static double almost_greatest(const hl_volume *volume) {
              : volume->minimum + (volume->maximum - volume->minimum) * bin / HL_HISTOGRAM_BINS;
 }
 
+/* The part of the voxels that lie above a value, by whole bins of the histogram. */
+static double share_above(const hl_volume *volume, double value) {
+  double width = (volume->maximum - volume->minimum) / HL_HISTOGRAM_BINS, above = 0, voxels = 0;
+  for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++) {
+    voxels += (double)volume->histogram[bin];
+    if (volume->minimum + bin * width >= value) above += (double)volume->histogram[bin];
+  }
+  return voxels > 0 ? above / voxels : 0;
+}
+
+/* The value that a maximum projection shows in white: almost the greatest one. In Hounsfield units this is
+ * dense bone at most, so that a little metal does not darken the bones. */
+static double projected_white(const hl_volume *volume) {
+  enum { DENSE_BONE = 2000 };
+  double white = almost_greatest(volume);
+  bool metal = hl_is_hounsfield(volume) && white > DENSE_BONE && share_above(volume, DENSE_BONE) < 0.001;
+  return metal ? DENSE_BONE : white;
+}
+
+/* Whether the window of values that a file asks for (DICOM) ends where a projection can end. Windows are
+ * meant for slices. A pixel of a projection has the greatest of some hundred values; where more than about
+ * one value in 200 lies above the window, as bone does above a window of soft tissue, most of the pixels
+ * would be white. */
+static bool is_window_for_projections(const hl_volume *volume) {
+  return isfinite(volume->window[1]) && share_above(volume, volume->window[1]) < 0.005;
+}
+
 /* Writes the greys of a maximum projection: from the background, which is not shown, to almost the greatest
  * value. If objects lie below the background, or on both sides of it, the greys begin at the least value. If
- * the file asks for a window of values (DICOM), the greys have only this range. */
+ * the file asks for a window of values that suits projections, the greys have only this range. */
 static void write_maximum(hl_function_writer *w, const hl_volume *volume) {
   const hl_data_analysis *a = w->analysis;
   bool above = a->direction > 0 && a->kind != HL_DATA_SIGNED;
-  double low = above ? a->background : volume->minimum, high = almost_greatest(volume);
-  if (volume->window[1] > low && volume->window[1] < volume->maximum) high = volume->window[1];
-  if (volume->window[0] > low && volume->window[0] < high) low = volume->window[0];
+  double low = above ? a->background : volume->minimum, high = projected_white(volume);
+  if (is_window_for_projections(volume)) {
+    if (volume->window[1] > low && volume->window[1] < volume->maximum) high = volume->window[1];
+    if (volume->window[0] > low && volume->window[0] < high) low = volume->window[0];
+  }
   if (!(high > low)) high = volume->maximum;
   w->direction = 1;
   hl_add_opacity(w, low - a->background, 0);

@@ -144,8 +144,9 @@ static hl_status read_points(hl_json_reader *reader, const json_t *value, bool i
 
 /* Spreads the starting function over the range that `value` gives. Does nothing if `value` gives no range, or
  * gives a colormap, which is then spread over the range instead. */
-static hl_status spread_start(hl_json_reader *reader, const json_t *value, const hl_volume *volume,
+static hl_status spread_start(hl_json_reader *reader, const json_t *value, hl_function_subject subject,
                               const hl_json_range *range, hl_transfer_function *function) {
+  const hl_volume *volume = subject.volume;
   double old[2];
   hl_transfer_function spread;
   if (!range->given || has(value, "colormap")) return HL_OK;
@@ -153,7 +154,8 @@ static hl_status spread_start(hl_json_reader *reader, const json_t *value, const
     return hl_json_fail(reader, HL_ERROR_INPUT, has(value, "range") ? "range" : "scale",
                         "is for a colormap, a preset, a file or the automatic function: give one of them, or "
                         "remove it");
-  hl_status status = hl_transfer_function_visible_range(volume, function, old, reader->error);
+  hl_status status = hl_transfer_function_graded_range(volume, function, subject.projected, old,
+                                                       reader->error);
   if (status == HL_OK)
     status = hl_transfer_function_spread(reader->context, function, old, range->ends, range->scale, &spread,
                                          reader->error);
@@ -257,7 +259,7 @@ static hl_status read_members(hl_json_reader *reader, const json_t *value, hl_fu
     status = of_two ? hl_json_read_plane(reader, value, &function->plane)
                     : read_start(reader, value, subject, function);
   if (status == HL_OK) status = hl_json_read_range(reader, value, subject.volume, &range);
-  if (status == HL_OK && !of_two) status = spread_start(reader, value, subject.volume, &range, function);
+  if (status == HL_OK && !of_two) status = spread_start(reader, value, subject, &range, function);
   if (status == HL_OK) status = hl_json_settings(reader, value, HL_SETTINGS_TRANSFER_FUNCTION, 0, function);
   if (status == HL_OK) status = read_points(reader, value, subject.is_solid, function);
   return status == HL_OK ? read_colormap(reader, value, &range, function) : status;

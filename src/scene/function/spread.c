@@ -38,6 +38,16 @@ hl_status hl_transfer_function_visible_range(const hl_volume *volume, const hl_t
   return HL_OK;
 }
 
+hl_status hl_transfer_function_graded_range(const hl_volume *volume, const hl_transfer_function *function,
+                                            bool projected, double range[2], hl_error *error) {
+  const size_t count = function->color_count;
+  if (!projected || count < 2 || !(function->color[0].value < function->color[count - 1].value))
+    return hl_transfer_function_visible_range(volume, function, range, error);
+  range[0] = function->color[0].value;
+  range[1] = function->color[count - 1].value;
+  return HL_OK;
+}
+
 /* Points of opacity or colour, as rows of `width` numbers that begin with the value. */
 typedef struct rows {
   const double *from; /* [count][width] */

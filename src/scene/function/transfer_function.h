@@ -24,6 +24,12 @@ int hl_transfer_function_visible(const hl_transfer_function *function, double lo
 bool hl_transfer_function_transparent(const hl_transfer_function *function, double low, double high,
                                       double target, double *nearest);
 
+/* The values over which a function grades what it shows, which "range" then moves: in pictures with light,
+ * the visible range; in a maximum projection, where opacity only says whether a value counts, the values from
+ * the first colour to the last one. If these are the same, the visible range. */
+hl_status hl_transfer_function_graded_range(const hl_volume *volume, const hl_transfer_function *function,
+                                            bool projected, double range[2], hl_error *error);
+
 /* Copies a function; *to owns its points. */
 hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_function *from,
                                     hl_transfer_function *to, hl_error *error);
