@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "core/door.h"
+#include "core/error.h"
+#include "core/memory.h"
 #include "text/json_value.h"
 #include "volume/volume.h"
 
@@ -147,7 +149,7 @@ hl_volume_description hl_volume_own_grid(const hl_volume *volume) {
   return grid;
 }
 
-void hl_volume_take_about(hl_volume *volume, const hl_volume *from) {
+hl_status hl_volume_take_about(hl_volume *volume, const hl_volume *from, hl_error *error) {
   volume->index_to_world = from->index_to_world;
   volume->unit = from->unit;
   volume->absence = from->absence;
@@ -155,6 +157,13 @@ void hl_volume_take_about(hl_volume *volume, const hl_volume *from) {
   memcpy(volume->window, from->window, sizeof volume->window);
   volume->selection = from->selection;
   volume->component = from->component;
+  if (from->channels == NULL) return HL_OK;
+  const size_t count = from->selection.channels;
+  volume->channels = hl_allocate(volume->context, count, sizeof *volume->channels);
+  if (volume->channels == NULL)
+    return hl_fail_memory(error, count * sizeof *volume->channels, "a volume's channels");
+  memcpy(volume->channels, from->channels, count * sizeof *volume->channels);
+  return HL_OK;
 }
 
 void hl_volume_world_box(const hl_volume_info *info, double low[3], double high[3]) {

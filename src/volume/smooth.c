@@ -142,7 +142,11 @@ static hl_status adopt(const hl_volume *volume, float *values, hl_volume **smoot
     values = shorter;
   }
   hl_status status = hl_volume_adopt(volume->context, &d, "smoothed voxels", values, smoothed, error);
-  if (status == HL_OK) hl_volume_take_about(*smoothed, volume);
+  if (status == HL_OK) status = hl_volume_take_about(*smoothed, volume, error);
+  if (status != HL_OK) {
+    hl_volume_release(*smoothed);
+    *smoothed = NULL;
+  }
   return status;
 }
 

@@ -55,7 +55,11 @@ static hl_status copy_to_pages(const hl_volume *volume, hl_volume **copy) {
     return status;
   }
   status = hl_volume_adopt_pages(context, &grid, "unsmoothed voxels", pages, copy, NULL);
-  if (status == HL_OK) hl_volume_take_about(*copy, volume);
+  if (status == HL_OK) status = hl_volume_take_about(*copy, volume, NULL);
+  if (status != HL_OK) {
+    hl_volume_release(*copy);
+    *copy = NULL;
+  }
   return status;
 }
 

@@ -219,8 +219,9 @@ hl_whole hl_volume_whole(const hl_volume *volume, size_t i, size_t j, size_t k, 
 hl_volume_description hl_volume_own_grid(const hl_volume *volume);
 
 /* Gives a volume on the grid of another one what a description does not hold: the exact place of its voxels,
- * and what the file tells of them. Arrays, channels and segments are not copied. */
-void hl_volume_take_about(hl_volume *volume, const hl_volume *from);
+ * and what the file tells of them and of its channels. Arrays and segments are not copied. Fails only for
+ * lack of memory. */
+hl_status hl_volume_take_about(hl_volume *volume, const hl_volume *from, hl_error *error);
 
 /* Makes a volume of packed voxels that are already in stored form (hl_voxels_store()), in a block of
  * hl_allocate() that the volume takes over, also on failure. description: the grid, the type in the file, and

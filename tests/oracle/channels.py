@@ -192,6 +192,15 @@ seen = hues(picture("little.tif", "--channel", "all", "--look", "mip"))
 check("ImageJ's colours", isinstance(seen, set) and letters("red", "cyan", "yellow") <= seen, seen)
 seen = hues(picture("omero.zarr", "--channel", "0,1", "--look", "mip"))
 check("omero's colours", isinstance(seen, set) and letters("blue", "orange") <= seen, seen)
+# Stepped channels may be smoothed before they are shown, and keep the colours that the file tells.
+generator = np.random.default_rng(5)
+write_zarr("stepped.zarr", [np.where(one > 60, 200, 20).astype(np.uint8) + generator.integers(0, 16, one.shape, np.uint8) for one in BALLS[:2]],
+           {"channels": [{"color": "0000FF"}, {"color": "FF8000"}]})
+code, out, complaint = run("render", "stepped.zarr", "--channel", "all", "--print-scene")
+smoothed = [volume.get("smooth", 0) for volume in json.loads(out)["volumes"]] if code == 0 else complaint
+check("a stepped channel is smoothed", isinstance(smoothed, list) and any(smoothed), smoothed)
+seen = hues(picture("stepped.zarr", "--channel", "all", "--look", "mip"))
+check("colours of smoothed channels", isinstance(seen, set) and letters("blue", "orange") <= seen, seen)
 
 # One command, and its scene again: the same bytes.
 first = picture("three.ome.tif", "--channel", "all")
