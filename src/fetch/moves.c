@@ -3,7 +3,8 @@
 #include "moves.h"
 
 #include <string.h>
-#include <strings.h>
+
+#include "text/plain.h"
 
 /* The parts of a URL "scheme://user:password@host:port/...". */
 typedef struct url_parts {
@@ -15,8 +16,8 @@ typedef struct url_parts {
 /* Reads the parts of a URL. Returns false if its scheme is neither http nor https. */
 static bool read_parts(const char *url, url_parts *parts) {
   static const char plain[] = "http://", secure[] = "https://";
-  parts->secure = strncasecmp(url, secure, sizeof secure - 1) == 0;
-  if (!parts->secure && strncasecmp(url, plain, sizeof plain - 1) != 0) return false;
+  parts->secure = hl_plain_equal_bytes(url, secure, sizeof secure - 1);
+  if (!parts->secure && !hl_plain_equal_bytes(url, plain, sizeof plain - 1)) return false;
   const char *authority = url + (parts->secure ? sizeof secure : sizeof plain) - 1;
   size_t length = strcspn(authority, "/?#\\");
   const char *user = memrchr(authority, '@', length);
@@ -28,5 +29,5 @@ static bool read_parts(const char *url, url_parts *parts) {
 bool move_is_allowed(const char *from, const char *to) {
   url_parts before, after;
   return read_parts(from, &before) && read_parts(to, &after) && (after.secure || !before.secure) &&
-         before.length == after.length && strncasecmp(before.server, after.server, after.length) == 0;
+         before.length == after.length && hl_plain_equal_bytes(before.server, after.server, after.length);
 }

@@ -39,6 +39,12 @@ bool hl_plain_equal(const char *a, const char *b) {
   return lower(*a) == lower(*b);
 }
 
+bool hl_plain_equal_bytes(const char *a, const char *b, size_t length) {
+  size_t n = 0;
+  while (n < length && a[n] != 0 && lower(a[n]) == lower(b[n])) n++;
+  return n == length || (a[n] == 0 && b[n] == 0);
+}
+
 bool hl_plain_is_url(const char *text) {
   return strncmp(text, "http://", 7) == 0 || strncmp(text, "https://", 8) == 0;
 }

@@ -14,6 +14,8 @@ __attribute__((format(printf, 3, 4))) int hl_plain_print(char *text, size_t size
 
 /* Whether two texts are equal if the case of the letters A to Z is ignored. */
 bool hl_plain_equal(const char *a, const char *b);
+/* The same of the first `length` bytes of two texts. */
+bool hl_plain_equal_bytes(const char *a, const char *b, size_t length);
 
 /* Whether a text is a URL of a web server, "http://..." or "https://...". */
 bool hl_plain_is_url(const char *text);
