@@ -3,7 +3,6 @@
  * The text has parts "{volume1}", sections "[file1]" in them and lines "Key = value". The first part
  * "{volumeN}" says in [representation] and [file1] which voxels there are, and in which file. [geometry] of
  * the part "{volumeprimitiveN}" says how far apart they lie. Bytes are in little-endian order. */
-#include <ctype.h>
 #include <string.h>
 
 #include "volume/formats/format.h"
@@ -31,13 +30,18 @@ typedef struct vgi_header {
   char data_file[NAME_BYTES];
 } vgi_header;
 
+static bool is_digit(unsigned char byte) { return byte >= '0' && byte <= '9'; }
+static bool is_word_byte(unsigned char byte) {
+  return is_digit(byte) || (byte >= 'a' && byte <= 'z') || (byte >= 'A' && byte <= 'Z');
+}
+
 /* Whether the first thing is a name in braces. JSON has a quotation mark there. */
 static bool has_content(const unsigned char *bytes, size_t length) {
   size_t at = length >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
   while (at < length && hl_is_space((char)bytes[at])) at++;
   if (at >= length || bytes[at++] != '{') return false;
   size_t begin = at;
-  while (at < length && isalnum(bytes[at])) at++;
+  while (at < length && is_word_byte(bytes[at])) at++;
   return at > begin && at < length && bytes[at] == '}';
 }
 
@@ -49,7 +53,7 @@ static hl_status refuse(const vgi_header *header, const char *key, const char *v
 
 /* Whether a part's name is `word` and a number. */
 static bool is_numbered(const char *name, const char *word) {
-  return hl_text_starts(name, word) && isdigit((unsigned char)name[strlen(word)]);
+  return hl_text_starts(name, word) && is_digit((unsigned char)name[strlen(word)]);
 }
 
 /* Keeps the name of a part or a section, which the pair of brackets encloses. */
