@@ -153,10 +153,11 @@ static hl_status find_type(const vgi_header *header, hl_voxel_type *type, hl_err
       return HL_OK;
     }
   char shown[HL_PRINTABLE_BYTES];
-  return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                 "%s: voxels of the type \"%s\" of %zu bits are not read: unsigned integers, signed integers "
-                 "and floats of 8, 16 and 32 bits are",
-                 header->stream->path, hl_text_printable(shown, words), bits);
+  return hl_fail(
+      error, HL_ERROR_UNSUPPORTED,
+      "%s: voxels of the type \"%s\" of %zu bits are not read: save integers of 8, 16 or 32 bits, or "
+      "floats of 16 or 32 bits",
+      header->stream->path, hl_text_printable(shown, words), bits);
 }
 
 static hl_status make_grid(const vgi_header *header, hl_volume_description *grid, hl_error *error) {

@@ -1,2 +1,0 @@
-mkdir x.png
-halflight render x.nrrd -o x.png

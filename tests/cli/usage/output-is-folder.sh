@@ -1,0 +1,2 @@
+mkdir x.nrrd
+halflight make ball --size 16 -o x.nrrd
