@@ -1,3 +1,3 @@
-# The same by MPICH, whose launcher names a killed process by its number and machine.
-mpi=mpich killed="EXIT CODE: 9"
+# The same by MPICH. Its launcher tells of a process that ended badly: the killed one, or one that missed it first.
+mpi=mpich killed="BAD TERMINATION"
 . "$SOURCE/tests/cli/render/strips-over-ranks.sh"
