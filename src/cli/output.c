@@ -146,32 +146,39 @@ char *output_pattern(const char *folder, const char *extension) {
 }
 
 char *output_name_picture(const char *pattern, const char *input) {
-  char *stem = output_default_name(input, ""), *name = NULL;
-  if (stem != NULL) name = malloc(strlen(pattern) + strlen(stem) + 1);
-  for (char *end = name; name != NULL; pattern++) {
+  char *stem = output_default_name(input, "");
+  const size_t length = stem != NULL ? strlen(stem) : 0;
+  char *name = stem != NULL ? malloc(strlen(pattern) + length + 1) : NULL, *end = name;
+  while (name != NULL && *pattern != '\0') {
     if (pattern[0] == '%' && pattern[1] == 's') {
-      end = stpcpy(end, stem);
-      pattern++;
-      continue;
+      memcpy(end, stem, length);
+      end += length;
+      pattern += 2;
+    } else {
+      pattern += pattern[0] == '%' && pattern[1] == '%';
+      *end++ = *pattern++;
     }
-    if (pattern[0] == '%' && pattern[1] == '%') pattern++;
-    *end++ = *pattern;
-    if (*pattern == '\0') break;
   }
+  if (name != NULL) *end = '\0';
   free(stem);
   return name;
 }
 
-int output_make_folder(const char *path) {
+int output_make_folder(const char *folder) {
+  struct stat about;
+  if (mkdir(folder, 0777) == 0 || (errno == EEXIST && stat(folder, &about) == 0 && S_ISDIR(about.st_mode)))
+    return EXIT_CODE_OK;
+  return fail(EXIT_CODE_FAILURE, "%s: no folder for the pictures can be made: %s", folder, strerror(errno));
+}
+
+int output_make_folder_of(const char *path) {
   int exit_code = EXIT_CODE_OK;
   char *folder = strdup(path);
   if (folder == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
   char *slash = strrchr(folder, '/');
   if (slash != NULL && slash != folder) {
     *slash = '\0';
-    if (mkdir(folder, 0777) != 0 && errno != EEXIST)
-      exit_code = fail(EXIT_CODE_FAILURE, "%s: no folder for the pictures can be made: %s", folder,
-                       strerror(errno));
+    exit_code = output_make_folder(folder);
   }
   free(folder);
   return exit_code;

@@ -78,12 +78,12 @@ hl_status hl_mesh_load(hl_context *context, const char *path, hl_mesh **mesh, hl
   if (status != HL_OK) return status;
   text.bytes = bytes;
   mesh_parts parts = {.context = context, .path = path};
-  mesh_reader *read = reader_of(path, text);
-  if (read == NULL)
+  mesh_reader *reader = reader_of(path, text);
+  if (reader == NULL)
     status = hl_fail(error, HL_ERROR_UNSUPPORTED,
                      "%s: is no mesh that is known: give .ply, .stl, .obj, .gltf, .glb, .vtp, .vtu or .vtk",
                      path);
-  else status = read(text, &parts, error);
+  else status = reader(text, &parts, error);
   hl_release(context, bytes);
   if (status == HL_OK) status = hl_mesh_clip_polygons(&parts, error);
   if (status == HL_OK) {
