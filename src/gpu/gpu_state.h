@@ -16,7 +16,10 @@ enum buffer_use {
                           * latter */
   BUFFER_CELL_BITS,
   BUFFER_TABLES,
-  BUFFER_PIXELS,
+  BUFFER_DIRECTORY,
+  BUFFER_COLORS,
+  BUFFER_SKY,
+  BUFFER_PIXELS, /* this one and the next ones change with the camera */
   BUFFER_PLANES,
   BUFFER_LIGHT,
   BUFFER_CHANGED,
@@ -26,8 +29,6 @@ enum buffer_use {
   BUFFER_LIST,
   BUFFER_MASKS,
   BUFFER_CUTS,
-  BUFFER_DIRECTORY,
-  BUFFER_COLORS,
   BUFFER_SOFT,
   BUFFER_TOUCHED,
   BUFFER_FIELDS,
@@ -35,7 +36,6 @@ enum buffer_use {
   BUFFER_PASSES,
   BUFFER_BOXES,
   BUFFER_MARKS,
-  BUFFER_SKY,
   BUFFERS
 };
 

@@ -29,8 +29,6 @@ typedef struct slab_sample {
   float surface;
   float behind; /* the distance, in voxels, of the matter from a face that cuts it and is shaded as a surface;
                  * FACE_VOXELS where no such face is near */
-  float skin; /* how much of the matter belongs to a face that cuts it: 1 at the face, 0 two voxels behind the
-               * face */
 } slab_sample;
 
 /* ---- the buffer's pixels around a sample ---- */
@@ -200,6 +198,10 @@ DEVICE light_ways ways_in_box(const volume_data *data, GLOBAL const plan_light *
   ways.last = greater(leave_last - enter_last, 0.0f);
   return ways;
 }
+
+/* How much of a sample's matter belongs to the face: 1 at the face, 0 two voxels behind it, as skin_of_face()
+ * in render/slab_lanes.h. */
+DEVICE float skin_of_sample(const slab_sample *s) { return limited(FACE_VOXELS - s->behind, 0.0f, 1.0f); }
 
 DEVICE float coordinate_seen(const slab_sample *s) { return fused(s->after - s->before, s->seen, s->before); }
 

@@ -79,7 +79,7 @@ DEVICE void weigh_slab(GLOBAL const device_sweep *plan, GLOBAL const plan_rays *
 DEVICE void find_normal(const volume_data *volume, float density, slab_sample *s) {
   s->sloped = s->sums.extinction > 0.0f;
   s->normal = vector_of(0.0f, 0.0f, 0.0f);
-  s->surface = s->skin = 0.0f;
+  s->surface = 0.0f;
   s->behind = FACE_VOXELS;
 #if !STEEP
   s->slope = s->normal;

@@ -206,7 +206,8 @@ DEVICE float way_to_outside(const volume_data *volume, const slab_sample *s) {
               outside = outside_table(volume->tables)[(int)seen],
               way = lesser(divided(magnitude(seen - outside), steepness),
                            MOST_TO_OUTSIDE * volume->plan->voxel);
-  return fused(way, 1.0f - s->skin, s->behind * s->skin * volume->plan->voxel);
+  const float skin = skin_of_sample(s);
+  return fused(way, 1.0f - skin, s->behind * skin * volume->plan->voxel);
 }
 
 /* The light of the sky that a sample sends to the eye, as a factor for each channel of its colour: what

@@ -99,7 +99,7 @@ DEVICE float find_face(const volume_data *volume, const slab_sample *s, vector *
 DEVICE void find_cut_face(const volume_data *volume, slab_sample *s) {
   vector outward;
   s->behind = find_face(volume, s, &outward);
-  const float skin = s->skin = limited(FACE_VOXELS - s->behind, 0.0f, 1.0f), rest = 1.0f - skin;
+  const float skin = skin_of_sample(s), rest = 1.0f - skin;
   if (volume->plan->cut_shading == CUT_SHADING_FACE) {
     vector sum = add_scaled(scaled(outward, skin), s->normal, s->surface * rest);
     s->normal = scaled(sum, divided(1.0f, greater(root(dot3(sum, sum)), 1e-6f)));
@@ -285,8 +285,8 @@ DEVICE void passing_to_surface(const volume_data *volume, GLOBAL const plan_ligh
         if (begin.there && begin.first != begin.foot) {
           second_surface other = kept_at_foot(volume->tables, begin.first, begin.start, begin.foot,
                                               magnitude(begin.change), passed, outside);
-          own_kept = greater(other.kept, s->skin);
-          own_passing = greater(exp_of_depth(lesser(other.ahead, DEEPEST)), s->skin);
+          own_kept = greater(other.kept, skin_of_sample(s));
+          own_passing = greater(exp_of_depth(lesser(other.ahead, DEEPEST)), skin_of_sample(s));
         }
       }
       passed = passed * own_passing;
