@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "message.h"
+#include "text/hash.h"
 
 /* The known launchers: that of Open MPI; that of MPICH, Intel MPI and MVAPICH; and Slurm's srun, which starts
  * processes of either kind. */
@@ -48,31 +49,25 @@ int ranks_begin(cli_host *host, const char *option, hl_ranks **ranks) {
 
 /* ---- whether all make the same picture ---- */
 
-static uint64_t add_bytes(uint64_t hash, const void *bytes, size_t count) {
-  const unsigned char *at = bytes;
-  for (size_t n = 0; n < count; n++) hash = (hash ^ at[n]) * 0x100000001b3u;
-  return hash;
-}
-
 /* Adds a scene's text without the names of files, which may differ from machine to machine. */
 static uint64_t add_text(uint64_t hash, const char *text) {
   static const char key[] = "\"file\": \"";
   for (const char *name; (name = strstr(text, key)) != NULL;) {
-    hash = add_bytes(hash, text, (size_t)(name - text));
+    hash = hl_hash_bytes(hash, text, (size_t)(name - text));
     text = name + sizeof key - 1;
     while (*text != '\0' && *text != '"') text += text[0] == '\\' && text[1] != '\0' ? 2 : 1;
   }
-  return add_bytes(hash, text, strlen(text));
+  return hl_hash_bytes(hash, text, strlen(text));
 }
 
 /* Adds what is known of all voxels of a volume. */
 static uint64_t add_volume(uint64_t hash, const hl_volume *volume) {
   hl_volume_info info = {.struct_size = sizeof info};
   if (volume == NULL || hl_volume_get_info(volume, &info) != HL_OK) return hash;
-  hash = add_bytes(hash, info.dimensions, sizeof info.dimensions);
-  hash = add_bytes(hash, info.range, sizeof info.range);
-  hash = add_bytes(hash, &info.mean, sizeof info.mean);
-  return add_bytes(hash, info.histogram, sizeof info.histogram);
+  hash = hl_hash_bytes(hash, info.dimensions, sizeof info.dimensions);
+  hash = hl_hash_bytes(hash, info.range, sizeof info.range);
+  hash = hl_hash_bytes(hash, &info.mean, sizeof info.mean);
+  return hl_hash_bytes(hash, info.histogram, sizeof info.histogram);
 }
 
 /* Sets *hash to a number for the picture of a scene. */
@@ -81,7 +76,7 @@ static hl_status number_scene(hl_context *context, const hl_scene *scene, uint64
   char *text = NULL;
   hl_status status = hl_scene_to_json(context, scene, &text, error);
   if (status != HL_OK) return status;
-  *hash = add_text(0xcbf29ce484222325u, text);
+  *hash = add_text(HL_HASH_BEGIN, text);
   for (size_t v = 0; v < description->volume_count; v++) {
     *hash = add_volume(*hash, description->volumes[v].volume);
     *hash = add_volume(*hash, description->volumes[v].mask.volume);

@@ -14,6 +14,9 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "platform/folders.h"
+#include "text/hash.h"
+
 #define MARK     "\nhalflight-copy 2\n"
 #define NEW_NAME "new-"
 
@@ -26,17 +29,12 @@ static hl_status fail(hl_error *error, const char *path) {
   return HL_ERROR_IO;
 }
 
-uint64_t copies_hash(uint64_t begin, const char *text) {
-  uint64_t hash = begin;
-  for (const char *c = text; *c != '\0'; c++) hash = (hash ^ (unsigned char)*c) * 0x100000001b3u;
-  return hash;
-}
-
 /* The name of a key's copy: two hashes with different beginnings. The key in the copy tells whether two keys
  * have one name. */
 static void copy_path(const char *folder, const char *key, char path[COPIES_PATH_BYTES]) {
   snprintf(path, COPIES_PATH_BYTES, "%.4000s/%016" PRIx64 "%016" PRIx64, folder,
-           copies_hash(COPIES_HASH_BEGIN, key), copies_hash(0x9e3779b97f4a7c15u, key));
+           hl_hash_bytes(HL_HASH_BEGIN, key, strlen(key)),
+           hl_hash_bytes(0x9e3779b97f4a7c15u, key, strlen(key)));
 }
 
 /* ---- one copy ---- */
@@ -170,20 +168,8 @@ static void trim(DIR *folder, uint64_t limit) {
   free(list);
 }
 
-/* Makes a folder of an absolute path, and the folders above it. Any of them may be there. */
-static void make_folders(const char *folder) {
-  char path[COPIES_PATH_BYTES];
-  snprintf(path, sizeof path, "%s", folder);
-  for (char *at = strchr(path + 1, '/'); at != NULL; at = strchr(at + 1, '/')) {
-    *at = '\0';
-    mkdir(path, 0700);
-    *at = '/';
-  }
-  mkdir(path, 0700);
-}
-
 hl_status copies_open(const char *folder, uint64_t limit, hl_error *error) {
-  make_folders(folder);
+  hl_private_folder_make(folder);
   DIR *opened = opendir(folder);
   if (opened == NULL) return fail(error, folder);
   trim(opened, limit);

@@ -14,10 +14,6 @@ enum { COPIES_PATH_BYTES = 4096, COPIES_KEY_BYTES = FETCH_URL_BYTES + RANGE_BYTE
  * longest. */
 hl_status copies_open(const char *folder, uint64_t limit, hl_error *error);
 
-/* FNV-1a of 64 bits (Fowler, Noll, Vo). begin: COPIES_HASH_BEGIN, or any other number for a second hash. */
-#define COPIES_HASH_BEGIN ((uint64_t)0xcbf29ce484222325u)
-uint64_t copies_hash(uint64_t begin, const char *text);
-
 /* Opens the copy of a key. file->descriptor: -1 if there is none. file->state is left 0. condition:
  * [FETCH_CONDITION_BYTES]. */
 void copies_find(const char *folder, const char *key, hl_fetched_file *file, char *condition);

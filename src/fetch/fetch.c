@@ -18,6 +18,7 @@
 #include "copies.h"
 #include "curl.h"
 #include "moves.h"
+#include "text/hash.h"
 
 enum { TRIES = 4, MOVES_MOST = 5 };
 
@@ -125,7 +126,7 @@ static hl_status fail_transfer(const fetching *t, const wanted *file, bool tried
 /* A number for the state of a server's file that a condition names; 0 without one. */
 static uint64_t state_of(const char *condition) {
   if (condition[0] == '\0') return 0;
-  const uint64_t hash = copies_hash(COPIES_HASH_BEGIN, condition);
+  const uint64_t hash = hl_hash_bytes(HL_HASH_BEGIN, condition, strlen(condition));
   return hash != 0 ? hash : 1;
 }
 

@@ -15,16 +15,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "platform/folders.h"
+#include "text/hash.h"
+
 #define CACHE_SUFFIX ".kernels"
 
-static uint64_t number_of_bytes(const void *bytes, size_t size) {
-  const unsigned char *at = bytes;
-  uint64_t number = 0xcbf29ce484222325u;
-  for (size_t i = 0; i < size; i++) number = (number ^ at[i]) * 0x100000001b3u;
-  return number;
-}
-
-uint64_t hl_program_number(const char *text) { return number_of_bytes(text, strlen(text)); }
+uint64_t hl_program_number(const char *text) { return hl_hash_bytes(HL_HASH_BEGIN, text, strlen(text)); }
 
 static bool name_of_key(const char *folder, const char *key, char *path, size_t bytes) {
   int length = snprintf(path, bytes, "%s/%016llx" CACHE_SUFFIX, folder,
@@ -64,7 +60,7 @@ static bool read_program(int file, size_t size, const char *key, gpu_binary *bin
   binary->size = size - sizeof length - length - sizeof number;
   binary->bytes = malloc(binary->size);
   if (binary->bytes != NULL && read_all(file, binary->bytes, binary->size) &&
-      number_of_bytes(binary->bytes, binary->size) == number)
+      hl_hash_bytes(HL_HASH_BEGIN, binary->bytes, binary->size) == number)
     return true;
   free(binary->bytes);
   *binary = (gpu_binary){0};
@@ -120,11 +116,11 @@ void hl_program_store(const char *folder, const char *key, const gpu_binary *bin
   if (folder == NULL || length >= PROGRAM_KEY_BYTES || binary->size > PROGRAM_CACHE_BYTES / 4 ||
       !name_of_key(folder, key, path, sizeof path))
     return;
-  if (mkdir(folder, 0700) != 0 && errno != EEXIST) return;
+  hl_private_folder_make(folder);
   snprintf(beside, sizeof beside, "%s.%ld", path, (long)getpid());
   int file = open(beside, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600);
   if (file < 0) return;
-  const uint64_t number = number_of_bytes(binary->bytes, binary->size);
+  const uint64_t number = hl_hash_bytes(HL_HASH_BEGIN, binary->bytes, binary->size);
   bool written = write_all(file, &length, sizeof length) && write_all(file, key, length) &&
                  write_all(file, &number, sizeof number) && write_all(file, binary->bytes, binary->size);
   if (close(file) != 0 || !written || rename(beside, path) != 0) unlink(beside);

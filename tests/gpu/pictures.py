@@ -187,7 +187,6 @@ def main():
     whole = sys.argv[2:] == ["--all"]
     with tempfile.TemporaryDirectory() as made:
         folder = pathlib.Path(made)
-        (folder / "cache").mkdir()
         listed = run(folder, "devices", "--json")
         assert listed.returncode == 0, listed.stderr
         devices = json.loads(listed.stdout)

@@ -1,0 +1,18 @@
+/* text/hash.h - FNV-1a of 64 bits (Fowler, Noll, Vo), byte by byte: the same number on every machine. */
+#ifndef HL_TEXT_HASH_H
+#define HL_TEXT_HASH_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* The hash of no bytes. Another number gives a second hash, which does not depend on the first. */
+#define HL_HASH_BEGIN ((uint64_t)0xcbf29ce484222325u)
+
+/* The hash of the bytes so far, followed by more bytes. */
+static inline uint64_t hl_hash_bytes(uint64_t hash, const void *bytes, size_t count) {
+  const unsigned char *at = bytes;
+  for (size_t n = 0; n < count; n++) hash = (hash ^ at[n]) * 0x100000001b3u;
+  return hash;
+}
+
+#endif
