@@ -21,15 +21,14 @@ def failed_parts(test):
 
 def count(test):
     """(passed, failed, skipped) of one line of the log."""
-    results = re.findall(r"^(ok|not ok)\b([^\n]*)", test.get("stdout") or "", re.M)
-    skips = sum("# SKIP" in rest.upper() for word, rest in results if word == "ok")
-    bad = sum(word == "not ok" for word, _ in results)
-    good = sum(word == "ok" for word, _ in results) - skips
+    passes = re.findall(r"^ok\b([^\n]*)", test.get("stdout") or "", re.M)
+    skips = sum("# SKIP" in rest.upper() for rest in passes)
+    bad, good = len(failed_parts(test)), len(passes) - skips
     if test["result"] == "SKIP":
         return 0, 0, max(1, skips)
     if test["result"] not in ("OK", "EXPECTEDFAIL"):
         return good, max(1, bad), skips
-    return (good, bad, skips) if results else (1, 0, 0)
+    return (good, bad, skips) if passes or bad else (1, 0, 0)
 
 
 for folder in sys.argv[1:]:

@@ -248,7 +248,7 @@ HL_API void hl_volume_world_box(const hl_volume_info *info, double low[3], doubl
 HL_API const char *hl_volume_unit(const hl_volume *volume);
 
 /* The number of chunks of a store on a server for which the server has no file, so that their voxels have the
- * fill value; 0 for other volumes. *chunks: the number of chunks that the volume was to be read from; may be
+ * fill value; 0 for other volumes. *chunks receives the number of chunks of which the volume consists; may be
  * null. */
 HL_API size_t hl_volume_absent_chunks(const hl_volume *volume, size_t *chunks);
 

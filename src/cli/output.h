@@ -49,8 +49,11 @@ char *output_pattern(const char *folder, const char *extension);
  * place of its "%s" (output_has_name()). Owned by the caller (free); null without memory. */
 char *output_name_picture(const char *pattern, const char *input);
 
-/* Makes the folder of the file at this path, if it is missing. Returns the exit code. */
-int output_make_folder(const char *path);
+/* Makes a folder for pictures, if it is missing. Returns the exit code. */
+int output_make_folder(const char *folder);
+
+/* The same for the folder of the file at this path. */
+int output_make_folder_of(const char *path);
 
 /* ---- files that the run has read: it must write over none of them ---- */
 

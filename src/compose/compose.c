@@ -18,10 +18,11 @@
 typedef struct scene_change {
   hl_scene_description description;
   hl_changed_volumes volumes;
-  hl_light *lights;       /* owned; [description.light_count] */
-  hl_scene_mesh *colored; /* owned; the meshes, some in colours that "colormap" gives; null: it gives none */
-  hl_scene_mesh *meshes;  /* owned; the last mesh is the floor; null: no floor is added */
-  float *sky;             /* owned; the pixels of the image of "sky"; null: none */
+  hl_light *lights; /* owned; [description.light_count] */
+  hl_scene_mesh
+      *colored; /* owned; the scene's meshes, where "colormap" gives some of them colours; else null */
+  hl_scene_mesh *meshes; /* owned; the last mesh is the floor; null: no floor is added */
+  float *sky;            /* owned; the pixels of the image of "sky"; null: none */
 } scene_change;
 
 /* "floor": adds a floor, a mesh below everything that is seen. The camera must have been placed before. */

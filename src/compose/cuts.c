@@ -106,9 +106,9 @@ size_t hl_count_cuts(const hl_asked *asked) {
   return count;
 }
 
-/* Places a cut. low, high: the box around the volume's voxels. metres:
- * as hl_metres_of_volume() gives it; 0 in the world of a scene. Where the text gives no end for a side of a
- * cut box, the box ends beyond the voxels there. */
+/* Places a cut. low, high: the box around the volume's voxels. metres: as hl_metres_of_volume() gives
+ * it; 0 in the world of a scene. Where the text gives no end for a side of a cut box, the box ends beyond the
+ * voxels there. */
 static void place_cut(const typed_cut *typed, const double low[3], const double high[3], double metres,
                       hl_cut *cut) {
   double longest = 0;

@@ -82,23 +82,33 @@ static hl_status refuse_name(const char *option, const char *name, const char *k
 
 /* ---- names ---- */
 
-/* The name by which "tf" NAME=... and other options call a volume or a mesh: its name in the scene, or the
- * name of its file without folder and extensions, or "volume1" and so on. */
-static void name_like(const char *own, const char *file, const char *kind, size_t index, char *name,
-                      size_t size) {
-  if (own != NULL) {
-    snprintf(name, size, "%s", own);
-  } else if (file != NULL) {
-    const char *slash = strrchr(file, '/'), *base = slash != NULL ? slash + 1 : file;
-    const char *dot = strchr(base + (base[0] == '.'), '.');
-    snprintf(name, size, "%.*s", dot != NULL ? (int)(dot - base) : (int)strlen(base), base);
-  } else {
-    snprintf(name, size, "%s%zu", kind, index + 1);
-  }
+/* A volume or a mesh, as the values of options name it. */
+typedef struct part {
+  const char *name, *file; /* may be null */
+  const char *kind;        /* "volume" or "mesh" */
+  size_t index;
+} part;
+
+static part part_of_volume(const hl_scene_volume *volume, size_t index) {
+  return (part){volume->name, volume->file, "volume", index};
 }
 
-static void name_of(const hl_scene_volume *volume, size_t index, char *name, size_t size) {
-  name_like(volume->name, volume->file, "volume", index, name, size);
+static part part_of_mesh(const hl_scene_mesh *mesh, size_t index) {
+  return (part){mesh->name, mesh->file, "mesh", index};
+}
+
+/* The name by which "tf" NAME=... and other options call a part: its name in the scene, or the name of its
+ * file without folder and extensions, or "volume1" and so on. */
+static void name_of(const part *part, char *name, size_t size) {
+  if (part->name != NULL) {
+    snprintf(name, size, "%s", part->name);
+  } else if (part->file != NULL) {
+    const char *slash = strrchr(part->file, '/'), *base = slash != NULL ? slash + 1 : part->file;
+    const char *dot = strrchr(base + (base[0] == '.'), '.');
+    snprintf(name, size, "%.*s", dot != NULL ? (int)(dot - base) : (int)strlen(base), base);
+  } else {
+    snprintf(name, size, "%s%zu", part->kind, part->index + 1);
+  }
 }
 
 /* The text after "NAME="; null: the text has no name, and is for every volume. If a file has the whole text
@@ -108,15 +118,22 @@ static const char *after_name(const hl_context *context, const char *text) {
   return equals == NULL || hl_file_kind(context, text) != 0 ? NULL : equals + 1;
 }
 
+/* Whether a value "NAME=..." names the part. *rest: the text after "NAME="; null: the value has no name. */
+static bool names_part(const hl_composer *composer, const char *text, part part, const char **rest) {
+  char own[256];
+  *rest = after_name(composer->context, text);
+  if (*rest == NULL) return false;
+  name_of(&part, own, sizeof own);
+  size_t length = strlen(own);
+  return length == (size_t)(*rest - text) - 1 && memcmp(own, text, length) == 0;
+}
+
 bool hl_text_is_for(const hl_composer *composer, const char *text, const hl_scene_volume *volume,
                     size_t index, const char **rest) {
-  char own[256];
-  const char *after = after_name(composer->context, text);
-  *rest = after != NULL ? after : text;
-  if (after == NULL) return true;
-  name_of(volume, index, own, sizeof own);
-  size_t length = strlen(own);
-  return length == (size_t)(after - text) - 1 && memcmp(own, text, length) == 0;
+  bool named = names_part(composer, text, part_of_volume(volume, index), rest);
+  if (*rest != NULL) return named;
+  *rest = text;
+  return true;
 }
 
 static bool is_for_any(const hl_composer *composer, const char *text,
@@ -127,43 +144,28 @@ static bool is_for_any(const hl_composer *composer, const char *text,
   return false;
 }
 
-/* Whether a value "NAME=..." is for a mesh. *rest: the text after NAME=. */
-static bool is_for_mesh(const hl_composer *composer, const char *text, const hl_scene_mesh *mesh,
-                        size_t index, const char **rest) {
-  char own[256];
-  *rest = after_name(composer->context, text);
-  if (*rest == NULL) return false;
-  name_like(mesh->name, mesh->file, "mesh", index, own, sizeof own);
-  size_t length = strlen(own);
-  return length == (size_t)(*rest - text) - 1 && memcmp(own, text, length) == 0;
-}
-
 static bool is_for_any_mesh(const hl_composer *composer, const char *text,
                             const hl_scene_description *description) {
   const char *rest;
   for (size_t m = 0; m < description->mesh_count; m++)
-    if (is_for_mesh(composer, text, &description->meshes[m], m, &rest)) return true;
+    if (names_part(composer, text, part_of_mesh(&description->meshes[m], m), &rest)) return true;
   return false;
 }
 
-static void list_names(const hl_scene_description *description, char *names, size_t size) {
-  size_t used = 0;
-  names[0] = '\0';
-  for (size_t v = 0; v < description->volume_count && used < size; v++) {
-    char own[256];
-    name_of(&description->volumes[v], v, own, sizeof own);
-    used += (size_t)snprintf(names + used, size - used, "%s%s", v > 0 ? ", " : "", own);
-  }
+/* Adds a part's name to a list, as far as there is room. */
+static void list_name(part part, char *names, size_t size) {
+  char own[256];
+  const size_t used = strlen(names);
+  name_of(&part, own, sizeof own);
+  snprintf(names + used, size - used, "%s%s", used > 0 ? ", " : "", own);
 }
 
-/* Adds the names of the meshes to the list. */
-static void list_meshes(const hl_scene_description *description, char *names, size_t size) {
-  size_t used = strlen(names);
-  for (size_t m = 0; m < description->mesh_count && used < size; m++) {
-    char own[256];
-    name_like(description->meshes[m].name, description->meshes[m].file, "mesh", m, own, sizeof own);
-    used += (size_t)snprintf(names + used, size - used, "%s%s", used > 0 ? ", " : "", own);
-  }
+static void list_names(const hl_scene_description *description, bool with_meshes, char *names, size_t size) {
+  names[0] = '\0';
+  for (size_t v = 0; v < description->volume_count; v++)
+    list_name(part_of_volume(&description->volumes[v], v), names, size);
+  for (size_t m = 0; with_meshes && m < description->mesh_count; m++)
+    list_name(part_of_mesh(&description->meshes[m], m), names, size);
 }
 
 /* Refuses values with a NAME= that no volume has. many: the option may be given several times for one
@@ -173,7 +175,7 @@ static hl_status check_names(const hl_composer *composer, hl_ask option, bool ma
   char names[600];
   const hl_asked *given = &composer->asked[option];
   const char *name = hl_option_rows[option].name;
-  list_names(description, names, sizeof names);
+  list_names(description, false, names, sizeof names);
   for (int n = 0; n < given->count; n++) {
     const char *text = given->texts[n];
     const bool named = after_name(composer->context, text) != NULL;
@@ -184,7 +186,7 @@ static hl_status check_names(const hl_composer *composer, hl_ask option, bool ma
     if (option == HL_ASK_COLORMAP && is_for_any_mesh(composer, text, description)) continue;
     if (named && !is_for_any(composer, text, description)) {
       bool meshes = option == HL_ASK_COLORMAP && description->mesh_count > 0;
-      if (meshes) list_meshes(description, names, sizeof names);
+      list_names(description, meshes, names, sizeof names);
       return hl_fail(composer->error, HL_ERROR_ARGUMENT,
                      "--%s: '%.200s': no volume%s has the name before '=': there is %s", name, text,
                      meshes ? " or mesh" : "", names);
@@ -212,7 +214,7 @@ hl_status hl_color_meshes(const hl_composer *composer, const hl_scene_descriptio
   const char *color;
   for (int n = 0; n < given->count; n++)
     for (size_t m = 0; m < description->mesh_count; m++) {
-      if (!is_for_mesh(composer, given->texts[n], &meshes[m], m, &color) ||
+      if (!names_part(composer, given->texts[n], part_of_mesh(&meshes[m], m), &color) ||
           hl_parse_color(color, 0, 1, meshes[m].color) || is_for_any(composer, given->texts[n], description))
         continue;
       return hl_fail(
@@ -271,7 +273,7 @@ static hl_status copy_item(const hl_composer *composer, const hl_scene_descripti
   const size_t count = count_items(list);
   if (count != description->volume_count) {
     char names[600];
-    list_names(description, names, sizeof names);
+    list_names(description, false, names, sizeof names);
     return hl_fail(composer->error, HL_ERROR_ARGUMENT,
                    "--colormap: '%.200s' has %zu names, and the picture has %zu volume%s (%s): give one name "
                    "for all, or as many as there are volumes",

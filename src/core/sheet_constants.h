@@ -121,7 +121,7 @@
 
 /* ---- the light of a sky ---- */
 
-/* The greatest magnitude of a number stored in a cell of the sky's field. It has 16 bits. */
+/* The greatest magnitude of a number that a cell of the sky's field stores. Such a number has 16 bits. */
 #define SKY_MOST 32767
 
 /* A cell is SKY_CELL numbers of 16 bits. lanes_unpack_shorts() joins the numbers of two cells, and changes

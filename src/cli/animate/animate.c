@@ -4,12 +4,10 @@
 #define _GNU_SOURCE
 #include "animate.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "cli/commands.h"
 #include "cli/frames.h"
@@ -67,19 +65,18 @@ static const cli_option animate_options[ANIMATE_OPTION_COUNT] = {
                            .whole = true,
                            .low = 1,
                            .high = 1e6},
-    [ANIMATE_KEY] =
-        {.name = "key",
-         .kind = OPTION_TEXT,
-         .argument = "PATH=FRAME:VALUE,...",
-         .help = "change a number of the scene from frame to frame:\n"
-                 "lights.0.intensity=0:1,48:3 goes from 1 in frame 0 to\n"
-                 "3 in frame 48. camera.azimuth, .elevation, .roll\n"
-                 "(degrees) and .zoom (factor) turn the camera;\n"
-                 "lights.0.azimuth and .elevation turn a light, as --light\n"
-                 "does. Settings that are colours go from colour to colour:\n"
-                 "lights.0.color=0:orange,48:#2060ff. With several files FRAME is the number of a file,\n"
-                 "from 0. May be given again",
-         .repeatable = true},
+    [ANIMATE_KEY] = {.name = "key",
+                     .kind = OPTION_TEXT,
+                     .argument = "PATH=FRAME:VALUE,...",
+                     .help = "change a number of the scene from frame to frame:\n"
+                             "lights.0.intensity=0:1,48:3 goes from 1 in frame 0 to\n"
+                             "3 in frame 48. camera.azimuth, .elevation, .roll\n"
+                             "(degrees) and .zoom (factor) turn the camera;\n"
+                             "lights.0.azimuth and .elevation turn a light, as --light\n"
+                             "does. Settings that are colours go from colour to colour:\n"
+                             "lights.0.color=0:orange,48:#2060ff. With several files\n"
+                             "FRAME is the number of a file, from 0. May be given again",
+                     .repeatable = true},
     [ANIMATE_EASE] =
         {.name = "ease",
          .kind = OPTION_CHOICE,
@@ -149,15 +146,6 @@ static int choose_output(animate_job *job) {
   job->folder = name_folder(job->output, job->film_wanted);
   if (job->folder == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
   return job->film_wanted ? output_check(job->output, movie_extensions, &job->input, 1) : EXIT_CODE_OK;
-}
-
-static int make_folder(const animate_job *job) {
-  struct stat about;
-  if (mkdir(job->folder, 0777) == 0 ||
-      (errno == EEXIST && stat(job->folder, &about) == 0 && S_ISDIR(about.st_mode)))
-    return EXIT_CODE_OK;
-  return fail(EXIT_CODE_FAILURE, "%s: no folder for the pictures can be made: %s", job->folder,
-              strerror(errno));
 }
 
 /* ---- the film's scene ---- */
@@ -266,7 +254,7 @@ static int run_job(animate_job *job) {
   int exit_code = load(job);
   if (exit_code == EXIT_CODE_OK) exit_code = plan(job);
   if (exit_code == EXIT_CODE_OK) exit_code = read_files_protect(&job->host.read, job->output, job->input);
-  if (exit_code == EXIT_CODE_OK) exit_code = make_folder(job);
+  if (exit_code == EXIT_CODE_OK) exit_code = output_make_folder(job->folder);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   if (job->film_wanted && !movie_available() && !job->host.quiet)
     warn("ffmpeg is not installed: numbered pictures go to %s instead of a film", job->folder);

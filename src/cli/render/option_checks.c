@@ -7,8 +7,8 @@
 #include "cli/output.h"
 #include "render.h"
 
-/* A file name for each choice of --format, in their order, so that checks of a name's extension serve for
- * --format, too. */
+/* The checks below judge OUT by the ending of its name. Where --format is given, they judge one of these
+ * names instead. There is one name for each choice of --format, in the order of the choices. */
 static const char *const format_extensions[] = {"-.png", "-.exr", "-.npy", "-.tif", "-.pdf", "-.svg"};
 
 bool render_is_of_picture(enum render_option which) {

@@ -87,7 +87,7 @@ static int choose_output(render_job *job) {
     return fail(EXIT_CODE_USAGE, "--format %s: '%s' does not end in %s: rename OUT, or leave --format out",
                 values[RENDER_FORMAT].text, job->output, wanted_extension(values));
   if (output->given && output_has_name(output->text)) {
-    int exit_code = output_make_folder(job->output);
+    int exit_code = output_make_folder_of(job->output);
     if (exit_code != EXIT_CODE_OK) return exit_code;
   }
   return output_check(job->output, figure_extensions, job->input.all, job->input.count);
@@ -111,8 +111,8 @@ static int job_open(render_job *job) {
   if (exit_code == EXIT_CODE_OK && values[over_ranks].given)
     exit_code = ranks_begin(&job->host, render_options[over_ranks].name, &job->ranks);
   if (exit_code == EXIT_CODE_OK && values[RENDER_VOLUME].given) hl_ranks_hold_volumes(job->ranks);
-  /* What may fail on one machine alone comes after the ranks have joined: the others would wait for a rank
-   * that does not join. */
+  /* These steps may fail on one machine alone. They come after the ranks have joined, because the other ranks
+   * would wait for a rank that never joins. */
   if (exit_code == EXIT_CODE_OK) exit_code = choose_output(job);
   if (exit_code == EXIT_CODE_OK) exit_code = render_overlay_read(values, &job->overlay);
   return exit_code;

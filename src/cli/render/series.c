@@ -229,7 +229,7 @@ static int make_pictures(series_job *job) {
 static int run(series_job *job) {
   char path[PATH_BYTES];
   int exit_code = picture_path(job, 0, path, sizeof path);
-  if (exit_code == EXIT_CODE_OK) exit_code = output_make_folder(path);
+  if (exit_code == EXIT_CODE_OK) exit_code = output_make_folder_of(path);
   job->host.own_bar = true;
   if (exit_code == EXIT_CODE_OK) exit_code = find_range(job);
   if (exit_code == EXIT_CODE_OK) exit_code = make_scene(job);

@@ -76,7 +76,7 @@ static int check_options(views_job *job) {
   int exit_code = render_check_options(job->values);
   if (exit_code == EXIT_CODE_OK) exit_code = read_views(job);
   if (exit_code == EXIT_CODE_OK) exit_code = render_overlay_read(job->values, &job->overlay);
-  if (exit_code == EXIT_CODE_OK && job->files) exit_code = output_make_folder(job->output);
+  if (exit_code == EXIT_CODE_OK && job->files) exit_code = output_make_folder_of(job->output);
   int count = 0;
   while (job->inputs[count] != NULL) count++;
   return exit_code == EXIT_CODE_OK ? output_check(job->output, figure_extensions, job->inputs, count)

@@ -35,7 +35,7 @@ static bool is_word_byte(unsigned char byte) {
   return is_digit(byte) || (byte >= 'a' && byte <= 'z') || (byte >= 'A' && byte <= 'Z');
 }
 
-/* Whether the first thing is a name in braces. JSON has a quotation mark there. */
+/* Whether a file begins with a word in braces. In JSON a quotation mark follows the brace. */
 static bool has_content(const unsigned char *bytes, size_t length) {
   size_t at = length >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
   while (at < length && hl_is_space((char)bytes[at])) at++;
