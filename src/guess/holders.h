@@ -5,7 +5,7 @@
 #include "guess/analysis.h"
 #include "scene/scene.h"
 
-enum { HL_HOLDER_PLANES = 8 };
+enum { HL_HOLDER_PLANES = 24 };
 
 /* Finds planes that cut off the holders of a scanned object, and nothing of the object: *count planes, in the
  * world of the volume's file; 0 if there are no holders, or in doubt. The object is nearly everything that is

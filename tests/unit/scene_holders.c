@@ -67,6 +67,21 @@ static double on_board_with_piece(int i, int j, int k) {
   return in_upper_piece(i, j, k) ? 80 + 4 * noise(i, j, k) : on_board(i, j, k);
 }
 
+/* A board below, and 16 crumbs of 5 x 5 x 5 voxels in a ring around the ball. A plane that touches the ball's
+ * hull cuts off one or two of them. */
+static bool in_crumb(int i, int j, int k) {
+  bool in = false;
+  for (int n = 0; n < 16 && !in; n++) {
+    const double angle = 0.3 + 2 * HL_PI * n / 16;
+    in = abs(i - (int)(32 + 28 * cos(angle))) < 3 && abs(j - (int)(32 + 28 * sin(angle))) < 3 &&
+         abs(k - 32) < 3;
+  }
+  return in;
+}
+static double on_board_with_crumbs(int i, int j, int k) {
+  return in_crumb(i, j, k) ? 80 + 4 * noise(i, j, k) : on_board(i, j, k);
+}
+
 /* axes: hl_volume_description's. */
 static hl_scene *make_scene(hl_context *context, double (*each)(int i, int j, int k),
                             const double axes[3][3]) {
@@ -134,6 +149,21 @@ static void one_plane_cuts_a_board_off(void **state) {
   hl_context_destroy(context);
 }
 
+/* Crumbs all around the object go with its holder, although each plane cuts off few of them. */
+static void crumbs_go_with_the_board(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  hl_scene *scene = make_scene(context, on_board_with_crumbs, straight);
+  const hl_scene_volume *volume = &hl_scene_describe(scene)->volumes[0];
+  counts board = count_left(context, volume, in_board), crumbs = count_left(context, volume, in_crumb);
+  assert_true(board.left * 100 <= board.all);
+  assert_int_equal(crumbs.all, 16 * 125);
+  assert_true(crumbs.left * 100 <= crumbs.all);
+  assert_true(volume->cut_count <= 24);
+  hl_scene_release(scene);
+  hl_context_destroy(context);
+}
+
 /* Planes that cut a holder off cut nothing of a body that is none. */
 static void planes_spare_other_bodies(void **state) {
   (void)state;
@@ -164,6 +194,7 @@ static void other_bodies_stay(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(boards_are_cut_away), cmocka_unit_test(one_plane_cuts_a_board_off),
-      cmocka_unit_test(planes_spare_other_bodies), cmocka_unit_test(other_bodies_stay)};
+      cmocka_unit_test(planes_spare_other_bodies), cmocka_unit_test(crumbs_go_with_the_board),
+      cmocka_unit_test(other_bodies_stay)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
