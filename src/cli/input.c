@@ -94,9 +94,9 @@ static int read_whole(cli_input *input, int descriptor, uint64_t limit) {
 
 /* Finds the kind of an input by the ending of its name. False where the name does not tell the kind. */
 static bool kind_by_name(const char *path, input_kind *kind) {
-  static const char *const volumes[] = {".raw", ".gz",   ".nrrd", ".nhdr", ".mha", ".mhd", ".vgi",
-                                        ".nii", ".vti",  ".vtk",  ".npy",  ".mrc", ".map", ".ccp4",
-                                        ".tif", ".tiff", ".rec",  ".nvdb", ".vdb"};
+  static const char *const volumes[] = {".raw",  ".gz",  ".nrrd", ".nhdr", ".mha",  ".mhd", ".vgi",
+                                        ".slc",  ".nii", ".vti",  ".vtk",  ".npy",  ".mrc", ".map",
+                                        ".ccp4", ".tif", ".tiff", ".rec",  ".nvdb", ".vdb"};
   *kind = has_extension(path, ".json")  ? INPUT_SCENE
           : has_extension(path, ".png") ? INPUT_PICTURE
                                         : INPUT_VOLUME;

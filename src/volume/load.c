@@ -86,7 +86,6 @@ static const char *known_but_unsupported(const unsigned char *bytes, size_t leng
       {0, "# === DATA DESCRIPTION FILE", 27, "a PAR file of Philips: convert it and its .REC with dcm2niix"},
       {0, "PVM", 3, "a PVM file of V3: convert it to raw (pvm2raw)"},
       {0, "DDS v3d", 7, "a PVM file of V3: convert it to raw (pvm2raw)"},
-      {0, "11111\n", 6, "a VolVis SLC file: convert it to NRRD or raw"},
   };
 #undef MICROSCOPE
   for (size_t n = 0; n < sizeof marks / sizeof *marks; n++)

@@ -579,6 +579,7 @@ void for_each_sample(sample_function *function, void *data) {
   vti_samples(function, data);
   legacy_samples(function, data);
   for_each_numpy_sample(function, data);
+  for_each_volvis_sample(function, data);
   for_each_microscope_sample(function, data);
   for_each_component_sample(function, data);
 }

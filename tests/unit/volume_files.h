@@ -46,9 +46,10 @@ typedef void sample_function(const volume_sample *sample, void *data);
 /* Calls function for every variant of every format. */
 void for_each_sample(sample_function *function, void *data);
 
-/* Its parts in volume_files_more.c: NumPy arrays, microscopes' files, and files of several components whose
- * first is the volume. */
+/* Its parts in volume_files_more.c: NumPy arrays, VolVis' and microscopes' files, and files of several
+ * components whose first is the volume. */
 void for_each_numpy_sample(sample_function *function, void *data);
+void for_each_volvis_sample(sample_function *function, void *data);
 void for_each_microscope_sample(sample_function *function, void *data);
 void for_each_component_sample(sample_function *function, void *data);
 

@@ -65,6 +65,27 @@ static void put_real(byte_buffer *file, size_t place, float value, bool big) {
   put_word(file, place, bits, big);
 }
 
+/* VolVis: a small picture of two pixels, then two slices of 3 x 2 voxels, plain or packed. A packed slice is
+ * a run of two bytes as they are, one byte that is repeated once, and three bytes as they are. */
+void for_each_volvis_sample(sample_function *function, void *data) {
+  for (int packed = 0; packed < 2; packed++) {
+    volume_sample made = begin_sample(HL_VOXEL_U8, "a_%d.slc", packed);
+    byte_buffer voxels = {.length = 0};
+    add_voxels(&voxels, HL_VOXEL_U8, false);
+    add_text(&made.file, "11111\n3 2 2 8\n1.000000 0.5 2\n1 6 0 %d\n2 1 XpIcTuR", packed);
+    for (const unsigned char *v = voxels.data; packed && v < voxels.data + 12; v += 6) {
+      const unsigned char slice[] = {0x82, v[0], v[1], 1, v[2], 0x83, v[3], v[4], v[5], 0};
+      add_text(&made.file, v == voxels.data ? "10 X" : "12 X"); /* two bytes that nobody needs */
+      add(&made.file, slice, sizeof slice);
+    }
+    if (packed) add_text(&made.file, "zz");
+    if (!packed) add(&made.file, voxels.data, voxels.length);
+    made.axis[1][1] = 0.5;
+    made.axis[2][2] = 2;
+    function(&made, data);
+  }
+}
+
 /* A header of one volume whose cell has intervals of 0.5, 2 and 3 along X, Y and Z. */
 static void add_mrc_header(byte_buffer *file, int mode, const int axes[3], bool big) {
   static const uint32_t sizes[3] = {NI, NJ, NK};

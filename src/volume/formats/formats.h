@@ -8,6 +8,7 @@
   HL_FORMAT(nrrd)      \
   HL_FORMAT(metaimage) \
   HL_FORMAT(vgi)       \
+  HL_FORMAT(slc)       \
   HL_FORMAT(nifti)     \
   HL_FORMAT(mgh)       \
   HL_FORMAT(vtu)       \
