@@ -14,6 +14,7 @@ enum convert_option {
   CONVERT_CROP,
   CONVERT_SHRINK,
   CONVERT_TYPE,
+  CONVERT_OUTPUT,
   CONVERT_ARRAY,
   CONVERT_COMPONENT,
   CONVERT_SERIES,
@@ -57,6 +58,11 @@ static const cli_option convert_options[CONVERT_OPTION_COUNT] = {
              "rounded to whole\nnumbers (default: the volume's own, or the next larger\none that "
              "holds its values)",
          .choices = types},
+    [CONVERT_OUTPUT] = {.name = "output",
+                        .letter = 'o',
+                        .kind = OPTION_TEXT,
+                        .argument = "OUT",
+                        .help = "the file, in place of the second operand"},
     INPUT_OPTIONS(CONVERT_ARRAY, "What to read of IN"),
     [CONVERT_CHANNEL] = INPUT_OPTION_CHANNEL,
     [CONVERT_SPACING] = INPUT_OPTION_SPACING,
@@ -110,7 +116,7 @@ static int check_crop(const cli_value *crop, const hl_volume_save_options *optio
 
 static void report(const char *output, double seconds) { say("%s: written in %.2f s", output, seconds); }
 
-static int convert(cli_host *host, const cli_value *values, char **operands,
+static int convert(cli_host *host, const cli_value *values, const char *in, const char *out,
                    hl_volume_save_options *options) {
   double started = clock_seconds();
   cli_input input = {0};
@@ -118,21 +124,21 @@ static int convert(cli_host *host, const cli_value *values, char **operands,
   hl_error error = {0};
   hl_volume_load_options load;
   input_load_options(&values[CONVERT_ARRAY], &values[CONVERT_SPACING], &load);
-  int exit_code = input_open(operands[0], values[CONVERT_MAX_MEMORY].bytes, &input);
+  int exit_code = input_open(in, values[CONVERT_MAX_MEMORY].bytes, &input);
   if (exit_code == EXIT_CODE_OK) {
     hl_status status = input_load_volume(host->context, &input, &load, &volume, &error);
     if (status != HL_OK) exit_code = host_fail(host, PHASE_READ, status, &error);
   }
   host_clear_bar(host);
   if (exit_code == EXIT_CODE_OK) exit_code = check_crop(&values[CONVERT_CROP], options, volume);
-  if (exit_code == EXIT_CODE_OK) exit_code = read_files_protect(&host->read, operands[1], operands[0]);
+  if (exit_code == EXIT_CODE_OK) exit_code = read_files_protect(&host->read, out, in);
   if (exit_code == EXIT_CODE_OK) {
     hl_status status = HL_OK;
     if (options->shrink > 1) status = hl_volume_is_label_map(host->context, volume, &options->labels, &error);
-    if (status == HL_OK) status = hl_volume_save_with(host->context, volume, operands[1], options, &error);
+    if (status == HL_OK) status = hl_volume_save_with(host->context, volume, out, options, &error);
     host_clear_bar(host);
     if (status != HL_OK) exit_code = host_fail(host, PHASE_CHANGE, status, &error);
-    else if (!host->quiet) report(operands[1], clock_seconds() - started);
+    else if (!host->quiet) report(out, clock_seconds() - started);
   }
   input_close(&input);
   hl_volume_release(volume);
@@ -141,8 +147,13 @@ static int convert(cli_host *host, const cli_value *values, char **operands,
 
 static int run_convert(const cli_value *values, char **operands) {
   hl_volume_save_options options;
+  const char *out = operands[1] != NULL ? operands[1] : values[CONVERT_OUTPUT].text;
+  if (operands[1] != NULL && values[CONVERT_OUTPUT].given)
+    return fail(EXIT_CODE_USAGE, "--output: OUT is given twice, as '%s' and as '%s'", operands[1],
+                values[CONVERT_OUTPUT].text);
+  if (out == NULL) return fail(EXIT_CODE_USAGE, "convert needs IN and OUT: see 'halflight help convert'");
   int exit_code = read_options(values, &options);
-  if (exit_code == EXIT_CODE_OK) exit_code = output_check(operands[1], volume_extensions, operands, 1);
+  if (exit_code == EXIT_CODE_OK) exit_code = output_check(out, volume_extensions, operands, 1);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   cli_host host = {0};
   cli_host_options host_options = {.quiet = values[CONVERT_QUIET].given,
@@ -151,7 +162,7 @@ static int run_convert(const cli_value *values, char **operands) {
                                    .memory_limit = values[CONVERT_MAX_MEMORY].bytes,
                                    .operands = operands};
   exit_code = host_open(&host_options, &host);
-  if (exit_code == EXIT_CODE_OK) exit_code = convert(&host, values, operands, &options);
+  if (exit_code == EXIT_CODE_OK) exit_code = convert(&host, values, operands[0], out, &options);
   host_close(&host);
   return exit_code;
 }
@@ -159,7 +170,8 @@ static int run_convert(const cli_value *values, char **operands) {
 const cli_command convert_command = {
     .name = "convert",
     .operands = "IN OUT",
-    .operand_count = 2,
+    .operand_count = 1,
+    .operand_most = 2,
     .summary = "write a volume in another format, type, part or resolution",
     .description =
         "Writes the volume IN, of any format that render reads, to the file OUT: .nrrd, .nii, .nii.gz, "

@@ -6,4 +6,6 @@ halflight convert a.nrrd b.nrrd --crop i=5:99 && exit 9
 halflight convert a.nrrd b.mrc --type uint8 && exit 9
 halflight convert a.nrrd b.raw && exit 9
 halflight convert none.nrrd b.nrrd && exit 9
+halflight convert a.nrrd && exit 9
+halflight convert a.nrrd b.nrrd -o c.nrrd && exit 9
 test ! -e b.nrrd
