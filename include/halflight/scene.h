@@ -520,6 +520,14 @@ HL_API HL_WARN_UNUSED hl_status hl_camera_frame(const hl_scene_description *desc
 HL_API HL_WARN_UNUSED hl_status hl_camera_fit(const hl_scene_description *description, double zoom,
                                               hl_camera *camera);
 
+/* Finds the camera whose picture holds everything that the pictures of all these cameras hold, such as the
+ * pictures of several times. cameras: [count], one or more, of one type, direction, up vector and field of
+ * view. aspect: a picture's width divided by its height. *joined: the first camera itself if its picture
+ * already holds the others; else the nearest such camera (parallel projection: the smallest picture), with a
+ * target as deep as the first camera's. Fails if the cameras differ, or look nowhere (HL_ERROR_ARGUMENT). */
+HL_API HL_WARN_UNUSED hl_status hl_camera_join(const hl_camera *cameras, size_t count, double aspect,
+                                               hl_camera *joined);
+
 /* Finds the direction in which a light travels, a unit vector, from the place of the lamp beside the camera:
  * azimuth (positive: the lamp stands to the right of the camera) and elevation (positive: above it) are
  * angles from the line of sight. At 0, 0 the lamp stands at the camera and shines along the line of sight.

@@ -230,6 +230,13 @@ def png_pixel(path, x, y):
     print(*lines[int(y)][int(x) * step:(int(x) + 1) * step])
 
 
+def png_border(path):
+    """The greatest 8-bit value of a picture's outermost pixels, and of all its pixels."""
+    width, _, step, lines = png_rows(path)
+    print(max(max(lines[0]), max(lines[-1]), max(max(line[:step] + line[(width - 1) * step:]) for line in lines)),
+          max(max(line) for line in lines))
+
+
 def ppm_of_png(path, ppm):
     """The same picture without alpha as a PPM file."""
     width, height, step, lines = png_rows(path)
@@ -246,6 +253,6 @@ def json_get(path, expression):
 COMMANDS = {"atlas": atlas, "ball": ball, "stack": stacks.write, "npy-shape": npy_shape, "brightness": brightness, "coverage": coverage, "ratio": ratio,
             "shared-pixels": shared_pixels,
             "sum_layers": sum_layers, "exr-holds": exr_holds,
-            "png-header": png_header, "png-scene": png_scene, "png-pixel": png_pixel,
+            "png-header": png_header, "png-scene": png_scene, "png-pixel": png_pixel, "png-border": png_border,
             "ppm-of-png": ppm_of_png, "json": json_get}
 COMMANDS[sys.argv[1]](*sys.argv[2:])

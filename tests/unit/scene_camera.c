@@ -234,6 +234,58 @@ static void fits_along_its_own_direction(void **state) {
   parts_release(&p);
 }
 
+/* The corners of a camera's picture at a depth beyond its eye lie within another camera's picture. */
+static bool holds(const hl_camera *camera, const hl_camera *other, double aspect) {
+  vec3 right, up, forward;
+  hl_camera_basis(other, &right, &up, &forward);
+  bool within = true;
+  for (int corner = 0; corner < 8; corner++) {
+    const double depth = corner & 4 ? 1 : 100;
+    const double half = other->type == HL_CAMERA_PERSPECTIVE ? depth * tan(other->fovy_deg * HL_PI / 360)
+                                                             : other->height / 2;
+    vec3 at = vec3_add(vec3_of(other->position), vec3_scale(forward, depth));
+    at = vec3_add(at, vec3_scale(right, (corner & 1 ? half : -half) * aspect));
+    at = vec3_add(at, vec3_scale(up, corner & 2 ? half : -half));
+    double x, y;
+    project(camera, aspect, at, &x, &y);
+    within = within && fabs(x) <= 1 + 1e-9 && fabs(y) <= 1 + 1e-9;
+  }
+  return within;
+}
+
+/* Two cameras at -1 and 3 along the picture's width, at the same depth, need an eye at 1 that stands farther
+ * back by 2 over the tangent of half the width's angle. */
+static void joined_cameras_hold_all(void **state) {
+  (void)state;
+  const double aspect = 1.5, tangent = tan(15 * HL_PI / 180);
+  hl_camera two[2] = {{.fovy_deg = 30, .position = {-1, 0, 0}, .target = {-1, 8, 0}, .up = {0, 0, 1}}}, all;
+  two[1] = two[0];
+  two[1].position[0] = two[1].target[0] = 3;
+  assert_int_equal(hl_camera_join(two, 2, aspect, &all), HL_OK);
+  assert_near(all.position[0], 1, 1e-12);
+  assert_near(all.position[1], -2 / (aspect * tangent), 1e-12);
+  assert_near(all.target[1], 8, 1e-12);
+  for (int flat = 0; flat < 2; flat++) {
+    for (int n = 0; n < 2; n++) two[n].type = flat ? HL_CAMERA_ORTHOGRAPHIC : HL_CAMERA_PERSPECTIVE;
+    two[0].height = 3, two[1].height = 7;
+    two[1].position[1] = 2.5, two[1].position[2] = two[1].target[2] = 0.7;
+    assert_int_equal(hl_camera_join(two, 2, aspect, &all), HL_OK);
+    assert_true(holds(&all, &two[0], aspect) && holds(&all, &two[1], aspect));
+    assert_false(holds(&two[0], &two[1], aspect)); /* the test can fail */
+    hl_camera again[2] = {all, two[1]}, same;      /* a camera that holds the other stays as it is */
+    again[0].position[1] -= 1e-6;
+    again[0].height += 1;
+    assert_int_equal(hl_camera_join(again, 2, aspect, &same), HL_OK);
+    assert_memory_equal(same.position, again[0].position, sizeof same.position);
+    assert_memory_equal(same.target, again[0].target, sizeof same.target);
+    assert_true(same.height == again[0].height);
+  }
+  two[1].fovy_deg = 31, two[1].type = two[0].type = HL_CAMERA_PERSPECTIVE;
+  assert_int_equal(hl_camera_join(two, 2, aspect, &all), HL_ERROR_ARGUMENT);
+  assert_int_equal(hl_camera_join(two, 0, aspect, &all), HL_ERROR_ARGUMENT);
+  assert_int_equal(hl_camera_join(NULL, 1, aspect, &all), HL_ERROR_ARGUMENT);
+}
+
 /* With nothing visible the whole grid is framed, and several volumes are framed together. */
 static void frames_boxes_and_several_volumes(void **state) {
   (void)state;
@@ -542,6 +594,7 @@ int main(void) {
       cmocka_unit_test(frames_by_the_farthest_voxels),
       cmocka_unit_test(angles_mean_what_they_say),
       cmocka_unit_test(fits_along_its_own_direction),
+      cmocka_unit_test(joined_cameras_hold_all),
       cmocka_unit_test(frames_boxes_and_several_volumes),
       cmocka_unit_test(lights_stand_where_the_camera_sees_them),
       cmocka_unit_test(specks_do_not_count),

@@ -1,9 +1,10 @@
 /* cli/render/series.c - `halflight render 'dump_*.vti' -o 'frames/%04d.png'`: makes a picture of each file of
  * a series.
  *
- * Look, camera and lights come from the first file that can be read. All other files that the options name
- * (label maps, masks, meshes, skies) are read with this file, before the first picture. Files are in the
- * order of the numbers in their names. Pictures are numbered from 0 in this order, or have the files' names.
+ * Look, the camera's direction and lights come from the first file that can be read. The camera stands so
+ * that what is seen of the first, the middle and the last file is in its picture. All other files that the
+ * options name (label maps, masks, meshes, skies) are read before the first picture. Files are in the order
+ * of the numbers in their names. Pictures are numbered from 0 in this order, or have the files' names.
  */
 #define _GNU_SOURCE
 #include "series.h"
@@ -130,6 +131,66 @@ static int try_motion(series_job *job) {
   return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_CHANGE, status, &error);
 }
 
+/* Frames what is seen of a file as the camera looks at it. Returns the exit code; a file that cannot be read
+ * is no failure, but has no camera (*found). */
+static int frame_file(series_job *job, int number, hl_camera *camera, bool *found) {
+  hl_scene *scene = NULL;
+  hl_error error = {0};
+  hl_view view;
+  *found = false;
+  int exit_code = series_scene(job, number, &scene);
+  if (exit_code != EXIT_CODE_OK) return job->files.bad[number] ? EXIT_CODE_OK : exit_code;
+  const hl_scene_description *description = hl_scene_describe(scene);
+  *camera = description->camera;
+  hl_status status = hl_view_of_camera(description, &view);
+  if (status == HL_OK) status = hl_camera_frame_view(description, &view, 1, camera, &error);
+  *found = status == HL_OK;
+  hl_scene_release(scene);
+  return status == HL_ERROR_MEMORY ? host_fail(&job->host, PHASE_CHANGE, status, &error) : EXIT_CODE_OK;
+}
+
+/* Moves a camera towards its target, or back. */
+static void zoom_camera(double zoom, hl_camera *camera) {
+  for (int a = 0; a < 3; a++)
+    camera->position[a] = camera->target[a] + (camera->position[a] - camera->target[a]) / zoom;
+  camera->height /= zoom;
+}
+
+static bool show_the_same(const hl_camera *a, const hl_camera *b) {
+  return memcmp(a->position, b->position, sizeof a->position) == 0 && a->height == b->height;
+}
+
+/* Places the camera so that the first, the middle and the last file fit into the picture. Where the first
+ * file's camera shows the others whole, it stays. */
+static int frame_all(series_job *job) {
+  const int numbers[] = {job->files.first, (job->files.first + job->files.count - 1) / 2,
+                         job->files.count - 1};
+  hl_camera cameras[3], joined;
+  hl_scene_description changed = *hl_scene_describe(job->scene);
+  hl_error error = {0};
+  size_t count = 0;
+  int exit_code = EXIT_CODE_OK;
+  for (size_t n = 0; n < 3 && exit_code == EXIT_CODE_OK; n++) {
+    bool found = false;
+    if (n == 0 || numbers[n] != numbers[n - 1])
+      exit_code = frame_file(job, numbers[n], &cameras[count], &found);
+    if (n == 0 && !found) return exit_code;
+    count += found;
+  }
+  if (exit_code != EXIT_CODE_OK ||
+      hl_camera_join(cameras, count, (double)changed.width / changed.height, &joined) != HL_OK ||
+      show_the_same(&joined, &cameras[0]))
+    return exit_code;
+  if (job->values[RENDER_ZOOM].given) zoom_camera(job->values[RENDER_ZOOM].number[0], &joined);
+  changed.camera = joined;
+  hl_scene *framed = NULL;
+  hl_status status = hl_scene_create(job->host.context, &changed, &framed, &error);
+  if (status != HL_OK) return host_fail(&job->host, PHASE_CHANGE, status, &error);
+  hl_scene_release(job->scene);
+  job->scene = framed;
+  return EXIT_CODE_OK;
+}
+
 /* Makes the first scene: of the first file that can be read, and of the files that are in every picture. */
 static int make_scene(series_job *job) {
   bool bare;
@@ -139,6 +200,7 @@ static int make_scene(series_job *job) {
   if (exit_code == EXIT_CODE_OK)
     exit_code = render_add_meshes(&job->host, job->meshes, first, bare, &job->scene);
   if (exit_code == EXIT_CODE_OK) exit_code = render_change_scene(&job->host, job->values, bare, &job->scene);
+  if (exit_code == EXIT_CODE_OK) exit_code = frame_all(job);
   return exit_code == EXIT_CODE_OK ? try_motion(job) : exit_code;
 }
 

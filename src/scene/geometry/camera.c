@@ -1,5 +1,5 @@
-/* scene/geometry/camera.c - the camera's axes, views, turning a camera to a view, and directions of lights
- * relative to a camera. */
+/* scene/geometry/camera.c - the camera's axes, views, turning a camera to a view, joining cameras, and
+ * directions of lights relative to a camera. */
 #include "scene/geometry/camera.h"
 
 #include <string.h>
@@ -169,5 +169,81 @@ hl_status hl_view_of_camera(const hl_scene_description *description, hl_view *vi
   double across = vec3_dot(eye, right_of_front(view)), near = vec3_dot(eye, vec3_of(view->front));
   view->elevation_deg = rounded(atan2(vec3_dot(eye, vec3_of(view->up)), hypot(across, near)) * 180 / HL_PI);
   view->azimuth_deg = rounded(atan2(across, near) * 180 / HL_PI);
+  return HL_OK;
+}
+
+/* ---- joining cameras ---- */
+
+/* The two borders of pictures along one axis of the picture, at depth 0 of the world. */
+typedef struct borders {
+  double low, high;
+} borders;
+
+static void widen(borders *all, borders one) {
+  all->low = fmin(all->low, one.low);
+  all->high = fmax(all->high, one.high);
+}
+
+static bool are_equal(borders a, borders b) { return a.low == b.low && a.high == b.high; }
+
+/* Derived: at a depth z a picture reaches t (z - f) to both sides of the eye, whose depth is f, where t is
+ * the tangent of half the angle of view. At depth 0 that is half = -t f, which may be negative. In parallel
+ * projection half is the same at all depths. */
+static borders borders_of(double eye, double half) { return (borders){eye - half, eye + half}; }
+
+static bool look_alike(const hl_camera *a, const hl_camera *b) {
+  const double rounding = 1e-9;
+  vec3 right[2], up[2], forward[2];
+  hl_camera_basis(a, &right[0], &up[0], &forward[0]);
+  hl_camera_basis(b, &right[1], &up[1], &forward[1]);
+  return a->type == b->type && (a->type != HL_CAMERA_PERSPECTIVE || a->fovy_deg == b->fovy_deg) &&
+         vec3_length(vec3_subtract(forward[0], forward[1])) < rounding &&
+         vec3_length(vec3_subtract(up[0], up[1])) < rounding;
+}
+
+static bool can_join(const hl_camera *cameras, size_t count, double aspect) {
+  bool possible = cameras != NULL && count > 0 && aspect > 0 && isfinite(aspect);
+  for (size_t n = 0; possible && n < count; n++) {
+    const double distance = distance_of(&cameras[n]);
+    possible = distance > 0 && isfinite(distance) && look_alike(&cameras[0], &cameras[n]);
+  }
+  return possible &&
+         (cameras[0].type != HL_CAMERA_PERSPECTIVE || (cameras[0].fovy_deg > 0 && cameras[0].fovy_deg < 180));
+}
+
+hl_status hl_camera_join(const hl_camera *cameras, size_t count, double aspect, hl_camera *joined) {
+  HL_DOOR;
+  if (joined == NULL || !can_join(cameras, count, aspect)) return HL_ERROR_ARGUMENT;
+  const hl_camera *first = &cameras[0];
+  const bool perspective = first->type == HL_CAMERA_PERSPECTIVE;
+  const double tangent = perspective ? tan(first->fovy_deg * HL_PI / 360) : 0;
+  const borders none = {INFINITY, -INFINITY};
+  borders across = none, along = none, own_across = none, own_along = none;
+  double depth = INFINITY;
+  vec3 right, up, forward;
+  hl_camera_basis(first, &right, &up, &forward);
+  for (size_t n = 0; n < count; n++) {
+    const vec3 eye = vec3_of(cameras[n].position);
+    const double eye_depth = vec3_dot(eye, forward),
+                 half = perspective ? -tangent * eye_depth : cameras[n].height / 2;
+    widen(&across, borders_of(vec3_dot(eye, right), half * aspect));
+    widen(&along, borders_of(vec3_dot(eye, up), half));
+    depth = fmin(depth, eye_depth);
+    if (n == 0) own_across = across, own_along = along;
+  }
+  const hl_camera same = *first;
+  *joined = same;
+  if (are_equal(across, own_across) && are_equal(along, own_along) &&
+      (perspective || depth == vec3_dot(vec3_of(same.position), forward)))
+    return HL_OK;
+  const double width = across.high - across.low, height = along.high - along.low;
+  if (perspective) depth = -fmax(width / aspect, height) / (2 * tangent);
+  else joined->height = fmax(width / aspect, height);
+  const vec3 middle = vec3_add(vec3_scale(right, (across.low + across.high) / 2),
+                               vec3_scale(up, (along.low + along.high) / 2));
+  const vec3 position = vec3_add(middle, vec3_scale(forward, depth)),
+             target = vec3_add(middle, vec3_scale(forward, vec3_dot(vec3_of(same.target), forward)));
+  memcpy(joined->position, &position, sizeof joined->position);
+  memcpy(joined->target, &target, sizeof joined->target);
   return HL_OK;
 }

@@ -9,8 +9,11 @@ for t in 0 1; do
 </Piece></UnstructuredGrid></VTKFile>
 END
 done
+cp cell-0.vtu other-0.vtu
+cp cell-0.vtu other-1.vtu
 halflight render cell-0.vtu --size 16x16 -o alone.png --quiet
+halflight render 'other-*.vtu' --size 16x16 -o 'other-%d.png' --quiet
 halflight render 'cell-*.vtu' --size 16x16 -o '%d.png' --quiet
-halflight diff alone.png 0.png --max-error 0 >/dev/null && echo same
+halflight diff alone.png other-0.png --max-error 0 >/dev/null && echo same
 halflight info cell-0.vtu 2>/dev/null | grep -c voxels
 halflight render 0.png --print-scene 2>/dev/null | grep -c '"file": "cell-0.vtu"'

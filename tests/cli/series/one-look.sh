@@ -2,12 +2,23 @@ for seed in 1 2 10; do halflight make cloud --size 16 --seed $seed --quiet -o du
 echo junk >dump_3.nrrd
 halflight render 'dump_*.nrrd' -o 'all/%02d.png' --size 32x32 --quiet && exit 9
 ls all
-# The look and the camera are the first file's.
+# The look is the first file's; all have one camera.
 halflight render dump_1.nrrd --size 32x32 --quiet -o first.png
-halflight diff --max-error 0 first.png all/00.png >difference
-halflight render first.png --print-scene | sed 's/dump_1/dump_10/' >tenth.json
+halflight render first.png --print-scene >first.json
+halflight render all/00.png --print-scene >all.json
+"$PYTHON" -c 'import json
+first, every = json.load(open("first.json")), json.load(open("all.json"))
+del first["camera"], every["camera"]
+assert first == every'
+sed 's/dump_1/dump_10/' all.json >tenth.json
 halflight render tenth.json --quiet -o tenth.png
 halflight diff --max-error 0 tenth.png all/03.png >difference
+# Where the first file's picture holds the others, its camera stays.
+mkdir less
+cp dump_1.nrrd less/1.nrrd
+cp dump_1.nrrd less/2.nrrd
+(cd less && halflight render '[12].nrrd' -o '%d.png' --size 32x32 --quiet)
+halflight diff --max-error 0 first.png less/0.png >difference
 # A run goes on where it was, and parts share the work.
 rm dump_3.nrrd
 mkdir parts
