@@ -174,18 +174,21 @@ static void pass_face(const exposure *e, ray_face *face, double t, vec3 before, 
 }
 
 /* The fraction of light from a direction that reaches a point of the world. The path of the light is sampled
- * in steps of three voxel edges. */
+ * in steps of three voxel edges, until it leaves the volume's box. A path from outside of a face of the box
+ * meets no matter, because the box is convex. */
 static double passing(const exposure *e, vec3 point, vec3 towards) {
   enum { STEPS = 3 };
-  const size_t *size = e->volume->volume->dimension;
+  double low[3], high[3];
+  hl_scene_volume_box(e->volume, low, high);
   vec3 at = affine3_apply(e->world_to_index, point);
   vec3 step = mat3_apply(e->world_to_index.linear, vec3_scale(towards, STEPS * e->step));
   for (double left = 1;; at = vec3_add(at, step)) {
-    const long x = lround(at.x), y = lround(at.y), z = lround(at.z);
     if (left < FAINT) return 0;
-    if (x < 0 || y < 0 || z < 0 || x >= (long)size[0] || y >= (long)size[1] || z >= (long)size[2])
+    if (!(at.x > low[0] && at.y > low[1] && at.z > low[2] && at.x < high[0] && at.y < high[1] &&
+          at.z < high[2]))
       return left;
-    double value = hl_volume_value_within(e->volume->volume, (size_t)x, (size_t)y, (size_t)z);
+    double value = hl_volume_value_within(e->volume->volume, (size_t)lround(at.x), (size_t)lround(at.y),
+                                          (size_t)lround(at.z));
     double clear = isfinite(value) ? 1 - e->opacity[entry_of(e, value)] : 1;
     if (clear < 1 && hl_cuts_leave(e->cuts, e->volume->cut_count, at)) left *= pow(clear, STEPS);
   }
