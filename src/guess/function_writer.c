@@ -17,6 +17,9 @@
 #define SHELL        0.2  /* optical depth of the shell of a field, along a line that crosses the shell */
 /* The width of an object, in voxels, for which the opacities of solid matter were chosen. */
 #define FINE 96
+/* Where flesh lies between the distances solid and dense: in the CT of a head, from -50 to 170 Hounsfield
+ * units. */
+static const double flesh[] = {0.4, 0.65};
 
 /* The colours of a function at four distances from the background: faint, solid, dense and top. Linear RGB.
  */
@@ -24,9 +27,10 @@ typedef struct palette {
   double rim[3], surface[3], dense[3], top[3];
 } palette;
 
-/* Writes the function for solid matter. In coarse grids fewer voxel edges lie between the rim of an object
- * and its inside, so that each edge absorbs more. */
-static void write_solid(hl_function_writer *w, const palette *colors) {
+/* Writes the function for solid matter. inside: the colour of flesh, which only the faces of cuts show; null
+ * means that colours change evenly from solid to dense. In coarse grids fewer voxel edges lie between the rim
+ * of an object and its inside, so that each edge absorbs more. */
+static void write_solid(hl_function_writer *w, const palette *colors, const double *inside) {
   const hl_data_analysis *a = w->analysis;
   const double ramp = a->solid - a->faint, dense = fmax(a->dense, a->solid + 1e-6 * a->top),
                top = fmax(a->top, dense * 1.001), edges = fmax(FINE / fmax(a->depth, 1), 1);
@@ -40,6 +44,8 @@ static void write_solid(hl_function_writer *w, const palette *colors) {
     hl_add_opacity(w, rows[n][0], 1 - pow(1 - rows[n][1], edges));
   hl_add_color(w, a->faint, colors->rim);
   hl_add_color(w, a->solid, colors->surface);
+  for (size_t n = 0; inside != NULL && n < sizeof flesh / sizeof *flesh; n++)
+    hl_add_color(w, a->solid + flesh[n] * (dense - a->solid), inside);
   hl_add_color(w, dense, colors->dense);
   hl_add_color(w, top, colors->top);
 }
@@ -66,14 +72,16 @@ static void color_materials(hl_function_writer *w) {
 void hl_write_matter(hl_function_writer *w) {
   static const palette ivory = {
       {0.60, 0.53, 0.41}, {0.76, 0.69, 0.56}, {0.78, 0.78, 0.75}, {0.74, 0.83, 0.92}};
-  write_solid(w, &ivory);
+  write_solid(w, &ivory, NULL);
   if (w->analysis->material_count > 1) color_materials(w);
 }
 
+/* Skin, with flesh and bone in it: the faces of cuts tell them apart. */
 void hl_write_body(hl_function_writer *w) {
   static const palette skin = {
-      {0.62, 0.36, 0.25}, {0.76, 0.50, 0.37}, {0.86, 0.72, 0.54}, {0.93, 0.91, 0.86}};
-  write_solid(w, &skin);
+      {0.62, 0.36, 0.25}, {0.76, 0.50, 0.37}, {0.89, 0.80, 0.65}, {0.93, 0.91, 0.86}};
+  static const double red[3] = {0.64, 0.33, 0.23};
+  write_solid(w, &skin, red);
 }
 
 /* Grey matter hardly differs from the surface in colour, and white matter is nearly white: the two differ on
@@ -81,7 +89,7 @@ void hl_write_body(hl_function_writer *w) {
 void hl_write_brain(hl_function_writer *w) {
   static const palette brain = {
       {0.60, 0.40, 0.35}, {0.69, 0.49, 0.42}, {0.72, 0.54, 0.47}, {0.97, 0.94, 0.90}};
-  write_solid(w, &brain);
+  write_solid(w, &brain, NULL);
 }
 
 /* Adds the opacities of a field on one side of its background (+1: above; -1: below): a clear shell, around

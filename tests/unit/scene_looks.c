@@ -227,6 +227,27 @@ static void dark_skin_is_whole(void **state) {
   hl_context_destroy(context);
 }
 
+/* On the face of a cut through a body, flesh is redder than the skin around it, and bone is nearly white. */
+static void cut_faces_tell_flesh_from_bone(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  hl_transfer_function f;
+  double skin[3], flesh[3], bone[3];
+  fill(body);
+  hl_volume *volume = make_volume(context, N, values);
+  hl_data_analysis a;
+  assert_int_equal(hl_data_analyse(volume, &a, NULL), HL_OK);
+  assert_int_equal(hl_transfer_function_automatic(context, volume, &f, NULL), HL_OK);
+  hl_transfer_function_color(&f, a.background + a.solid, skin);
+  hl_transfer_function_color(&f, 40, flesh);
+  hl_transfer_function_color(&f, 940, bone);
+  assert_true(flesh[1] / flesh[0] < 0.9 * skin[1] / skin[0]);
+  assert_true(bone[1] / bone[0] > 0.8 && bone[1] > 2 * flesh[1]);
+  hl_transfer_function_release(context, &f);
+  hl_volume_release(volume);
+  hl_context_destroy(context);
+}
+
 /* The opacity of a ball of a noisy material where it surely is matter. */
 static double opacity_of_ball(hl_context *context, double radius) {
   hl_transfer_function f;
@@ -408,6 +429,7 @@ int main(void) {
       cmocka_unit_test(strong_lobes_alone_are_seen),
       cmocka_unit_test(fields_show_a_core_through_a_shell),
       cmocka_unit_test(dark_skin_is_whole),
+      cmocka_unit_test(cut_faces_tell_flesh_from_bone),
       cmocka_unit_test(coarse_matter_is_as_opaque),
       cmocka_unit_test(skin_is_for_bodies),
       cmocka_unit_test(labels_have_colors_of_their_own),
