@@ -200,6 +200,14 @@ static void find_motion(const animate_job *job, bool series, motion *found) {
       .turntable = turn};
 }
 
+/* Whether the first volume's file has several time steps. */
+static bool has_times(const animate_job *job) {
+  const hl_scene_description *description = hl_scene_describe(job->scene);
+  hl_volume_selection selection = {.struct_size = sizeof selection};
+  return description->volume_count > 0 &&
+         hl_volume_get_selection(description->volumes[0].volume, &selection) == HL_OK && selection.times > 1;
+}
+
 static int plan(animate_job *job) {
   const cli_value *frames = &job->values[ANIMATE_FRAMES];
   motion moving;
@@ -208,7 +216,8 @@ static int plan(animate_job *job) {
   film_options *options = &moving.film;
   if (options->turntable == 0 && options->key_count == 0)
     return fail(EXIT_CODE_USAGE,
-                "nothing moves: give --turntable, --preset NAME, or --key PATH=FRAME:VALUE,...");
+                "nothing moves: give --turntable, --preset NAME, or --key PATH=FRAME:VALUE,...%s",
+                has_times(job) ? ", or --time all, as this file has time steps" : "");
   if (frames->given) options->frames = (int)frames->number[0];
   else if (sweeps(job) && options->turntable == 0 && options->key_count == 1)
     options->frames = 2 * (int)fmax(1, frames_per_second(job));
@@ -270,8 +279,8 @@ static int run_job(animate_job *job) {
   return exit_code == EXIT_CODE_OK ? finish(job, &frames) : exit_code;
 }
 
-/* Joins the pictures of a series of files; each file has one picture. */
-static int finish_series(const animate_job *job, const cli_value *values) {
+/* Joins the `count` pictures of a series to a film. */
+static int finish_series(const animate_job *job, const cli_value *values, int count) {
   bool quiet = values[RENDER_QUIET].given;
   if (job->parts > 1 || !movie_available()) {
     if (!quiet && job->parts > 1)
@@ -279,18 +288,9 @@ static int finish_series(const animate_job *job, const cli_value *values) {
     else if (!quiet) warn("ffmpeg is not installed: the pictures stay in %s", job->folder);
     return EXIT_CODE_OK;
   }
-  series_job *series = calloc(1, sizeof *series);
-  if (series == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
-  memcpy(series->values, values, sizeof series->values);
-  series->pattern = values[RENDER_OUTPUT].text;
-  int exit_code = series_find_files(series, job->inputs);
-  if (exit_code == EXIT_CODE_OK)
-    exit_code = animate_join_series(job->folder, series->files.count, job->output, frames_per_second(job),
-                                    quiet);
+  int exit_code = animate_join_series(job->folder, count, job->output, frames_per_second(job), quiet);
   if (exit_code == EXIT_CODE_OK && !job->values[ANIMATE_KEEP_FRAMES].given)
-    animate_remove_series(job->folder, series->files.count);
-  series_release_files(series);
-  free(series);
+    animate_remove_series(job->folder, count);
   return exit_code;
 }
 
@@ -299,7 +299,7 @@ static int finish_series(const animate_job *job, const cli_value *values) {
 static int run_series(animate_job *job) {
   cli_value *values = calloc(RENDER_OPTION_COUNT, sizeof *values);
   char *pattern = NULL;
-  int exit_code = EXIT_CODE_OK;
+  int exit_code = EXIT_CODE_OK, count = 0;
   motion moving;
   find_motion(job, true, &moving);
   const bool moves = moving.film.turntable != 0 || moving.film.key_count > 0;
@@ -314,10 +314,10 @@ static int run_series(animate_job *job) {
     memcpy(values, job->render, RENDER_OPTION_COUNT * sizeof *values);
     values[RENDER_OUTPUT] = (cli_value){.given = true, .text = pattern, .texts = {pattern}, .count = 1};
     if (!values[RENDER_BACKGROUND].given || !values[RENDER_BACKGROUND].chosen)
-      exit_code = render_series(values, job->inputs, moves ? &moving.film : NULL);
+      exit_code = render_series(values, job->inputs, moves ? &moving.film : NULL, &count);
     else exit_code = fail(EXIT_CODE_USAGE, "--background transparent: a film has no transparent pixels");
   }
-  if (exit_code == EXIT_CODE_OK && job->film_wanted) exit_code = finish_series(job, values);
+  if (exit_code == EXIT_CODE_OK && job->film_wanted) exit_code = finish_series(job, values, count);
   free(values);
   free(pattern);
   return exit_code;
@@ -339,7 +339,7 @@ static int run_animate(const cli_value *values, char **operands) {
   if (exit_code == EXIT_CODE_OK) exit_code = render_check_options(render);
   if (exit_code == EXIT_CODE_OK) exit_code = render_overlay_read(render, &job.overlay);
   if (exit_code == EXIT_CODE_OK) exit_code = choose_output(&job);
-  bool series = render_has_pattern(operands);
+  bool series = render_has_pattern(operands) || render[RENDER_TIME].chosen;
   if (exit_code == EXIT_CODE_OK && !series && render[RENDER_RANGE_OF_ALL].given)
     exit_code = fail(EXIT_CODE_USAGE,
                      "--range-of-all is for a film of several files: give a pattern, as 'flame_*.vti'");

@@ -106,7 +106,7 @@ static int read_options(figure_job *job, figure_panel *panel) {
   int exit_code = options_parse(&render_command, (int)panel->word_count, panel->words, panel->values,
                                 panel->operands, &help);
   if (exit_code == EXIT_CODE_OK && render_is_series(panel->values, panel->operands))
-    exit_code = fail(EXIT_CODE_INPUT, "%s: a panel is one picture: '%s' stands for several files", job->input,
+    exit_code = fail(EXIT_CODE_INPUT, "%s: a panel is one picture: '%s' stands for several", job->input,
                      panel->operands[0]);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   panel->values[RENDER_THREADS] = job->values[FIGURE_THREADS];

@@ -20,6 +20,8 @@ const cli_choice instruction_set_choices[] = {{"auto", HL_INSTRUCTION_SET_AUTO},
                                               {"neon", HL_INSTRUCTION_SET_NEON},
                                               {NULL, 0}};
 
+static const cli_choice all_times[] = {{"all", 0}, {NULL, 0}};
+
 const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_OUTPUT] = {.name = "output",
                        .letter = 'o',
@@ -191,7 +193,21 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                       .kind = OPTION_SWITCH,
                       .help = "parallel projection with the same framing"},
 
-    INPUT_OPTIONS(RENDER_ARRAY, "Volume files"),
+    [RENDER_ARRAY] = INPUT_OPTION_ARRAY("Volume files"),
+    [RENDER_COMPONENT] = INPUT_OPTION_COMPONENT,
+    [RENDER_SERIES] = INPUT_OPTION_SERIES,
+    [RENDER_TIME] = {.name = "time",
+                     .kind = OPTION_NUMBERS,
+                     .argument = "N|all",
+                     .help =
+                         "the time step to read, from 0 (default: 0); all: a\npicture of each, numbered as "
+                         "-o 'frames/%04d.png' says",
+                     .choices = all_times,
+                     .count = 1,
+                     .whole = true,
+                     .low = 0,
+                     .high = 1e9},
+    [RENDER_LEVEL] = INPUT_OPTION_LEVEL,
     [RENDER_CHANNEL] = {.name = "channel",
                         .also = "channels",
                         .kind = OPTION_TEXT,

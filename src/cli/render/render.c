@@ -322,7 +322,7 @@ static int render_one(const cli_value *values, char **operands) {
     return render_views(values, operands);
   if (render_is_series(values, operands)) {
     if (!values[RENDER_STRIPS].given && !values[RENDER_VOLUME].given)
-      return render_series(values, operands, NULL);
+      return render_series(values, operands, NULL, NULL);
     return fail(EXIT_CODE_USAGE,
                 "--%s shares one picture between processes: --frames-over-ranks shares out several pictures",
                 render_options[values[RENDER_STRIPS].given ? RENDER_STRIPS : RENDER_VOLUME].name);

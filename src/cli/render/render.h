@@ -112,10 +112,11 @@ bool render_is_of_picture(enum render_option which);
 
 /* render_is_series() tells whether the operands or the options ask for a series: a picture of each of several
  * files. render_series() makes these pictures. motion: the numbers that change from file to file
- * (film/film.h); its context, scene and frames are not used; null: nothing changes. */
+ * (film/film.h); its context, scene and frames are not used; null: nothing changes. *count: set to the number
+ * of files, or of time steps; may be null. */
 struct film_options;
 bool render_is_series(const cli_value *values, char **operands);
-int render_series(const cli_value *values, char **operands, const struct film_options *motion);
+int render_series(const cli_value *values, char **operands, const struct film_options *motion, int *count);
 /* --views: pictures of several sides. */
 int render_views(const cli_value *values, char **operands);
 

@@ -293,12 +293,13 @@ static int run(series_job *job) {
   int exit_code = picture_path(job, 0, path, sizeof path);
   if (exit_code == EXIT_CODE_OK) exit_code = output_make_folder_of(path);
   job->host.own_bar = true;
+  if (exit_code == EXIT_CODE_OK) exit_code = series_find_times(job);
   if (exit_code == EXIT_CODE_OK) exit_code = find_range(job);
   if (exit_code == EXIT_CODE_OK) exit_code = make_scene(job);
   return exit_code == EXIT_CODE_OK ? make_pictures(job) : exit_code;
 }
 
-int render_series(const cli_value *values, char **operands, const film_options *motion) {
+int render_series(const cli_value *values, char **operands, const film_options *motion, int *count) {
   series_job *job = calloc(1, sizeof *job);
   if (job == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
   job->motion = motion;
@@ -316,6 +317,7 @@ int render_series(const cli_value *values, char **operands, const film_options *
     exit_code = host_open(&options, &job->host);
     if (exit_code == EXIT_CODE_OK) exit_code = series_find_files(job, operands);
     if (exit_code == EXIT_CODE_OK) exit_code = run(job);
+    if (count != NULL) *count = job->files.count;
     hl_scene_release(job->scene);
     host_close(&job->host);
   }

@@ -22,6 +22,7 @@ typedef struct series_job {
     char **names; /* owned; [count]: paths of volumes, or of meshes where there is no volume */
     int count;
     bool of_meshes; /* the files are meshes */
+    bool of_times;  /* --time all: all names are one file's, and the numbers are its time steps */
     bool *bad;      /* owned; [count]; whether the file could not be read; its error line was printed then */
     int first;      /* the number of the file from which `scene` was made */
   } files;
@@ -43,6 +44,10 @@ bool series_has_number(const char *text);
  * picture. Call series_release_files() even after a failure. Returns the exit code. */
 int series_find_files(series_job *job, char **operands);
 void series_release_files(series_job *job);
+
+/* With --time all: makes the series one of all time steps of its only file, which must be a volume. Returns
+ * the exit code. */
+int series_find_times(series_job *job);
 
 /* Reads a volume of the series. channel: HL_INDEX_DEFAULT means the channel that the options ask for. A
  * failure is printed once. Returns the exit code. */

@@ -47,7 +47,8 @@ bool render_has_pattern(char **operands) {
 bool render_is_series(const cli_value *values, char **operands) {
   const cli_value *output = &values[RENDER_OUTPUT];
   return render_has_pattern(operands) || values[RENDER_PART].given || values[RENDER_RANKS].given ||
-         values[RENDER_RANGE_OF_ALL].given || (output->given && series_has_number(output->text)) ||
+         values[RENDER_RANGE_OF_ALL].given || values[RENDER_TIME].chosen ||
+         (output->given && series_has_number(output->text)) ||
          (operands[1] != NULL && output->given && !values[RENDER_VIEWS].given &&
           output_has_name(output->text));
 }
@@ -156,8 +157,9 @@ void series_release_files(series_job *job) {
 
 /* Finds the options for reading a file. All files are read at the first file's resolution. They must have the
  * first file's anatomical space (check_space()). */
-static void reading_of(const series_job *job, hl_volume_load_options *options) {
+static void reading_of(const series_job *job, int number, hl_volume_load_options *options) {
   render_load_options(job->values, options);
+  if (job->files.of_times) options->time = number;
   if (job->scene != NULL) options->level = hl_scene_describe(job->scene)->volumes[0].level;
 }
 
@@ -187,7 +189,7 @@ int series_load_volume(series_job *job, int number, int channel, hl_volume **vol
   hl_volume_load_options options;
   hl_error error = {0};
   if (job->files.bad[number]) return EXIT_CODE_INPUT;
-  reading_of(job, &options);
+  reading_of(job, number, &options);
   if (channel >= 0) options.channel = channel;
   int exit_code = input_open(job->files.names[number], job->values[RENDER_MAX_MEMORY].bytes, &input);
   if (exit_code == EXIT_CODE_OK) {
@@ -199,6 +201,25 @@ int series_load_volume(series_job *job, int number, int channel, hl_volume **vol
   }
   input_close(&input);
   return note(job, number, exit_code);
+}
+
+int series_find_times(series_job *job) {
+  if (!job->values[RENDER_TIME].chosen) return EXIT_CODE_OK;
+  job->values[RENDER_TIME] = (cli_value){.given = true};
+  if (job->files.count != 1 || job->files.of_meshes)
+    return fail(EXIT_CODE_USAGE, "--time all is for the time steps of one file: give one volume");
+  hl_volume *volume = NULL;
+  hl_volume_selection selection = {.struct_size = sizeof selection};
+  int exit_code = series_load_volume(job, 0, HL_INDEX_DEFAULT, &volume);
+  if (exit_code == EXIT_CODE_OK && hl_volume_get_selection(volume, &selection) != HL_OK) selection.times = 1;
+  hl_volume_release(volume);
+  while (exit_code == EXIT_CODE_OK && job->files.count < (int)selection.times)
+    exit_code = add_file(job, job->files.names[0]);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  job->files.of_times = true;
+  free(job->files.bad);
+  job->files.bad = calloc((size_t)job->files.count, sizeof *job->files.bad);
+  return job->files.bad != NULL ? check_picture_names(job) : fail_names(job->files.count);
 }
 
 /* ---- the scene of a file ---- */
@@ -249,6 +270,7 @@ static hl_status scene_of_volumes(const series_job *job, int number, hl_volume *
   hl_status status = HL_OK;
   for (size_t n = 0; n < volumes_of_file(job) && status == HL_OK; n++) {
     volumes[n].file = job->files.names[number];
+    if (job->files.of_times) volumes[n].time = number;
     if (loaded != NULL) volumes[n].volume = loaded[n];
     if (loaded == NULL || volumes[n].label_count == 0) continue;
     status = hl_labels_of_volume(job->host.context, loaded[n], NULL, &labels[n], &volumes[n].label_count,
@@ -296,7 +318,7 @@ static int label_scene(series_job *job, int number, hl_scene **scene) {
   hl_scene *map = NULL;
   hl_error error = {0};
   hl_volume_load_options options;
-  reading_of(job, &options);
+  reading_of(job, number, &options);
   hl_status status = render_load_label_map(&job->host, job->values, job->files.names[number], &options, &map,
                                            &error);
   if (status != HL_OK) return note(job, number, host_fail(&job->host, PHASE_READ, status, &error));

@@ -133,7 +133,10 @@ static int run_view(const cli_value *values, char **inputs) {
                               .progressed = module->progress,
                               .keep_unsmoothed = true, /* for slices */
                               .operands = inputs};
-  int exit_code = render_check_options(render);
+  int exit_code = render[RENDER_TIME].chosen
+                      ? fail(EXIT_CODE_USAGE,
+                             "--time all makes a picture of each time step: view takes one, as --time 0")
+                      : render_check_options(render);
   if (exit_code == EXIT_CODE_OK) exit_code = host_open(&options, &job.host);
   job.host.preview_pixels = VIEW_PREVIEW_PIXELS;
   if (exit_code == EXIT_CODE_OK) exit_code = load(&job, inputs);
