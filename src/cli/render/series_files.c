@@ -210,7 +210,8 @@ int series_find_times(series_job *job) {
     return fail(EXIT_CODE_USAGE, "--time all is for the time steps of one file: give one volume");
   hl_volume *volume = NULL;
   hl_volume_selection selection = {.struct_size = sizeof selection};
-  int exit_code = series_load_volume(job, 0, HL_INDEX_DEFAULT, &volume);
+  const int channel = render_has_channels(job->values) ? 0 : HL_INDEX_DEFAULT; /* any tells the times */
+  int exit_code = series_load_volume(job, 0, channel, &volume);
   if (exit_code == EXIT_CODE_OK && hl_volume_get_selection(volume, &selection) != HL_OK) selection.times = 1;
   hl_volume_release(volume);
   while (exit_code == EXIT_CODE_OK && job->files.count < (int)selection.times)
