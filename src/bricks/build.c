@@ -28,11 +28,6 @@ typedef struct builder {
   bool *is_constant; /* owned; [leaves] */
 } builder;
 
-static size_t brick_points(int shift) {
-  size_t side = ((size_t)1 << shift) + BRICK_MARGIN;
-  return side * side * side;
-}
-
 /* ---- which coefficients are active ---- */
 
 /* Whether a block of a level is covered by a brick that is coarser than this level. */

@@ -45,13 +45,20 @@ typedef struct hl_bricks_source {
   void *data; /* for fill and cover */
 } hl_bricks_source;
 
+/* The number of coefficients of a brick. */
+static inline size_t brick_points(int shift) {
+  const size_t side = ((size_t)1 << shift) + BRICK_MARGIN;
+  return side * side * side;
+}
+
 /* Says, for hl_bricks_choose(), what a brick of a level becomes: nothing, a leaf, or eight finer bricks. */
 typedef enum hl_bricks_choice { HL_BRICKS_NOTHING, HL_BRICKS_LEAF, HL_BRICKS_SPLIT } hl_bricks_choice;
 
 /* Lists leaves by descending from the bricks of the coarsest level: `choose` is called for a brick and says
  * whether it is a leaf, is split into the eight bricks of the next finer level, or is left out. A brick of
  * level 0 that `choose` would split is a leaf. source: its `fill` may be null. *leaves is in the order of the
- * descent, and is owned by the caller (hl_release). */
+ * descent, and is owned by the caller (hl_release). Fails for lack of memory, also where the memory limit has
+ * no room for the field's directory or for the leaves' coefficients, and when cancelled. */
 hl_status hl_bricks_choose(hl_context *context, const hl_bricks_source *source,
                            hl_bricks_choice (*choose)(void *data, int level, const size_t brick[3]),
                            void *data, hl_bricks_leaf **leaves, size_t *count, hl_error *error);

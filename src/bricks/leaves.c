@@ -13,10 +13,14 @@ typedef struct descent {
   hl_bricks_leaf *leaves; /* owned; [room] */
   size_t count, room;
   size_t visited; /* bricks that the descent has visited */
+  size_t most;    /* leaves whose coefficients the memory limit has room for */
   hl_error *error;
 } descent;
 
 static hl_status add_leaf(descent *d, int level, const size_t brick[3]) {
+  if (d->count == d->most)
+    return hl_fail_memory(d->error, (d->count + 1) * brick_points(d->source->shift) * sizeof(float),
+                          "the bricks of a field");
   if (d->count == d->room) {
     size_t room = 2 * d->room + 64;
     hl_bricks_leaf *grown = hl_reallocate(d->context, d->leaves, room, sizeof *grown);
@@ -51,12 +55,26 @@ static hl_status descend(descent *d, int level, const size_t brick[3]) {
   return status;
 }
 
+/* Refuses a field whose directory is larger than the memory limit, before the descent, which would visit each
+ * of its coarsest bricks. */
+static hl_status check_directory(hl_context *context, const hl_bricks_source *source, hl_error *error) {
+  const uint64_t limit = context->options.memory_limit;
+  size_t bytes = sizeof(hl_brick_entry);
+  bool fits = true;
+  for (int axis = 0; axis < 3; axis++)
+    fits = fits && hl_multiply(bytes, bricks_along(source, 0, axis), &bytes);
+  if (fits && (limit == 0 || bytes <= limit)) return HL_OK;
+  return hl_fail_memory(error, fits ? bytes : SIZE_MAX, "the directory of a field's bricks");
+}
+
 hl_status hl_bricks_choose(hl_context *context, const hl_bricks_source *source,
                            hl_bricks_choice (*choose)(void *data, int level, const size_t brick[3]),
                            void *data, hl_bricks_leaf **leaves, size_t *count, hl_error *error) {
   descent d = {.context = context, .source = source, .choose = choose, .data = data, .error = error};
+  const uint64_t limit = context->options.memory_limit;
   int level = source->levels - 1;
-  hl_status status = HL_OK;
+  d.most = limit > 0 ? (size_t)(limit / (brick_points(source->shift) * sizeof(float))) : SIZE_MAX;
+  hl_status status = check_directory(context, source, error);
   size_t b[3];
   *leaves = NULL;
   *count = 0;

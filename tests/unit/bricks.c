@@ -300,6 +300,35 @@ static void impossible_bricks_are_refused(void **state) {
   hl_pool_destroy(pool);
 }
 
+/* Counts the bricks that a descent asks about, all of which it splits. */
+static hl_bricks_choice count_and_split(void *data, int level, const size_t brick[3]) {
+  (void)level, (void)brick;
+  ++*(size_t *)data;
+  return HL_BRICKS_SPLIT;
+}
+
+/* A list of bricks ends where the memory limit has no room for their coefficients. A field whose directory
+ * alone has no room is refused before anything is asked about its bricks. */
+static void lists_keep_within_the_limit(void **state) {
+  hl_context *context = *state;
+  enum { LIMIT = 1 << 20, BRICK_BYTES = 7 * 7 * 7 * 4 };
+  hl_bricks_source source = {.shift = 2, .levels = 3, .dimension = {256, 256, 256}};
+  hl_bricks_leaf *leaves = NULL;
+  size_t count = 0, asked = 0;
+  hl_error error;
+  assert_int_equal(hl_context_limit_memory(context, 8 * LIMIT, NULL, NULL), HL_OK);
+  assert_int_equal(hl_bricks_choose(context, &source, count_and_split, &asked, &leaves, &count, &error),
+                   HL_ERROR_MEMORY);
+  assert_null(leaves);
+  assert_true(asked > 8 * LIMIT / BRICK_BYTES && asked < 10 * LIMIT / BRICK_BYTES);
+  for (int axis = 0; axis < 3; axis++) source.dimension[axis] = 1 << 30;
+  asked = 0;
+  assert_int_equal(hl_bricks_choose(context, &source, count_and_split, &asked, &leaves, &count, &error),
+                   HL_ERROR_MEMORY);
+  assert_int_equal(asked, 0);
+  assert_int_equal(hl_context_limit_memory(context, 0, NULL, NULL), HL_OK);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_setup_teardown(borders_are_smooth, context_up, context_down),
@@ -309,6 +338,7 @@ int main(void) {
       cmocka_unit_test_setup_teardown(dense_is_the_same_field, context_up, context_down),
       cmocka_unit_test_setup_teardown(threads_make_no_difference, context_up, context_down),
       cmocka_unit_test_setup_teardown(impossible_bricks_are_refused, context_up, context_down),
+      cmocka_unit_test_setup_teardown(lists_keep_within_the_limit, context_up, context_down),
   };
   return cmocka_run_group_tests_name("bricks", tests, NULL, NULL);
 }
