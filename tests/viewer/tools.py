@@ -182,13 +182,14 @@ def server_state(viewer):
 
 
 def leaves_nothing(browser, viewer, held):
-    """The page that closes gives back all that its renderers held. held: the server's bytes before the page came."""
+    """The page that closes gives back all that its renderers held, hundreds of megabytes at their peak. A scene that it was opening at this moment
+    may stay until another one needs its place. held: the server's bytes before the page came."""
     browser.open("about:blank")
     end = time.monotonic() + 600  # of one that hangs
     while (after := server_state(viewer))["pages"] > 0:
         check(time.monotonic() < end, f"the page's state stays: {after}")
         time.sleep(0.05)
-    check(after["held"] <= held + (1 << 20), f"the server grows: {held} to {after}")
+    check(after["held"] <= held + (8 << 20), f"the server grows: {held} to {after}")
 
 
 def write_ball(path):
