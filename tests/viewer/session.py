@@ -246,6 +246,53 @@ def film_after_reload(browser):
     rest(browser)
 
 
+def film_is_undone(browser):
+    """Keys that are set, moved and removed, and a film's length, are steps of the history; to go to a frame is none."""
+    def tracks():
+        return browser.run("JSON.stringify([halflight.store.page.film?.frames ?? 120, (halflight.store.page.film?.tracks ?? []).map(({ path, points }) => [path, points.map(([frame]) => frame)])])")
+
+    def seek(frame):
+        browser.run(f"(() => {{ const s = document.querySelector('[aria-label=Frame]'); s.value = {frame}; s.dispatchEvent(new Event('input')); }})()")
+        browser.wait(f"halflight.store.page.film.frame === {frame}")
+
+    def drag_key(frame, way):
+        x, y = center(browser, f".timeline .key[data-frame='{frame}']")
+        browser.drag([x, y], [x + way, y], 6)
+
+    open_section(browser, "Film")
+    rest(browser)
+    states = [tracks()]
+
+    def step(act):
+        act()
+        states.append(tracks())
+        check(states[-1] != states[-2], f"the film has changed: {states[-2:]}")
+
+    seek(3)
+    step(lambda: press_named(browser, "Add a key of Intensity"))
+    seek(6)
+    step(lambda: press_named(browser, "Add a key of Intensity"))
+    step(lambda: drag_key(6, 80))
+    step(lambda: browser.run("(() => { const n = document.querySelector('[aria-label=\"Frames of the film\"]'); n.value = 81; n.dispatchEvent(new Event('change')); })()"))
+    browser.run("document.querySelector('.timeline .key').focus()")
+    step(lambda: browser.key("Delete"))
+    for before in reversed(states[:-1]):
+        browser.run("halflight.store.undo()")
+        check(tracks() == before, f"one step back: {tracks()}, not {before}")
+        check(browser.run("!document.querySelector('.timeline').hidden"), "the panel stays open")
+    for after in states[1:]:
+        browser.run("halflight.store.redo()")
+        check(tracks() == after, f"one step on: {tracks()}, not {after}")
+    shown = browser.run(KEYS)
+    check(shown == [[path, frame] for path, frames in json.loads(states[-1])[1] for frame in frames], f"the strip follows: {shown}")
+    for _ in states[1:]:
+        browser.run("halflight.store.undo()")
+    check(tracks() == states[0], "the film is as it was")
+    open_section(browser, "Session")
+    browser.wait("document.querySelector('.timeline').hidden")
+    rest(browser)
+
+
 def shot(browser, name):
     if SHOTS is not None:
         browser.screenshot(f"{SHOTS}/{name}.png")
@@ -416,6 +463,7 @@ with tempfile.TemporaryDirectory() as place:
         true_status(page)
         after_reload(page)
         film_after_reload(page)
+        film_is_undone(page)
         check(page.problems == [], f"the console has errors: {page.problems}")
         after_restart(page, first, arguments)
     private_tokens("runtime")

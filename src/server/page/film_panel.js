@@ -56,10 +56,12 @@ class Film {
     this.scene = this.turns && from !== undefined ? { ...scene, camera: reshaped(from.camera, from.image, scene.image) } : scene;
   }
 
-  #keep() {
+  // edits: whether the change is a step that can be undone; to go to a frame is none.
+  #keep(edits) {
     const { tracks, frames, fps, turns, frame, format, open, scene } = this, { camera, image: { width, height } } = scene;
     this.#kept = { tracks, frames, fps, turns, frame, format, open, ...(turns ? { from: { camera, image: { width, height } } } : {}) };
-    this.#viewer.store.setPage({ film: this.#kept });
+    if (edits) this.#viewer.store.setFilm(this.#kept);
+    else this.#viewer.store.setPage({ film: this.#kept });
   }
 
   // A turn starts from the camera that a person has chosen, not from the place where the turn has taken it.
@@ -91,7 +93,7 @@ class Film {
       this.tracks = stretched(this.tracks, before, this.frames);
       this.frame = Math.round((this.frame * (this.frames - 1)) / (before - 1));
     }
-    if (!this.playing) this.#keep();
+    if (!this.playing) this.#keep(["tracks", "frames", "fps", "turns"].some((key) => key in part));
     this.changed();
   }
 

@@ -29,5 +29,11 @@ export function followGestures(root, store, signal) {
   listen(window, ["keyup"], (event) => endSoon(`key ${event.code || event.key}`));
   // A field is left, or a colour picker is closed.
   listen(root, ["change"], () => { begin("change"); endSoon("change"); });
-  listen(window, ["blur"], () => { down.clear(); ending.clear(); store.endGesture(); });
+  // The window loses the focus. An element that loses it, as a key of the timeline that is drawn anew, ends nothing.
+  listen(window, ["blur"], (event) => {
+    if (event.target !== window) return;
+    down.clear();
+    ending.clear();
+    store.endGesture();
+  });
 }

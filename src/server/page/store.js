@@ -8,11 +8,14 @@ import { readMarks } from "./marks.js";
 const MOST_STEPS = 100; // the most steps that can be undone, for each history
 const UNREMEMBERED = ["camera", "size", "time", "page"]; // changes that are no steps of the main history
 
-// What is undone: everything of the scene but the camera and the picture's size, the marks, and what the scene's files are called and
-// were opened by.
-function lasting({ scene: { camera, image: { width, height, ...image }, ...rest }, marks, source, title }) {
-  return { rest, image, marks, source, title };
+// What is undone: everything of the scene but the camera and the picture's size, the marks, the film's keys and length, and what the
+// scene's files are called and were opened by.
+function lasting({ scene: { camera, image: { width, height, ...image }, ...rest }, marks, page: { film }, source, title }) {
+  return { rest, image, marks, film, source, title };
 }
+
+// A film of the history, at the frame and with the panel of the film now.
+const filmAgain = (film, now) => ({ ...film, frame: Math.min(now?.frame ?? 0, (film?.frames ?? 1) - 1), open: now?.open ?? false, format: now?.format });
 
 const isSame = (a, b) => Object.keys({ ...a, ...b }).every((key) => a[key] === b[key]);
 
@@ -73,6 +76,12 @@ export class Store {
     this.#remember(`marks ${name}`);
     this.marks = marks;
     this.#tell("marks");
+  }
+
+  // Changes the film's keys or its length.
+  setFilm(film) {
+    this.#remember("film");
+    this.setPage({ film });
   }
 
   // Changes parts of what the page shows besides pictures.
@@ -169,9 +178,10 @@ export class Store {
 
   #step(from, to) {
     if (from.length === 0) return;
-    const now = lasting(this), { rest, image, marks, source, title } = from.pop();
+    const now = lasting(this), { rest, image, marks, film, source, title } = from.pop();
     to.push(now);
     this.marks = marks;
+    if (film !== now.film) this.page = { ...this.page, film: filmAgain(film, now.film) };
     this.source = source ?? null;
     this.title = title ?? this.title;
     this.#last = { name: "", gesture: -1 };
