@@ -11,8 +11,10 @@
 #include "compose/lights.h"
 #include "compose/looks.h"
 #include "compose/volumes.h"
+#include "core/context.h"
 #include "core/door.h"
 #include "core/memory.h"
+#include "core/vector.h"
 
 /* The changed copy of the description, and the arrays that this copy owns. */
 typedef struct scene_change {
@@ -24,6 +26,32 @@ typedef struct scene_change {
   hl_scene_mesh *meshes; /* owned; the last mesh is the floor; null: no floor is added */
   float *sky;            /* owned; the pixels of the image of "sky"; null: none */
 } scene_change;
+
+/* Logs that the camera does not see the top of the floor: it looks along the floor, or from below. Derived: a
+ * floor of the edge a, seen at the distance d at an angle of the sine s above its plane, is a s / (2 d
+ * tan(fovy / 2)) of the picture high, or a s / height for an orthographic camera. Less than a pixel is a
+ * line. */
+static void tell_of_hidden_floor(const hl_composer *composer, const hl_scene_description *description,
+                                 const hl_mesh *floor) {
+  const float(*corner)[3] = hl_mesh_describe(floor)->positions;
+  const hl_camera *camera = &description->camera;
+  hl_view view;
+  if (hl_view_of_camera(description, &view) != HL_OK) return;
+  vec3 corners[3], eye = vec3_of(camera->position);
+  for (int n = 0; n < 3; n++) corners[n] = (vec3){corner[n][0], corner[n][1], corner[n][2]};
+  const vec3 middle = vec3_scale(vec3_add(corners[0], corners[2]), 0.5),
+             up = vec3_normalise(vec3_of(view.up));
+  const bool orthographic = camera->type == HL_CAMERA_ORTHOGRAPHIC;
+  const vec3 to_eye = vec3_subtract(eye, orthographic ? vec3_of(camera->target) : middle);
+  const double seen = orthographic ? camera->height
+                                   : 2 * vec3_length(to_eye) * tan(camera->fovy_deg * HL_PI / 360);
+  const double edge = vec3_length(vec3_subtract(corners[1], corners[0]));
+  const double pixels = vec3_dot(vec3_normalise(to_eye), up) * edge / seen * description->height;
+  if (!(pixels < 1)) return;
+  hl_log(composer->context, HL_LOG_WARNING,
+         "--floor: the camera %s, and does not see its top: look from above, as with --elevation 20",
+         pixels > -1 ? "looks along the floor" : "looks at the floor from below");
+}
 
 /* "floor": adds a floor, a mesh below everything that is seen. The camera must have been placed before. */
 static hl_status add_floor(const hl_composer *composer, scene_change *change) {
@@ -45,6 +73,7 @@ static hl_status add_floor(const hl_composer *composer, scene_change *change) {
   change->meshes[count].mesh = floor;
   description->meshes = change->meshes;
   description->mesh_count = count + 1;
+  tell_of_hidden_floor(composer, description, floor);
   return HL_OK;
 }
 
