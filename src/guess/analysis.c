@@ -211,10 +211,20 @@ static hl_status falls_off(const hl_volume *volume, const hl_sample *sample, con
   return status;
 }
 
+/* Whether the data are the density of a fog, as the file says. The file's word counts where the data have no
+ * other sign than that they are smooth or filled up: they fall off from their maxima or are solid, and
+ * nothing is below 0, which is empty. A scan's materials and a signed quantity remain what they are. */
+static bool is_fog(const hl_volume *volume, const hl_data_analysis *a) {
+  return volume->says_fog && volume->minimum >= 0 && a->direction > 0;
+}
+
 static hl_data_kind kind_of(const hl_volume *volume, const hl_sample *sample, const distances *d,
                             bool falling, const hl_data_analysis *a) {
   double roughness = hl_roughness(volume, sample, a->background, a->faint);
-  if (roughness < ROUGH && is_filled_up(sample, d, a, roughness)) return HL_DATA_SURFACES;
+  const bool said = is_fog(volume, a);
+  if (roughness < ROUGH && is_filled_up(sample, d, a, roughness))
+    return said ? HL_DATA_MEDIUM : HL_DATA_SURFACES;
+  if (said && (falling || roughness < SMOOTH)) return HL_DATA_MEDIUM;
   bool fog = a->zeroed > 0.4 && is_continuous(sample); /* the air around the matter is exactly empty */
   if (roughness < ROUGH && roughness > FOG && fog && falling) return HL_DATA_MEDIUM;
   if (roughness < ROUGH) return falling || roughness < SMOOTH ? HL_DATA_FIELD : HL_DATA_SURFACES;

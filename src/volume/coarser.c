@@ -139,12 +139,13 @@ static void place(const coarsening *c, hl_volume_description *d) {
 }
 
 /* Copies to the coarser volume the properties that do not depend on its resolution: the value around the
- * content, the window, and what the file states about units, space and labels. */
+ * content, the window, and what the file states about units, space, labels and fog. */
 static void inherit(const hl_volume *volume, hl_volume *made) {
   made->unit = volume->unit;
   made->absence = volume->absence;
   made->is_anatomical = volume->is_anatomical;
   made->says_labels = volume->says_labels;
+  made->says_fog = volume->says_fog;
   made->has_surroundings = volume->has_surroundings;
   made->surroundings = volume->surroundings;
   memcpy(made->window, volume->window, sizeof made->window);

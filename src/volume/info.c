@@ -154,6 +154,7 @@ hl_status hl_volume_take_about(hl_volume *volume, const hl_volume *from, hl_erro
   volume->unit = from->unit;
   volume->absence = from->absence;
   volume->is_anatomical = from->is_anatomical;
+  volume->says_fog = from->says_fog;
   memcpy(volume->window, from->window, sizeof volume->window);
   volume->selection = from->selection;
   volume->component = from->component;

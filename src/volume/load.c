@@ -337,6 +337,7 @@ static hl_status finish(hl_load_request *request, const char *path, hl_status st
     memcpy((*volume)->window, request->window, sizeof request->window);
   (*volume)->is_anatomical = request->is_anatomical;
   (*volume)->says_labels = request->says_labels;
+  (*volume)->says_fog = request->says_fog;
   /* A spacing that the caller gives has no unit. */
   (*volume)->unit = request->spacing[0] > 0 ? NULL : request->unit;
   (*volume)->absence = request->absence;

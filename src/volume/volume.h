@@ -101,6 +101,7 @@ struct hl_volume {
   bool is_anatomical; /* whether the file states `space` on purpose, as DICOM and NIfTI do; other programs
                        * write left-posterior-superior for any data */
   bool says_labels;   /* whether the file says that its values are labels */
+  bool says_fog;      /* whether the file says that its values are the density of a fog */
   double window[2];   /* data values that the file asks to show black and white; NAN if it does not */
   double minimum, maximum; /* data values over finite voxels */
   uint64_t whole_range[2]; /* range of the file's numbers, as 64-bit integers of `type`; set if doubles would

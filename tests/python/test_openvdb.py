@@ -1,4 +1,5 @@
 """OpenVDB files, which nanovdb_convert makes NanoVDB of."""
+import json
 import shutil
 import subprocess
 
@@ -31,6 +32,21 @@ def test_values_and_place(file):
     assert np.allclose(info.spacing, 0.25) and [a.name for a in info.arrays] == ["density"]
     picture = np.asarray(halflight.render(halflight.Volume(file), size=(32, 32)))
     assert picture.shape == (32, 32, 4) and picture.max() > 0
+
+
+def test_the_data_and_not_the_name_tell_fog(program, tmp_path):
+    """A grid called "density" is smoke where the file says fog and the data may be one; signed values never are."""
+    z, y, x = np.mgrid[-1:1:40j, -1:1:40j, -1:1:40j]
+    puff = np.exp(-5 * (x**2 + y**2 + z**2))
+    signed = np.exp(-8 * ((x - .3)**2 + y**2 + z**2)) - np.exp(-8 * ((x + .3)**2 + y**2 + z**2))
+    fog, unknown = openvdb.GridClass.FOG_VOLUME, openvdb.GridClass.UNKNOWN
+    for values, kind, taken in ((puff, fog, "smoke or cloud"), (puff, unknown, "field"), (signed, fog, "signed field")):
+        grid = openvdb.FloatGrid()
+        grid.copyFromArray(np.where(abs(values) < 0.01, 0, values).astype(np.float32))
+        grid.name, grid.gridClass = "density", kind
+        openvdb.write(str(tmp_path / "grid.vdb"), grids=[grid])
+        told = subprocess.run([program, "info", "--json", tmp_path / "grid.vdb"], capture_output=True, check=True)
+        assert json.loads(told.stdout)["taken_for"] == taken
 
 
 def test_as_the_program_reads_it(file, program):

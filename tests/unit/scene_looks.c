@@ -128,6 +128,40 @@ static void kinds_are_told_apart(void **state) {
   hl_context_destroy(context);
 }
 
+static double puff(int i, int j, int k) { /* falls off smoothly, and ends */
+  double value = exp(-pow(distance(i, j, k, 24, 24, 24) / 9, 2));
+  return value < 0.01 ? 0 : value;
+}
+static double filled(int i, int j, int k) { /* solid, with a soft border */
+  return fmax(0, fmin(1, (15 - distance(i, j, k, 24, 24, 24)) / 2));
+}
+
+/* A file's word that its values are a fog counts where they may be one, whatever a grid is called. */
+static void fog_is_believed_where_the_data_may_be_fog(void **state) {
+  (void)state;
+  static const struct {
+    double (*each)(int, int, int);
+    const char *kind, *said; /* the kinds without the file's word and with it */
+  } cases[] = {{puff, "field", "smoke or cloud"},
+               {filled, "scanned matter", "smoke or cloud"},
+               {orbital, "signed field", "signed field"},
+               {eight_bits, "scanned matter", "scanned matter"},
+               {body, "scanned body", "scanned body"}};
+  hl_context *context = make_context();
+  for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+    const char *kind = NULL;
+    fill(cases[n].each);
+    hl_volume *volume = make_volume(context, N, values);
+    volume->says_fog = true;
+    assert_int_equal(hl_volume_guess(volume, NULL, &kind, NULL), HL_OK);
+    assert_string_equal(kind, cases[n].said);
+    hl_volume_release(volume);
+    assert_string_equal(guess(context, cases[n].each, NULL), cases[n].kind);
+  }
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 /* Of an angiogram the tissue is clear, and the vessels are seen. */
 static void angiograms_show_vessels(void **state) {
   (void)state;
@@ -425,6 +459,7 @@ static void looks_by_name(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(kinds_are_told_apart),
+      cmocka_unit_test(fog_is_believed_where_the_data_may_be_fog),
       cmocka_unit_test(angiograms_show_vessels),
       cmocka_unit_test(strong_lobes_alone_are_seen),
       cmocka_unit_test(fields_show_a_core_through_a_shell),

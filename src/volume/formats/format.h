@@ -31,9 +31,10 @@ typedef struct hl_load_request {
   bool is_anatomical;       /* set by readers of medical formats: whether the file states its anatomical space
                              * on purpose */
   bool says_labels;         /* set by readers: whether the file says that its values are labels */
-  const char *series;       /* DICOM: the number, UID or description of the wanted series; null if the
-                             * reader may choose */
-  hl_array_entry *arrays;   /* owned; [array_count]; in the file's order */
+  bool says_fog;          /* set by readers: whether the file says that its values are the density of a fog */
+  const char *series;     /* DICOM: the number, UID or description of the wanted series; null if the
+                           * reader may choose */
+  hl_array_entry *arrays; /* owned; [array_count]; in the file's order */
   size_t array_count;
   size_t chosen; /* index of the array that is read */
   int chosen_component;

@@ -25,9 +25,11 @@ enum {
   AT_FILE_BYTES = 8,
   AT_VOXELS = 24,
   AT_KIND = 32,
+  AT_CLASS = 36,
   AT_NAME_BYTES = 136,
   AT_CODEC = 168,
   NAME_BYTES_MOST = 4096,
+  CLASS_FOG = 2,         /* GridClass::FogVolume */
   CHUNK_BYTES = 1 << 30, /* Blosc packs a grid in pieces of this many bytes */
 };
 
@@ -36,7 +38,7 @@ typedef enum nanovdb_codec { CODEC_NONE = 0, CODEC_ZIP = 1, CODEC_BLOSC = 2 } na
 /* A grid in the file. */
 typedef struct grid_entry {
   uint64_t at, file_bytes, grid_bytes, voxels;
-  uint32_t kind, codec;
+  uint32_t kind, class, codec;
 } grid_entry;
 
 typedef struct grid_list {
@@ -82,6 +84,7 @@ static hl_status read_facts(grid_list *list, hl_load_request *request, uint64_t 
                         .grid_bytes = little(facts + AT_GRID_BYTES, 8),
                         .voxels = little(facts + AT_VOXELS, 8),
                         .kind = (uint32_t)little(facts + AT_KIND, 4),
+                        .class = (uint32_t)little(facts + AT_CLASS, 4),
                         .codec = (uint32_t)little(facts + AT_CODEC, 2)};
   hl_voxel_type type;
   size_t components;
@@ -261,6 +264,7 @@ static hl_status load_grid(grid_list *list, hl_load_request *request, hl_volume 
   if (status != HL_OK) return status;
   const grid_entry *entry = &list->entries[request->chosen];
   nanovdb_kind(entry->kind, &payload.grid.type, &payload.components);
+  request->says_fog = entry->class == CLASS_FOG;
   payload.block = 1;
   payload.colors = HL_COLORS_UNREAD;
   if (payload.grid.type == 0)
