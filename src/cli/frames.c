@@ -79,20 +79,12 @@ bool frames_have_scene(const cli_host *host, const char *path, const hl_scene *s
   return same;
 }
 
-/* "3 h 20 min", "4 min", "12 s". */
-static void describe_time(double seconds, char *text, size_t size) {
-  long whole = (long)(seconds + 0.5);
-  if (whole >= 3600) snprintf(text, size, "%ld h %ld min", whole / 3600, whole % 3600 / 60);
-  else if (whole >= 60) snprintf(text, size, "%ld min %ld s", whole / 60, whole % 60);
-  else snprintf(text, size, "%ld s", whole);
-}
-
 void frames_draw_bar(cli_host *host, int done, int wanted, int rendered, double seconds) {
   char text[80], left[40];
   if (rendered == 0) {
     snprintf(text, sizeof text, "frame %d of %d", done + 1, wanted);
   } else {
-    describe_time(seconds / rendered * (wanted - done), left, sizeof left);
+    host_describe_time(seconds / rendered * (wanted - done), left, sizeof left);
     snprintf(text, sizeof text, "frame %d of %d, %s left", done + 1, wanted, left);
   }
   host_draw_bar(host, (double)done / wanted, text);

@@ -58,10 +58,46 @@ void host_draw_bar(cli_host *host, double fraction, const char *text) {
   host->drawn_at = now;
 }
 
+void host_describe_time(double seconds, char *text, size_t size) {
+  long whole = (long)(seconds + 0.5);
+  if (whole >= 3600) snprintf(text, size, "%ld h %ld min", whole / 3600, whole % 3600 / 60);
+  else if (whole >= 60) snprintf(text, size, "%ld min %ld s", whole / 60, whole % 60);
+  else snprintf(text, size, "%ld s", whole);
+}
+
+/* Finds the seconds that the stage of a library call still takes, if it goes on as it did. */
+static double seconds_left(cli_host *host, const char *stage, double fraction, double *past) {
+  host_stage *now = &host->stage;
+  if (strcmp(now->name, stage) != 0 || fraction < now->fraction) {
+    snprintf(now->name, sizeof now->name, "%s", stage);
+    now->began = clock_seconds();
+  }
+  now->fraction = fraction;
+  *past = clock_seconds() - now->began;
+  return fraction > 0 ? *past * (1 - fraction) / fraction : 0;
+}
+
+/* Says once, after `PATIENCE` seconds, how long a slow stage still takes and what makes it faster. A bar says
+ * the first of these anew all the time. */
+static void tell_of_slowness(cli_host *host, double past, double left) {
+  enum { PATIENCE = 10, LONG = 60 };
+  char text[40];
+  if (host->stage.hint == NULL || host->quiet || past < PATIENCE || left < LONG) return;
+  host_describe_time(left, text, sizeof text);
+  host_clear_bar(host);
+  say("%s: about %s left: %s", host->subject, text, host->stage.hint);
+  host->stage.hint = NULL;
+}
+
 static void on_progress(void *user_data, const char *stage, double fraction) {
+  enum { SHORT = 3 }; /* seconds that nobody needs an estimate for */
   cli_host *host = user_data;
-  char text[80];
-  snprintf(text, sizeof text, "%s %s", stage, host->subject);
+  char text[80], time[40];
+  double past, left = seconds_left(host, stage, fraction, &past);
+  tell_of_slowness(host, past, left);
+  host_describe_time(left, time, sizeof time);
+  snprintf(text, sizeof text, "%s %s%s%s%s", stage, host->subject, past > SHORT ? ", " : "",
+           past > SHORT ? time : "", past > SHORT ? " left" : "");
   if (host->progressed != NULL) host->progressed(stage, fraction);
   if (!host->own_bar) host_draw_bar(host, fraction, text);
 }

@@ -8,6 +8,14 @@
 #include "message.h"
 #include "output.h"
 
+/* The stage in which a call of the library is, as it reports its progress. */
+typedef struct host_stage {
+  char name[16];
+  double began;     /* seconds of clock_seconds() */
+  double fraction;  /* the part that was done at the last report */
+  const char *hint; /* what makes the command faster; said once where it takes long; null: nothing is said */
+} host_stage;
+
 typedef struct cli_host {
   hl_context *context;
   bool quiet;   /* the program prints no warnings, no bar and no summary */
@@ -15,7 +23,8 @@ typedef struct cli_host {
   bool own_bar; /* the command draws the progress bar itself, because each call of the library is only a part
                  * of the command's work */
   bool color;
-  bool drawn;              /* a bar is on the line now */
+  bool drawn; /* a bar is on the line now */
+  host_stage stage;
   double drawn_at;         /* seconds; bars are redrawn ten times a second at most */
   bool (*cancelled)(void); /* or null */
   void (*progressed)(const char *stage, double fraction); /* or null */
@@ -76,6 +85,9 @@ typedef struct cli_host_options {
  * not move until host_close(). */
 int host_open(const cli_host_options *options, cli_host *host);
 void host_close(cli_host *host);
+
+/* Writes a time: "3 h 20 min", "4 min 1 s", "12 s". */
+void host_describe_time(double seconds, char *text, size_t size);
 
 /* Draws a bar with a text beside it, ten times a second at most, where there is a terminal. */
 void host_draw_bar(cli_host *host, double fraction, const char *text);

@@ -39,7 +39,8 @@ typedef struct picture {
   float *pixels;             /* the caller's pixels */
   const hl_layers *layers;   /* the caller's layers; null if there are none */
   size_t row_stride;         /* floats from row to row */
-  size_t runs_per_row;
+  size_t runs_per_row, runs; /* runs of pixels in a row, and in the picture */
+  size_t stride;             /* the distance, modulo `runs`, of the runs that are taken one after the other */
   atomic_size_t runs_done;
 } picture;
 
@@ -254,9 +255,28 @@ static void project_pixel(const picture *all, size_t x, size_t y, int worker) {
   for (int c = 0; c < 4; c++) pixel[c] = (float)(sum[c] / (double)(rays * rays));
 }
 
-static void render_run(void *data, size_t index, int worker) {
+/* The distance of runs that are taken one after the other: a number without a common divisor with their
+ * count, so that each is taken once, and near the golden section of the count, so that any number of
+ * successive runs is spread evenly over the picture. A picture's border is mostly empty and quick. With this
+ * order the part of the runs that are done tells the time that the others take. */
+static size_t stride_for(size_t count) {
+  size_t stride = (size_t)(0.6180339887498949 * (double)count);
+  for (bool common = true; common; stride += common) {
+    size_t a = count, b = stride;
+    while (b != 0) {
+      size_t rest = a % b;
+      a = b;
+      b = rest;
+    }
+    common = a != 1;
+  }
+  return stride;
+}
+
+static void render_run(void *data, size_t number, int worker) {
   picture *all = data;
   const hl_scene_description *scene = all->all->scene;
+  size_t index = (size_t)((uint64_t)number * all->stride % all->runs);
   size_t y = index / all->runs_per_row, first = index % all->runs_per_row * RUN_PIXELS;
   for (size_t x = first; x < first + RUN_PIXELS && x < (size_t)scene->width; x++) {
     if (hl_pool_stops(all->all->pool, worker)) return;
@@ -264,9 +284,7 @@ static void render_run(void *data, size_t index, int worker) {
     else trace_pixel(all, x, y, worker);
   }
   size_t done = atomic_fetch_add(&all->runs_done, 1) + 1;
-  if (worker == 0)
-    hl_progress(all->all->context, "render",
-                (double)done / (double)(all->runs_per_row * (size_t)scene->height));
+  if (worker == 0) hl_progress(all->all->context, "render", (double)done / (double)all->runs);
 }
 
 static hl_status prepare(reference *all, const hl_reference_options *options, hl_pool *pool,
@@ -357,10 +375,12 @@ static hl_status render(const reference *all, hl_pool *pool, float *pixels, size
                   .layers = layers,
                   .row_stride = row_stride,
                   .runs_per_row = (width + RUN_PIXELS - 1) / RUN_PIXELS};
+  made.runs = made.runs_per_row * (size_t)all->scene->height;
+  made.stride = stride_for(made.runs);
   made.workers = workers_create(all, threads);
   if (made.workers == NULL)
     return hl_fail_memory(error, threads * sizeof(reference_worker), "the reference's threads");
-  hl_pool_run(pool, made.runs_per_row * (size_t)all->scene->height, render_run, &made);
+  hl_pool_run(pool, made.runs, render_run, &made);
   workers_release(all->context, made.workers);
   return hl_pool_check(pool, "rendering", error);
 }

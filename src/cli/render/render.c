@@ -168,6 +168,9 @@ static hl_status render_reference(render_job *job, const hl_scene_description *d
   if (values[RENDER_STEP].given) options.step = values[RENDER_STEP].number[0];
   options.threads = description->render.threads;
   options.rays = values[RENDER_RAYS].given ? (int)values[RENDER_RAYS].number[0] : 0;
+  job->host.stage.hint =
+      "--reference marches every ray: a smaller --size, fewer --light-points or a greater --step "
+      "is faster";
   double started = clock_seconds();
   hl_status status = hl_reference_render_layers(job->host.context, job->scene, &options,
                                                 hl_image_pixels(job->image), 4 * (size_t)description->width,
