@@ -57,6 +57,7 @@ static hl_status load_layers(const hl_composer *composer, const char *path, cons
     hl_scene_volume *layer = &layers->volumes[layers->count - 1];
     hl_show_labels(show, (hl_label *)layer->labels, layer->label_count);
   }
+  hl_tell_of_shadowed_labels(composer->context, show, layers);
   return HL_OK;
 }
 
@@ -124,7 +125,7 @@ static hl_volume_load_options reading_of(const hl_scene_description *description
 static double rest_of(hl_shown_list *show) {
   double rest = 0;
   for (size_t s = 0; s < show->count; s++) {
-    if (strcmp(show->labels[s].name, "rest") != 0) continue;
+    if (!show->labels[s].rest) continue;
     show->labels[s].found = true;
     rest = show->labels[s].opacity;
   }
@@ -203,7 +204,7 @@ static hl_status add_map(const hl_composer *composer, hl_shown_list *show, hl_la
         "by --labels FILE",
         path, asked[HL_ASK_SHOW].given ? "show" : "label-table");
   /* Without a mask, the rest is what the other labels hold. */
-  for (size_t s = 0; s < show->count; s++) show->labels[s].all |= strcmp(show->labels[s].name, "rest") == 0;
+  for (size_t s = 0; s < show->count; s++) show->labels[s].all |= show->labels[s].rest;
   hl_status status = load_layers(composer, path, asked[HL_ASK_LABEL_TABLE].text, &reading, show, layers);
   if (status == HL_OK) status = hl_check_shown(show, layers, composer->error);
   return status == HL_OK ? add_layers(composer, layers, itself ? 0 : description->volume_count, scene)

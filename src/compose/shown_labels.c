@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/context.h"
 #include "core/error.h"
 #include "text/color.h"
 #include "text/edit_distance.h"
@@ -40,6 +41,7 @@ static hl_status read_item(const char *item, size_t length, hl_shown_label *made
       made->wrong = "give #rrggbb or a CSS name after \"=\"";
   }
   made->all = strcmp(made->name, "all") == 0;
+  made->rest = strcmp(made->name, "rest") == 0;
   return HL_OK;
 }
 
@@ -68,6 +70,7 @@ static bool has_name(const hl_label *label, const hl_shown_label *shown, bool ex
 }
 
 static bool is_named(const hl_label *label, const hl_shown_label *shown, bool exactly) {
+  if (shown->rest) return shown->all; /* a label of this name is named by its number */
   if (is_whole(label, shown)) return true;
   if (shown->wrong != NULL) return false;
   int64_t number;
@@ -113,6 +116,23 @@ void hl_show_labels(hl_shown_list *list, hl_label *labels, size_t count) {
     }
     for (size_t s = 0; s < list->count; s++)
       if (!list->labels[s].all) show_label(&list->labels[s], list->labels[s].opacity, exactly[s], &labels[n]);
+  }
+}
+
+void hl_tell_of_shadowed_labels(hl_context *context, const hl_shown_list *list,
+                                const hl_label_layers *layers) {
+  for (size_t s = 0; s < list->count; s++) {
+    const hl_shown_label *shown = &list->labels[s];
+    for (size_t n = 0; n < layers->count && (shown->all || shown->rest); n++)
+      for (size_t l = 0; l < layers->volumes[n].label_count; l++) {
+        const hl_label *label = &layers->volumes[n].labels[l];
+        if (has_name(label, shown, false))
+          hl_log(context, HL_LOG_WARNING,
+                 "--show %s stands for %s: the label of the name \"%s\" is given by its number, %" PRId64,
+                 shown->name,
+                 shown->all ? "all labels that --show does not name" : "what lies beside the mask",
+                 label->name, label->value);
+      }
   }
 }
 

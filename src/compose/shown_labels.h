@@ -10,7 +10,10 @@ typedef struct hl_shown_label {
                                * a label, with ":" or "=" in it */
   const char *wrong; /* an error's advice on how to mend the text, if it is no valid name; null: the text is
                       * valid */
-  bool all, colored, found;
+  bool all;  /* the item stands for all labels that the list does not name: "all", and "rest" without a
+              * mask */
+  bool rest; /* the item is "rest"; with a mask it stands for what lies outside of the labels */
+  bool colored, found;
   double color[3], opacity;
 } hl_shown_label;
 
@@ -34,6 +37,10 @@ hl_status hl_read_shown(const hl_asked *show, hl_shown_list *list, hl_error *err
  * that a table hides. What the list says of a label by name or number counts more than "all", wherever it
  * stands in the list. */
 void hl_show_labels(hl_shown_list *list, hl_label *labels, size_t count);
+
+/* Logs how labels are named whose own names are "all" or "rest", where the list has these words. */
+void hl_tell_of_shadowed_labels(hl_context *context, const hl_shown_list *list,
+                                const hl_label_layers *layers);
 
 /* Refuses names that no label of any layer has. The error suggests the nearest name, or lists all names. */
 hl_status hl_check_shown(const hl_shown_list *list, const hl_label_layers *layers, hl_error *error);

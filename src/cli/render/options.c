@@ -367,8 +367,8 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
          .kind = OPTION_TEXT,
          .argument = "LABEL[=COLOR][:OPACITY],...",
          .help = "labels to show, by name or number:\nliver,tumour=red:0.5,rest:0.1; rest: all others "
-                 "together,\nwith --mask what lies beside it; without "
-                 "either\nINPUT is the label map",
+                 "together,\nwith --mask what lies beside it (a label of the name\nrest or all: its number); "
+                 "without either INPUT is\nthe label map",
          .repeatable = true},
 
     [RENDER_AMBIENT] = {.name = "ambient",
@@ -469,10 +469,11 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                         .setting_kind = HL_SETTINGS_RENDER,
                         .setting = "slicing"},
 
-    [RENDER_REFERENCE] = {.name = "reference",
-                          .kind = OPTION_SWITCH,
-                          .group = "Reference",
-                          .help = "march rays instead: exact, and very slow"},
+    [RENDER_REFERENCE] =
+        {.name = "reference",
+         .kind = OPTION_SWITCH,
+         .group = "Reference",
+         .help = "march rays instead: exact, and very slow; how long it\ntakes is said while it runs"},
     [RENDER_LIGHT_POINTS] = {.name = "light-points",
                              .kind = OPTION_NUMBERS,
                              .argument = "N",
