@@ -11,7 +11,7 @@ import os
 import sys
 import threading
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
@@ -207,6 +207,22 @@ def encoded(function: Any, *arguments: Any) -> bytes:
         return bytes(ffi.buffer(data[0], length[0]))
     finally:
         lib.hl_bytes_release(context, data[0])
+
+
+def choices_of(option: str) -> list[str]:
+    """The choices of an option that scenes are composed by; none where there is no such option."""
+    choices = lib.hl_option_choices(option.encode())
+    found: list[str] = []
+    while choices != ffi.NULL and choices[len(found)].name != ffi.NULL:
+        found.append(text_of(choices[len(found)].name))
+    return found
+
+
+def composed(description: Any, flags: Any, options: Mapping[str, str]) -> Any:
+    """An hl_scene of a description and options, by their names."""
+    keep = [(ffi.new("char[]", name.encode()), ffi.new("char[]", value.encode())) for name, value in options.items()]
+    array = ffi.new("hl_option[]", keep) if keep else ffi.NULL
+    return made(lib.hl_scene_compose, "hl_scene", lib.hl_scene_release, context, description, flags, array, len(keep))
 
 
 def names(function: Any) -> list[str]:

@@ -211,9 +211,9 @@ def _percentile(text: str, volume: Volume) -> float:
     return volume.percentile(percent)
 
 
-def _look(volume: Volume, cmap: Any, clim: Any, log_scale: Any, opacity: Any, unit_distance: float | None,
+def _look(volume: Volume, projected: bool, cmap: Any, clim: Any, log_scale: Any, opacity: Any, unit_distance: float | None,
           tf: Any) -> Volume:
-    """The volume with the transfer function that the keywords ask for."""
+    """The volume with the transfer function that the keywords ask for. projected: in a maximum projection."""
     range_wanted, log = _clim(clim, volume), bool(log_scale)
     if log and range_wanted is None:
         raise ValueError("log_scale: it spreads over clim: give clim=(low, high), too")
@@ -229,16 +229,16 @@ def _look(volume: Volume, cmap: Any, clim: Any, log_scale: Any, opacity: Any, un
         distance = float(info.spacing.min()) if unit_distance is None else unit_distance
         color = function.color
         if range_wanted is not None and cmap is None:
-            color = transfer.spread(function, range_wanted, log, volume._handle).color
+            color = transfer.spread(function, range_wanted, log, volume._handle, projected).color
         function = transfer.TransferFunction(transfer.opacity_points(opacity, values, log), color, distance)
     elif range_wanted is not None:
-        function = transfer.spread(function, range_wanted, log, volume._handle)
+        function = transfer.spread(function, range_wanted, log, volume._handle, projected)
     if unit_distance is not None:
         function = transfer.TransferFunction(function.opacity, function.color,
                                              _settings.number("opacity_unit_distance", unit_distance),
                                              function.gradient_opacity)
     if cmap is not None:
-        function = transfer.recolored(function, cmap, range_wanted, log, volume._handle)
+        function = transfer.recolored(function, cmap, range_wanted, log, volume._handle, projected)
     return volume.replace(transfer_function=function)
 
 
@@ -248,7 +248,7 @@ def _given(**words: Any) -> dict[str, Any]:
 
 Words = Literal["off", "hard", "soft"]
 Shade = Literal["phong", "none", "flat"]
-Looked = Literal["auto", "surface", "translucent", "xray", "smoke", "vessels"]
+Looked = Literal["auto", "surface", "translucent", "xray", "smoke", "vessels", "mip"]
 View = Camera | Side | str | Sequence[float] | Sequence[Sequence[float]]
 
 
@@ -401,7 +401,7 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
         path, Volume), or {"volume": map, "show": ..., "table": ...}: its labels show beside the volume. See
         `halflight.volume.Look`.
     look : str, optional
-        "surface", "translucent", "xray", "smoke" or "vessels" in place of the automatic look.
+        "surface", "translucent", "xray", "smoke", "vessels" or "mip", a maximum projection, in place of the automatic look.
     sky : float, colour or mapping, optional
         Light from all directions in place of the automatic one, 0 for none: see `Settings`.
     **further : FurtherSettings
@@ -468,13 +468,17 @@ def _scene_of(volume: Any, place: Mapping[str, Any], material: dict[str, Any], s
             raise TypeError(f"{word} is for volumes: a scene says where its volumes are")
         scene = volume if isinstance(volume, Scene) else Scene.load(volume)
         count = len(scene.volumes)
-        changed = [_look(one.replace(**named), *_look_for(look, n, count)).replace(**material) for n, one in enumerate(scene.volumes)]
+        if "look" in named:
+            settings.setdefault("compositing", "maximum" if named["look"] == "mip" else "light")
+        projected = settings.get("compositing", scene.settings["compositing"]) == "maximum"
+        changed = [_look(one.replace(**named), projected, *_look_for(look, n, count)).replace(**material) for n, one in enumerate(scene.volumes)]
         return scene.replace(changed if labels is None else [*changed, _label_volume(labels)], **settings)
     if isinstance(channels := place.get("channel"), (str, Sequence)):
         return _scene_of_channels(volume, channels, place, material, settings, look, labels)
     given = volume if isinstance(volume, list) else [volume] if volume is not None or not settings.get("meshes") else []
     sources = [one for one in given if not isinstance(one, Mesh)]
-    volumes = [_look(Volume(one, **place).replace(**named), *_look_for(look, n, len(sources))).replace(**material)
+    projected = named.get("look") == "mip"
+    volumes = [_look(Volume(one, **place).replace(**named), projected, *_look_for(look, n, len(sources))).replace(**material)
                for n, one in enumerate(sources)]
     if not volumes:
         for word in (*place, *look, *material):
@@ -494,5 +498,6 @@ def _scene_of_channels(path: Any, channels: str | Sequence[int], place: Mapping[
     scene = Scene.of_channels(path, channels, look=material.get("look", "auto"), **reading)
     shown = {word: value for word, value in material.items() if word != "look"}
     count = len(scene.volumes)
-    volumes = [_look(one, *_look_for(look, n, count)).replace(**shown) for n, one in enumerate(scene.volumes)]
-    return scene.replace(volumes if labels is None else [*volumes, _label_volume(labels)], **settings)
+    projected = material.get("look") == "mip"
+    volumes = [_look(one, projected, *_look_for(look, n, count)).replace(**shown) for n, one in enumerate(scene.volumes)]
+    return scene._changed(volumes if labels is None else [*volumes, _label_volume(labels)], settings, True)

@@ -9,7 +9,7 @@ import numpy
 
 from . import _settings, arrays, colors, cuts
 from . import marks as scene_marks
-from ._library import call, context, ffi, lib, made, text_of
+from ._library import call, choices_of, composed, context, ffi, lib, made, text_of
 from ._words import check_keywords, choice
 from .camera import Camera, camera_from
 from .keywords import PictureSettings, RenderSettings, SkySettings
@@ -154,10 +154,13 @@ class Scene:
         numbers = [] if isinstance(channels, str) else [index_of("channel", number) for number in channels]
         if not isinstance(channels, str) and not numbers:
             raise ValueError("channel: [] names none: give a number, several as [0, 2], or 'all'")
-        scene = cls._of(made(lib.hl_scene_for_channels, "hl_scene", lib.hl_scene_release, context, os.fsencode(file), options,
-                             ffi.new("int[]", numbers) if numbers else ffi.NULL, len(numbers), look.encode(), path=file))
+        projected = choice("look", look, choices_of("look")) == "mip"
+        handle = made(lib.hl_scene_for_channels, "hl_scene", lib.hl_scene_release, context, os.fsencode(file), options,
+                      ffi.new("int[]", numbers) if numbers else ffi.NULL, len(numbers), b"auto" if projected else look.encode(), path=file)
         del keep  # the texts that `options` borrows
-        return scene
+        if projected:
+            handle = composed(lib.hl_scene_describe(handle), lib.HL_COMPOSE_BARE, {"look": "mip"})
+        return cls._of(handle)
 
     @classmethod
     def _of(cls, handle: Any) -> Scene:
@@ -191,10 +194,14 @@ class Scene:
         (32, 32)
         """
         check_keywords("Scene.replace()", settings, ["volumes", *Settings.__annotations__])
-        other = Scene.__new__(Scene)
         given = self._volumes if volumes is None else volumes if isinstance(volumes, (list, tuple)) else [volumes]
-        other._volumes = tuple(as_volume(source) for source in given)
-        other._handle = _build(self._handle, other._volumes, settings, False)
+        return self._changed(given, settings, False)
+
+    def _changed(self, volumes: Sequence[Any], settings: Mapping[str, Any], chosen: bool) -> Scene:
+        """The scene with other volumes and settings. chosen: its camera and light were chosen for its volumes, and are chosen anew."""
+        other = Scene.__new__(Scene)
+        other._volumes = tuple(as_volume(source) for source in volumes)
+        other._handle = _build(self._handle, other._volumes, settings, chosen)
         return other
 
     def save(self, path: str | os.PathLike[str], *, copy: bool = False) -> None:
@@ -512,9 +519,20 @@ def _options(settings: Mapping[str, Any], volumes: Sequence[Volume], flags: int)
     for word in ("shadows", "kernel"):
         if settings.get(word) is not None:
             options[word] = str(settings[word])
-    if flags & lib.HL_COMPOSE_CUT and (look := volumes[0]._changes.get("look")) is not None:
+    if flags & lib.HL_COMPOSE_BARE and _are_projected(volumes):
+        options["look"] = "mip"  # several volumes get a colour each, and one fits its greys to the background
+        if (background := settings.get("background")) is not None:
+            named = background if isinstance(background, str) and background in ("transparent", "sky") else None
+            options["background"] = named or ",".join(map(repr, map(float, colors.linear_color("background", background))))
+    elif flags & lib.HL_COMPOSE_CUT and (look := volumes[0]._changes.get("look")) not in (None, "mip"):
         options["look"] = str(look)
     return options
+
+
+def _are_projected(volumes: Sequence[Volume]) -> bool:
+    """Whether all volumes are maximum projections whose transfer functions are the look's."""
+    return bool(volumes) and all(one._base is None and one._changes.get("look") == "mip" and
+                                 one._changes.get("transfer_function") is None for one in volumes)
 
 
 def _flags(volumes: Sequence[Volume], settings: Mapping[str, Any]) -> int:
@@ -528,13 +546,6 @@ def _flags(volumes: Sequence[Volume], settings: Mapping[str, Any]) -> int:
     if len(volumes) == 1 and volumes[0]._base is None and (cut or volumes[0]._changes.keys() & {"cuts", "clip"}):
         flags |= lib.HL_COMPOSE_CUT
     return flags
-
-
-def _compose(pointer: Any, flags: int, options: Mapping[str, str]) -> Any:
-    """An hl_scene of a description and options."""
-    keep = [(ffi.new("char[]", name.encode()), ffi.new("char[]", value.encode())) for name, value in options.items()]
-    array = ffi.new("hl_option[]", keep) if keep else ffi.NULL
-    return made(lib.hl_scene_compose, "hl_scene", lib.hl_scene_release, context, pointer, flags, array, len(keep))
 
 
 def _build(base: Any, volumes: Sequence[Volume], settings: Mapping[str, Any], chosen: bool) -> Any:
@@ -582,4 +593,4 @@ def _build(base: Any, volumes: Sequence[Volume], settings: Mapping[str, Any], ch
             struct.width, struct.height = map(int, options["size"].split("x"))
         _set_camera(struct, camera)
         flags |= lib.HL_COMPOSE_CAMERA
-    return _compose(pointer, flags, options)
+    return composed(pointer, flags, options)

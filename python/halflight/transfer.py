@@ -223,8 +223,9 @@ def _moved(function: TransferFunction, old: Sequence[float], clim: Sequence[floa
                                lib.HL_RANGE_LOG if log else lib.HL_RANGE_LINEAR))
 
 
-def recolored(function: TransferFunction, cmap: Any, clim: list[float] | None, log: bool, volume: Any) -> TransferFunction:
-    """The function with the colours of `cmap` over `clim`, by default over the values that are seen."""
+def recolored(function: TransferFunction, cmap: Any, clim: list[float] | None, log: bool, volume: Any, projected: bool) -> TransferFunction:
+    """The function with the colours of `cmap` over `clim`, by default over the values that are seen. projected: for a maximum
+    projection, in which one colour is a ramp that begins at black."""
     if clim is None:
         seen, struct, keep = ffi.new("double[2]"), ffi.new("hl_transfer_function *"), list[Any]()
         function._fill(struct, keep)
@@ -233,6 +234,8 @@ def recolored(function: TransferFunction, cmap: Any, clim: list[float] | None, l
     points = colors.sampled("cmap", cmap, *clim)
     if points is None:
         points = function_from(_made(lib.hl_transfer_function_colormap, cmap.encode(), *clim)).color.tolist()
+    elif projected and len(points) == 1:
+        points = [[clim[0], 0.0, 0.0, 0.0], [clim[1], *points[0][1:]]]
     if log:
         points = _moved(TransferFunction([], points), clim, clim, True).color.tolist()
     return TransferFunction(function.opacity, points, function.unit_distance, function.gradient_opacity)
@@ -244,8 +247,11 @@ def colormap_points(name: str) -> list[list[float]]:
     return points
 
 
-def spread(function: TransferFunction, clim: list[float], log: bool, volume: Any) -> TransferFunction:
-    """Opacity and colours moved so that what was seen is seen between the values of `clim`."""
+def spread(function: TransferFunction, clim: list[float], log: bool, volume: Any, projected: bool) -> TransferFunction:
+    """Opacity and colours moved so that what was seen, or in a maximum projection the range of its colours, lies between the
+    values of `clim`."""
+    if projected and len(function.color) > 1 and function.color[0][0] < function.color[-1][0]:
+        return _moved(function, [float(function.color[0][0]), float(function.color[-1][0])], clim, log)
     struct, keep, old = ffi.new("hl_transfer_function *"), list[Any](), ffi.new("double[2]")
     function._fill(struct, keep)
     call(lib.hl_transfer_function_visible_range, volume, struct, old)

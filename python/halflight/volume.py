@@ -8,7 +8,7 @@ from typing import Any, Unpack
 import numpy as np
 
 from . import _settings, arrays, cuts, grids, isosurface, mask, neighbours, pieces, vtk_grids
-from ._library import call, context, ffi, lib, made, text_of
+from ._library import call, choices_of, composed, context, ffi, lib, made, text_of
 from ._words import check_keywords, choice
 from .transfer import function_from
 from .volume_info import FileArray, FileChannel, FileSegment, FileSeries, Info, raw_info, read_info
@@ -414,14 +414,14 @@ class Volume:
             return self._base
         if self._automatic is None:
             look = self._changes.get("look")
-            wanted = [] if look is None else [ffi.new("char[]", str(look).encode())]
-            function = lib.hl_scene_for_volume if look is None else lib.hl_scene_for_volume_look
-            self._automatic = made(function, "hl_scene", lib.hl_scene_release, context, self._handle,
-                                   self._file_text(), *wanted)
+            projected = look is not None and choice("look", look, choices_of("look")) == "mip"
+            wanted = ffi.new("char[]", b"auto" if look is None or projected else look.encode())
+            self._automatic = made(lib.hl_scene_for_volume_look, "hl_scene", lib.hl_scene_release, context, self._handle,
+                                   self._file_text(), wanted)
             if self._is_of_values() and lib.hl_scene_describe(self._automatic).volumes[0].label_count > 0:
-                flags = lib.HL_COMPOSE_BARE | lib.HL_COMPOSE_VALUES
-                self._automatic = made(lib.hl_scene_compose, "hl_scene", lib.hl_scene_release, context,
-                                       lib.hl_scene_describe(self._automatic), flags, ffi.NULL, 0)
+                self._automatic = composed(lib.hl_scene_describe(self._automatic), lib.HL_COMPOSE_BARE | lib.HL_COMPOSE_VALUES, {})
+            if projected:
+                self._automatic = composed(lib.hl_scene_describe(self._automatic), lib.HL_COMPOSE_BARE, {"look": "mip"})
         return self._automatic, 0
 
     def _struct(self) -> Any:

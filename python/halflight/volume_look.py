@@ -7,7 +7,8 @@ from typing import Any, Literal
 import numpy as np
 
 from . import _settings, cuts, isosurface, mask
-from ._library import call, context, ffi, lib
+from ._library import call, choices_of, context, ffi, lib
+from ._words import choice
 from .keywords import MaterialSettings, VolumeSettings
 from .transfer import TransferFunction
 
@@ -47,7 +48,8 @@ class Look(VolumeSettings, MaterialSettings, total=False):
         A volume that is taken for a label map shows all its labels without being told; False: it is drawn by its values, as
         with a `transfer_function`, `iso` or `mask`.
     look : str
-        "surface", "translucent", "xray", "smoke" or "vessels": the transfer function and shading of that look.
+        "surface", "translucent", "xray", "smoke" or "vessels": the transfer function and shading of that look; "mip": a
+        maximum projection, which the whole picture is then.
     """
 
     name: str
@@ -58,7 +60,7 @@ class Look(VolumeSettings, MaterialSettings, total=False):
     cuts: Any
     mask: Any
     labels: Any
-    look: Literal["auto", "surface", "translucent", "xray", "smoke", "vessels"]
+    look: Literal["auto", "surface", "translucent", "xray", "smoke", "vessels", "mip"]
 
 
 def fill_look(struct: Any, look: Mapping[str, Any], handle: Any, takes_look: bool, as_volume: Callable[[Any], Any],
@@ -120,8 +122,10 @@ def fill_look(struct: Any, look: Mapping[str, Any], handle: Any, takes_look: boo
 
 
 def _take_look(struct: Any, look: Any, handle: Any, keep: list[Any]) -> None:
-    """Give an hl_scene_volume the transfer function and shading of a look."""
+    """Give an hl_scene_volume the transfer function and shading of a look; in a maximum projection both stay."""
+    if choice("look", look, choices_of("look")) == "mip":
+        return
     function, shading = ffi.new("hl_transfer_function *"), ffi.new("hl_shading *", struct.shading)
-    call(lib.hl_transfer_function_look, context, str(look).encode(), handle, function, shading)
+    call(lib.hl_transfer_function_look, context, look.encode(), handle, function, shading)
     keep += [function, ffi.gc(function, lambda made: lib.hl_transfer_function_release(context, made))]
     struct.transfer_function, struct.shading = function[0], shading[0]

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 
 from . import _page, picture_files
-from ._library import call, context, ffi, lib, made, names, text_of
+from ._library import call, choices_of, composed, context, ffi, lib, made, names, text_of
 from .image import Image
 from .render import Asked, Renderer, scene_for
 from .scene import Scene
@@ -103,19 +103,10 @@ def _described(volume: Volume) -> dict[str, Any]:
             "histogram": [int(count) for count in info.histogram]}
 
 
-def _choices(option: bytes) -> list[str]:
-    """The choices of an option that scenes are composed by; none where there is no such option."""
-    choices = lib.hl_option_choices(option)
-    found: list[str] = []
-    while choices != ffi.NULL and choices[len(found)].name != ffi.NULL:
-        found.append(text_of(choices[len(found)].name))
-    return found
-
-
 def _start(scene: Scene, title: str) -> dict[str, Any]:
     """What the page is told first, as the program's server tells it."""
     return {"title": title, "scene": json.loads(scene.to_json()), "volumes": [_described(one) for one in scene.volumes],
-            "presets": names(lib.hl_preset_name), "looks": _choices(b"look"), "rigs": _choices(b"light-rig"),
+            "presets": names(lib.hl_preset_name), "looks": choices_of("look"), "rigs": choices_of("light-rig"),
             "colormaps": {name: colormap_points(name) for name in names(lib.hl_colormap_name)}}
 
 
@@ -141,14 +132,8 @@ def _encoded(image: Image, asked: dict[str, Any]) -> tuple[str, bytes]:
 
 def _composed(scene: Scene, choices: dict[str, str]) -> Scene:
     """The scene with the look and the light rig that the page asks for by name."""
-    keep = [(name, ffi.new("char[]", choices[word].encode())) for word, name in (("look", b"look"), ("rig", b"light-rig")) if choices.get(word)]
-    if not keep:
-        return scene
-    options, names_of_options = ffi.new("hl_option[]", len(keep)), [ffi.new("char[]", name) for name, _ in keep]
-    for option, name, (_, value) in zip(options, names_of_options, keep, strict=True):
-        option.name, option.value = name, value
-    return Scene._of(made(lib.hl_scene_compose, "hl_scene", lib.hl_scene_release, context, lib.hl_scene_describe(scene._handle), 0,
-                          options, len(keep)))
+    options = {name: choices[word] for word, name in (("look", "look"), ("rig", "light-rig")) if choices.get(word)}
+    return Scene._of(composed(lib.hl_scene_describe(scene._handle), 0, options)) if options else scene
 
 
 class _Frames(threading.Thread):

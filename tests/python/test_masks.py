@@ -78,6 +78,34 @@ def test_looks_are_the_programs(program, tmp_path):
     assert looked["shading"] == Scene.from_json(printed).volumes[0].look["shading"]
 
 
+def test_a_maximum_projection_is_the_programs(program, tmp_path):
+    z, y, x = np.mgrid[-1:1:24j, -1:1:24j, -1:1:24j]
+    np.save(tmp_path / "ball.npy", np.exp(-4 * (x**2 + 2 * y**2 + z**2)).astype(np.float32))
+    path = str(tmp_path / "ball.npy")
+    for words, asked in (([], {}), (["--background", "white"], {"background": "white"}), (["--view", "left"], {"camera": "left"}),
+                         (["--colormap", "red", "--background", "navy"], {"cmap": "red", "background": "navy"}),
+                         (["--range", "0.2,0.6", "--colormap", "viridis"], {"clim": (0.2, 0.6), "cmap": "viridis"}),
+                         (["--range", "0.2,0.6"], {"clim": (0.2, 0.6)})):
+        subprocess.run([program, "render", path, "--look", "mip", *words, "--size", "48x32", "--quiet", "--no-metadata",
+                        "-o", str(tmp_path / "ball.png")], check=True)
+        halflight.render(path, size=(48, 32), look="mip", **asked).save(tmp_path / "own.png", metadata=False)
+        assert (tmp_path / "own.png").read_bytes() == (tmp_path / "ball.png").read_bytes(), words
+    subprocess.run([program, "render", path, path, "--look", "mip", "--size", "48x32", "--quiet", "-o", str(tmp_path / "two.npy")], check=True)
+    assert np.array_equal(np.load(tmp_path / "two.npy"), halflight.render([path, path], size=(48, 32), look="mip"))
+    Scene(path, size=(48, 32)).save(tmp_path / "ball.json")
+    subprocess.run([program, "render", tmp_path / "ball.json", "--look", "mip", "--quiet", "-o", tmp_path / "scene.npy"], check=True)
+    assert np.array_equal(np.load(tmp_path / "scene.npy"), halflight.render(tmp_path / "ball.json", look="mip"))
+    assert halflight.render(path, size=16, look="mip").scene.settings["compositing"] == "maximum"
+
+
+def test_an_unknown_look_lists_those_that_exist(tmp_path):
+    np.save(tmp_path / "ball.npy", np.ones((4, 4, 4), np.uint8))
+    every = "auto, surface, translucent, xray, smoke, vessels, mip"
+    for asked in ({}, {"channel": [0]}):
+        with pytest.raises(ValueError, match=f"look: there is no 'quux': use one of {every}"):
+            halflight.render(tmp_path / "ball.npy", look="quux", **asked)
+
+
 def test_a_look_stays_with_other_colours(program, tmp_path):
     z, y, x = np.mgrid[-1:1:24j, -1:1:24j, -1:1:24j]
     np.save(tmp_path / "ball.npy", np.exp(-4 * (x**2 + y**2 + z**2)).astype(np.float32))

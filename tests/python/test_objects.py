@@ -277,6 +277,13 @@ def test_channels_of_a_file(program, tmp_path):
         subprocess.run([program, "render", "cells.zarr", "--channel", words, "--size", "40x40", "--quiet", "-o", "a.npy"], cwd=tmp_path, check=True)
         image = halflight.render(tmp_path / "cells.zarr", channel=channel, size=(40, 40))
         assert np.array_equal(np.load(tmp_path / "a.npy"), np.asarray(image))
+    for look in "mip", "translucent":
+        for size, words in (((40, 40), []), ((48, 30), ["--view", "left", "--background", "white"])):
+            subprocess.run([program, "render", "cells.zarr", "--channel", "all", "--look", look, "--size", f"{size[0]}x{size[1]}", *words,
+                            "--quiet", "--no-metadata", "-o", "a.png"], cwd=tmp_path, check=True)
+            asked = {"camera": "left", "background": "white"} if words else {}
+            halflight.render(tmp_path / "cells.zarr", channel="all", look=look, size=size, **asked).save(tmp_path / "b.png", metadata=False)
+            assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes(), (look, words)
     scene = Scene.of_channels(tmp_path / "cells.zarr", [2, 0])
     assert [volume.look["name"] for volume in scene.volumes] == ["channel2", "DAPI"]
     with pytest.raises(ValueError, match="'both': give a number, several as"):
