@@ -16,6 +16,7 @@ from ._library import lib as _lib, text_of as _text_of
 from .amr_files import open_amr
 from .camera import Camera
 from .colors import colormaps, srgb
+from .differences import Difference, diff
 from .errors import HalflightWarning, InputError, UnsupportedError
 from .figure import Figure, figure
 from .image import Image
@@ -35,7 +36,7 @@ from .widget import show
 __version__ = _text_of(_lib.hl_version())
 
 __all__ = [
-    "Camera", "Directional", "Disk", "EmissionImage", "Figure", "HalflightWarning", "Image", "Info", "InputError", "Light", "Mesh",
+    "Camera", "Difference", "Directional", "Disk", "EmissionImage", "Figure", "HalflightWarning", "Image", "Info", "InputError", "Light", "Mesh",
     "Particles", "Point", "Polygon", "Rect", "Renderer", "Scene", "Snapshot", "Spot", "Texture", "TransferFunction", "UnsupportedError", "Volume",
-    "animate", "colormaps", "figure", "from_pyvista", "from_vtk", "info", "limit_memory", "open_amr", "open_snapshot", "presets", "reference", "render", "show", "srgb", "view",
+    "animate", "colormaps", "diff", "figure", "from_pyvista", "from_vtk", "info", "limit_memory", "open_amr", "open_snapshot", "presets", "reference", "render", "show", "srgb", "view",
 ]

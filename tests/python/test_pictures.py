@@ -1,5 +1,7 @@
 """Pictures as files, in open files, in NumPy's sums, and sizes."""
 import io
+import json
+import subprocess
 import sys
 
 import numpy as np
@@ -32,6 +34,31 @@ def test_transparent_pictures_keep_their_alpha(image, tmp_path):
     Pillow = pytest.importorskip("PIL.Image")
     image.save(tmp_path / "a.tif", background="transparent")
     assert np.array_equal(np.asarray(Pillow.open(tmp_path / "a.tif")), image.to_srgb8("transparent"))
+
+
+def test_differences_are_the_programs(program, image, tmp_path):
+    """The numbers of `halflight diff --json`, for pictures, arrays, and files of linear light and of sRGB."""
+    other = 0.75 * np.asarray(image)
+    other[3, 5] += 0.25
+    np.save(tmp_path / "b.npy", other.astype(np.float32))
+    image.save(tmp_path / "a.npy")
+    image.save(tmp_path / "a.png", background="transparent")
+    image.save(tmp_path / "b.png", background="transparent", exposure=-1)
+    codes = image.to_srgb8("transparent"), image.to_srgb8("transparent", exposure=-1)
+    for ending, given in ("npy", (image, other)), ("npy", (tmp_path / "a.npy", tmp_path / "b.npy")), ("png", codes):
+        done = subprocess.run([program, "diff", f"a.{ending}", f"b.{ending}", "--json"], cwd=tmp_path, capture_output=True, check=True)
+        told, found = json.loads(done.stdout), halflight.diff(*given)
+        for word in "rmse", "rmse_channel", "mean_signed", "percentile_99_9", "maximum", "maximum_at", "differing_pixels":
+            assert getattr(found, word) == pytest.approx(told[word] if not isinstance(told[word], list) else tuple(told[word]), rel=1e-6, abs=1e-9)
+    assert halflight.diff(image, image).rmse == 0
+    with pytest.raises(ValueError, match="a is 64x48 and b is 64x24: only pictures of the same size compare"):
+        halflight.diff(image, other[:24])
+    with pytest.raises(ValueError, match=r"b: the shape \(48, 64\) is not"):
+        halflight.diff(image, other[..., 0])
+    with pytest.raises(TypeError, match="a: int64 is neither uint8"):
+        halflight.diff(np.zeros((4, 4, 3), np.int64), image)
+    with pytest.raises(FileNotFoundError):
+        halflight.diff(image, tmp_path / "no.png")
 
 
 def test_open_files(image, tmp_path):
