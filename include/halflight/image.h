@@ -87,6 +87,28 @@ HL_API HL_WARN_UNUSED hl_status hl_image_to_srgb8(const hl_image *image,
 HL_API HL_WARN_UNUSED hl_status hl_image_read(hl_context *context, const char *path, hl_image **image,
                                               hl_error *error);
 
+/* What the file of a picture says of itself. */
+typedef struct hl_image_about {
+  size_t struct_size;     /* set by the caller */
+  const char *format;     /* "PNG", "OpenEXR", "NPY" or "Radiance HDR"; static */
+  uint64_t width, height; /* pixels */
+  int channels, bits; /* the numbers of a pixel, and the bits of each; a palette's colours count as numbers
+                       * of 8 bits; of OpenEXR the bits of the widest channel */
+  int has_scene;      /* non-zero: hl_image_find_scene() finds a scene */
+} hl_image_about;
+
+/* Finds what the file of a picture says of itself, without its pixels. name: the file's name in errors.
+ * bytes: [byte_count], the whole file. HL_ERROR_UNSUPPORTED for bytes of no known format of pictures, and for
+ * a format that this build does not read. */
+HL_API HL_WARN_UNUSED hl_status hl_image_get_about(const char *name, const void *bytes, size_t byte_count,
+                                                   hl_image_about *about, hl_error *error);
+
+/* Finds the JSON array of hl_image_write_options.field_errors that a PNG carries. *text: as for
+ * hl_image_find_scene(); null where it carries none. */
+HL_API HL_WARN_UNUSED hl_status hl_image_find_field_errors(hl_context *context, const char *name,
+                                                           const void *bytes, size_t byte_count, char **text,
+                                                           hl_error *error);
+
 /* Finds the scene that a PNG carries (hl_image_write_options.scene_json). *text: null-terminated, for
  * hl_scene_from_json(); free with hl_text_release(). bytes: [byte_count], the whole file. name: the file's
  * name in errors. */

@@ -225,6 +225,11 @@ static hl_image_claim claim_of_part(exr_const_context_t file, int part) {
     return claim;
   claim.width = (uint64_t)((int64_t)window.max.x - window.min.x + 1);
   claim.height = (uint64_t)((int64_t)window.max.y - window.min.y + 1);
+  claim.channels = list->num_channels;
+  for (int n = 0; n < list->num_channels; n++) {
+    const int bits = list->entries[n].pixel_type == EXR_PIXEL_HALF ? 16 : 32;
+    claim.bits = claim.bits > bits ? claim.bits : bits;
+  }
   if (claim.width <= HL_IMAGE_SIDE_MAX && claim.height <= HL_IMAGE_SIDE_MAX)
     claim.bytes = claim.width * claim.height * 4 *
                   (uint64_t)(list->num_channels > 0 ? list->num_channels : 0);

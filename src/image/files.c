@@ -203,6 +203,33 @@ static hl_status judge(const char *path, const unsigned char *bytes, size_t leng
   return status;
 }
 
+hl_status hl_image_get_about(const char *name, const void *bytes, size_t byte_count, hl_image_about *about,
+                             hl_error *error) {
+  HL_DOOR;
+  if (name == NULL || bytes == NULL || about == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_get_about: name, bytes and about must not be null");
+  if (about->struct_size != sizeof *about)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_get_about: struct_size is %zu, expected %zu",
+                   about->struct_size, sizeof *about);
+  const hl_image_format *format = format_by_content(bytes, byte_count);
+  if (format == NULL) return fail_unknown(name, error);
+  if (format->missing != NULL)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: this build does not read %s: it lacks %s", name,
+                   format->title, format->missing);
+  const hl_image_claim claim = format->claim(bytes, byte_count);
+  if (!claim.known)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: damaged %s file: it has no header of a picture", name,
+                   format->title);
+  *about = (hl_image_about){.struct_size = sizeof *about,
+                            .format = format->title,
+                            .width = claim.width,
+                            .height = claim.height,
+                            .channels = claim.channels,
+                            .bits = claim.bits,
+                            .has_scene = hl_png_has_scene(bytes, byte_count)};
+  return HL_OK;
+}
+
 hl_status hl_image_read(hl_context *context, const char *path, hl_image **image, hl_error *error) {
   HL_DOOR;
   if (image != NULL) *image = NULL;

@@ -14,7 +14,8 @@
 typedef struct hl_image_claim {
   bool known; /* whether the size was found; false: more of the file's bytes are needed */
   uint64_t width, height;
-  uint64_t bytes; /* bytes of the pixels, uncompressed */
+  uint64_t bytes;     /* bytes of the pixels, uncompressed */
+  int channels, bits; /* see hl_image_about */
 } hl_image_claim;
 
 typedef struct hl_image_format {
@@ -46,6 +47,9 @@ typedef struct hl_image_format {
 
 extern const hl_image_format hl_png_format, hl_exr_format, hl_npy_format, hl_hdr_format, hl_tif_format,
     hl_tiff_format;
+
+/* Whether a picture's file, which may be anything, has the text chunk of a scene. */
+bool hl_png_has_scene(const unsigned char *bytes, size_t length);
 
 /* Refuses impossible options. caller: the public function's name, for errors. */
 hl_status hl_image_check_options(const hl_image_write_options *options, const char *caller, hl_error *error);

@@ -17,6 +17,7 @@
 #include <zlib.h>
 
 #include "core/context.h"
+#include "core/door.h"
 #include "core/memory.h"
 #include "image/codes.h"
 #include "image/format.h"
@@ -175,7 +176,13 @@ static hl_image_claim claim(const unsigned char *bytes, size_t length) {
   hl_image_claim claimed = {0};
   if (length <= TYPE || memcmp(bytes + IHDR, "IHDR", 4) != 0 || bytes[TYPE] > 6 || bytes[DEPTH] > 16)
     return claimed;
-  claimed = (hl_image_claim){true, load_32(bytes + WIDTH), load_32(bytes + HEIGHT), 0};
+  const bool palette = bytes[TYPE] == 3;
+  claimed = (hl_image_claim){true,
+                             load_32(bytes + WIDTH),
+                             load_32(bytes + HEIGHT),
+                             0,
+                             palette ? 3 : channels[bytes[TYPE]],
+                             palette ? 8 : bytes[DEPTH]};
   if (claimed.width <= HL_IMAGE_SIDE_MAX && claimed.height <= HL_IMAGE_SIDE_MAX)
     claimed.bytes = (1 + (claimed.width * channels[bytes[TYPE]] * bytes[DEPTH] + 7) / 8) * claimed.height;
   return claimed;
@@ -393,31 +400,68 @@ static hl_status take_text(hl_context *context, const char *name, const char *ty
                       : copy_text(context, name, start, (size_t)(end - start), text, error);
 }
 
+/* The place of a chunk in the file. */
+typedef struct png_chunk {
+  size_t at;                 /* offset of the chunk's length */
+  const char *type;          /* [4] */
+  const unsigned char *body; /* [length] */
+  size_t length;
+} png_chunk;
+
+/* Finds the text chunk with a keyword, which is `size` bytes long with its zero. False: there is none. */
+static bool find_chunk(const unsigned char *bytes, size_t byte_count, const char *word, size_t size,
+                       png_chunk *chunk) {
+  if (byte_count < MARK_BYTES || memcmp(bytes, hl_png_format.mark, MARK_BYTES) != 0) return false;
+  for (size_t at = MARK_BYTES; byte_count - at >= CHUNK_EXTRA_BYTES;) {
+    *chunk = (png_chunk){at, (const char *)bytes + at + 4, bytes + at + 8, load_32(bytes + at)};
+    if (chunk->length > byte_count - at - CHUNK_EXTRA_BYTES) return false;
+    bool is_text = memcmp(chunk->type, "tEXt", 4) == 0 || memcmp(chunk->type, "zTXt", 4) == 0 ||
+                   memcmp(chunk->type, "iTXt", 4) == 0;
+    if (is_text && chunk->length >= size && memcmp(chunk->body, word, size) == 0) return true;
+    at += chunk->length + CHUNK_EXTRA_BYTES;
+  }
+  return false;
+}
+
+bool hl_png_has_scene(const unsigned char *bytes, size_t length) {
+  png_chunk chunk;
+  return find_chunk(bytes, length, keyword, sizeof keyword, &chunk);
+}
+
+/* Reads the text of a chunk whose keyword is `size` bytes long with its zero. */
+static hl_status read_chunk(hl_context *context, const char *name, const png_chunk *chunk, size_t size,
+                            char **text, hl_error *error) {
+  if (crc32(crc32(0, NULL, 0), (const unsigned char *)chunk->type, (unsigned)(chunk->length + 4)) !=
+      load_32(chunk->body + chunk->length))
+    return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)chunk->at,
+                          "%s: byte %zu: the scene in it is damaged: its sum is wrong", name, chunk->at);
+  return take_text(context, name, chunk->type, chunk->body + size, chunk->length - size, text, error);
+}
+
+hl_status hl_image_find_field_errors(hl_context *context, const char *name, const void *bytes,
+                                     size_t byte_count, char **text, hl_error *error) {
+  HL_DOOR;
+  png_chunk chunk;
+  if (context == NULL || name == NULL || bytes == NULL || text == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_image_find_field_errors: context, name, bytes and text must not be null");
+  *text = NULL;
+  if (!find_chunk(bytes, byte_count, field_errors_keyword, sizeof field_errors_keyword, &chunk)) return HL_OK;
+  return read_chunk(context, name, &chunk, sizeof field_errors_keyword, text, error);
+}
+
 hl_status hl_image_find_scene(hl_context *context, const char *name, const void *file, size_t file_bytes,
                               char **text, hl_error *error) {
+  png_chunk chunk;
   if (context == NULL || name == NULL || file == NULL || text == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "hl_image_find_scene: context, name, bytes and text must not be null");
   *text = NULL;
-  const unsigned char *bytes = file;
-  if (file_bytes < MARK_BYTES || memcmp(bytes, hl_png_format.mark, MARK_BYTES) != 0)
+  if (file_bytes < MARK_BYTES || memcmp(file, hl_png_format.mark, MARK_BYTES) != 0)
     return hl_fail_offset(error, HL_ERROR_INPUT, 0,
                           "%s: byte 0: not a PNG picture, which alone carries a scene", name);
-  for (size_t at = MARK_BYTES; file_bytes - at >= CHUNK_EXTRA_BYTES;) {
-    size_t length = load_32(bytes + at), left = file_bytes - at - CHUNK_EXTRA_BYTES;
-    if (length > left) break;
-    const char *type = (const char *)bytes + at + 4;
-    const unsigned char *body = bytes + at + 8;
-    bool is_text = memcmp(type, "tEXt", 4) == 0 || memcmp(type, "zTXt", 4) == 0 ||
-                   memcmp(type, "iTXt", 4) == 0;
-    if (is_text && length >= sizeof keyword && memcmp(body, keyword, sizeof keyword) == 0) {
-      if (crc32(crc32(0, NULL, 0), bytes + at + 4, (unsigned)(length + 4)) != load_32(body + length))
-        return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)at,
-                              "%s: byte %zu: the scene in it is damaged: its sum is wrong", name, at);
-      return take_text(context, name, type, body + sizeof keyword, length - sizeof keyword, text, error);
-    }
-    at += length + CHUNK_EXTRA_BYTES;
-  }
+  if (find_chunk(file, file_bytes, keyword, sizeof keyword, &chunk))
+    return read_chunk(context, name, &chunk, sizeof keyword, text, error);
   return hl_fail(error, HL_ERROR_INPUT,
                  "%s: a picture without a scene in it: those that halflight render writes as .png have one",
                  name);

@@ -43,6 +43,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   status = hl_image_find_scene(fuzz_context(), "p.png", mended, size, &text, &error);
   if (fuzz_check_answer(status, &error, text != NULL)) REQUIRE(strlen(text) <= (size_t)16 << 20);
   hl_text_release(fuzz_context(), text);
+  hl_image_about about = {.struct_size = sizeof about};
+  status = hl_image_get_about("p.png", mended, size, &about, &error);
+  fuzz_check_answer(status, &error, status == HL_OK);
   fuzz_check_nothing_held();
   return 0;
 }

@@ -554,6 +554,31 @@ static void scenes_are_found(void **state) {
   end_context(context);
 }
 
+/* A file says its size, channels and bits in its header, and a palette's colours have 8 bits. */
+static void files_say_what_they_are(void **state) {
+  (void)state;
+  static const struct {
+    unsigned char type, depth;
+    int channels, bits;
+  } cases[] = {{0, 16, 1, 16}, {2, 8, 3, 8}, {3, 2, 3, 8}, {4, 8, 2, 8}, {6, 16, 4, 16}};
+  unsigned char file[33] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0, 0, 0, 13,
+                            'I',  'H', 'D', 'R', 0,    0,    2,    0x80, 0, 0, 1, 0xe0};
+  hl_image_about about = {.struct_size = sizeof about};
+  hl_error error = {0};
+  for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+    file[24] = cases[n].depth, file[25] = cases[n].type;
+    assert_int_equal(hl_image_get_about("a.png", file, sizeof file, &about, &error), HL_OK);
+    assert_string_equal(about.format, "PNG");
+    assert_true(about.width == 640 && about.height == 480 && !about.has_scene);
+    assert_true(about.channels == cases[n].channels && about.bits == cases[n].bits);
+  }
+  for (size_t cut = 0; cut < 26; cut++)
+    assert_int_equal(hl_image_get_about("a.png", file, cut, &about, &error), HL_ERROR_INPUT);
+  assert_int_equal(hl_image_get_about("a", "no picture", 10, &about, &error), HL_ERROR_UNSUPPORTED);
+  about.struct_size = 1;
+  assert_int_equal(hl_image_get_about("a.png", file, sizeof file, &about, &error), HL_ERROR_ARGUMENT);
+}
+
 /* Text that inflates beyond the limit, and compressed data that are none. */
 static void scenes_have_limits(void **state) {
   (void)state;
@@ -593,6 +618,7 @@ int main(void) {
                                      cmocka_unit_test(every_kind_is_read),
                                      cmocka_unit_test(bytes_are_those_of_a_png),
                                      cmocka_unit_test(scenes_are_found),
+                                     cmocka_unit_test(files_say_what_they_are),
                                      cmocka_unit_test(scenes_have_limits)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,18 @@
 /* cli/info/info.c - `halflight info FILE`: what a volume, a scene or a mesh file holds. */
+#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/frames.h"
 #include "cli/host.h"
 #include "cli/input.h"
 #include "cli/json_writer.h"
 #include "formats.h"
+#include "picture.h"
 
 enum info_option {
   INFO_JSON,
@@ -247,14 +251,7 @@ static void print_json_field_error(json_writer *json, const hl_volume *volume) {
 static void print_field_error(const hl_volume *volume) {
   hl_volume_field_error e = {.struct_size = sizeof e};
   if (hl_volume_get_field_error(volume, &e) != HL_OK) return;
-  if (isnan(e.value)) printf("  field       its difference from %s is unknown\n", e.source);
-  else if (e.value == 0) printf("  field       equals %s\n", e.source);
-  else
-    printf("  field       differs from %s by %.2g%s, %.2g of the range\n", e.source, e.value,
-           strcmp(e.kind, "bound") == 0     ? " at most"
-           : strcmp(e.kind, "sampled") == 0 ? " or more"
-                                            : "",
-           e.of_range);
+  info_print_difference("", e.value, e.of_range, e.kind, e.source);
 }
 
 static void print_json(json_writer *json, const char *path, const hl_volume *volume,
@@ -393,8 +390,9 @@ static int info_of_volume(cli_host *host, const cli_value *values, const cli_inp
 }
 
 /* Prints what a scene is like: its picture, the numbers of its volumes, lights and so on, and each volume as
- * for a volume file. */
-static int tell_scene(cli_host *host, bool as_json, const char *title, const hl_scene_description *scene) {
+ * for a volume file. picture: the picture that holds the scene; null: the scene is a file. */
+static int tell_scene(cli_host *host, bool as_json, const char *title, const hl_scene_description *scene,
+                      const info_picture *picture) {
   json_writer json = {0};
   int exit_code = EXIT_CODE_OK;
   if (as_json) {
@@ -404,10 +402,12 @@ static int tell_scene(cli_host *host, bool as_json, const char *title, const hl_
     json_whole_number(&json, "height", (uint64_t)scene->height);
     json_whole_number(&json, "lights", scene->light_count);
     json_whole_number(&json, "meshes", scene->mesh_count);
+    if (picture != NULL) info_picture_print_json(picture, &json);
     json_open_array(&json, "volumes");
   } else {
     printf("%s\n  scene       %d x %d pixels, lights %zu, volumes %zu, meshes %zu\n", title, scene->width,
            scene->height, scene->light_count, scene->volume_count, scene->mesh_count);
+    if (picture != NULL) info_picture_print(picture);
   }
   for (size_t n = 0; n < scene->volume_count && exit_code == EXIT_CODE_OK; n++) {
     const hl_scene_volume *volume = &scene->volumes[n];
@@ -435,16 +435,53 @@ static int refuse_reading(const cli_value *values, const char *title, const char
   return EXIT_CODE_OK;
 }
 
-static int info_of_scene(cli_host *host, const cli_value *values, const cli_input *input) {
+/* Tells what a picture's own metadata say of its scene, whose files cannot be read. */
+static int tell_without_files(const info_picture *picture, const char *title, bool as_json,
+                              const hl_error *error) {
+  if (as_json) return info_of_plain_picture(picture, title, true);
+  printf("%s\n", title);
+  info_picture_print(picture);
+  printf("  scene       its files cannot be read: %s\n", error->message);
+  return finish_stdout();
+}
+
+/* picture: as for tell_scene(). */
+static int info_of_scene(cli_host *host, const cli_value *values, const cli_input *input,
+                         const info_picture *picture) {
   hl_scene *scene = NULL;
   hl_error error = {0};
-  int refused = refuse_reading(values, input->title, "a scene: give its volume's file");
-  if (refused != EXIT_CODE_OK) return refused;
   hl_status status = input_load(host->context, input, NULL, &scene, &error);
-  int exit_code = status == HL_OK
-                      ? tell_scene(host, values[INFO_JSON].given, input->title, hl_scene_describe(scene))
-                      : host_fail(host, PHASE_READ, status, &error);
+  if (picture != NULL && status == HL_ERROR_IO)
+    return tell_without_files(picture, input->title, values[INFO_JSON].given, &error);
+  int exit_code = status == HL_OK ? tell_scene(host, values[INFO_JSON].given, input->title,
+                                               hl_scene_describe(scene), picture)
+                                  : host_fail(host, PHASE_READ, status, &error);
   hl_scene_release(scene);
+  return exit_code;
+}
+
+static int info_of_picture(cli_host *host, const cli_value *values, const cli_input *input, const void *bytes,
+                           size_t length) {
+  info_picture picture;
+  int exit_code = info_picture_read(host, input->title, bytes, length, &picture);
+  if (exit_code == EXIT_CODE_OK)
+    exit_code = picture.scene != NULL
+                    ? info_of_scene(host, values, input, &picture)
+                    : info_of_plain_picture(&picture, input->title, values[INFO_JSON].given);
+  info_picture_release(&picture);
+  return exit_code;
+}
+
+/* An OpenEXR or Radiance HDR picture. */
+static int info_of_light(cli_host *host, const cli_value *values, const char *path) {
+  size_t length = 0;
+  errno = 0;
+  unsigned char *bytes = frames_read_picture(path, &length);
+  const cli_input input = {.path = path, .title = path};
+  int exit_code = bytes != NULL ? info_of_picture(host, values, &input, bytes, length)
+                                : fail(EXIT_CODE_INPUT, "%s: cannot be read: %s", path,
+                                       errno != 0 ? strerror(errno) : "it is empty or no file");
+  free(bytes);
   return exit_code;
 }
 
@@ -506,6 +543,27 @@ static int run_formats(const cli_value *values, char **operands) {
   return info_formats(values[INFO_JSON].given);
 }
 
+static int info_of_input(cli_host *host, const cli_value *values, const char *path) {
+  cli_input input = {0};
+  const bool page = has_extension(path, ".pdf") || has_extension(path, ".svg"),
+             light = has_extension(path, ".exr") || has_extension(path, ".hdr");
+  int exit_code = page || light ? refuse_reading(values, path, "a picture") : EXIT_CODE_OK;
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  if (page) return info_of_page(path, values[INFO_JSON].given);
+  if (light) return info_of_light(host, values, path);
+  exit_code = input_open(path, values[INFO_MAX_MEMORY].bytes, &input);
+  if (exit_code == EXIT_CODE_OK && input.kind != INPUT_VOLUME)
+    exit_code = refuse_reading(values, input.title,
+                               input.kind == INPUT_PICTURE ? "a picture" : "a scene: give its volume's file");
+  if (exit_code == EXIT_CODE_OK && input.kind == INPUT_PICTURE && input.bytes != NULL)
+    exit_code = info_of_picture(host, values, &input, input.bytes, input.length);
+  else if (exit_code == EXIT_CODE_OK)
+    exit_code = input.kind == INPUT_VOLUME ? info_of_volume(host, values, &input)
+                                           : info_of_scene(host, values, &input, NULL);
+  input_close(&input);
+  return exit_code;
+}
+
 static int run_info(const cli_value *values, char **operands) {
   if (values[INFO_FORMATS].given) return run_formats(values, operands);
   if (operands[0] == NULL)
@@ -520,12 +578,7 @@ static int run_info(const cli_value *values, char **operands) {
     host_close(&host);
     return exit_code;
   }
-  cli_input input = {0};
-  exit_code = input_open(operands[0], values[INFO_MAX_MEMORY].bytes, &input);
-  if (exit_code == EXIT_CODE_OK)
-    exit_code = input.kind == INPUT_VOLUME ? info_of_volume(&host, values, &input)
-                                           : info_of_scene(&host, values, &input);
-  input_close(&input);
+  exit_code = info_of_input(&host, values, operands[0]);
   host_close(&host);
   return exit_code;
 }
@@ -534,12 +587,14 @@ const cli_command info_command = {
     .name = "info",
     .operands = "[FILE]",
     .operand_most = 1,
-    .summary = "show what a volume, a scene or a mesh file holds",
+    .summary = "show what a volume, a scene, a picture or a mesh holds",
     .description =
         "Shows what a volume file holds: size, type, spacing, orientation, world box, range and histogram.\n"
         "For a scene, or a picture that holds one, shows how many volumes, meshes and lights it has, and "
         "the\n"
-        "same as above for each volume. For a mesh file, shows its numbers of triangles, spheres and lines,\n"
+        "same as above for each volume. For a picture, shows its size and bits, and the camera, the\n"
+        "volumes and the stated differences of fields that it holds. For a mesh file, shows its numbers of "
+        "triangles, spheres and lines,\n"
         "whether it has normals and colours, and its box.",
     .options = info_options,
     .option_count = INFO_OPTION_COUNT,
