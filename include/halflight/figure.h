@@ -36,7 +36,8 @@ typedef struct hl_annotation {
 /* A value of hl_overlay.scale_bar_depth: the distance from the eye to the camera's target. */
 #define HL_DEPTH_OF_TARGET (-1.0)
 
-/* What is drawn over one picture. hl_overlay_defaults() fills it so that nothing is drawn. */
+/* What is drawn over one picture. hl_overlay_defaults() fills it so that nothing is drawn. Where the panel's
+ * image shows matter behind the scale bar, the legend or the arrows, a translucent ground lies between. */
 typedef struct hl_overlay {
   size_t struct_size;
   int scale_bar;              /* non-zero: a bar at the lower left, with its length */

@@ -32,6 +32,11 @@ static vec3 seen(const hl_map *map, int axis) {
 
 /* ---- arrows ---- */
 
+/* Lengths, in units of the letters' size. */
+static const double arrow_length = 2.1, letter_room = 1.1;
+
+double hl_overlay_arrows_height(const hl_ink *ink) { return 2 * (arrow_length + letter_room) * ink->size; }
+
 /* Draws an arrow with a filled head, from (from_x, from_y) along (x, y). */
 static void draw_arrow(const hl_ink *ink, double from_x, double from_y, double x, double y) {
   const double length = hypot(x, y), head = fmin(0.5 * ink->size, length);
@@ -49,7 +54,7 @@ static void draw_arrow(const hl_ink *ink, double from_x, double from_y, double x
 
 static void draw_arrows(const hl_ink *ink, const hl_overlay_place *place) {
   const axis_names *names = names_of(hl_scene_space(place->scene));
-  const double length = 2.1 * ink->size, room = length + 1.1 * ink->size;
+  const double length = arrow_length * ink->size, room = hl_overlay_arrows_height(ink) / 2;
   const double x = place->picture.left + place->picture.width - place->margin - room;
   const double y = place->picture.top + place->picture.height - place->margin - room;
   int order[3] = {0, 1, 2}; /* the indices of the axes; the axis that points farthest away from the eye comes

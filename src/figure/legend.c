@@ -275,7 +275,8 @@ static hl_status draw_volume(legend *made, const hl_scene_volume *volume, bool f
 
 hl_status hl_overlay_legend(const hl_ink *ink, const hl_overlay_place *place, hl_error *error) {
   const hl_scene_description *scene = place->scene;
-  const double height = place->picture.height - 2 * place->margin;
+  const double arrows = place->overlay->axes == HL_AXES_ARROWS ? hl_overlay_arrows_height(ink) : 0;
+  const double height = place->picture.height - 2 * place->margin - arrows;
   size_t strips = 0, lines = 0;
   for (size_t v = 0; v < scene->volume_count; v++) {
     const hl_scene_volume *volume = &scene->volumes[v];
@@ -289,7 +290,7 @@ hl_status hl_overlay_legend(const hl_ink *ink, const hl_overlay_place *place, hl
   legend made = {.ink = ink,
                  .place = place,
                  .right = place->picture.left + place->picture.width - place->margin,
-                 .bottom = place->picture.top + place->picture.height - place->margin,
+                 .bottom = place->picture.top + place->picture.height - place->margin - arrows,
                  .y = place->picture.top + place->margin,
                  .strip_height = fmax(3 * ink->size, fmin(9 * ink->size, each))};
   hl_status status = HL_OK;

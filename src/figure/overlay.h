@@ -15,9 +15,13 @@ typedef struct hl_overlay_place {
   hl_map map;                        /* where points of `scene` lie on the page */
 } hl_overlay_place;
 
-/* Draws the whole overlay. scene: may be null. */
+/* Draws the whole overlay. scene: may be null. image: what the picture shows; where it shows matter behind
+ * the bar, the legend or the arrows, a ground lies between; null: there is no such ground. */
 hl_status hl_overlay_draw(const hl_ink *ink, const hl_overlay *overlay, const hl_scene *scene,
-                          hl_rectangle picture, hl_error *error);
+                          const hl_image *image, hl_rectangle picture, hl_error *error);
+
+/* The height, from the picture's lower margin, that the arrows of the axes take; points. */
+double hl_overlay_arrows_height(const hl_ink *ink);
 
 /* Each of these functions draws one part of the overlay, if the overlay has this part. */
 hl_status hl_overlay_bar(const hl_ink *ink, const hl_overlay_place *place, hl_error *error);

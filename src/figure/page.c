@@ -160,7 +160,7 @@ static hl_status draw_panels(hl_context *context, const hl_figure *figure, cairo
     hl_ink ink = ink_for(cairo, figure, panel);
     if (panel->frame) draw_frame(&ink, rectangle_of(panel));
     if (status == HL_OK)
-      status = hl_overlay_draw(&ink, &panel->overlay, panel->scene, rectangle_of(panel), error);
+      status = hl_overlay_draw(&ink, &panel->overlay, panel->scene, panel->image, rectangle_of(panel), error);
   }
   if (status == HL_OK && cairo_status(cairo) != CAIRO_STATUS_SUCCESS)
     status = hl_fail(error, HL_ERROR_INTERNAL, "figure: cairo says: %s",
