@@ -1,5 +1,5 @@
 #!/bin/sh
-# What `meson install` installs is whole: the example program in halflight.h compiles as C99 with the
+# What `meson install` installs is whole: the example program picture.c compiles as C99 with the
 # flags of pkg-config, links, and turns a volume into a picture; program, manual and completion are there. On a bare
 # Debian, without dpkg-dev, all of it goes where the loader and pkg-config look without being told.
 # usage: install.sh SOURCE_FOLDER BUILD_FOLDER MAKE_VOLUME CC [FLAG ...]
@@ -55,8 +55,7 @@ PKG_CONFIG_PATH=$(dirname "$pc")
 PKG_CONFIG_SYSROOT_DIR=$folder/root
 export PKG_CONFIG_PATH PKG_CONFIG_SYSROOT_DIR
 
-sed -n '/^ \*     #include/,/^ \*     }$/s/^ \*     \{0,1\}//p' "$header" >"$folder/picture.c"
-grep -q 'int main' "$folder/picture.c"
+cp "$(find_one '*/share/doc/halflight/examples/picture.c')" "$folder"
 # shellcheck disable=SC2046 # one word per flag
 "$@" -std=c99 -pedantic-errors -Wall -Wextra -Werror "$folder/picture.c" -o "$folder/picture" \
   $(pkg-config --cflags --libs halflight)
