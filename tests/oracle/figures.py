@@ -402,6 +402,29 @@ def pages():
         check(done.returncode in (2, 3) and word in done.stderr and done.stderr.count("\n") == 1 and not Path("no.pdf").exists(), done.stderr)
 
 
+def plain_pictures():
+    """Pictures without a scene are panels as they are, beside rendered ones; a first panel without a scene shares nothing."""
+    nifti("rods.nii", rods, 1.0)
+    codes = np.arange(30 * 20 * 3, dtype=np.uint32).reshape(20, 30, 3) * 97 % 251
+    Image.fromarray(codes.astype(np.uint8)).save("where.png")
+    halflight("rods.nii", "--size", "30x20", "--quiet", "-o", "light.exr")
+    page = {"width": "90mm", "gap": "0mm", "dpi": 25.4, "letters": False,
+            "panels": [{"input": "rods.nii"}, {"input": "where.png", "annotate": "note@0.1,5"}, {"input": "light.exr"}]}
+    Path("plain.json").write_text(json.dumps(page))
+    run = lambda: subprocess.run([program, "figure", "plain.json", "-o", "plain.png", "--quiet"], capture_output=True, text=True)
+    done = run()
+    check(done.returncode == 0, done.stderr)
+    drawn = np.asarray(Image.open("plain.png").convert("RGB"))
+    check(drawn.shape == (30, 90, 3) and np.array_equal(drawn[:20, 30:60], codes), f"{drawn.shape}: the picture's own codes")
+    check((drawn[20:, 30:] == 255).all() and np.ptp(drawn[:20, 60:]) > 20, "the third panel shows the rods")
+    Path("plain.json").write_text(json.dumps(page | {"panels": page["panels"][1:], "share": ["light"]}))
+    done = run()
+    check(done.returncode == 3 and "'where.png', is a picture without a scene to share" in done.stderr, done.stderr)
+    Path("plain.json").write_text(json.dumps(page | {"panels": [{"input": "where.png", "scale-bar": "auto"}]}))
+    done = run()
+    check(done.returncode != 0 and "need the picture's scene" in done.stderr, done.stderr)
+
+
 def grounds(svg):
     """(left, top, right, bottom) of the translucent grounds behind parts of the overlay."""
     return [(min(n[::2]), min(n[1::2]), max(n[::2]), max(n[1::2])) for style, n in paths(svg) if "fill-opacity:0.54" in style]
@@ -448,7 +471,7 @@ with tempfile.TemporaryDirectory() as folder:
     import os
     os.chdir(folder)
     for test in (bars, chosen_lengths, perspective, units_are_not_invented, physical_sizes, hostile_texts, legends, label_legends, letters,
-                 points_of_the_world, lengths_of_marks, places_of_marks, pages, grounds_behind_parts, linear_files_are_refused):
+                 points_of_the_world, lengths_of_marks, places_of_marks, pages, plain_pictures, grounds_behind_parts, linear_files_are_refused):
         before = checks
         test()
         print(f"{test.__name__}: {checks - before} checks", flush=True)

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
+#include "cli/frames.h"
 #include "panels.h"
 
 enum {
@@ -140,7 +141,9 @@ static double place_panels(figure_page *page) {
   for (int p = 0; p < page->count; p++) {
     figure_panel *panel = &page->panels[p];
     const hl_scene_description *scene = hl_scene_describe(panel->scene);
-    panel->place.height = panel->place.width * scene->height / scene->width;
+    panel->place.height = panel->place.width * (scene != NULL ? (double)scene->height / scene->width
+                                                              : (double)hl_image_height(panel->image) /
+                                                                    hl_image_width(panel->image));
     if (panel->inset.of >= 0) {
       const figure_panel *outer = &page->panels[panel->inset.of];
       double rim = 0.02 * outer->place.width;
@@ -164,20 +167,47 @@ static double place_panels(figure_page *page) {
   return top + high;
 }
 
+/* Whether a file is a picture as it is: a PNG without a scene in it, OpenEXR or Radiance HDR. An .npy file is
+ * a volume. */
+static bool is_plain_picture(const char *path) {
+  size_t length = 0;
+  hl_image_about about = {.struct_size = sizeof about};
+  if (!has_extension(path, ".png") && !has_extension(path, ".exr") && !has_extension(path, ".hdr"))
+    return false;
+  unsigned char *bytes = frames_read_picture(path, &length);
+  bool plain = bytes != NULL && hl_image_get_about(path, bytes, length, &about, NULL) == HL_OK &&
+               !about.has_scene;
+  free(bytes);
+  return plain;
+}
+
+/* Makes the scene of a panel, or reads its picture. */
+static int fill_panel(figure_job *job, figure_panel *panel) {
+  const figure_page *page = &job->page;
+  hl_error error = {0};
+  if (panel->operands[1] == NULL && is_plain_picture(panel->operands[0])) {
+    if (panel == page->panels && (page->share_camera || page->share_light || page->share_function))
+      return fail(EXIT_CODE_INPUT,
+                  "%s: \"share\": the first panel, '%s', is a picture without a scene to share", job->input,
+                  panel->operands[0]);
+    hl_status status = hl_image_read(job->host.context, panel->operands[0], &panel->image, &error);
+    return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_READ, status, &error);
+  }
+  int exit_code = render_load_inputs(&job->host, panel->values, panel->operands, &panel->bare, &panel->scene);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  size_panel(page, panel);
+  exit_code = render_change_scene(&job->host, panel->values, panel->bare, &panel->scene);
+  return exit_code == EXIT_CODE_OK ? share(job, panel) : exit_code;
+}
+
 static int make_scenes(figure_job *job) {
   figure_page *page = &job->page;
   int exit_code = EXIT_CODE_OK;
   for (int p = 0; p < page->count && exit_code == EXIT_CODE_OK; p++)
     exit_code = read_options(job, &page->panels[p]);
   if (exit_code == EXIT_CODE_OK) place_widths(page);
-  for (int p = 0; p < page->count && exit_code == EXIT_CODE_OK; p++) {
-    figure_panel *panel = &page->panels[p];
-    exit_code = render_load_inputs(&job->host, panel->values, panel->operands, &panel->bare, &panel->scene);
-    if (exit_code != EXIT_CODE_OK) break;
-    size_panel(page, panel);
-    exit_code = render_change_scene(&job->host, panel->values, panel->bare, &panel->scene);
-    if (exit_code == EXIT_CODE_OK) exit_code = share(job, panel);
-  }
+  for (int p = 0; p < page->count && exit_code == EXIT_CODE_OK; p++)
+    exit_code = fill_panel(job, &page->panels[p]);
   return exit_code;
 }
 
@@ -224,6 +254,7 @@ static hl_status render_panels(figure_job *job, hl_error *error) {
     figure_panel *panel = &job->page.panels[p];
     const hl_scene_description *scene = hl_scene_describe(panel->scene);
     char text[40];
+    if (scene == NULL) continue;
     snprintf(text, sizeof text, "panel %d of %d", p + 1, job->page.count);
     host_draw_bar(&job->host, (double)p / job->page.count, text);
     status = hl_image_create(job->host.context, scene->width, scene->height, &panel->image, error);

@@ -30,7 +30,7 @@ typedef struct figure_panel {
   figure_inset inset;
   bool bare;
   char size_text[RENDER_SIZE_TEXT]; /* text of --size */
-  hl_scene *scene;                  /* owned */
+  hl_scene *scene;                  /* owned; null: the panel's input is a picture without a scene */
   hl_image *image;                  /* owned */
   cli_overlay overlay;
   figure_place place;
