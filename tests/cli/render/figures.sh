@@ -7,6 +7,9 @@ halflight render "$SOURCE/examples/fig12-cube-beams-a.json" --size 16x16 --quiet
 halflight diff --max-error 0 alone.png fig12-cube-beams-a.png >/dev/null
 halflight figures --help | grep -c -e '--size' -e '--output' -e '--data'
 halflight figures no-such 2>error || echo "exit $?"
-sed 's;.*/;;' error
+cat error
 halflight figures a/b 2>error || echo "exit $?"
 cat error
+# --list names figures.
+halflight figures 12 --list
+halflight figures --list | grep -c '^fig'
