@@ -12,7 +12,7 @@ enum { A_TASK = 1 << 15, CODE_BITS = 10, DIGITS = 3, DIGIT = 1 << CODE_BITS };
 typedef struct ordering {
   surfaces *all;
   uint32_t first, count;
-  uint32_t *codes; /* [count] */
+  uint32_t *codes; /* [count]; the Morton codes of the primitives */
   float low[3], scale;
 } ordering;
 
@@ -20,7 +20,7 @@ static const float *place_of(const surfaces *all, uint32_t primitive) {
   return hl_primitive_kind(all, primitive)->point(all, primitive);
 }
 
-/* Puts two zeros after each of ten bits. */
+/* Spreads the lowest ten bits of a number: two zeros follow after each bit. */
 static uint32_t spread(uint32_t bits) {
   bits = (bits | bits << 16) & 0x030000ffu;
   bits = (bits | bits << 8) & 0x0300f00fu;
@@ -47,7 +47,7 @@ static void code_task(void *data, size_t task, int worker) {
     ordering->codes[i] = code_of(ordering, place_of(ordering->all, ordering->first + (uint32_t)i));
 }
 
-/* Finds a cube around the places. */
+/* Finds a cube around the points by which the primitives are ordered. */
 static void find_cube(ordering *ordering) {
   float high[3], size = 0;
   for (int axis = 0; axis < 3; axis++) ordering->low[axis] = INFINITY, high[axis] = -INFINITY;
@@ -62,7 +62,7 @@ static void find_cube(ordering *ordering) {
   ordering->scale = size > 0 && size < INFINITY ? DIGIT / size : 0;
 }
 
-/* Sorts indices by one digit of their codes. */
+/* Sorts the indices of primitives by one digit of their Morton codes. */
 static void sort_by_digit(const uint32_t *codes, const uint32_t *from, size_t count, int digit,
                           uint32_t *to) {
   uint32_t places[DIGIT + 1] = {0};

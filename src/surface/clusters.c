@@ -13,7 +13,8 @@ enum { A_TASK = 1 << 9 };
 
 static uint64_t clusters_of(uint64_t primitives) { return (primitives + CLUSTER_SIZE - 1) / CLUSTER_SIZE; }
 
-/* Vertices are read sixteen at a time. */
+/* The number of a cluster's vertices, rounded up to a multiple of sixteen, because vertices are read sixteen
+ * at a time. */
 static uint16_t filled_up(uint32_t vertices) { return (uint16_t)((vertices + 15) / 16 * 16); }
 
 /* ---- memory ---- */
@@ -34,7 +35,8 @@ static void count_kind(int k, uint64_t primitives, cluster_counts *counts) {
   counts->most = primitives > counts->most ? primitives : counts->most;
 }
 
-/* The clusters begin the block. */
+/* Lays out the arrays of the clusters in one block of memory. all->clusters is the first array of the
+ * block. */
 static void lay_out(const cluster_counts *counts, surfaces *all, hl_layout *layout) {
   all->clusters = hl_layout_take(layout, counts->all, sizeof *all->clusters);
   all->order = hl_layout_take(layout, counts->primitives, sizeof *all->order);
@@ -91,7 +93,7 @@ static void find_cone(const surfaces *all, surface_cluster *cluster) {
   if (!hl_has_corners(all, cluster->first)) return;
   for (int i = 0; i < cluster->count; i++) {
     normals[i] = hl_surface_normal(all, all->order[cluster->first + (uint32_t)i]);
-    if (vec3_length(normals[i]) < 2) sum = vec3_add(sum, normals[i]); /* else not a number */
+    if (vec3_length(normals[i]) < 2) sum = vec3_add(sum, normals[i]); /* normals that are NaN are left out */
   }
   vec3 axis = vec3_normalise(sum);
   if (!(vec3_length(axis) < 2)) return;
@@ -236,14 +238,14 @@ void hl_clusters_release(hl_context *context, surfaces *all) {
   hl_release(context, all->cluster_positions);
 }
 
-/* The sine of an angle: a triangle counts as turned away from the view only if it is turned away by more than
- * this angle. */
+/* The sine of the smallest angle that counts. A triangle counts as turned away from the view only if it is
+ * turned away by more than this angle. */
 static const double AWAY = 0.02;
 
 /* Whether all triangles of a cluster surely turn their backs to a view. Derived: let v be the vector from the
  * eye to the middle of the box, t the angle between v and the cone's axis n, and m a normal that differs from
- * n by at most the angle a. Then m.v >= |v| cos(t + a). For another point of the box, v + w with |w| < r,
- * m.(v + w) >= |v| cos(t + a) - r. */
+ * n by at most the angle a. Then m.v >= |v| cos(t + a). Let r be half the box's diagonal. Another point of
+ * the box lies at v + w with |w| <= r, so m.(v + w) >= |v| cos(t + a) - r. */
 bool hl_cluster_faces_away(const surface_cluster *cluster, const view *view) {
   vec3 low = hl_surface_vector(cluster->low), high = hl_surface_vector(cluster->high), way = view->direction;
   double reach = 0, a = cluster->cosine;

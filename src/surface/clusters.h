@@ -14,19 +14,21 @@
 enum { CLUSTER_SIZE = CLUSTER_TRIANGLES };
 
 struct surface_cluster {
-  float low[3], high[3]; /* of the box; frame space */
-  float axis[3];         /* of the cone; unit */
+  float low[3], high[3]; /* the corners of the box around the cluster's primitives; frame space */
+  float axis[3];         /* the axis of the cone that holds the normals; unit vector */
   float cosine;          /* the cosine of the greatest angle between the axis and a normal; below 0: the
                           * normals may have any direction */
   uint32_t first; /* the index, in all->order, of the cluster's first primitive. All primitives of a cluster
                    * are of the same kind, because the order keeps primitives of one kind together */
   uint16_t count, mesh;
-  uint16_t vertices;   /* of triangles: as in cluster_shape */
-  size_t first_vertex; /* in all->cluster_positions */
+  /* the number of the vertices in the cluster's own copy, for clusters of triangles; a multiple of 16, as in
+   * cluster_shape */
+  uint16_t vertices;
+  size_t first_vertex; /* the index, in all->cluster_positions, of the cluster's first vertex */
 };
 
-/* Counts the greatest amount of memory that hl_clusters_create() can take. It takes this amount if triangles
- * share hardly any vertices. */
+/* Counts the greatest amount of memory that hl_clusters_create() can take: the amount if triangles share
+ * hardly any vertices. */
 void hl_clusters_count(const hl_scene_description *scene, hl_layout *layout);
 
 /* Makes the clusters of all meshes, in the order of the meshes. Clusters of triangles come before clusters
@@ -34,7 +36,8 @@ void hl_clusters_count(const hl_scene_description *scene, hl_layout *layout);
 hl_status hl_clusters_create(hl_context *context, hl_pool *pool, surfaces *all, hl_error *error);
 void hl_clusters_release(hl_context *context, surfaces *all);
 
-/* A cluster of triangles for the functions of small triangles; borrowed. */
+/* Describes a cluster of triangles for the functions of small triangles (small_triangles.h). The arrays are
+ * borrowed. */
 static inline cluster_shape hl_cluster_shape(const surfaces *all, const surface_cluster *cluster) {
   size_t number = (size_t)(cluster - all->clusters);
   return (cluster_shape){all->cluster_positions + 3 * cluster->first_vertex, cluster->vertices,

@@ -8,8 +8,9 @@
 
 enum { SAMPLES = 16 };
 
-/* An edge of a polygon, as an edge function, which is at least 0 on the polygon's side of the edge: value + x
- * * across + y * down, where x and y are pixels from the tile's corner. */
+/* An edge of a polygon, as an edge function. The function is value + x * across + y * down, where x and y are
+ * the column and the row of a pixel, counted from the tile's corner. It is at least 0 on the polygon's side
+ * of the edge. */
 typedef struct edge {
   int64_t value, across, down;
   int64_t offset[SAMPLES]; /* for each sample of a pixel, the difference of the edge function from its value

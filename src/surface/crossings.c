@@ -6,23 +6,24 @@
 #include "surface/sample_rows.h"
 #include "surface/shown_surface.h"
 
-/* The greatest number of fragments in a pixel whose fragments are cut into parts. With more fragments, nobody
- * sees the order of the surfaces in the pixel. */
+/* The greatest number of fragments that a pixel may have if its fragments are cut into parts where they
+ * cross. Where a pixel has more fragments, nobody sees the order of its surfaces. */
 enum { MOST_FRAGMENTS = 32 };
 
 /* The fragments of a pixel, with the surfaces of those fragments that may cross others. */
 typedef struct pixel_fragments {
   const crossing_tile *tile;
-  fragment list[2 * MOST_FRAGMENTS]; /* [count]; first the given fragments, then parts of them that come
-                                      * before other fragments */
-  uint8_t part_of[MOST_FRAGMENTS];   /* for each part, the fragment of which it is a part */
+  fragment list[2 * MOST_FRAGMENTS]; /* [count]; first the fragments that the caller gave, then the parts
+                                      * that are cut off from them */
+  uint8_t part_of[MOST_FRAGMENTS];   /* for each part, the index in `list` of the fragment from which the
+                                      * part was cut */
   size_t given, count;
   shown_surface surfaces[MOST_FRAGMENTS];
-  uint32_t has_surface, changed; /* one bit for each given fragment */
-  int x, y;                      /* the pixel */
+  uint32_t has_surface, changed; /* one bit for each fragment that the caller gave */
+  int x, y;                      /* column and row of the pixel in the view */
 } pixel_fragments;
 
-/* Grows along the view's rays. */
+/* The depth of a height: a number that grows along the view's rays. */
 static double depth_of(const pixel_fragments *pixel, double height) {
   return pixel->tile->order->falling ? -height : height;
 }
@@ -45,7 +46,7 @@ static const shown_surface *surface_of(pixel_fragments *pixel, size_t i) {
   return surface;
 }
 
-/* Of the given samples, those at which fragment i lies before fragment j. */
+/* Returns those of the given samples at which fragment i lies before fragment j. */
 static uint32_t samples_before(pixel_fragments *pixel, size_t i, size_t j, uint32_t samples) {
   const shown_surface *own = surface_of(pixel, i), *other = surface_of(pixel, j);
   uint32_t before = 0;
@@ -133,7 +134,7 @@ static size_t write_pixel(pixel_fragments *pixel, fragment *to) {
   return kept;
 }
 
-/* Whether any two fragments of a pixel share samples and may cross. */
+/* Whether two fragments of a pixel share samples and may cross. */
 static bool any_may_cross(const pixel_fragments *pixel, const fragment *list, size_t count) {
   uint32_t seen = 0;
   for (size_t i = 0; i < count; seen |= list[i++].samples)
@@ -142,7 +143,7 @@ static bool any_may_cross(const pixel_fragments *pixel, const fragment *list, si
   return false;
 }
 
-/* Cuts a pixel's fragments into parts where they cross. *parted is set if any fragment was cut. */
+/* Cuts a pixel's fragments into parts where they cross. *parted: set to true if any fragment was cut. */
 static size_t part_pixel(const crossing_tile *tile, const fragment *list, size_t count, fragment *to,
                          bool *parted) {
   pixel_fragments pixel;

@@ -20,15 +20,17 @@
 enum { FRAGMENT_SAMPLES = 16 };
 
 typedef struct fragment {
-  float height;  /* height above the first sheet; frame units */
-  float opacity; /* above 0; see "Opacity" */
+  float height; /* height above the first sheet; frame units */
+  /* the fraction of the arriving light that the fragment absorbs, above 0; see "Opacity" at the head of the
+   * file */
+  float opacity;
   uint32_t primitive;
-  int32_t slab;     /* number k of the slab between sheets k-1 and k */
+  int32_t slab;     /* number k of the slab that lies between the sheets k-1 and k */
   uint16_t samples; /* covered samples, one bit each */
-  uint16_t seen; /* in the eye's view: those covered samples that no opaque fragment before this one covers */
-  uint16_t mesh; /* the mesh of the primitive */
+  uint16_t seen; /* in the eye's view: the covered samples that no opaque fragment before this one covers */
+  uint16_t mesh; /* index of the mesh to which the primitive belongs */
   uint8_t pixel; /* the pixel's number in its tile, block after block: 16 * block + lane */
-  uint8_t reach; /* of the eye's view: see REACH_PARTS */
+  uint8_t reach; /* in the eye's view: the fragment's reach, in the units of REACH_PARTS */
 } fragment;
 
 /* The mean position of the covered samples in their pixel, 0 to 1. */
@@ -39,7 +41,7 @@ void hl_fragment_middle(uint16_t samples, double *u, double *v);
  * FARTHEST stands for an unlimited reach. */
 enum { REACH_PARTS = 16, FARTHEST = UINT8_MAX };
 
-/* The stored number for a reach. reach: in units of the distance of sheets. */
+/* Turns a reach into the number that is stored for it. reach: in units of the distance of sheets. */
 static inline uint8_t hl_told_reach(double reach) {
   double parts = reach * REACH_PARTS;
   /* a reach that is NaN counts as unlimited */

@@ -15,7 +15,7 @@ uint32_t hl_ordered_bits(float height, bool falling) {
   return falling ? ~bits : bits;
 }
 
-/* Merges the sorted runs [0, middle) and [middle, count) of `from` into `to`. */
+/* Merges the sorted runs [0, middle) and [middle, count) of `from` into one sorted run in `to`. */
 static void merge(const order_key *from, size_t middle, size_t count, order_key *to) {
   size_t a = 0, b = middle;
   for (size_t i = 0; i < count; i++) {
@@ -36,7 +36,7 @@ static void sort_short_run(order_key *list, size_t count) {
   }
 }
 
-/* Sorts runs, then merges them. */
+/* Sorts short runs of keys by insertion, then merges the runs. */
 void hl_sort_keys(order_key *list, order_key *spare, size_t count) {
   for (size_t at = 0; at < count; at += SHORT_RUN)
     sort_short_run(list + at, count - at < SHORT_RUN ? count - at : SHORT_RUN);
@@ -53,7 +53,8 @@ void hl_sort_keys(order_key *list, order_key *spare, size_t count) {
   if (from != list) memcpy(list, from, count * sizeof *list);
 }
 
-/* Whether two surfaces may cross, given their reaches. apart: the difference of their heights. */
+/* Whether two surfaces may cross. apart: the difference of their heights. reach, other: the reaches of the
+ * two surfaces (fragment.h). */
 static bool may_meet(const fragment_order *order, float apart, uint8_t reach, uint8_t other) {
   return fabs((double)apart) <= hl_reach_of(reach, order->spacing) + hl_reach_of(other, order->spacing);
 }
@@ -107,7 +108,7 @@ size_t hl_sort_by_pixel(const fragment *list, size_t count, const fragment_order
   return kept;
 }
 
-/* Reverses the order of the fragments of each pixel of a slab. */
+/* Reverses the order of the fragments within each pixel of each slab. */
 static void turn_round(fragment *list, size_t count) {
   for (size_t i = 0, end; i < count; i = end) {
     for (end = i + 1; end < count && list[end].pixel == list[i].pixel && list[end].slab == list[i].slab;)
@@ -180,10 +181,10 @@ static void resolve_pixel(fragment *list, size_t count, const float *least) {
 /* Does the work of resolve_pixel() for a light's view whose buffer is also used for rays of other directions.
  * A pixel that opaque surfaces cover in a slab, or in a slab and the slab before it, is opaque there. This
  * holds even where surfaces before this slab have absorbed all light of the view's own ray, because other
- * rays pass beside these surfaces. The slab before counts for the following reason. Two triangles of a
- * surface may share a pixel and lie in neighbouring slabs. If each of them absorbed its part of the light,
- * one after the other, some light would be left and come through the surface. The fragments of one slab
- * become one fragment. Returns the number of fragments that are left. */
+ * rays pass beside these surfaces. The previous slab counts as well, for the following reason. Two triangles
+ * of a surface may share a pixel and lie in neighbouring slabs. If each of them absorbed its part of the
+ * light, one after the other, some light would be left and come through the surface. The fragments of one
+ * slab become one fragment. Returns the number of fragments that are left. */
 static size_t resolve_slabs(fragment *list, size_t count, const float *least) {
   size_t kept = 0;
   uint32_t before = 0, covered = 0; /* before: samples covered in the slab before; covered: samples covered in
@@ -194,7 +195,8 @@ static size_t resolve_slabs(fragment *list, size_t count, const float *least) {
       covered = 0;
     }
     if (hl_is_opaque(&list[i], least)) covered |= list[i].samples;
-    /* in a light's view, the number of the primitive is not needed any more */
+    /* from here on, `primitive` tells whether opaque surfaces cover the pixel; the number of the primitive is
+     * not needed any more in a light's view */
     list[i].primitive = covered != 0 && (before | covered) == 0xffff;
   }
   resolve_pixel(list, count, least);
@@ -208,8 +210,8 @@ static size_t resolve_slabs(fragment *list, size_t count, const float *least) {
 }
 
 /* Joins fragments of one pixel to one fragment if they belong to neighbouring triangles of a coloured pane
- * and cover different samples. So the pane absorbs the same fraction of each colour, however its triangles
- * share the pixel. Returns the number of fragments that are left. */
+ * and cover different samples. Then the pane absorbs the same fraction of each colour however the pixel is
+ * divided among its triangles. Returns the number of fragments that are left. */
 static size_t join_panes(fragment *list, size_t count, const float *least) {
   size_t kept = 0;
   for (size_t i = 0; i < count; i++) {

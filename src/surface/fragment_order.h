@@ -13,10 +13,10 @@
 typedef struct fragment_order {
   const float *least; /* [mesh_count]; borrowed; a mesh's opacity has a factor each for red, green and blue
                        * light; this is the least of the three factors */
-  bool falling;       /* the view meets great heights first */
+  bool falling;       /* whether the view meets great heights first */
   bool slabs;         /* the view is a light's, and its buffer also serves rays of other directions than the
                        * directions of the view's rays */
-  bool apart;         /* no fragment hides another */
+  bool apart;         /* whether fragments are composited as if no fragment hid another */
   double spacing;     /* distance of the sheets; frame units */
 } fragment_order;
 
@@ -27,14 +27,14 @@ typedef struct order_key {
   uint32_t index; /* index in the list */
 } order_key;
 
-/* A whole number made from the bits of a float. These numbers have the same order as the floats, or the
- * reverse order if `falling` is set. */
+/* Turns a float into a whole number. These whole numbers have the same order as the floats, or the reverse
+ * order if `falling` is set. */
 uint32_t hl_ordered_bits(float height, bool falling);
 
 /* Sorts keys in rising order; equal keys keep their order. spare: [count]. */
 void hl_sort_keys(order_key *list, order_key *spare, size_t count);
 
-/* Whether a fragment absorbs all light of its samples. */
+/* Whether a fragment absorbs all light that arrives at its samples. */
 static inline bool hl_is_opaque(const fragment *f, const float *least) {
   return f->opacity * least[f->mesh] >= 1;
 }

@@ -10,14 +10,14 @@
 /* A block of memory for the fragments of many tiles. Blocks form a chain, so that no fragments are copied
  * when memory grows. */
 typedef struct fragment_block {
-  struct fragment_block *before; /* owned */
+  struct fragment_block *before; /* the block that was filled before this one; owned */
   size_t count, room;
-  fragment list[]; /* [room]; count of them are in use */
+  fragment list[]; /* [room]; the first `count` fragments are in use */
 } fragment_block;
 
 /* The fragments of one tile, sorted by slab, then by pixel, then by height. */
 typedef struct tile_list {
-  const fragment *list; /* [count]; in a block */
+  const fragment *list; /* [count]; borrowed from a fragment_block */
   uint32_t count;
   uint32_t reached; /* number of the tile's fragments that lie in slabs for which the sweep has already
                      * asked */
@@ -31,7 +31,7 @@ typedef struct fragments_source {
   const surfaces *surfaces;
   const view *view;
   const sheet_stack *sheets;
-  bool falling;  /* the view meets great heights first */
+  bool falling;  /* whether the view meets great heights before small ones */
   bool of_light; /* if set, the view is a light's, and sees the meshes that cast shadows; other views see the
                   * visible meshes */
   bool unseen;   /* if set, the view is the eye's, and sees only meshes that cast shadows and are not visible.
@@ -43,10 +43,11 @@ typedef struct fragments_source {
    * within this distance from the fragment. So rays of other directions than the view's find no gap between
    * the pixels of a slanted surface. 0: each fragment fills one slab. */
   double rise;
-  uint64_t *marks; /* [sheets][tile_words], bit = tile; may be null. A bit is set if a surface that is visible
-                    * or casts shadows lies in the tile, or beside it, in the slab that ends at the sheet */
+  /* [sheets][tile_words], one bit for each tile; may be null. A bit is set if a surface that is visible or
+   * casts shadows lies in the tile, or beside it, in the slab that ends at the sheet */
+  uint64_t *marks;
   int tile_words;
-  const int32_t *needed; /* [tiles]; 0: nobody needs the tile's fragments; null: all tiles are needed */
+  const int32_t *needed; /* [tiles]; 0: nobody needs the fragments of this tile; null: all tiles are needed */
 } fragments_source;
 
 /* The opaque fragments that were added last to a pixel of a tile in a light's view: one fragment for each of
@@ -65,18 +66,20 @@ typedef struct covered_so_far {
 
 /* One thread's memory; all arrays are owned. */
 typedef struct fragment_worker {
-  _Alignas(64) fragment *scratch; /* [2][room]; first a tile's fragments, then the same fragments after
-                                   * sorting */
-  order_key *keys;                /* [2][room]; for sorting */
+  _Alignas(64) fragment *scratch; /* [2][room]; the first half holds a tile's fragments, the second half
+                                   * the same fragments after sorting */
+  order_key *keys;                /* [2][room]; the keys by which a tile's fragments are sorted, and memory
+                                   * for sorting them */
   size_t count, room;
   latest_fragments latest[TILE_PIXELS];
   covered_so_far covered[TILE_PIXELS];
   order_key *runs; /* [2][run_room]; in a light's view: the runs of a tile, in the order of their least
                     * heights */
   size_t run_room;
-  uint32_t *places; /* [sheets + 2]; for sorting */
-  uint16_t *near;   /* [sheets]; for each slab, which tiles around the current tile must be marked: bit 3 (1 +
-                     * down) + 1 + across */
+  uint32_t *places; /* [sheets + 2]; memory for sorting fragments by slabs */
+  /* [sheets]; for each slab, which of the 3x3 tiles around the current tile must be marked: the tile that
+   * lies `across` columns and `down` rows away, -1 to 1, has the bit 3 (1 + down) + 1 + across */
+  uint16_t *near;
   int32_t nearest, farthest; /* the first and the last slab for which `near` is not 0 */
   fragment_block *out;       /* the fragments of the tiles that the thread has finished; null: there are none
                               * yet */
@@ -88,14 +91,16 @@ typedef struct fragment_work {
   const fragments_source *source;
   const seen_surfaces *seen;
   const primitive_bins *bins;
-  binned *wanted;           /* [mesh_count]; which primitives of each mesh are made into fragments */
+  binned *wanted;           /* [mesh_count]; for each mesh, which of its primitives are made into fragments */
   small_view small;         /* a template for all tiles and meshes: the members that depend on a mesh are not
                              * set */
-  fragment_worker *workers; /* [threads] */
-  float *least;             /* [mesh_count]; as in fragment_order */
+  fragment_worker *workers; /* [threads]; the memory of each thread */
+  /* [mesh_count]; for each mesh, the least of the factors that its opacity has for red, green and blue
+   * light */
+  float *least;
   bool *dark_backs; /* [mesh_count]; in a light's view: whether the mesh's back sides get no light of this
                      * light */
-  tile_list *tiles; /* [tiles] */
+  tile_list *tiles; /* [tiles]; the finished fragments of each tile */
   int tiles_x, tiles_y;
   uint16_t near[TILE_PIXELS]; /* for each pixel of a tile, block after block: the tiles that look-ups
                                * around the pixel may read */

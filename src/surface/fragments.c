@@ -19,7 +19,7 @@ void hl_fragments_count(const surfaces *all, const view *view, int threads, hl_l
   hl_layout_give_back(layout, kept);
 }
 
-/* Takes over the blocks of a worker. */
+/* Takes over the memory blocks of a worker that hold the fragments of the tiles which it finished. */
 static void keep_blocks(fragment_worker *worker, fragments *made) {
   fragment_block *first = worker->out;
   if (first == NULL) return;
@@ -50,8 +50,8 @@ static hl_status rasterise(fragment_work *work, fragments *made, hl_error *error
   return status;
 }
 
-/* Whether the origin of a view's rays lies outside of a mesh. If the rays begin at a point, this point must
- * lie outside of the mesh's box. */
+/* Whether the origin of a view's rays lies outside of a mesh. If the rays begin at a point, the function
+ * returns true only if this point lies outside of the mesh's box. */
 static bool is_outside(const view *view, const surface_mesh *mesh) {
   return !view->perspective || hl_surface_is_outside(mesh, view->origin, 0);
 }
@@ -78,7 +78,7 @@ static binned wanted_of(const fragments_source *source, const surface_mesh *mesh
   return !seen_here ? BINNED_NOTHING : has_hidden_backs(source, mesh) ? BINNED_FRONTS : BINNED_ALL;
 }
 
-/* Finds the properties of each mesh. */
+/* Finds the properties of each mesh that its fragments need in this view. */
 static void describe_meshes(const fragments_source *source, float *least, bool *dark_backs) {
   for (size_t m = 0; m < source->surfaces->mesh_count; m++) {
     const surface_mesh *mesh = &source->surfaces->meshes[m];
@@ -109,7 +109,7 @@ static hl_status make_tiles(fragment_work *work, fragments *made, hl_error *erro
   return status;
 }
 
-/* Sorts the primitives into tiles, and makes the tiles' fragments. work->seen must be set. */
+/* Sorts the primitives into tiles, and makes the tiles' fragments. work->seen must have been set before. */
 static hl_status bin_and_make(fragment_work *work, fragments *made, hl_error *error) {
   const fragments_source *source = work->source;
   const surfaces *all = source->surfaces;

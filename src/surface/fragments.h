@@ -11,8 +11,8 @@
 
 /* The fragments of one view. */
 typedef struct fragments {
-  tile_list *of;          /* owned; [tiles]; the fragments of each tile; null: there are no surfaces */
-  fragment_block *blocks; /* owned; hold the tiles' fragments */
+  tile_list *of;          /* owned; [tiles]; the fragments of each tile; null: the view has no surfaces */
+  fragment_block *blocks; /* owned; the blocks of memory in which the tiles' fragments lie */
   size_t tiles;
 } fragments;
 

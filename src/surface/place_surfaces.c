@@ -59,7 +59,7 @@ static hl_status count_primitives(const hl_scene_description *scene, surfaces *m
   return HL_OK;
 }
 
-/* The meshes begin the block. */
+/* Lays out the arrays of all meshes in one block of memory. made->meshes is the first array of the block. */
 static void lay_out(size_t meshes, surfaces *made, hl_layout *layout) {
   made->meshes = hl_layout_take(layout, meshes, sizeof *made->meshes);
   for (int k = 0; k < PRIMITIVE_KINDS; k++) hl_primitive_kinds[k]->lay_out(made, layout);

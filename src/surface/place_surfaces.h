@@ -13,8 +13,8 @@ hl_status hl_surfaces_update(hl_context *context, hl_pool *pool, const hl_scene_
                              surfaces *kept, hl_error *error);
 void hl_surfaces_release(hl_context *context, surfaces *kept);
 
-/* Counts the memory that hl_surfaces_update() takes if nothing can be kept. Fails where 32 bits cannot number
- * all primitives. */
+/* Counts the memory that hl_surfaces_update() takes if nothing can be kept from an earlier frame. Fails where
+ * 32 bits cannot number all primitives. */
 hl_status hl_surfaces_count_memory(const hl_scene_description *scene, hl_layout *layout, hl_error *error);
 
 /* Whether the meshes are the same as in the earlier frame, and stand in the same places. If so, an update

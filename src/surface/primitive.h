@@ -10,16 +10,16 @@
 #include "core/memory.h"
 #include "surface/surface_plane.h"
 
-typedef struct primitive_lattice primitive_lattice; /* primitive_lattice.h */
-typedef struct primitive_raster primitive_raster;   /* primitive_raster.h */
+typedef struct primitive_lattice primitive_lattice; /* see primitive_lattice.h */
+typedef struct primitive_raster primitive_raster;   /* see primitive_raster.h */
 
-/* A ray: the points origin + s way with first < s < last. The bounds of s may be infinite. */
+/* A ray: the points origin + s way, for all s between `first` and `last`. These bounds may be infinite. */
 typedef struct surface_ray {
   vec3 origin, way;
   double first, last;
 } surface_ray;
 
-/* A ball of points of a hull. */
+/* A ball: one of the balls whose convex hull is compared with a primitive (primitive_kind.parts). */
 typedef struct hull_ball {
   vec3 at;
   double radius;
@@ -34,11 +34,12 @@ typedef struct primitive_kind {
   const primitive_lattice *lattice; /* finds where lines through a lattice meet primitives of the kind */
   /* The number of primitives of the kind in a mesh. */
   size_t (*count)(const hl_mesh_description *mesh);
-  /* Takes the memory of the arrays for the primitives of all meshes from a layout. */
+  /* Lays out the arrays that hold this kind's primitives of all meshes. */
   void (*lay_out)(surfaces *made, hl_layout *layout);
   /* Brings the primitives of a mesh to frame space. */
   void (*place)(hl_pool *pool, surfaces *made, const surface_mesh *mesh);
-  /* A point of a primitive; [3]. */
+  /* The coordinates of a point of a primitive, an array [3] in frame space. Primitives are ordered by these
+   * points. */
   const float *(*point)(const surfaces *all, uint32_t primitive);
   /* Finds a box around a primitive. The box is so large that the primitive lies within it despite
    * rounding. */

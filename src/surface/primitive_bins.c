@@ -26,10 +26,11 @@ typedef struct bin_work {
   primitive_bins *bins;
   tile_span *spans; /* [primitives]; the tiles that a primitive touches, for primitives that are put into
                      * tiles one by one */
-  uint32_t *places; /* [tasks][tiles]; in the first pass the number of runs that a task has for a tile, in the
-                     * second pass the index of the task's next run for this tile */
+  /* [tasks][tiles]; in the first pass the number of runs (primitive_bins.h) that a task adds to a tile, in
+   * the second pass the index at which the task stores its next run for this tile */
+  uint32_t *places;
   size_t tiles, tasks;
-  size_t a_task; /* clusters of a task */
+  size_t a_task; /* the number of clusters that a task sorts */
   int tiles_x, tiles_y;
 } bin_work;
 
@@ -38,7 +39,7 @@ static uint16_t clamp_tile(int32_t tile, int tiles) {
 }
 
 static void set_bounds_span(const bin_work *work, const seen_bounds *bounds, tile_span *span) {
-  const double limit = 1 << 20; /* tiles: whole numbers hold them */
+  const double limit = 1 << 20; /* in tiles; a bound that 32-bit whole numbers surely hold */
   int32_t at[4];
   const double ends[4] = {bounds->u0, bounds->v0, bounds->u1, bounds->v1};
   for (int i = 0; i < 4; i++) at[i] = (int32_t)floor(fmin(fmax(ends[i] / TILE, -limit), limit));
@@ -83,7 +84,8 @@ static void task_range(const bin_work *work, size_t index, size_t *first, size_t
   *end = *first + work->a_task < count ? *first + work->a_task : count;
 }
 
-/* Counts a run in each tile of a span, or stores it there. */
+/* Adds a run to each tile of a span. In the first pass the run is only counted, in the second pass it is
+ * stored. */
 static void add_run(const bin_work *work, uint32_t *places, const tile_span *span, primitive_run run) {
   for (int y = span->y0; y <= span->y1; y++)
     for (int x = span->x0; x <= span->x1; x++) {
@@ -100,7 +102,7 @@ static void add_one_by_one(const bin_work *work, uint32_t *places, const surface
   }
 }
 
-/* Counts, for each tile, how many of a task's runs touch it. Once there is memory for the runs, a second call
+/* Counts the runs that a task's clusters add to each tile. Once there is memory for the runs, a second call
  * stores the runs. */
 static void bin_task(void *data, size_t index, int worker) {
   (void)worker;
@@ -119,8 +121,8 @@ static void bin_task(void *data, size_t index, int worker) {
   }
 }
 
-/* Turns the numbers of runs into the index of the first run in each tile. Returns false if there are more
- * than 2^32 runs. */
+/* Turns the number of runs that each task adds to each tile into the index of the first of these runs.
+ * Returns false if there are more than 2^32 runs. */
 static bool find_places(bin_work *work) {
   uint64_t sum = 0;
   for (size_t tile = 0; tile < work->tiles; tile++) {

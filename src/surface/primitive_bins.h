@@ -7,21 +7,22 @@
 #include "surface/clusters.h"
 #include "surface/seen.h"
 
-/* One primitive, or all primitives of a cluster. Some primitives of a cluster may lie outside of the tile, or
- * turn their backs to the view. */
+/* A run: one primitive, or all primitives of a cluster, as an entry in the list of a tile. Some primitives of
+ * a cluster may lie outside of the tile, or turn their backs to the view. */
 typedef struct primitive_run {
-  uint32_t primitive; /* of a cluster the first */
-  uint32_t cluster;   /* NO_CLUSTER: this primitive alone */
+  uint32_t primitive; /* the primitive's number; for a cluster, the number of its first primitive */
+  uint32_t cluster;   /* index of the cluster; NO_CLUSTER: the run consists of a single primitive */
 } primitive_run;
 
 #define NO_CLUSTER UINT32_MAX
 
 typedef struct primitive_bins {
-  uint32_t *first;     /* owned; [tiles + 1] */
-  primitive_run *runs; /* owned; the runs of tile after tile; within a tile, in the order of primitives */
+  uint32_t *first;     /* owned; [tiles + 1]; the index in `runs` of each tile's first run */
+  primitive_run *runs; /* owned; the runs of one tile after the other; the runs of a tile are in the order
+                        * of primitives */
 } primitive_bins;
 
-/* What of a mesh is binned. */
+/* The primitives of a mesh that are sorted into tiles. */
 typedef enum binned { BINNED_NOTHING, BINNED_FRONTS, BINNED_ALL } binned;
 
 /* Sorts primitives into tiles. wanted: [mesh_count]; which primitives of each mesh are sorted. BINNED_FRONTS:

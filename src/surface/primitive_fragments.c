@@ -20,8 +20,8 @@ bool hl_tile_make_room(hl_context *context, fragment_worker *worker, size_t more
 }
 
 /* Joins an opaque fragment to the fragments that were added last to its pixel, if they belong to the same
- * mesh and fill the same slabs. Joined, they absorb as much light as one surface does. Returns whether they
- * were joined. */
+ * mesh and fill the same slabs. After joining, the fragments absorb as much light as one surface does.
+ * Returns whether the fragments were joined. */
 static bool join_latest(fragment_worker *worker, const fragment *f, int32_t first, int32_t last) {
   latest_fragments *latest = &worker->latest[f->pixel];
   fragment *own = worker->scratch + latest->end - 1;
@@ -46,8 +46,7 @@ static void cover_pixel(fragment_worker *worker, const fragment *f, double heigh
 void hl_add_to_slabs(const fragment_work *work, fragment_worker *worker, fragment f, double start,
                      int32_t first, int32_t last) {
   if (work->least[f.mesh] < 1)
-    last = first; /* opacities that differ by colour cannot be divided among
-                   * slabs */
+    last = first; /* an opacity that differs by colour cannot be divided among slabs */
   if (last - first >= MOST_SLABS) last = first + MOST_SLABS - 1;
   if (f.opacity >= 1 && work->least[f.mesh] >= 1) {
     cover_pixel(worker, &f, start);
@@ -87,7 +86,8 @@ void hl_add_pixel(const fragment_work *work, fragment_worker *worker, const surf
                   const covered_pixel *at, const seen_seams *seams) {
   const fragments_source *source = work->source;
   double height = hl_plane_height(plane, at->u, at->v);
-  height = fmin(fmax(height, plane->lowest), plane->highest); /* not a number: the lowest */
+  height = fmin(fmax(height, plane->lowest), plane->highest); /* a height that is not a number becomes the
+                                                               * lowest height */
   f.slab = hl_slab_of(source->sheets, height);
   f.height = (float)height;
   f.pixel = (uint8_t)hl_pixel_number(at->x % TILE, at->y % TILE);

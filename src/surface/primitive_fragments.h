@@ -12,16 +12,17 @@
 #include "surface/surface_cuts.h"
 #include "surface/surface_plane.h"
 
-/* The part of a primitive in a tile: the covered samples, without those that cuts remove. */
+/* The part of a primitive that a view sees in one tile: the samples that the primitive covers, without the
+ * samples that cuts remove. */
 typedef struct tile_part {
   int tile_x, tile_y;
-  bool is_cut; /* cuts remove some of the primitive */
+  bool is_cut; /* whether cuts remove some of the primitive */
   pixel_span span;
   uint16_t covered[TILE_PIXELS];
 } tile_part;
 
-/* Makes room for a number of further fragments of a tile. False: there is no memory, and the worker is
- * marked as failed. */
+/* Makes room for a number of further fragments of a tile. Returns false if there is no memory; the worker is
+ * then marked as failed. */
 bool hl_tile_make_room(hl_context *context, fragment_worker *worker, size_t more);
 
 /* Marks that a slab has a surface in the tiles around a pixel. pixel: number of the pixel in the tile, block

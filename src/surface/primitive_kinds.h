@@ -8,7 +8,7 @@
 
 #include <stdint.h>
 
-/* The build reads the names here. */
+/* The build reads the names of the kinds in this list. */
 /* clang-format off */
 #define HL_PRIMITIVES     \
   HL_PRIMITIVE(triangle)  \

@@ -26,7 +26,7 @@ typedef struct lattice_lines {
 typedef void lines_meet_function(const void *data, int32_t column, int32_t row, double height,
                                  double opacity);
 
-/* Is called for each point; frame space. */
+/* The function that is called for each point; `at` is in frame space. */
 typedef void point_function(void *data, const double at[3]);
 
 struct primitive_lattice {
@@ -39,7 +39,7 @@ struct primitive_lattice {
   void (*visit)(const surfaces *all, uint32_t primitive, double apart, point_function *point, void *data);
 };
 
-/* The tables of the kinds; each is in a file of its own (primitive_kinds.h). */
+/* The tables of the kinds of primitives; each table is in a file of its own (primitive_kinds.h). */
 #define HL_PRIMITIVE(name) extern const primitive_lattice hl_lattice_##name;
 HL_PRIMITIVES
 #undef HL_PRIMITIVE
@@ -49,9 +49,9 @@ static inline double hl_lattice_place(const lattice_lines *lines, int axis, doub
   return (at - lines->low[axis]) * lines->inverse_cell - lines->middle[axis];
 }
 
-/* The whole numbers between two places. */
+/* The whole numbers between two places: from `first` to `last`, both included. */
 typedef struct whole_numbers {
-  int32_t first, last; /* there are none where last < first */
+  int32_t first, last; /* there are no such whole numbers if last < first */
 } whole_numbers;
 
 static inline int32_t hl_round_down(double x) {

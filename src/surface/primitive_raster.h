@@ -12,11 +12,11 @@
 #include "surface/seen.h"
 #include "surface/small_triangles.h"
 
-typedef struct fragment_work fragment_work;     /* fragment_work.h */
-typedef struct fragment_worker fragment_worker; /* there */
-typedef struct tile_part tile_part;             /* primitive_fragments.h */
-typedef struct small_batch small_batch;         /* small_batch.h */
-typedef struct shown_surface shown_surface;     /* shown_surface.h */
+typedef struct fragment_work fragment_work;     /* see fragment_work.h */
+typedef struct fragment_worker fragment_worker; /* see fragment_work.h */
+typedef struct tile_part tile_part;             /* see primitive_fragments.h */
+typedef struct small_batch small_batch;         /* see small_batch.h */
+typedef struct shown_surface shown_surface;     /* see shown_surface.h */
 
 struct primitive_raster {
   /* Finds a rectangle around the part of a primitive that the view sees. Returns false if the view sees
@@ -40,7 +40,7 @@ struct primitive_raster {
   double (*height)(const sheet_stack *sheets, const shown_surface *shown, double u, double v);
 };
 
-/* The tables of the kinds; each is in a file of its own (primitive_kinds.h). */
+/* The tables of the kinds of primitives; each table is in a file of its own (primitive_kinds.h). */
 #define HL_PRIMITIVE(name) extern const primitive_raster hl_raster_##name;
 HL_PRIMITIVES
 #undef HL_PRIMITIVE

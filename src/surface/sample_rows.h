@@ -6,7 +6,8 @@
 
 static const unsigned char SAMPLE_ROWS[16] = {3, 10, 1, 8, 15, 6, 13, 4, 11, 2, 9, 0, 7, 14, 5, 12};
 
-/* Word b, of 16 bits, holds the samples whose row number has bit b set. */
+/* Four words of 16 bits. Word b has a bit for each sample of a pixel, which is set if bit b of the sample's
+ * row number is set. */
 #define SAMPLE_ROW_BITS 0xa55af0f033335555u
 
 #endif

@@ -7,7 +7,7 @@ static const double FRAME_AROUND = 4096;
  * at which rays have the length 1. */
 static const double NEAREST = 1e-4;
 
-/* A corner as (w, w u, w v). */
+/* A corner of a polygon in homogeneous coordinates (w, w u, w v), where (u, v) is its continuous pixel. */
 typedef struct corner {
   double w, u, v;
 } corner;

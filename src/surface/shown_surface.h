@@ -11,14 +11,14 @@ struct shown_surface {
                                    * kinds are not set */
   double lowest, highest;         /* the least and the greatest height of the primitive above the first
                                    * sheet */
-  /* Of a triangle. */
+  /* for a triangle: its plane */
   surface_plane plane;
-  bool by_corners;         /* whether no corner of the triangle was cut by the view; then the height is rise /
-                            * part */
+  /* for a triangle: whether the view cut no corner of it; if so, the surface's height is rise / part */
+  bool by_corners;
   double rise[3], part[3]; /* linear functions of the pixel, like those of surface_plane */
-  /* Of a sphere. */
+  /* for a sphere: the rays relative to its centre */
   sphere_rays rays;
-  bool leaving; /* the side where rays leave it */
+  bool leaving; /* for a sphere: whether the fragment lies on the side where rays leave the sphere */
 };
 
 /* The surface's height above the first sheet at a continuous pixel of the view. */

@@ -13,7 +13,7 @@ struct small_batch {
   uint32_t primitives[SMALL_TRIANGLES];
   float opacity[SMALL_TRIANGLES];
   int count;
-  const primitive_kind *kind; /* of the primitives */
+  const primitive_kind *kind; /* the kind of the batch's primitives */
   size_t mesh;
   bool may_be_covered; /* in a light's view: whether clusters may lie behind fragments that cover all of their
                         * pixels */

@@ -58,7 +58,7 @@ LANES_INLINE eight_doubles floors(eight_doubles x) {
   return choose(whole > x, whole - 1.0, whole);
 }
 
-/* Rays as in sphere_coverage.h. */
+/* The rays of eight spheres' pixels, as in sphere_coverage.h. */
 typedef struct eight_rays {
   doubles3 start, way;
   vec3 start_u, start_v, way_u, way_v;
@@ -148,7 +148,7 @@ LANES_INLINE eight_longs cover_pixels(const eight_doubles c[6], eight_doubles u,
  * linear functions of it. */
 typedef struct eight_planes {
   eight_doubles rise[3], way[3];
-  vec3 above, climb; /* the same for all spheres */
+  vec3 above, climb; /* vectors that are the same for all eight spheres */
 } eight_planes;
 
 LANES_INLINE void set_planes(const small_view *small, doubles3 normal, doubles3 point, eight_planes *planes) {

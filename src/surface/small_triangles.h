@@ -19,7 +19,7 @@ enum { SMALL_TRIANGLES = 16, SMALL_SIDE = 4, SMALL_PIXELS = SMALL_SIDE * SMALL_S
 typedef struct small_view {
   float normal[3], first; /* the sheets' normal; a point's height is normal.X - first */
   float spacing, last_slab;
-  int32_t columns, rows; /* size of the tile, within the view */
+  int32_t columns, rows; /* the number of the tile's columns and rows that lie within the view */
   int of_light;          /* a light's view; in other views the members from `perspective` to `rise` are not
                           * used */
   int perspective;       /* if set, the rays come from the point `from`; else they run along the vector
@@ -27,23 +27,25 @@ typedef struct small_view {
   float from[3], du[3], dv[3];
   float depth[3];    /* in a perspective view: the distance of a point X from the eye is depth.(X - from); the
                       * unit is the length of the ray's direction vector */
-  float delay, rise; /* as in fragments_source */
+  float delay, rise; /* the members of the same names of fragments_source, in pixels */
   double inverse[3][3], origin[3]; /* for clusters: the rows of `inverse`, multiplied by (point - origin),
                                     * give w, w u and w v; in a parallel view w is 1 instead */
   int32_t left, top;               /* for clusters: the tile's corner; 1/256 pixels */
-  const view *view;                /* for spheres; borrowed */
-  const sheet_stack *sheets;       /* for spheres; borrowed */
+  const view *view;                /* the view, used for spheres only; borrowed */
+  const sheet_stack *sheets;       /* the sheets, used for spheres only; borrowed */
   int fronts;                      /* whether only triangles that face the view are covered */
-  int dark_backs; /* as in fragment_work: whether fragments at which the light's rays leave the mesh have no
-                   * delay */
+  /* in a light's view: whether fragments at which the light's rays leave the mesh have no delay, because the
+   * mesh's back sides get no light */
+  int dark_backs;
 } small_view;
 
 typedef struct small_triangles {
   /* the corners, in 1/256 pixels from the tile's corner */
   _Alignas(64) int32_t x[3][SMALL_TRIANGLES], y[3][SMALL_TRIANGLES];
-  float height[3][SMALL_TRIANGLES]; /* heights of the corners: normal.X -
-                                     * first */
-  float normal[3][SMALL_TRIANGLES]; /* for a light's view: hl_corner_product() */
+  float height[3][SMALL_TRIANGLES]; /* heights of the corners above the first sheet: normal.X - first for
+                                     * the corner X */
+  float normal[3][SMALL_TRIANGLES]; /* for a light's view: the cross product of each triangle's sides, from
+                                     * hl_corner_product() */
   float corner[3][SMALL_TRIANGLES]; /* for a light's perspective view: the triangles' first corners; frame
                                      * space */
 } small_triangles;
@@ -64,32 +66,38 @@ static inline void hl_corner_product(const float *const corner[3], float normal[
 /* The triangles of a cluster, as arrays in which each triangle has a column. */
 enum { CLUSTER_TRIANGLES = 64, CLUSTER_VERTICES = 3 * CLUSTER_TRIANGLES };
 typedef struct cluster_shape {
-  const float *positions; /* [3][vertices]; axis by axis; frame space */
+  const float *positions; /* [3][vertices]; the positions of the vertices, axis by axis; frame space */
   size_t vertices;        /* number of vertices, a multiple of 16; the last vertices may repeat others */
-  const uint8_t (*corners)[CLUSTER_TRIANGLES]; /* [3]; numbers of vertices */
-  const float (*normals)[CLUSTER_TRIANGLES];   /* [3]; hl_corner_product() */
+  const uint8_t (*corners)[CLUSTER_TRIANGLES]; /* [3]; for each corner of each triangle, the index of its
+                                                * vertex */
+  const float (*normals)[CLUSTER_TRIANGLES];   /* [3]; the cross product of each triangle's sides, from
+                                                * hl_corner_product(); axis by axis */
 } cluster_shape;
 
 /* Where a view sees the vertices of a cluster in which no triangle is cut. */
 typedef struct seen_cluster {
-  _Alignas(64) int32_t x[CLUSTER_VERTICES], y[CLUSTER_VERTICES]; /* 1/256 pixels */
-  float height[CLUSTER_VERTICES];                                /* as in small_triangles */
+  _Alignas(64) int32_t x[CLUSTER_VERTICES], y[CLUSTER_VERTICES]; /* the vertices' places in the view; 1/256
+                                                                  * pixels */
+  float height[CLUSTER_VERTICES];                                /* the vertices' heights above the first
+                                                                  * sheet, frame units */
 } seen_cluster;
 
-/* Pixel k of a triangle is k % SMALL_SIDE columns and k / SMALL_SIDE rows from the first pixel of its box. */
+/* The samples that sixteen small triangles cover. Pixel k of a triangle is the pixel k % SMALL_SIDE columns
+ * and k / SMALL_SIDE rows from the first pixel of the triangle's box. */
 typedef struct small_cover {
   uint32_t large; /* the triangles that touch the tile but are too large for this function, one bit each */
   uint32_t covered[SMALL_PIXELS]; /* for each pixel, the triangles that cover some of its samples, one bit
                                    * each; the members below are set only where a pixel and a triangle have
                                    * such a bit */
-  /* the pixel's number in the tile, block after block */
+  /* the number of each pixel in the tile, block after block: 16 * block + lane */
   _Alignas(64) int32_t pixel[SMALL_PIXELS][SMALL_TRIANGLES];
   uint16_t samples[SMALL_PIXELS][SMALL_TRIANGLES]; /* covered samples, one bit each */
   int32_t reach[SMALL_PIXELS][SMALL_TRIANGLES];    /* for the eye's view: the reaches of the fragments */
   float height[SMALL_PIXELS][SMALL_TRIANGLES];     /* the height above the first sheet, in the middle of the
                                                     * covered samples */
-  float start[SMALL_PIXELS][SMALL_TRIANGLES];      /* for a light's view: the delayed height */
-  int32_t slab[SMALL_PIXELS][SMALL_TRIANGLES];     /* slab of the height */
+  float start[SMALL_PIXELS][SMALL_TRIANGLES];      /* for a light's view: the height from which on the
+                                                    * fragment absorbs light */
+  int32_t slab[SMALL_PIXELS][SMALL_TRIANGLES];     /* the slab that holds `height` */
   int32_t first_slab[SMALL_PIXELS][SMALL_TRIANGLES],
       last_slab[SMALL_PIXELS][SMALL_TRIANGLES]; /* for a light's view: the last slab that the fragment
                                                  * fills */
@@ -103,14 +111,15 @@ typedef uint32_t cover_small_function(const small_view *view, const small_triang
 typedef void see_cluster_function(const small_view *view, const cluster_shape *shape, seen_cluster *seen);
 
 /* Does the work of cover_small_function for sixteen triangles of a cluster, `first` to first + 15. wanted:
- * those of the triangles that are looked at, one bit each. */
+ * which of these triangles are looked at, one bit each. */
 typedef uint32_t cover_cluster_function(const small_view *view, const cluster_shape *shape,
                                         const seen_cluster *seen, int first, uint32_t wanted,
                                         small_cover *cover);
 
-/* Spheres that no cut touches and that let no light pass. */
+/* Sixteen spheres that no cut touches and that let no light pass. */
 typedef struct small_spheres {
-  _Alignas(64) float centre[3][SMALL_TRIANGLES], radius[SMALL_TRIANGLES]; /* frame space */
+  _Alignas(64) float centre[3][SMALL_TRIANGLES], radius[SMALL_TRIANGLES]; /* centres and radii in frame
+                                                                           * space */
 } small_spheres;
 
 /* Does the work of cover_small_function for sixteen spheres. A sphere is small if its box touches at most

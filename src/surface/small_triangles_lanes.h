@@ -13,7 +13,8 @@
 
 /* SMALL_STEP: the distance, in 1/256 pixels, between neighbouring columns, or rows, of samples. */
 enum { SMALL_SUBPIXELS = 256, SMALL_STEP = SMALL_SUBPIXELS / 16, SMALL_TILE = 16 };
-/* As in seen.c. */
+/* The least distance from the eye at which points are seen, as NEAREST in seen.c. The unit is the distance at
+ * which rays have the length 1. */
 static const double SMALL_NEAREST = 1e-4;
 /* The greatest difference of heights within a small triangle, in distances of sheets. */
 static const float SMALL_RISE = 4;
@@ -194,7 +195,7 @@ typedef uint32_t small_words __attribute__((vector_size(64)));
 /* Finds the samples that very small triangles cover: triangles that are at most a pixel high and two pixels
  * wide. In each column of samples, only one sample can lie within the rows of such a triangle, and only this
  * sample is tested. bits: for each of two rows of pixels, the samples of two pixels, 16 bits each. Returns
- * whether the triangles in `of` are so small. */
+ * whether all triangles of the lanes in `of` are as small as that. */
 LANES_INLINE int cover_columns(const small_shape *shape, lanes_int of, lanes_int bits[2]) {
   lanes_int columns, rows, column = sample_range(shape->x, &columns), row = sample_range(shape->y, &rows);
   if (lanes_bits(of & ((rows > 16) | (column + columns > 32) | (row + rows > 32))) != 0) return 0;
@@ -235,7 +236,7 @@ LANES_INLINE lanes find_height(const small_shape *shape, const small_heights *he
   return lanes_min(lanes_max(height, heights->lowest), heights->highest);
 }
 
-/* As hl_told_reach(). */
+/* The stored number for the reach of each lane's fragment, as hl_told_reach() finds it. */
 LANES_INLINE lanes_int find_reach(const small_view *view, const small_heights *heights) {
   lanes rise = (lanes_abs(heights->by_x) + lanes_abs(heights->by_y)) * (float)SMALL_SUBPIXELS;
   lanes parts = lanes_min(rise, heights->highest - heights->lowest) * (REACH_PARTS / view->spacing);

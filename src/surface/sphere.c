@@ -27,12 +27,14 @@ static double greater(double a, double b) { return a > b ? a : b; }
 static void bound(const surfaces *all, uint32_t primitive, float low[3], float high[3]) {
   const float *sphere = hl_sphere_of(all, primitive);
   for (int a = 0; a < 3; a++) {
-    float reach = sphere[3] + 1e-6f * (fabsf(sphere[a]) + sphere[3]); /* what rounding may take */
+    float reach = sphere[3] + 1e-6f * (fabsf(sphere[a]) + sphere[3]); /* half the edge of a box around the
+                                                                       * sphere, a little enlarged for
+                                                                       * rounding */
     low[a] = sphere[a] - reach, high[a] = sphere[a] + reach;
   }
 }
 
-/* Its own colour; null: it has none. */
+/* The colour that a mesh stores for a single sphere; null if the mesh stores none. */
 static const float *color_of(const surface_mesh *mesh, uint32_t primitive) {
   if (mesh->sphere_colors == NULL) return NULL;
   return mesh->sphere_colors[primitive - mesh->primitives[PRIMITIVE_sphere].first];

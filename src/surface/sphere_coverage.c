@@ -26,8 +26,8 @@ static vec3 at_pixel(vec3 at, vec3 by_u, vec3 by_v, double u, double v) {
   return vec3_add(at, vec3_add(vec3_scale(by_u, u), vec3_scale(by_v, v)));
 }
 
-/* A quarter of the discriminant of the equation |A + s B|^2 = r^2, or B.B s^2 + 2 A.B s + A.A - r^2 = 0. The
- * ray A + s B meets the sphere if the discriminant is at least 0. */
+/* A quarter of the discriminant of the equation for s, |A + s B|^2 = r^2, or B.B s^2 + 2 A.B s + A.A - r^2 =
+ * 0. The ray A + s B meets the sphere if the discriminant is at least 0. */
 static double discriminant(const sphere_rays *rays, double u, double v) {
   vec3 a = at_pixel(rays->start, rays->start_u, rays->start_v, u, v),
        b = at_pixel(rays->way, rays->way_u, rays->way_v, u, v);

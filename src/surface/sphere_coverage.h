@@ -9,8 +9,8 @@
 bool hl_cover_sphere(const view *view, const float sphere[4], const seen_bounds *bounds, int tile_x,
                      int tile_y, pixel_span *span, uint16_t covered[TILE_PIXELS]);
 
-/* The ray A + s B of a pixel, relative to the sphere's centre. Both vectors are linear functions of the
- * pixel. */
+/* The ray A + s B of a pixel, relative to the sphere's centre. The vectors A and B are linear functions of
+ * the pixel. */
 typedef struct sphere_rays {
   vec3 start, start_u, start_v, way, way_u, way_v, centre;
   double radius;

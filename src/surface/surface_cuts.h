@@ -8,17 +8,19 @@
 
 /* The part of a primitive that a view sees: a triangle, or one side of a sphere. All members are borrowed. */
 typedef struct seen_part {
-  const surfaces *all;                                  /* null: cuts leave all of it */
-  vec3 (*point)(const void *shape, double u, double v); /* the function gives the part's point at a continuous
-                                                         * pixel; frame space */
-  const void *shape;                                    /* the function's own */
+  const surfaces *all;                                  /* the surfaces, with the cuts; null: cuts leave
+                                                         * the whole part */
+  vec3 (*point)(const void *shape, double u, double v); /* finds the part's point at a continuous pixel (u,
+                                                         * v); frame space */
+  const void *shape;                                    /* the first argument of `point`: the plane or the
+                                                         * sphere */
 } seen_part;
 
 /* How much of a primitive the cuts of a mesh leave. */
 typedef enum cut_answer { CUT_LEAVES_ALL, CUT_LEAVES_SOME, CUT_LEAVES_NOTHING } cut_answer;
 cut_answer hl_surface_cut(const surfaces *all, const surface_mesh *mesh, uint32_t primitive);
 
-/* Of the given samples of pixel (x, y), those at which cuts leave the part. */
+/* Returns those of the given samples of pixel (x, y) at which the scene's cuts do not remove the part. */
 uint16_t hl_left_samples(const seen_part *part, int x, int y, uint16_t samples);
 
 #endif

@@ -11,14 +11,15 @@
  * height h.A + s h.B. In a perspective view A is the eye and B depends on the pixel; in a parallel view A
  * depends on the pixel and B is constant. */
 typedef struct surface_plane {
-  double rise[3], way[3], above[3], climb[3]; /* d - n.A, n.B, h.A, h.B */
-  double lowest, highest;                     /* the least and greatest height of the surface, above the first
-                                               * sheet */
+  double rise[3], way[3], above[3], climb[3]; /* the linear functions d - n.A (rise), n.B (way), h.A
+                                               * (above) and h.B (climb) */
+  double lowest, highest;                     /* the least and the greatest height of the primitive above
+                                               * the first sheet */
   bool leaving; /* whether the light's rays leave the mesh here, and the inside of the mesh is not lit by
                  * them */
 } surface_plane;
 
-/* A function of surface_plane at a pixel. */
+/* The value of one of a surface_plane's linear functions at a continuous pixel (u, v). */
 static inline double hl_plane_linear(const double f[3], double u, double v) {
   return f[0] + f[1] * u + f[2] * v;
 }
@@ -36,16 +37,16 @@ static inline int32_t hl_slab_of(const sheet_stack *sheets, double height) {
 void hl_plane_of_sphere(const view *view, const sheet_stack *sheets, const float sphere[4], vec3 point,
                         surface_plane *plane);
 
-/* The two steps of making a plane: hl_plane_begin() sets what depends only on the view,
- * hl_plane_touch_sphere() the rest. */
+/* Two functions that make a plane in two steps: hl_plane_begin() sets the members that depend only on the
+ * view, hl_plane_touch_sphere() sets the other members. */
 void hl_plane_begin(const view *view, const sheet_stack *sheets, surface_plane *plane);
 void hl_plane_touch_sphere(const view *view, const sheet_stack *sheets, const float sphere[4], vec3 point,
                            surface_plane *plane);
 
-/* The plane's height above the first sheet. */
+/* The height of a plane above the first sheet, at a continuous pixel. */
 double hl_plane_height(const surface_plane *plane, double u, double v);
 
-/* How much the plane's height changes from pixel to pixel. */
+/* The change of a plane's height from pixel to pixel. */
 double hl_plane_slope(const surface_plane *plane, double u, double v);
 
 #endif

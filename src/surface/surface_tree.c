@@ -69,7 +69,7 @@ static void make(surface_tree *tree, boxed_primitive *list, uint32_t first, uint
   make(tree, list, first + below, count - below, depth + 1);
 }
 
-/* What a tree for a distance holds of a mesh. */
+/* Which primitives of a mesh a tree holds if it is created for a distance. */
 static mesh_held held_of(const surface_mesh *mesh, double distance) {
   if (!hl_mesh_takes_light(mesh)) return HELD_NOT;
   if (mesh->is_cut) return HELD_CUT;
@@ -95,10 +95,10 @@ static void take_primitives(surface_tree *tree, const surface_mesh *mesh, const 
 
 /* ---- memory ---- */
 
-/* What a tree may hold at most. */
+/* The greatest numbers of primitives that a tree may hold. */
 typedef struct tree_size {
   size_t primitives;
-  uint32_t triangles; /* of its largest mesh */
+  uint32_t triangles; /* the number of triangles of the largest mesh */
 } tree_size;
 
 static tree_size size_of(const surfaces *all, double distance) {
@@ -113,7 +113,7 @@ static tree_size size_of(const surfaces *all, double distance) {
   return size;
 }
 
-/* The first array begins the block. */
+/* Lays out the arrays of a tree in one block of memory. The first array begins the block. */
 static void lay_out(surface_tree *tree, const tree_size *size, hl_layout *layout) {
   tree->primitives = hl_layout_take(layout, size->primitives, sizeof *tree->primitives);
   tree->holds = hl_layout_take(layout, tree->all->mesh_count, sizeof *tree->holds);
@@ -158,7 +158,7 @@ static void keep_cuts(surface_tree *tree) {
   tree->cut_count = all->cut_count;
 }
 
-/* Makes the tree of its primitives. */
+/* Makes the boxes of a tree from its list of primitives. */
 static hl_status make_boxes(hl_context *context, surface_tree *tree, hl_error *error) {
   boxed_primitive *list = NULL;
   hl_layout boxes = {0}, passing = {0};
@@ -177,7 +177,7 @@ static hl_status make_boxes(hl_context *context, surface_tree *tree, hl_error *e
   return HL_OK;
 }
 
-/* Fills the tree's primitives, for which there is room. */
+/* Fills a tree's list of primitives, for which there must be room. */
 static hl_status choose_primitives(hl_context *context, surface_tree *tree, const tree_size *size,
                                    hl_error *error) {
   bool *near = NULL;
@@ -330,7 +330,8 @@ static void meet_leaf(const surface_tree *tree, const surface_box *leaf, const s
     uint32_t primitive = tree->primitives[i];
     double distance[2];
     const primitive_kind *kind = hl_primitive_kind(all, primitive);
-    int count = kind == &hl_primitive_triangle /* inlined: most are triangles */
+    int count = kind == &hl_primitive_triangle /* the function for triangles is inlined, because most
+                                                * primitives are triangles */
                     ? hl_meet_triangle(all, primitive, ray, distance)
                     : kind->intersect(all, primitive, ray, distance);
     if (count == 0) continue;
@@ -362,14 +363,14 @@ void hl_surface_tree_cast(const surface_tree *tree, const surface_ray *ray, surf
 }
 
 /* Makes a bundle of rays from one point. The middle ray leads to the middle of the box around the rays' ends.
- * Along each axis, no ray is farther from the middle ray anywhere than the rays' ends are (derived: at the
- * fraction t of a ray its point is origin + t (end - origin)). */
+ * Along each axis, no ray is farther from the middle ray anywhere than the rays' ends are (derived: the rays
+ * share their origin, and at the fraction t of its length a ray's point is origin + t (end - origin)). */
 static box_ray bundle_of_rays(const surface_ray *rays, int count) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, middle[3];
   for (int k = 0; k < count; k++) vec3_bound_ball(vec3_scale(rays[k].way, rays[k].last), 0, low, high);
   for (int a = 0; a < 3; a++) middle[a] = (low[a] + high[a]) / 2;
   box_ray bundle = ray_of_boxes(&(surface_ray){rays[0].origin, vec3_of(middle), 0, 1});
-  for (int a = 0; a < 3; a++) /* a little more, for rounding */
+  for (int a = 0; a < 3; a++) /* the distance is enlarged a little, to allow for rounding */
     bundle.aside[a] = (high[a] - low[a]) / 2 + 1e-6 * greater(fabs(low[a]), fabs(high[a]));
   return bundle;
 }

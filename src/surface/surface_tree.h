@@ -22,12 +22,12 @@ typedef struct surface_box {
 typedef enum mesh_held { HELD_NOT, HELD_WHOLE, HELD_CUT } mesh_held;
 
 typedef struct surface_tree {
-  const surfaces *all;  /* borrowed */
+  const surfaces *all;  /* the surfaces whose primitives the tree holds; borrowed */
   uint32_t *primitives; /* [count]; in the order of leaves; owned, as one block with the next two arrays */
-  mesh_held *holds;     /* [mesh_count of all] */
+  mesh_held *holds;     /* [mesh_count of all]; what the tree holds of each mesh */
   cut_shape *cuts;      /* [cut_count]; the cuts that `all` had when the tree was created */
   size_t cut_count;
-  double distance;    /* as it was created with */
+  double distance;    /* the distance for which the tree was created */
   surface_box *boxes; /* owned; [box_count]; the nodes of the tree; the root is the first one */
   uint32_t count, box_count;
 } surface_tree;
@@ -51,7 +51,7 @@ void hl_surface_tree_release(hl_context *context, surface_tree *tree);
  * nothing. */
 bool hl_surface_tree_count(const surfaces *all, double distance, hl_layout *layout);
 
-/* Whether a mesh takes light away. */
+/* Whether a mesh absorbs light: it casts a shadow, and its opacity is above 0. */
 static inline bool hl_mesh_takes_light(const surface_mesh *mesh) {
   return mesh->look.casts_shadow && mesh->look.opacity > 0;
 }
@@ -59,11 +59,11 @@ static inline bool hl_mesh_takes_light(const surface_mesh *mesh) {
 /* A place where a ray meets a surface. */
 typedef struct surface_hit {
   vec3 at;
-  double distance; /* along the ray, in lengths of its way */
-  double opacity;  /* of the primitive */
+  double distance; /* distance of the place from the ray's origin, in lengths of the vector surface_ray.way */
+  double opacity;  /* the fraction of light that the primitive absorbs */
   uint32_t primitive;
-  const surface_mesh *mesh; /* the primitive's */
-  int ray;                  /* of a bundle; else 0 */
+  const surface_mesh *mesh; /* the mesh to which the primitive belongs */
+  int ray;                  /* in a bundle of rays: the number of the ray in the bundle; else 0 */
 } surface_hit;
 
 /* The function that is called for each place where a ray meets a surface, in any order. */

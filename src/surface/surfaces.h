@@ -16,7 +16,7 @@
 
 /* How a mesh looks, and how much light it absorbs. */
 typedef struct surface_look {
-  double color[3];             /* linear RGB */
+  double color[3];             /* linear RGB; the colour of the mesh's material */
   double opacity;              /* a factor on the opacities of the mesh's vertices */
   double attenuation_color[3]; /* R, G, B: factors on `opacity`; the products are the fractions of red, green
                                 * and blue light that the mesh absorbs */
@@ -29,42 +29,49 @@ typedef struct surface_look {
 surface_look hl_surface_look(const hl_scene_mesh *mesh);
 
 typedef struct surface_mesh {
-  surface_look look;               /* the frame's */
+  surface_look look;               /* the look of the mesh in the current frame */
   hl_mesh *mesh;                   /* retained, because its arrays are borrowed */
   affine3 placement;               /* maps the mesh to frame space */
   double scale;                    /* length in frame space of 1 in the mesh */
-  const float (*colors)[4];        /* borrowed; [vertices of the mesh]; null: none */
-  const float (*face_colors)[4];   /* borrowed; [triangles of the mesh]; null: none */
-  const float (*sphere_colors)[4]; /* borrowed; [spheres of the mesh]; null: none */
-  const uint32_t (*edges)[3];      /* borrowed; [triangles of the mesh]; as in hl_mesh */
+  const float (*colors)[4];        /* borrowed; [vertices of the mesh]; null: the vertices have no colours
+                                    * of their own */
+  const float (*face_colors)[4];   /* borrowed; [triangles of the mesh]; null: the triangles have no
+                                    * colours of their own */
+  const float (*sphere_colors)[4]; /* borrowed; [spheres of the mesh]; null: the spheres have no colours of
+                                    * their own */
+  const uint32_t (*edges)[3];      /* borrowed; [triangles of the mesh]; the indices of the normals at
+                                    * sharp edges, as in hl_mesh */
   size_t first_vertex;             /* the number of the mesh's first vertex in positions and normals */
   size_t first_edge_normal;
   primitive_range primitives[PRIMITIVE_KINDS];
   bool is_cut; /* the cuts may remove a part of the mesh */
 } surface_mesh;
 
-typedef struct surface_cluster surface_cluster; /* clusters.h */
-typedef struct surface_seam surface_seam;       /* late/surface_seams.h */
+typedef struct surface_cluster surface_cluster; /* see clusters.h */
+typedef struct surface_seam surface_seam;       /* see late/surface_seams.h */
 
 /* The surfaces of a scene. Each primitive has a number. The numbers of the primitives of one kind follow the
  * numbers of the kind before. */
 typedef struct surfaces {
-  surface_mesh *meshes;      /* owned, in one block with the next five arrays; [mesh_count]. The primitives of
-                              * each kind of a mesh follow those of the mesh before */
-  float (*positions)[3];     /* [vertex_count]; frame space */
+  /* owned, in one block with the next five arrays; [mesh_count]. Among the primitives of one kind, the
+   * primitives of a mesh follow the primitives of the mesh before */
+  surface_mesh *meshes;
+  float (*positions)[3];     /* [vertex_count]; positions of the vertices; frame space */
   float (*normals)[3];       /* [vertex_count]; unit normals, or 0 where a vertex has none; frame space */
-  float (*edge_normals)[3];  /* [edge_normal_count]; unit; frame space */
-  uint32_t (*triangles)[3];  /* [triangles]; indices of positions */
-  float (*spheres)[4];       /* [spheres]; centre and radius; frame space */
-  surface_cluster *clusters; /* owned, in one block with the next three arrays; [cluster_count] */
+  float (*edge_normals)[3];  /* [edge_normal_count]; unit normals at sharp edges; frame space */
+  uint32_t (*triangles)[3];  /* [triangles]; each triangle's corners, as indices in `positions` */
+  float (*spheres)[4];       /* [spheres]; each sphere's centre and radius; frame space */
+  surface_cluster *clusters; /* owned, in one block with the next three arrays; [cluster_count]; the
+                              * clusters of all meshes */
   uint32_t *order;           /* [primitives]; numbers of the primitives, in the order of clusters */
   uint8_t (*cluster_corners)[3][64]; /* [clusters of triangles]; the corners of each triangle, as numbers of
                                       * the cluster's vertices */
-  float (*cluster_normals)[3][64];   /* [clusters of triangles]; hl_corner_product() of each triangle, axis by
-                                      * axis; frame space */
+  float (*cluster_normals)[3][64];   /* [clusters of triangles]; the cross product of each triangle's
+                                      * sides, from hl_corner_product(), axis by axis; frame space */
   float *cluster_positions;          /* owned; for each cluster of triangles, the positions of its vertices:
                                       * [3][vertices]; frame space */
-  surface_seam *seams;               /* owned; [seam_count]; null: none */
+  surface_seam *seams;               /* owned; [seam_count]; the corners at which large triangles meet;
+                                      * null: there are none */
   cut_shape *cuts;                   /* owned; [cut_count]; the scene's cuts, in frame space */
   size_t cut_count, cluster_count, seam_count;
   size_t mesh_count, vertex_count, edge_normal_count;
@@ -79,7 +86,7 @@ void hl_surfaces_key_add(hl_key *key, const surfaces *all);
 /* The number of primitives. */
 static inline uint32_t hl_surfaces_count(const surfaces *all) { return all->first[PRIMITIVE_KINDS]; }
 
-/* Whether cuts leave a mesh at a point; frame space. */
+/* Whether the scene's cuts leave a mesh at a point of frame space. */
 static inline bool hl_surface_left(const surfaces *all, const surface_mesh *mesh, vec3 point) {
   return !mesh->is_cut || hl_cuts_leave(all->cuts, all->cut_count, point);
 }
@@ -88,7 +95,8 @@ static inline bool hl_surface_left(const surfaces *all, const surface_mesh *mesh
  * `least`. */
 void hl_surface_corners(const surface_mesh *mesh, double least, vec3 corners[8]);
 
-/* Whether a mesh has an inside, and its opacity is 1 if its own colours are left aside. */
+/* Whether a mesh is closed, cannot lose a part to cuts, and has the opacity 1 if the colours of its vertices
+ * and triangles are ignored. */
 bool hl_surface_is_closed(const surface_mesh *mesh);
 
 /* Whether the part of a mesh that cuts leave lets no light pass. */

@@ -216,7 +216,7 @@ static void add_next_run(const fragment_work *work, fragment_worker *worker, til
   if (!worker->failed) add_run(work, worker, part, batch, run);
 }
 
-/* A lower bound of a run's height. */
+/* A lower bound of the heights of a run's primitives. */
 static float lowest_of(const fragment_work *work, primitive_run run) {
   const surfaces *all = work->source->surfaces;
   const sheet_stack *sheets = work->source->sheets;
@@ -253,7 +253,7 @@ static void add_runs(const fragment_work *work, fragment_worker *worker, tile_pa
 
 static void add_primitives(const fragment_work *work, fragment_worker *worker, tile_part *part, size_t tile) {
   small_batch batch;
-  memset(&batch.triangles, 0, sizeof batch.triangles); /* lanes that stay empty */
+  memset(&batch.triangles, 0, sizeof batch.triangles); /* cleared, because some lanes of a batch stay empty */
   memset(&batch.spheres, 0, sizeof batch.spheres);
   batch.kind = NULL;
   batch.view = work->small;
@@ -302,7 +302,9 @@ void hl_make_tile_fragments(void *data, size_t tile, int worker_index) {
   memset(worker->covered, 0, sizeof worker->covered);
   if (worker->failed || (source->needed != NULL && source->needed[tile] == 0)) return;
   add_primitives(work, worker, &part, tile);
-  if (!worker->failed && hl_tile_make_room(source->context, worker, worker->count)) /* for parts */
+  if (!worker->failed && hl_tile_make_room(source->context, worker, worker->count)) /* room for the parts into
+                                                                                     * which crossing
+                                                                                     * fragments are cut */
     kept = order_fragments(work, worker, &order, &part, &sorted);
   write_marks(work, worker, part.tile_x, part.tile_y);
   kept = hl_resolve_fragments(sorted, kept, &order);

@@ -54,7 +54,7 @@ static void plane(const view *view, const sheet_stack *sheets, const surfaces *a
   hl_plane_of_triangle(view, sheets, all, primitive, plane);
 }
 
-/* Both sides of its plane. */
+/* Whether some ball lies, at least in part, on either side of a triangle's plane. */
 static bool parts(const surfaces *all, uint32_t primitive, const hull_ball *balls, int count, double least) {
   double first;
   vec3 normal = hl_triangle_normal(all, primitive, balls[0].at, &first);

@@ -12,10 +12,10 @@ static whole_numbers whole_between_corners(const double at[3], double most) {
   return hl_whole_between(lesser(at[0], lesser(at[1], at[2])), greater(at[0], greater(at[1], at[2])), most);
 }
 
-/* A triangle, with the lines upright. */
+/* A triangle, sheared so that the lattice's lines are upright. */
 typedef struct seen_triangle {
   double across[3], down[3], height[3];
-  double area; /* twice the area, signed */
+  double area; /* twice the triangle's area, with a sign */
   whole_numbers columns, rows;
 } seen_triangle;
 

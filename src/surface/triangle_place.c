@@ -28,7 +28,8 @@ static void add_face_normals(surfaces *made, const surface_mesh *mesh) {
   }
 }
 
-/* The data by which a mesh is placed. A task places A_TASK vertices or triangles. */
+/* The data by which the vertices and triangles of a mesh are brought to frame space. A task of the pool
+ * handles A_TASK vertices or triangles. */
 enum { A_TASK = 1 << 15 };
 typedef struct placing {
   surfaces *made;
@@ -72,7 +73,7 @@ static void make_units(void *data, size_t task, int worker) {
   for (size_t v = task * A_TASK; v < task_end(task, placing->mesh->mesh->description.vertex_count); v++) {
     float *normal = placing->made->normals[placing->mesh->first_vertex + v];
     vec3 unit = vec3_normalise(hl_surface_vector(normal));
-    if (!(vec3_length(unit) < 2)) unit = (vec3){0, 0, 0}; /* the normal is not a number */
+    if (!(vec3_length(unit) < 2)) unit = (vec3){0, 0, 0}; /* a normal that is not a number becomes 0 */
     vec3_store(normal, unit);
   }
 }

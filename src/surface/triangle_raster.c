@@ -117,9 +117,9 @@ static void set_linear(double f[3], const double x[3], const double y[3], double
 
 /* Finds the heights of a triangle as linear functions between its corners. The corners are rounded to the
  * grid of 1/256 pixels on which coverage is found. So even a triangle that is seen from its edge has, at all
- * its samples, heights between the heights of its corners, and it meets its neighbours. With the heights of
- * its plane it would not. Derived: height divided by distance is linear in the picture, and so is 1 divided
- * by distance. */
+ * its samples, heights between the heights of its corners, and it meets its neighbours. The heights of the
+ * triangle's plane would not have this property. Derived: height divided by distance is linear in the
+ * picture, and so is 1 divided by distance. */
 static void set_corners(const seen_surfaces *seen, const sheet_stack *sheets, uint32_t triangle,
                         shown_surface *shown) {
   const view *view = seen->view;

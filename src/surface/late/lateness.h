@@ -14,7 +14,8 @@
 
 /* ---- fragments of a light's view ---- */
 
-/* The greatest number of slabs that a fragment fills. With 64, no picture changed. */
+/* The greatest number of slabs that a fragment of a light's view fills. With 64 instead, no picture
+ * changed. */
 enum { MOST_SLABS = 16 };
 
 /* The greatest slope of a surface that is used for its delay, in frame units per pixel. Without this limit, a
@@ -88,7 +89,7 @@ static const double CUBIC_DELAY = 1.75;
  * surface does not, because it would absorb light twice. */
 static const double READ_BESIDE = 1.25;
 
-/* The number of slabs before the current slab whose fragments may be missing in the buffers. */
+/* The number of slabs before the current slab whose fragments may be missing in the shadow buffers. */
 enum { NEAR_SLABS = 2 };
 
 /* ---- rays to what is close (render/late/contact.c) ---- */

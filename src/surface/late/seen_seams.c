@@ -35,8 +35,8 @@ void hl_see_seams(const fragment_work *work, const fragment *f, seen_seams *seam
   }
 }
 
-/* The point of a corner's edge that is closest to a given point, as a fraction of the way from the edge's
- * first end to its second end. */
+/* The point of a corner's edge that is closest to the continuous pixel (u, v), as a fraction of the way from
+ * the edge's first end to its second end. */
 static double closest_part(const seen_seam *seam, double u, double v) {
   double x = seam->at[1][0] - seam->at[0][0], y = seam->at[1][1] - seam->at[0][1], square = x * x + y * y;
   if (!(square > 0)) return 0;

@@ -12,11 +12,11 @@
 #include "surface/late/lateness.h"
 #include "surface/surface_plane.h"
 
-/* A corner as a light's view sees it. */
+/* A corner, which is an edge where two large triangles meet and bend, as a light's view sees it. */
 typedef struct seen_seam {
   double at[2][2], height[2]; /* at: the places of the corner's two ends, in pixels; height: the heights of
                                * these ends above the first sheet */
-  surface_plane other;        /* the plane of the other triangle */
+  surface_plane other;        /* the plane of the triangle on the other side of the corner */
 } seen_seam;
 
 typedef struct seen_seams {
@@ -28,8 +28,8 @@ typedef struct seen_seams {
  * that cast shadows. */
 void hl_see_seams(const fragment_work *work, const fragment *f, seen_seams *seams);
 
-/* The height up to which a fragment at the continuous pixel (u, v) fills slabs: `end`, or close to a corner a
- * greater height. */
+/* The height up to which a fragment of a light's view fills slabs, at the continuous pixel (u, v). The height
+ * is `end`, or a greater height if the pixel is close to a corner. */
 double hl_seam_end(const fragments_source *source, const seen_seams *seams, double u, double v, double end);
 
 #endif

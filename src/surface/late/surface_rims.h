@@ -1,7 +1,7 @@
 /* surface/late/surface_rims.h - the triangles of a mesh near its open edges and its corners.
  *
- * An edge is open where no other triangle goes along it the other way. A corner is an edge at which the mesh
- * bends by more than 40 degrees; a mesh that is rough all over has none. */
+ * An edge of a triangle is open if no other triangle has this edge in the opposite direction. A corner is an
+ * edge at which the mesh bends by more than 40 degrees; a mesh that is rough all over has none. */
 #ifndef HL_SURFACE_LATE_SURFACE_RIMS_H
 #define HL_SURFACE_LATE_SURFACE_RIMS_H
 

@@ -10,17 +10,20 @@
 /* An edge of a large triangle. */
 typedef struct large_edge {
   uint32_t triangle, ends[2];
-  double key; /* edges in the same place have nearly the same key */
+  double key; /* the coordinate by which edges are sorted; edges in the same place have nearly the same key */
 } large_edge;
 
 typedef struct seam_search {
   surfaces *all;
-  double large, same; /* frame units */
-  large_edge *edges;  /* [edge_room] */
+  /* large: the least length of a large edge; same: the greatest distance between ends of edges that count as
+   * one place; frame units */
+  double large, same;
+  large_edge *edges; /* [edge_room]; the edges of large triangles */
   size_t edge_count, edge_room;
-  order_key *order;       /* [2][edge_count] */
+  order_key *order;       /* [2][edge_count]; the edges' keys, and memory for sorting them */
   surface_seam *found;    /* [found_count]; the seams in the order in which the search found them */
-  order_key *found_order; /* [2][found_count] */
+  order_key *found_order; /* [2][found_count]; the keys by which the found seams are sorted, and memory for
+                           * sorting them */
   size_t found_count;
 } seam_search;
 
@@ -107,8 +110,8 @@ static void add_seam(seam_search *search, const large_edge *edge, const large_ed
       edge->triangle, other->triangle, {edge->ends[0], edge->ends[1]}};
 }
 
-/* Finds the seams between an edge and other edges on one side of it in the order of keys. i: the edge's
- * number in this order. way: 1 for the edges after it, -1 for the edges before it. */
+/* Finds the seams between an edge and other edges on one side of it in the order of keys. i: the edge's index
+ * in this order. way: 1 for the edges after edge i, -1 for the edges before edge i. */
 static void find_at(seam_search *search, size_t i, int way) {
   const large_edge *own = &search->edges[search->order[i].index];
   int found = 0;

@@ -13,11 +13,13 @@
 
 /* An edge at which a triangle meets another one, at an angle of more than 40 degrees. */
 struct surface_seam {
-  uint32_t triangle, other; /* of surfaces->triangles */
+  uint32_t triangle, other; /* indices in surfaces->triangles: the triangle, and the other triangle that it
+                             * meets */
   uint32_t ends[2];         /* the ends of the edge of `triangle`, as indices in surfaces->positions */
 };
 
-/* Counts the greatest amount of memory that hl_surface_seams_create() takes for a number of triangles. */
+/* Counts the greatest amount of memory that hl_surface_seams_create() takes for a given number of
+ * triangles. */
 void hl_surface_seams_count(uint64_t triangles, hl_layout *layout);
 
 /* Fills all->seams, sorted by their triangles. The clusters must have been made. A triangle is large if one

@@ -8,7 +8,7 @@
 /* The corners of a triangle, with the normals that are interpolated between them. */
 typedef struct bent_triangle {
   vec3 at[3], normal[3];
-  vec3 cross; /* of two of its edges */
+  vec3 cross; /* the cross product of two of the triangle's edges */
 } bent_triangle;
 
 static bent_triangle bent_triangle_of(const surfaces *all, const surface_mesh *mesh, uint32_t triangle,
