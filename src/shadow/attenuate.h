@@ -1,5 +1,5 @@
-/* shadow/attenuate.h - step 17: composites a slab's extinction into the shadow buffer, as seen from the
- * light. */
+/* shadow/attenuate.h - step 17 of the algorithm: composites the extinction of a slab into the shadow buffer,
+ * as seen from the light. */
 #ifndef HL_SHADOW_ATTENUATE_H
 #define HL_SHADOW_ATTENUATE_H
 
@@ -11,45 +11,50 @@
  * lines of their own. */
 typedef struct attenuate_volume {
   _Alignas(64) const classifier *classifier;
-  const float *density;       /* [256], block-major; on this sheet */
-  const float *before;        /* [256], block-major; on the sheet before */
+  const float *density;       /* [256], block-major; the volume's densities on the current sheet */
+  const float *before;        /* [256], block-major; the volume's densities on the sheet before */
   const float *enter, *leave; /* [256], block-major: the heights at which rays enter and leave the volume's
                                * box; null: the box does not cut anything visible */
-  uint32_t blocks;            /* blocks with density on either sheet */
-  int surface;                /* the volume has surfaces; else it is a medium */
-  float voxel;                /* the smallest edge of its voxels; frame units */
-  float weight[HL_CHANNELS];  /* relative extinction of R, G, B */
-  int uncut;                  /* the box does not cut the slab here */
-  const slab_run *faces; /* set if a face that cuts matter and is lit as a surface is near: the run that holds
-                          * the slab; else null */
-  int slab;              /* the slab's number in its run */
-  const grid *grid;      /* the grid whose gradient decides the factor of gradient opacity */
+  uint32_t blocks;            /* blocks of the tile with density on either sheet, one bit each */
+  int surface;                /* whether the volume has surfaces; if not, it is a medium */
+  float voxel;                /* the smallest edge of the volume's voxels; frame units */
+  float weight[HL_CHANNELS];  /* the relative extinction of red, green and blue light */
+  int uncut;                  /* whether the volume's box does not cut the slab in this tile */
+  /* if a face that cuts matter and is lit as a surface is near: the run of slabs that holds the slab; else
+   * null */
+  const slab_run *faces;
+  int slab;         /* the slab's number in the run `faces` */
+  const grid *grid; /* the grid whose gradient decides the factor of gradient opacity */
   const kernel *kernel;
-  const float (*to_index)[4]; /* frame space to index space */
+  const float (*to_index)[4]; /* maps frame space to the volume's index space */
 } attenuate_volume;
 
 typedef struct attenuate_job {
-  sheet_rays rays;  /* light pixels -> frame space */
-  float path;       /* length of the rays' way through the slab. For parallel light it is the sheet spacing /
-                     * |l.h|. For a point light it is the sheet spacing; pixels divide it by their own
-                     * |l.h| */
-  float through[3]; /* parallel light: the step from one sheet to the next along the light's rays; frame
-                     * units */
-  float height, spacing; /* height: of the sheet above the first sheet; spacing: distance to the sheet before;
-                          * frame units */
-  int sheet;             /* the number k of the sheet: the slab lies between sheets k-1 and k */
+  sheet_rays rays; /* the rays of the light's pixels in frame space */
+  /* length of the rays' way through the slab, frame units. For parallel light it is the distance of sheets
+   * divided by |l.h|, where l is the light's direction and h the sheets' normal. For a near light it is the
+   * distance of sheets, which each pixel divides by |l.h| for its own ray */
+  float path;
+  float through[3]; /* for parallel light: the step along a ray of the light from one sheet to the next;
+                     * frame units */
+  /* height: the height of the sheet above the first sheet; spacing: the distance to the sheet before; frame
+   * units */
+  float height, spacing;
+  int sheet; /* the number k of the sheet: the slab lies between sheets k-1 and k */
   const attenuate_volume *volumes;
   int volume_count;
-  int channels;                      /* 1: attenuation is grey; 3 */
-  float *transmittance[HL_CHANNELS]; /* the tile's first pixel; rows stride apart */
+  int channels;                      /* 1: attenuation is grey; 3: red, green and blue are attenuated
+                                      * differently */
+  float *transmittance[HL_CHANNELS]; /* the tile's first pixel of each channel; rows are `stride` floats
+                                      * apart */
   float *older[HL_CHANNELS];         /* a second transmittance, laid out as `transmittance` and multiplied by
                                       * the same factors; null: there is none */
-  float *outside[HL_CHANNELS];       /* the light at the outside of surfaces, laid out as the
-                                      * transmittance; null: none */
+  /* the light at the outside of surfaces, laid out as `transmittance`; null: the buffer does not keep it */
+  float *outside[HL_CHANNELS];
   size_t stride;
-  float *moment[HL_CHANNELS]; /* the tile's first pixel; rows are moment_stride apart. The light that the slab
-                               * absorbs, times `position`, is added to the pixels. Null: there is no
-                               * moment */
+  /* the tile's first pixel of each channel; rows are moment_stride floats apart. The light that the slab
+   * absorbs, times `position`, is added to the pixels. Null: nothing is added */
+  float *moment[HL_CHANNELS];
   size_t moment_stride;
   float position;
   bool marks; /* whether surfaces write marks into pixels that are dark, or that the surfaces make dark; see
@@ -88,17 +93,19 @@ typedef struct attenuate_job {
 #define DARK_MARK  0x1p-64f
 #define LEAST_MARK 0x1p-88f
 
-/* Blocks of a tile, one bit each. */
+/* Two sets of blocks of a tile. Each block has one bit in each set. */
 typedef struct attenuated_blocks {
   uint32_t lit;   /* blocks with density that some light still reaches, or whose surface is lit at its
                    * outside */
   uint32_t taken; /* blocks in which some light was absorbed */
 } attenuated_blocks;
 
-/* Multiplies the tile's transmittance by exp(-sum of extinction * path) where volumes have density. */
+/* Multiplies a tile's transmittance by exp(-sum of extinction * path), the transmittance of the slab, where
+ * volumes have density. */
 typedef attenuated_blocks attenuate_tile_function(const attenuate_job *job, int tile_x, int tile_y);
 
-/* The blocks of a tile that light reaches. transmittance: for each channel, the tile's first pixel. */
+/* Returns the blocks of a tile that light reaches, one bit each. transmittance: for each channel, the tile's
+ * first pixel. */
 typedef uint32_t lit_blocks_function(const float *const transmittance[HL_CHANNELS], int channels,
                                      size_t stride);
 

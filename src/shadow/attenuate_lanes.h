@@ -1,4 +1,5 @@
-/* shadow/attenuate_lanes.h - classification and compositing of light pixels (step 17), sixteen at a time. */
+/* shadow/attenuate_lanes.h - classifies and composites sixteen pixels of a light's view at a time (step 17 of
+ * the algorithm). */
 #ifndef HL_SHADOW_ATTENUATE_LANES_H
 #define HL_SHADOW_ATTENUATE_LANES_H
 
@@ -9,14 +10,14 @@
 #include "shadow/attenuate.h"
 #include "view/rays_lanes.h"
 
-/* The lanes in which the sheet lies ahead of the view's origin, or behind it by at most the height
+/* The lanes in which the sheet lies ahead of the view's origin, or behind the origin by at most the height
  * `reach`. */
 LANES_INLINE lanes_int is_ahead(const sheet_rays *rays, lanes climb, float reach) {
   return lanes_add_scaled(climb * rays->step, lanes_abs(climb), reach) > 0.0f;
 }
 
-/* The length of the rays' way through one sheet, spacing * |W| / |h.W| (algorithm: dt = ds / |w.h|); 0 behind
- * the view's origin. */
+/* The length of the rays' way through one slab: spacing * |W| / |h.W|, where W is a ray's vector and h the
+ * sheets' normal (algorithm: dt = ds / |w.h|). It is 0 behind the view's origin. */
 LANES_INLINE lanes path_through_sheet(const sheet_rays *rays, float path, lanes u, lanes v) {
   if (!rays->perspective) return lanes_set(path);
   lanes3 w = rays_directions(rays, u, v);
@@ -25,8 +26,8 @@ LANES_INLINE lanes path_through_sheet(const sheet_rays *rays, float path, lanes 
   return lanes_keep(is_ahead(rays, climb, 0), length);
 }
 
-/* The part of a slab that lies in the volume's box, for one block. uncut: whether the whole slab lies in the
- * box. */
+/* The span of heights in which a slab lies in the volume's box, for the rays of one block. uncut: whether the
+ * whole slab lies in the box. */
 LANES_INLINE covered_span covered_block(const float *enter, const float *leave, int uncut, int block,
                                         float height, float spacing) {
   if (enter == NULL) return (covered_span){lanes_set(0), lanes_set(1.0f)};
@@ -59,7 +60,7 @@ LANES_INLINE void cut_way(covered_span span, table_coordinate *a, table_coordina
 }
 
 /* The points on the rays of a block at a fraction of the way through the slab; frame space. Derived: a ray is
- * E + s W with s = step / H and H = h.W; moving by one sheet adds W ds / H. */
+ * E + s W. With the sheets' normal h and the distance of sheets ds, moving by one sheet adds W ds / (h.W). */
 LANES_INLINE lanes3 position_in_slab(const attenuate_job *job, lanes u, lanes v, lanes fraction) {
   const sheet_rays *rays = &job->rays;
   lanes3 step = set3(job->through), end = rays_positions(rays, u, v);
@@ -104,39 +105,41 @@ LANES_INLINE lanes power_of_depth(lanes h1, lanes h2) {
   return left;
 }
 
-/* The number k to the power 1 - skin. The product of such powers over slabs does not depend on how thick the
- * slabs are. */
+/* The number `kept` (k in attenuate.h) to the power 1 - skin. The product of such powers over slabs does not
+ * depend on how thick the slabs are. */
 LANES_INLINE lanes kept_in_skin(lanes kept, lanes skin) {
   return lanes_select(skin > 0.0f, lanes_power_of_part(kept, 1.0f - skin), kept);
 }
 
-/* The kept light near a face that cuts matter. The matter belongs to the face's surface if it is visible
- * where the light leaves the slab. b: the table coordinate of the value at that place. corner: the block's
- * first pixel. */
+/* The fractions k and k' (kept_light) near a face that cuts matter. The matter belongs to the face's surface
+ * if it is visible where the light leaves the slab. b: the table coordinate of the value at that place.
+ * corner: the block's first pixel. */
 LANES_INLINE kept_light kept_by_face(const attenuate_volume *volume, kept_light kept, table_coordinate b,
                                      const int corner[2]) {
   lanes skin = skin_of_faces(volume->faces, volume->slab, block_u(corner[0]), block_v(corner[1]));
-  if (lanes_bits(skin > 0.0f) == 0) return kept; /* most blocks lie deeper */
+  /* the usual case: most blocks lie deeper behind the face than its skin reaches */
+  if (lanes_bits(skin > 0.0f) == 0) return kept;
   lanes values[3];
   table_values(volume->classifier->sums, b, values);
   skin = lanes_keep(values[0] > 0.0f, skin);
   return (kept_light){kept_in_skin(kept.before, skin), kept_in_skin(kept.within, skin)};
 }
 
-/* The kept light where the matter begins or ends within the slab, at a face of the box. Where matter ends,
- * light leaves the surface, and k = k' = 0. Where matter begins, no surface lies before it. But blurs may
- * have spread the shadow of the face's own matter across the face, together with the light that this matter
- * has absorbed. This light still lights the face, so k is not changed there. */
+/* The fractions k and k' (kept_light) where the matter begins or ends within the slab, at a face of the
+ * volume's box. Where matter ends, light leaves the surface, and k = k' = 0. Where matter begins, no surface
+ * lies before it. But blurs may have spread the shadow of the face's own matter across the face, together
+ * with the light that this matter has absorbed. This light still lights the face, so k is not changed
+ * there. */
 LANES_INLINE kept_light kept_in_span(const attenuate_volume *volume, kept_light kept, covered_span span) {
   if (volume->enter == NULL) return kept;
   lanes_int ends = (span.begin + span.length) < (1.0f - ROUNDING_OF_SPAN);
   return (kept_light){lanes_keep(~ends, kept.before), lanes_keep(~ends, kept.within)};
 }
 
-/* The kept light that follows from one volume's own values. a, b: the values' coordinates at the ends of the
- * slab's covered part. to: the integrals of extinction up to a and up to b. path: length of the light's ray
- * through the slab. extinction: the volume's extinction in the slab. at: offset of the block's first
- * pixel. */
+/* The fractions k and k' (kept_light) that follow from one volume's own values. a, b: the table coordinates
+ * of the values at the two ends of the slab's covered part. to: the integrals of extinction up to the values
+ * a and b. path: length of the light's ray through the slab. extinction: the volume's extinction in the slab.
+ * at: offset of the block's first pixel. */
 LANES_INLINE kept_light kept_by_values(const attenuate_job *job, const attenuate_volume *volume,
                                        table_coordinate a, table_coordinate b, const way_ends *to,
                                        covered_span span, lanes path, lanes extinction, size_t at) {
@@ -175,8 +178,8 @@ LANES_INLINE kept_light kept_by_values(const attenuate_job *job, const attenuate
   return kept;
 }
 
-/* Adds one volume's kept light to the mean over volumes, which is weighted by optical depth. weight: the
- * volume's weight. */
+/* Adds one volume's fractions k and k' to their mean over the volumes, which is weighted by optical depth.
+ * weight: the volume's weight. */
 LANES_INLINE void add_kept(kept_light *sum, kept_light kept, lanes weight) {
   sum->before = lanes_fma(kept.before, weight, sum->before);
   sum->within = lanes_fma(kept.within, weight, sum->within);
@@ -204,8 +207,9 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
   lanes depth[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)}, total = lanes_set(0);
   kept_light kept = {lanes_set(0), lanes_set(0)};
   lanes path = path_through_sheet(&job->rays, job->path, block_u(corner[0]), block_v(corner[1]));
-  int hidden = 0; /* not 0: a surface may have ended because a factor hides its matter, though values are not
-                   * low */
+  /* if it is not 0, a surface may have ended because a factor hides the surface's matter, although values are
+   * not low */
+  int hidden = 0;
   for (int i = 0; i < volume_count; i++) {
     const attenuate_volume *volume = &job->volumes[i];
     if (volume_count > 1 && (volume->blocks >> block & 1) == 0) continue;

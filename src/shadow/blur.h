@@ -12,13 +12,13 @@
 typedef struct blur_box {
   int reach;
   float edge;
-  float scale; /* 1 / width */
+  float scale; /* 1 / the width of the box */
 } blur_box;
 
 typedef struct blur_job {
   const float *from; /* pixel (0,0); rows are `stride` apart; readable up to reach + 1 pixels beyond the
                       * tiles */
-  float *to;         /* pixel (0,0); rows stride_to apart */
+  float *to;         /* pixel (0,0) of the result; rows are stride_to floats apart */
   size_t stride, stride_to;
   blur_box box;
 } blur_job;
@@ -30,12 +30,12 @@ enum { BLUR_GREATEST_REACH = 46 };
 /* A blur by the taps of a penumbra (light_emission.h): each pixel becomes the weighted sum of the pixels at
  * its taps. */
 typedef struct emission_job {
-  const float *from; /* pixel (0,0); rows stride apart */
+  const float *from; /* pixel (0,0) of the image that is blurred; rows are `stride` floats apart */
   float *to;
   size_t stride;
   int count;
-  const ptrdiff_t *offset; /* [count]; from a pixel to each of its taps */
-  const float *weight;     /* [count] */
+  const ptrdiff_t *offset; /* [count]; offsets from a pixel to each of its taps, in floats */
+  const float *weight;     /* [count]; the weight of each tap */
 } emission_job;
 typedef void emission_tile_function(const emission_job *job, int tile_x, int tile_y);
 
@@ -43,7 +43,7 @@ typedef void emission_tile_function(const emission_job *job, int tile_x, int til
 typedef struct blur_functions {
   blur_tile_function *rows, *columns;
   lit_blocks_function *lit_blocks;
-  emission_tile_function *emission; /* to = sum of from */
+  emission_tile_function *emission; /* writes to `to` the weighted sums of `from` */
 } blur_functions;
 
 /* The box of a given width in pixels, at least 1. If the width is an even number, the pixels at both ends
@@ -53,9 +53,10 @@ static inline blur_box hl_blur_box(float width) {
   return (blur_box){reach, (width - 1) / 2 - (float)reach, 1 / width};
 }
 
-/* The box of a given variance v, or the widest box if BLUR_GREATEST_REACH does not allow this variance.
- * Derived: weights of 1 up to r pixels away have the variance r (r + 1) / 3. With the weight e at r + 1 on
- * both sides, and n = 2 r + 1, v (n + 2 e) = n r (r + 1) / 3 + 2 e (r + 1)^2, which gives e. */
+/* The box whose weights have a given variance v, in squared pixels, or the widest box if BLUR_GREATEST_REACH
+ * does not allow this variance. Derived: weights of 1 up to r pixels away have the variance r (r + 1) / 3.
+ * With the weight e at r + 1 on both sides, and n = 2 r + 1, v (n + 2 e) = n r (r + 1) / 3 + 2 e (r + 1)^2,
+ * which gives e. */
 static inline blur_box hl_blur_box_of_variance(double variance) {
   int most = BLUR_GREATEST_REACH - 2, reach = (int)fmin(sqrt(3 * variance + 0.25) - 0.5, most);
   double whole = reach * (reach + 1) / 3.0, width = 2 * reach + 1;

@@ -5,8 +5,8 @@
 #include "shadow/blur.h"
 #include "simd/lanes.h"
 
-/* Blurs sixteen neighbouring pixels along one direction. step: floats from a pixel to the next one in this
- * direction. */
+/* Blurs sixteen neighbouring pixels along one direction. step: the number of floats from a pixel to the next
+ * pixel in this direction. */
 LANES_INLINE lanes blur_sixteen(const float *from, ptrdiff_t step, const blur_box *box) {
   lanes ends = lanes_load(from - (box->reach + 1) * step) + lanes_load(from + (box->reach + 1) * step);
   lanes sum = lanes_add_scaled(lanes_load(from), ends, box->edge);

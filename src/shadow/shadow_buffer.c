@@ -65,7 +65,7 @@ static double pixel_edge(const light_source *source, vec3 normal, const shadow_e
   return fmax(pixel, sqrt(size[0] * size[1] / (double)extent->greatest_pixels));
 }
 
-/* A buffer's pixels along one axis. */
+/* The pixels of a buffer along one axis. */
 typedef struct pixel_row {
   int count;
   double start, pixel;
@@ -136,8 +136,8 @@ static size_t tiles_of(const shadow_buffer *buffer) {
   return (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
 }
 
-/* Lays out the memory of a buffer whose size is set. plane_count: number of planes of all channels and all
- * kinds. */
+/* Lays out the memory of a buffer whose size has been set. plane_count: the number of planes of one sheet, of
+ * all channels and all kinds, times the number of sheets that are kept. */
 static void lay_out(shadow_buffer *buffer, size_t plane_count, hl_layout *layout) {
   buffer->planes = hl_layout_take(layout, plane_count, buffer->plane * sizeof *buffer->planes);
   buffer->changed = hl_layout_take(layout, tiles_of(buffer), sizeof *buffer->changed);
@@ -163,7 +163,7 @@ static hl_status reserve(hl_context *context, shadow_buffer *buffer, size_t plan
   return HL_OK;
 }
 
-/* All planes of one sheet, of all channels and kinds. */
+/* The number of all planes of one sheet: one for each channel and each kind. */
 static size_t planes_of_sheet(const shadow_buffer_size *size) {
   return (size_t)size->channels * kinds_of_planes(size->outside, size->second);
 }
@@ -203,7 +203,7 @@ void hl_shadow_buffer_reach(shadow_buffer *buffer, int sheet) {
   }
 }
 
-/* Copies a tile of a plane from the sheet before. at: the tile's first pixel. */
+/* Copies a tile of one plane from the planes of the previous sheet. at: the tile's first pixel. */
 static void carry_plane(const shadow_buffer *buffer, shadow_plane kind, int sheet, int channel, size_t at) {
   const float *from = hl_shadow_plane_at(buffer, sheet - 1, kind, channel) + at;
   float *to = hl_shadow_plane_at(buffer, sheet, kind, channel) + at;

@@ -21,46 +21,51 @@
 #include "shadow/attenuate.h"
 #include "view/occupancy.h"
 
-/* The planes of one sheet. */
+/* The kinds of planes that a shadow buffer may have for one sheet. */
 typedef enum shadow_plane {
   SHADOW_TRANSMITTANCE,
   SHADOW_OUTSIDE, /* the light that arrives at the outside of the surface in which a pixel's ray is. It is not
                    * less than the transmittance */
-  SHADOW_SECOND   /* planes for the method's own use. `paper`: the result of half a blur. `cascade`: the light
-                   * from which samples fade to the transmittance */
+  SHADOW_SECOND   /* planes for the shadow method's own use. The method `paper` keeps the result of half a
+                   * blur in them. The method `cascade` keeps the light from which samples fade to the
+                   * transmittance */
 } shadow_plane;
 
 typedef struct shadow_buffer {
   view view;
   int channels; /* 1: grey attenuation; 3: R, G, B */
   int tiles_x, tiles_y;
-  size_t stride;                     /* floats from row to row */
-  size_t plane;                      /* floats of one channel, margins included */
+  size_t stride;                     /* number of floats from one row of a plane to the next */
+  size_t plane;                      /* number of floats of one channel's plane, margins included */
   size_t origin;                     /* offset of pixel (0,0) in a plane */
-  int ring;                          /* number of sheets that are kept */
+  int ring;                          /* number of sheets whose planes are kept */
   bool has_outside, has_second;      /* whether each sheet has planes of these two kinds in addition to the
                                       * transmittance */
   float *transmittance[HL_CHANNELS]; /* pixel (0,0) of each channel, in the planes of the sheet for which
                                       * hl_shadow_buffer_reach() was called last; a part of `memory` */
-  float *outside[HL_CHANNELS], *second[HL_CHANNELS]; /* the same for the other two kinds of planes; null:
-                                                      * there are no such planes */
-  int sheet;                                         /* that was reached last */
-  float *planes;                                     /* a part of `memory`; [ring][1 to 3][channels][plane] */
+  /* pixel (0,0) of each channel of the other two kinds of planes, at the same sheet; null: there are no
+   * planes of this kind */
+  float *outside[HL_CHANNELS], *second[HL_CHANNELS];
+  int sheet;                   /* the sheet for which hl_shadow_buffer_reach() was
+                                * called last */
+  float *planes;               /* a part of `memory`; [ring][kinds of
+                                * planes][channels][plane] */
   int32_t *changed;            /* a part of `memory`; [tiles]; the last sheet at which the tile's planes
                                 * changed */
-  uint16_t *tile_lit;          /* a part of `memory`; [tiles]; the blocks that light still reaches */
+  uint16_t *tile_lit;          /* a part of `memory`; [tiles]; the blocks of the tile that light still
+                                * reaches, one bit each */
   unsigned char *tile_touched; /* a part of `memory`; [2][tiles]; 1 where some transmittance is below 1 */
   void *memory;    /* owned; the memory of all arrays; kept from frame to frame while it is large enough */
-  size_t capacity; /* bytes of memory */
+  size_t capacity; /* bytes of `memory` */
 } shadow_buffer;
 
 /* The input that decides a buffer's position and size. */
 typedef struct shadow_extent {
   const vec3 *points; /* corners of the region to cover; frame space */
   int point_count;
-  double pixel;           /* wanted edge of a pixel at the volume, frame units */
+  double pixel;           /* wanted edge of a buffer's pixel where the volume is, frame units */
   int resolution;         /* number of pixels along the longer side; 0: `pixel` decides */
-  size_t greatest_pixels; /* limit of width * height */
+  size_t greatest_pixels; /* the greatest allowed number of pixels, width * height */
   double margin;          /* the margin for penumbrae around the points: its width in frame units; for a near
                            * light, its width at distance 1 */
   const vec3 *content;    /* corners of all content; no margin is needed beyond the content; frame space */
@@ -69,28 +74,30 @@ typedef struct shadow_extent {
            * rows */
 } shadow_extent;
 
-/* Lays out the view: plane_normal is the light's direction (hard) or the sheets' normal (soft). */
+/* Makes the view of a shadow buffer. plane_normal: the normal of the buffer's plane; for hard shadows the
+ * light's direction, for soft shadows the sheets' normal. */
 void hl_shadow_view(const light_source *source, vec3 plane_normal, const shadow_extent *extent, view *view);
 
-/* What a buffer has room for. */
+/* The size of a buffer for which memory is counted or allocated. */
 typedef struct shadow_buffer_size {
   const view *view;
-  int channels;         /* 1 or 3 */
-  bool outside, second; /* these planes, too */
-  int reach;            /* pixels that blurs read beyond a tile */
-  int ring;             /* sheets that are kept; at least 1 */
+  int channels;         /* 1: grey attenuation; 3: R, G, B */
+  bool outside, second; /* whether each sheet also has planes SHADOW_OUTSIDE and SHADOW_SECOND */
+  int reach;            /* number of pixels beyond a tile that blurs read */
+  int ring;             /* number of sheets whose planes are kept; at least 1 */
 } shadow_buffer_size;
 
 /* Allocates a buffer's memory, or allocates it anew if it is too small. Sets all transmittances to 1. */
 hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buffer *buffer,
                                  const shadow_buffer_size *size, hl_error *error);
-/* Sets a buffer's view, tiles, stride, plane and origin. reach: as in shadow_buffer_size. */
+/* Sets a buffer's view, tiles, stride, plane and origin. reach: the number of pixels beyond a tile that blurs
+ * read. */
 void hl_shadow_buffer_measure(const view *view, int reach, shadow_buffer *buffer);
 /* The number of floats of one channel of a buffer for a view, its margins included. */
 size_t hl_shadow_plane(const view *view, int reach);
-/* Counts what hl_shadow_buffer_reset() takes. */
+/* Counts the memory that hl_shadow_buffer_reset() takes. */
 void hl_shadow_buffer_count(const shadow_buffer_size *size, hl_layout *layout);
-/* Bytes of one sheet's planes. */
+/* The number of bytes of one sheet's planes. */
 uint64_t hl_shadow_sheet_bytes(const shadow_buffer_size *size);
 
 /* Pixel (0,0) of a channel, in a sheet's planes of one kind. The buffer must have planes of this kind. */
@@ -101,9 +108,9 @@ void hl_shadow_buffer_reach(shadow_buffer *buffer, int sheet);
 static inline bool hl_shadow_is_carried(const shadow_buffer *buffer, size_t tile, int sheet) {
   return buffer->changed[tile] > 0 && buffer->changed[tile] > sheet - buffer->ring;
 }
-/* Copies a tile from the planes of the sheet before to the planes of this sheet, unless the planes of this
- * sheet hold the same numbers already. Where hl_shadow_is_carried() is true, call this function for each
- * sheet in turn, before the tile changes at the sheet. */
+/* Copies a tile from the planes of the previous sheet to the planes of `sheet`, unless these hold the same
+ * numbers already. Where hl_shadow_is_carried() is true, call this function for each sheet in turn, before
+ * the tile changes at the sheet. */
 void hl_shadow_buffer_carry(shadow_buffer *buffer, size_t tile, int sheet);
 /* Finds the lit blocks of a tile (tile_lit) again after a blur. both: whether blocks count as lit, too, in
  * which only the second planes have light. */
@@ -115,32 +122,34 @@ void hl_shadow_buffer_release(hl_context *context, shadow_buffer *buffer);
 
 /* The map from frame space to a buffer's pixels. */
 typedef struct shadow_map {
-  float rows[3][4]; /* frame space -> (w, w u, w v) of the buffer */
-  size_t stride;    /* of its pixels' rows */
+  float rows[3][4]; /* maps frame space to (w, w u, w v), where (u, v) is a continuous pixel of the buffer */
+  size_t stride;    /* number of floats from one row of the buffer's pixels to the next */
   int width, height;
 } shadow_map;
 
 typedef struct shadow_lookup {
   shadow_map map;
-  const float *transmittance[HL_CHANNELS]; /* pixel (0,0) */
+  const float *transmittance[HL_CHANNELS]; /* pixel (0,0) of the planes that are looked up */
   const float *outside[HL_CHANNELS];       /* planes of the light at the outside of surfaces, laid out as
                                             * `transmittance`; null: there are none */
   const float *older[HL_CHANNELS]; /* pixel (0,0) of the earlier transmittance, from which samples fade to
                                     * `transmittance`; null: none */
-  float young;                     /* how far samples have faded from the earlier transmittance to
-                                    * `transmittance`, 0 to 1 */
+  float young;                     /* how far samples have faded from `older` to `transmittance`: 0 (not
+                                    * yet) to 1 (completely) */
 } shadow_lookup;
 
-/* Transmittance in units of 1 / SUBLIGHT_ONE. It takes half of the memory traffic of a float. */
+/* The transmittance in a sub-light's buffer, in units of 1 / SUBLIGHT_ONE. A number of 16 bits takes half of
+ * the memory traffic of a float. */
 typedef uint16_t sublight_pixel;
 enum { SUBLIGHT_ONE = 65535 };
 
-/* The buffer of one sub-light. */
+/* How samples look up the buffer of one sub-light. */
 typedef struct sublight_lookup {
   shadow_map map;
-  const sublight_pixel *transmittance[HL_CHANNELS]; /* pixel (0,0) */
-  const sublight_pixel *outside[HL_CHANNELS];       /* the light at the outside of surfaces, in the same form;
-                                                     * null: there is none */
+  const sublight_pixel *transmittance[HL_CHANNELS]; /* pixel (0,0) of each channel of the sub-light's
+                                                     * transmittance */
+  const sublight_pixel *outside[HL_CHANNELS];       /* the light at the outside of surfaces, laid out as
+                                                     * `transmittance`; null: there is none */
   float weight[HL_CHANNELS]; /* the sub-light's weight in the mean over all sub-lights; 1 for lights
                               * without an emission image */
 } sublight_lookup;

@@ -7,14 +7,16 @@
 #include "simd/gathers.h"
 
 /* The samples' positions in a shadow buffer. Around each position there are two by two pixels: `first` is the
- * first of these, and the fractions count from there. */
+ * first of these pixels. The fractions fx and fy say how far the position lies from the middle of the first
+ * pixel, in pixels. */
 typedef struct shadow_taps {
   lanes_int inside;
   lanes_squares first;
   lanes fx, fy;
 } shadow_taps;
 
-/* The taps for positions in the buffer, which are given in continuous pixel coordinates. */
+/* The taps (shadow_taps) for positions in a shadow buffer, which are given in continuous pixel coordinates.
+ * nearest: whether the positions are moved to the middle of the nearest pixel. */
 LANES_INLINE shadow_taps taps_at_position(const shadow_map *map, int nearest, lanes u, lanes v) {
   shadow_taps taps;
   taps.inside = (u > 0.0f) & (v > 0.0f) & (u < (float)map->width) & (v < (float)map->height);
@@ -46,8 +48,8 @@ LANES_INLINE lanes look_up(const shadow_map *map, const shadow_taps *taps, const
 }
 
 /* The weights of cubic convolution with a = -1/2 (Keys, "Cubic convolution interpolation for digital image
- * processing", 1981, eq. 15) for four pixels; the first of them lies one pixel before `first`. This
- * convolution keeps second moments, so it does not blur. */
+ * processing", 1981, eq. 15) for four pixels in a row. way: the distance of the look-up's position from the
+ * second pixel's middle, 0 to 1. This convolution keeps second moments, so it does not blur. */
 LANES_INLINE void cubic_weights(lanes way, lanes weight[4]) {
   lanes rest = 1.0f - way, both = way * rest * -0.5f;
   weight[0] = both * rest;
@@ -56,9 +58,10 @@ LANES_INLINE void cubic_weights(lanes way, lanes weight[4]) {
   weight[3] = both * way;
 }
 
-/* Interpolates between four by four pixels. The result is clamped to the range of the nearest four pixels.
- * Without the clamp, the result would overshoot beside an edge, and would be too dark just inside a box's
- * face. The function is not inlined, so that it takes no registers from the bilinear look-up. */
+/* Interpolates the transmittance between four by four pixels of a shadow buffer by cubic convolution. The
+ * result is clamped to the range of the nearest four pixels. Without the clamp, the result would overshoot
+ * beside an edge, and would be too dark just inside a box's face. The function is not inlined, so that it
+ * takes no registers from the bilinear look-up. */
 static __attribute__((noinline, unused)) lanes look_up_cubic(const shadow_map *map, const shadow_taps *taps,
                                                              const float *buffer) {
   lanes across[4], down[4], pixel[4], sum = lanes_set(0);

@@ -1,5 +1,5 @@
-/* shadow/shadow_method.c - one light's shadows in one sweep: chooses, plans, begins and ends the method; and
- * tools for all methods. */
+/* shadow/shadow_method.c - the shadows of one light in one sweep: chooses the shadow method, lets it plan,
+ * begins and ends it; and tools that all methods use. */
 #include "shadow/shadow_method.h"
 
 #include <string.h>
@@ -35,7 +35,7 @@ shadow_layouts hl_light_shadow_count(light_shadow *shadow) {
   return layouts;
 }
 
-/* Allocates the planes that the method keeps from frame to frame, or makes them larger. */
+/* Makes the planes that a method keeps from frame to frame at least `bytes` large. */
 static hl_status grow(hl_context *context, shadow_memory *memory, size_t bytes, hl_error *error) {
   if (memory->capacity >= bytes) return HL_OK;
   hl_release(context, memory->planes);
@@ -75,7 +75,7 @@ static hl_status set_up_lookups(light_shadow *shadow, hl_error *error) {
   return HL_OK;
 }
 
-/* The method's own numbers, as they were planned. */
+/* Copies the method's own data from the planned shadow to the shadow that begins. */
 static hl_status copy_state(const light_shadow *planned, light_shadow *shadow, hl_error *error) {
   const size_t bytes = planned->method->state_bytes;
   if (bytes == 0) return HL_OK;
@@ -144,8 +144,8 @@ double hl_sharp_pixel(const shadow_setup *setup, bool cubic) {
 
 double hl_blurred_pixel(const shadow_setup *setup, bool cubic) {
   const light_source *source = setup->source;
-  /* seen along the light, a pixel on the sheets is narrower than a pixel of a hard shadow's buffer; so it is
-   * enlarged to that size */
+  /* a pixel on the sheets, seen along the light, is narrower than a pixel of a hard shadow's buffer; so the
+   * pixel on the sheets is enlarged to the same apparent width */
   double slant = source->parallel ? fabs(vec3_dot(source->direction, setup->sheets->normal)) : 1;
   return fmin(SHADOW_PIXEL_PER_IMAGE_PIXEL * setup->middle_pixel,
               hl_shadow_pixel(setup, cubic) / sqrt(fmax(slant, 0.5)));

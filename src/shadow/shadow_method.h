@@ -38,14 +38,14 @@ typedef struct shadow_functions {
   attenuate_tile_function *attenuate;
   lit_blocks_function *lit_blocks;
   blur_functions blur;
-  const struct cascade_functions *cascade;    /* shadow_cascade/cascade_field.h */
-  const struct sublight_functions *sublights; /* shadow_sublights/sublight_field.h */
+  const struct cascade_functions *cascade;    /* see shadow_cascade/cascade_field.h */
+  const struct sublight_functions *sublights; /* see shadow_sublights/sublight_field.h */
 } shadow_functions;
 
 /* The context, threads and functions with which a back end makes shadows. */
 typedef struct shadow_means {
   hl_pool *pool;
-  hl_reserve *reserve; /* of blocks for one sweep */
+  hl_reserve *reserve; /* lends memory blocks for the time of one sweep */
   const shadow_functions *functions;
 } shadow_means;
 
@@ -60,12 +60,13 @@ typedef struct shadow_setup {
   const view *eye;
   const light_exchange *exchange; /* exchanges light with the other parts of a shared picture; null: there are
                                    * no other parts, or they exchange nothing */
-  bool surfaces;                  /* some volume has surfaces; these are lit by the light at their outside */
-  int channels;                   /* of attenuation: 1 or 3 */
+  bool surfaces;                  /* whether some volume has surfaces; surfaces are lit by the light that
+                                   * arrives at their outside */
+  int channels;                   /* number of channels of attenuation: 1 (grey) or 3 (R, G, B) */
   double voxel;                   /* the smallest edge of a voxel, frame units */
   double pixel;                   /* edge of a picture's pixel where the content is nearest, frame units */
-  double middle_pixel;            /* the same at the content's middle */
-  size_t picture_pixels;          /* how many the frame has */
+  double middle_pixel;            /* edge of a picture's pixel at the content's middle, frame units */
+  size_t picture_pixels;          /* number of pixels of the picture */
   const vec3 *
       seen; /* [seen_count]; corners of the content that the eye sees, frame space; valid in plan and begin */
   int seen_count;
@@ -76,20 +77,20 @@ typedef struct shadow_setup {
 /* A method's decisions about its buffer. */
 typedef struct shadow_plan {
   shadow_extent extent; /* the region that the buffer covers */
-  sheet_light seen;     /* soft methods: the light as the sheets see it */
+  sheet_light seen;     /* for soft methods: the light as it is seen from the sheets */
   view view;            /* the buffer's view */
-  bool cubic;           /* the buffer is read by cubic convolution */
-  bool outside;         /* the buffer also keeps the light at the outside of surfaces */
-  bool second;          /* the buffer has second planes */
-  int reach;            /* number of pixels beyond a tile that the method reads */
+  bool cubic;           /* whether the buffer is read by cubic convolution */
+  bool outside;         /* whether the buffer also keeps the light at the outside of surfaces */
+  bool second;          /* whether the buffer has planes of the kind SHADOW_SECOND */
+  int reach;            /* number of pixels beyond a tile that the method reads when it blurs */
   double spare;         /* number of pixels beyond a brick's projection that the picture's look-ups may
                          * read */
 } shadow_plan;
 
 /* Planes that a method may keep from frame to frame. The renderer owns them. */
 typedef struct shadow_memory {
-  void *planes;    /* owned; [capacity] */
-  size_t capacity; /* bytes */
+  void *planes;    /* owned; [capacity]; the memory of the planes */
+  size_t capacity; /* bytes of `planes` */
   bool zeros;      /* whether all bytes are zeros; false while a method uses the planes, and after a cancelled
                     * frame */
 } shadow_memory;
@@ -100,21 +101,23 @@ typedef struct shadow_method shadow_method;
 typedef struct light_shadow {
   const shadow_method *method; /* null: the light casts no shadows, or the eye sees nothing */
   shadow_setup setup;
-  shadow_means means; /* from begin on */
+  shadow_means means; /* valid after hl_light_shadow_begin() */
   shadow_plan plan;
-  shadow_buffer *buffer;  /* the renderer's */
+  shadow_buffer *buffer;  /* borrowed from the renderer */
   shadow_lookup *lookups; /* owned; [the buffer's ring]; how the picture reads the light at each sheet */
   const sublight_lookup *sublights; /* [sublight_count]; if there are any sub-lights, the picture reads the
                                      * mean of their light */
   int sublight_count, sublight_tiles_x, sublight_tiles_y; /* set by `plan`; sublight_tiles_x,
                                                            * sublight_tiles_y: size in tiles of each
                                                            * sub-light's buffer */
-  void *state;                                            /* owned; method->state_bytes */
-  shadow_memory *kept;                                    /* the renderer's */
-  void *passing;                                          /* lent by the reserve */
-  const int32_t *needed_until;    /* [tiles]; the last slab at which this part of a shared picture needs a
-                                   * tile, 0: never; null: it needs all tiles at all slabs. Borrowed; must be
-                                   * set before the first slab */
+  void *state;                                            /* owned; [method->state_bytes]; the method's own
+                                                           * data */
+  shadow_memory *kept;                                    /* borrowed from the renderer */
+  void *passing;                                          /* memory that the reserve has lent until the
+                                                           * sweep ends */
+  /* [tiles]; the last slab at which this part of a shared picture needs a tile, 0: it never needs the tile;
+   * null: it needs all tiles at all slabs. Borrowed; must be set before the first slab */
+  const int32_t *needed_until;
   const int32_t *sublights_until; /* [sublight_count][sublight_tiles_y][sublight_tiles_x]; as needed_until,
                                    * for the tiles of the sub-lights' buffers; set only if there are
                                    * sub-lights */
@@ -124,15 +127,16 @@ typedef struct light_shadow {
 
 /* A method's memory besides the buffer. */
 typedef struct shadow_layouts {
-  hl_layout kept;    /* kept from frame to frame, see shadow_memory */
-  hl_layout passing; /* until the sweep ends; uninitialised */
+  hl_layout kept;    /* the memory that is kept from frame to frame, see shadow_memory */
+  hl_layout passing; /* the memory that is used until the sweep ends; it is uninitialised */
 } shadow_layouts;
 
 struct shadow_method {
   const char *name;
-  size_t state_bytes; /* of light_shadow.state, zeros before plan */
-  int first_slab;     /* the first slab that casts shadows of a near light, if the light lies within a slab.
-                       * 0: this slab, of which the part beyond the light counts; 1: the next slab */
+  size_t state_bytes; /* bytes of light_shadow.state, which is all zeros before `plan` is called */
+  /* the first slab that casts shadows of a near light, if the light lies within a slab. 0: the slab in which
+   * the light lies, of which only the part beyond the light counts; 1: the slab after it */
+  int first_slab;
   /* The delay of surfaces where look-ups are bilinear, in pixels of the buffer: the distance after which a
    * surface absorbs light (surface/late/lateness.h). Bilinear look-ups read less than a pixel to each side,
    * so with a delay of 1 pixel a flat surface does not darken itself. Methods that blur by a pixel or more
@@ -146,7 +150,8 @@ struct shadow_method {
   /* Prepares the look-ups of the picture in a slab. lookup: receives the way in which the light at the sheet
    * before the slab is looked up. */
   void (*before_shading)(light_shadow *shadow, int sheet, shadow_lookup *lookup);
-  /* job: of all tiles of the slab. */
+  /* Prepares the job that composites a slab into the buffer: sets the members that are equal for all
+   * tiles. */
   void (*before_slab)(light_shadow *shadow, int sheet, attenuate_job *job);
   /* Finds the lit blocks of a tile (buffer->tile_lit). Null: the sweep finds them itself. Only one task at a
    * time calls this for a tile. */
@@ -182,17 +187,18 @@ hl_status hl_light_shadow_plan(light_shadow *shadow, const shadow_setup *setup, 
 static inline bool hl_runs_in_stretches(const shadow_method *method) {
   return method->advance == NULL || method->advances != NULL;
 }
-/* The size of the buffer of a planned light. ring: number of sheets that the buffer keeps. The renderer owns
- * the buffer. */
+/* The size of the shadow buffer of a light whose shadows are planned. ring: number of sheets that the buffer
+ * keeps. The renderer owns the buffer. */
 shadow_buffer_size hl_light_shadow_buffer_size(const light_shadow *shadow, int ring);
-/* Counts the bytes of the method's memory. Call it after the method has planned. */
+/* Counts the bytes of the memory that the method takes besides the buffer. Call this function after the
+ * method has planned. */
 shadow_layouts hl_light_shadow_count(light_shadow *shadow);
-/* Begins a copy of a planned shadow; the planned shadow does not change. The renderer owns buffer and
- * memory. */
+/* Begins the shadows of a light: copies the planned shadow, and hands out memory. `planned` does not change.
+ * The renderer owns `buffer` and `memory`. */
 hl_status hl_light_shadow_begin(light_shadow *shadow, const light_shadow *planned, const shadow_means *means,
                                 int ring, shadow_buffer *buffer, shadow_memory *memory, hl_error *error);
-/* Releases what a planned or begun shadow holds. Call it after a failure, too. The struct may be all
- * zeros. */
+/* Releases the memory of a planned or begun shadow. Call this function after a failure, too. The struct may
+ * be all zeros. */
 void hl_light_shadow_end(light_shadow *shadow);
 
 /* ---- for methods ---- */
@@ -210,16 +216,16 @@ void hl_plan_soft(light_shadow *shadow, double pixel);
  * up as it is, hl_blurred_pixel() for light that the method blurs. */
 double hl_sharp_pixel(const shadow_setup *setup, bool cubic);
 double hl_blurred_pixel(const shadow_setup *setup, bool cubic);
-/* The input for a buffer that covers the content that the eye sees. pixel: wanted edge of a buffer's pixel;
- * frame units. */
+/* The extent of a shadow buffer that covers the content that the eye sees. pixel: wanted edge of a buffer's
+ * pixel; frame units. */
 shadow_extent hl_extent_of_seen(const shadow_setup *setup, double pixel);
 
-/* The last sheet's height. */
+/* The height of the last sheet above the first sheet. */
 static inline double hl_last_height(const sheet_stack *sheets) {
   return hl_sheet_height(sheets, sheets->count - 1);
 }
 
-/* The tables, one a folder. */
+/* The tables of the shadow methods; each table is in a folder of its own. */
 extern const shadow_method hl_shadow_hard;
 #define HL_SOFT_METHOD(value, name) extern const shadow_method hl_shadow_##name;
 HL_SOFT_METHODS
