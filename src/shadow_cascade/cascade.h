@@ -60,69 +60,78 @@ enum { CASCADE_LEVELS = 16, CASCADE_GROUPS = 7, CASCADE_FEW_GROUPS = 4, CASCADE_
  * is also the margin before the next row. Likewise, the margin after a field is also the margin before the
  * next field. */
 typedef struct cascade_field {
-  field_pixel *pixels;  /* pixel (0,0); in the level's memory; null where a device has the pixels */
+  field_pixel *pixels;  /* pixel (0,0) of the field, in the level's memory; null where a device has the
+                         * pixels */
   unsigned char *zeros; /* [tiles]; 1 where all pixels of the tile are zeros, so that work skips it; a part
                          * of the level's flags */
-  size_t place;         /* of pixel (0,0) among the pixels of all levels, one level after the other */
+  /* index of the field's pixel (0,0) in an array of the pixels of all levels, one level after the other */
+  size_t place;
 } cascade_field;
 
 /* The light that a group's slabs have absorbed. */
 typedef struct cascade_group {
-  cascade_field absorbed[HL_CHANNELS]; /* G + F */
-  cascade_field thin[HL_CHANNELS];     /* F */
-  double omega;                        /* the omega of the group; pixels of the buffer */
-  bool filled;                         /* not all zeros */
+  cascade_field absorbed[HL_CHANNELS]; /* the sum G + F of "Haze" at the head of the file */
+  cascade_field thin[HL_CHANNELS];     /* the fraction F of every ray that thin matter absorbs ("Haze" at
+                                        * the head of the file) */
+  /* the position of the group: omega ("Penumbrae" at the head of the file), in pixels of the buffer */
+  double omega;
+  bool filled; /* whether any pixel of the group is not zero */
 } cascade_group;
 
-/* How a column or a row of tiles is blurred. fraction: the variance of the penumbrae in it, as a fraction of
- * the variance where the light is widest. box: the box of the current blur. */
+/* How a column or a row of tiles is blurred. fraction: the variance of the penumbrae in this column or row,
+ * as a fraction of the variance where the light is widest. box: the box of the current blur. */
 typedef struct cascade_box {
   double fraction;
   blur_box box;
 } cascade_box;
 
 typedef struct cascade_level {
-  int scale; /* edge of this level's pixels, pixels of the buffer */
+  int scale; /* edge of this level's pixels, in pixels of the buffer */
   int tiles_x, tiles_y;
-  size_t first;                         /* number of the pixels of all levels before */
-  size_t stride, plane, origin, pixels; /* numbers of pixels. stride: from row to row; plane: of a field;
-                                         * origin: before a field's pixel (0,0); pixels: of all fields and the
-                                         * margin after them */
-  cascade_group group[CASCADE_GROUPS];  /* oldest first */
+  size_t first; /* number of the pixels of all levels before this one */
+  /* four numbers of pixels. stride: from row to row; plane: of one field with its margin; origin: before a
+   * field's pixel (0,0); pixels: of all fields and the margin after them */
+  size_t stride, plane, origin, pixels;
+  cascade_group group[CASCADE_GROUPS]; /* the groups of this level, the oldest first */
   int count, capacity;
   double fraction[2], greatest_fraction; /* from the fractions in `boxes`: the mean along rows and the mean
                                           * along columns, and the greatest fraction */
   cascade_field sum[2][HL_CHANNELS];     /* two sums; each is the sum of all groups from the farthest one to a
                                           * group of this level, made for a recent receiver */
-  int newest;                            /* the index of the sum that includes the newest group */
-  bool filled;      /* the sum includes a group of this level; if not, the sum of the next farther level is
-                     * used instead */
-  double sum_omega; /* omega of the newest group in the sum */
+  int newest;                            /* the index in `sum` of the sum that includes the newest group */
+  /* whether the sum includes a group of this level; if not, the sum of the next farther level is used
+   * instead */
+  bool filled;
+  double sum_omega; /* the omega of the newest group in the sum */
   double owed[2];   /* along rows and along columns: the variance by which the sum is blurred too much; in
                      * squared pixels of the buffer */
-  bool renewed;     /* the sum must be made again */
-  cascade_field scratch;              /* used for sums from farther levels; level 0 has none */
+  bool renewed;     /* whether the sum must be made again */
+  cascade_field scratch;              /* memory for a sum on its way from farther levels; level 0 has none */
   cascade_field mean[2][HL_CHANNELS]; /* for lights with an emission image: one group's `absorbed` and `thin`,
                                        * averaged over the step between taps */
-  cascade_box *boxes;                 /* owned; [tiles_x], then [tiles_y] */
-  field_pixel *memory;                /* the shadow_memory's; null where a device has the pixels */
+  cascade_box *boxes;                 /* owned; [tiles_x + tiles_y]; the blur of each column of tiles, then
+                                       * of each row of tiles */
+  field_pixel *memory;                /* borrowed from the shadow_memory; null where a device has the
+                                       * pixels */
   size_t planes;
-  unsigned char *flags; /* owned */
+  unsigned char *flags; /* owned; the arrays `zeros` of the level's fields */
 } cascade_level;
 
 /* The exchange of messages between the renderers that make the parts of one picture. A message holds the
  * light of one tile (cascade_exchange.c). */
 typedef struct cascade_exchange {
-  const light_exchange *with;         /* null: nobody */
-  size_t slot_bytes;                  /* of a message */
-  size_t slots;                       /* messages of a post, at most */
-  light_post post;                    /* of the next two */
-  unsigned char *outgoing, *incoming; /* owned; [post.most]; [parts][post.most] */
-  unsigned char *sends;               /* owned; [tiles]; 1 for tiles whose light of the last chunk this part
-                                       * sends to the other parts */
-  uint32_t count;                     /* of these tiles */
-  size_t tile;                        /* the next one to tell of */
-  bool sent;                          /* a post of the last chunk is under way */
+  const light_exchange *with; /* the renderers of the other parts; null: there are no other parts */
+  size_t slot_bytes;          /* bytes of a message */
+  size_t slots;               /* the greatest number of messages in a post */
+  light_post post;            /* the post that sends `outgoing` and receives `incoming` */
+  /* owned; outgoing: [post.most], the messages of this part; incoming: [parts][post.most], the messages of
+   * all parts */
+  unsigned char *outgoing, *incoming;
+  unsigned char *sends; /* owned; [tiles]; 1 for tiles whose light of the last chunk this part
+                         * sends to the other parts */
+  uint32_t count;       /* number of the tiles that are marked in `sends` */
+  size_t tile;          /* the next tile that a message will be about */
+  bool sent;            /* whether a post of the last chunk is under way */
 } cascade_exchange;
 
 typedef struct soft_cascade {
@@ -136,64 +145,67 @@ typedef struct soft_cascade {
   const light_emission *emission;       /* null: the light is even, and blurs use boxes */
   double slope_start[2], slope_step[2]; /* slope_start: the slope of the light's rays at the buffer's corner;
                                          * slope_step: the change of the slope from pixel to pixel */
-  double chunk;                         /* length of the current chunk in omega; pixels */
-  double chunk_start;                   /* omega */
-  double shortest_chunk;                /* of the sweep */
+  double chunk;                         /* length of the current chunk, measured in omega; pixels of the
+                                         * buffer */
+  double chunk_start;                   /* omega at the start of the current chunk */
+  double shortest_chunk;                /* length of the shortest chunk of the sweep, measured in omega */
   double shrink; /* the length of a chunk divided by -omega at the chunk's start; 0: all chunks have the same
                   * length */
   double evened; /* the omega from which on all chunks have the same length again; pixels */
   double lookup_variance; /* variance of the blur by look-ups of the buffer, in squared pixels */
-  uint64_t chunks;        /* finished */
+  uint64_t chunks;        /* number of the chunks that have ended */
   int channels;
-  int level_count; /* levels with memory */
+  int level_count; /* number of the levels that have memory */
   cascade_level level[CASCADE_LEVELS];
-  cascade_field absorbed[HL_CHANNELS];   /* the absorbed light from which the buffer was filled last; it is
-                                          * one of the sums of level 0 */
-  float *absorbed_at_start[HL_CHANNELS]; /* pixel (0,0), on level 0; 1 minus the light at the start of the
-                                          * chunk */
-  float *moment[HL_CHANNELS]; /* pixel (0,0), on level 0; the sum, over the chunk's slabs, of the light that a
-                               * slab absorbed times the slab's position */
-  unsigned char *refilled;    /* owned; [tiles]; the bits REFILLED_BEFORE and REFILLED_NOW */
-  unsigned char *touched;     /* owned; [tiles]; 1 where slabs of the current chunk have absorbed light */
-  cascade_reads reads;        /* the tiles that slabs of the next chunk read */
-  cascade_exchange exchange;  /* with the other parts of a shared picture */
+  cascade_field absorbed[HL_CHANNELS]; /* the absorbed light from which the buffer was filled last; it is
+                                        * one of the sums of level 0 */
+  /* pixel (0,0) of each channel, with the pixels of level 0; 1 minus the light at the start of the current
+   * chunk */
+  float *absorbed_at_start[HL_CHANNELS];
+  /* pixel (0,0) of each channel, with the pixels of level 0; the sum, over the current chunk's slabs, of the
+   * light that a slab absorbed times the slab's position */
+  float *moment[HL_CHANNELS];
+  unsigned char *refilled;   /* owned; [tiles]; the bits REFILLED_BEFORE and REFILLED_NOW */
+  unsigned char *touched;    /* owned; [tiles]; 1 where slabs of the current chunk have absorbed light */
+  cascade_reads reads;       /* the tiles that slabs of the next chunk read */
+  cascade_exchange exchange; /* the exchange of messages with the other parts of a shared picture */
 } soft_cascade;
 
 /* The threads and functions for passes over a cascade's fields. */
 typedef struct cascade_crew {
-  const struct cascade_works *works; /* who makes the passes (cascade_passes.h) */
-  /* the processors: */
+  const struct cascade_works *works; /* the functions that make the passes (cascade_passes.h) */
+  /* where the processors make the passes: */
   hl_pool *pool;
   const cascade_functions *functions;
   const cascade_reads *reads;
   /* a device: */
-  void *device; /* data of its `works` */
+  void *device; /* the data of the functions in `works` */
 } cascade_crew;
 
-/* These functions are in cascade_levels.c; they do what shadow_method says. */
+/* The functions of a shadow_method (shadow/shadow_method.h) that are in cascade_levels.c. */
 void hl_cascade_plan(light_shadow *shadow);
 void hl_cascade_lay_out(light_shadow *shadow, shadow_layouts *layouts);
 hl_status hl_cascade_begin(light_shadow *shadow, hl_error *error);
 void hl_cascade_end(light_shadow *shadow);
-/* Begins a copy of a planned shadow whose pixels a device has. Its arrays that pass are laid out; the buffer
- * and the kept planes are null. */
+/* Begins a copy of a planned shadow whose pixels are in the memory of a device. The arrays that last until
+ * the sweep ends are laid out; the buffer and the planes that are kept between frames are null. */
 void hl_cascade_begin_elsewhere(light_shadow *shadow);
 
 /* cascade_method.c */
 
 /* A slab's place among the chunks. */
 typedef struct cascade_slab {
-  float position; /* of the slab in its chunk (attenuate_job) */
-  float young;    /* how far samples have faded to the light of the chunk (shadow_lookup) */
-  int chunk;      /* number of the chunk, from 1 on */
-  bool ends;      /* the chunk ends at the sheet after the slab */
+  float position; /* the slab's position in its chunk (attenuate_job.position) */
+  float young;    /* how far samples have faded to the light of the current chunk (shadow_lookup.young) */
+  int chunk;      /* number of the slab's chunk; the first chunk is 1 */
+  bool ends;      /* whether the chunk ends at the sheet after the slab */
 } cascade_slab;
 
-/* Finds the chunks of a planned shadow. first: the first sheet at which a chunk may end. slabs: [sheets];
- * slab k lies before sheet k. */
+/* Finds the chunk of each slab of a planned shadow. first: the first sheet at which a chunk may end. slabs:
+ * [sheets]; slab k lies before sheet k. */
 void hl_cascade_find_chunks(const light_shadow *planned, int first, cascade_slab *slabs);
-/* Ends a chunk: adds its matter to the groups, sums the groups and refills the buffer. occupancy: of the
- * light's view. */
+/* Ends a chunk: adds its matter to the groups, sums the groups and refills the buffer. occupancy: which tiles
+ * of the light's view hold anything. */
 void hl_cascade_end_chunk(light_shadow *shadow, const occupancy *occupancy, int sheet,
                           const cascade_crew *crew);
 
@@ -202,14 +214,15 @@ void hl_cascade_exchange_lay_out(soft_cascade *cascade, const light_exchange *wi
 /* Begins to send messages to the other parts. The messages hold the pixels of two groups, those at the two
  * ends of the last chunk, in the tiles that this part owns and that the chunk has touched. */
 void hl_cascade_exchange_send(soft_cascade *cascade, const unsigned char *owned);
-/* Lets what is under way get on. */
+/* Lets messages that are under way make progress. */
 void hl_cascade_exchange_look(const soft_cascade *cascade);
 /* Waits for the messages of the other parts, and stores the pixels of their tiles in the groups. Notes
  * whether the chunk has touched any tile of any part. Call it before anything reads the groups. It does
  * nothing where no messages are under way. */
 void hl_cascade_exchange_receive(soft_cascade *cascade);
 
-/* omega at a height. */
+/* The omega of a height: the measure in which penumbrae widen evenly ("Penumbrae" at the head of the file);
+ * pixels of the buffer. */
 static inline double hl_cascade_omega(const soft_cascade *cascade, double height) {
   if (cascade->parallel) return cascade->rate * height;
   double distance = height - cascade->light_height;

@@ -20,11 +20,11 @@ typedef struct emission_pass {
   double width; /* width of the group's penumbra on the receiver, in pixels of the level */
   int step[2];
   bool averaged; /* whether the level's `mean` holds the group's means over `step` pixels */
-  int reach;     /* reach of the taps and the means, tiles */
+  int reach;     /* the number of tiles around a tile that the taps and the means read */
   const cascade_functions *functions;
 } emission_pass;
 
-/* The sum to which the groups of a level are added. */
+/* The field in which a level's sum of groups is made. */
 static const cascade_field *sum_of(const soft_cascade *cascade, const cascade_level *level, int channel) {
   return level == &cascade->level[0] ? &cascade->absorbed[channel] : &level->sum[0][channel];
 }
@@ -44,8 +44,9 @@ static bool any_near(const cascade_level *level, const cascade_field *field, int
 
 typedef struct start_task {
   const soft_cascade *cascade;
-  const cascade_level *level, *farther; /* level: the level; farther: the nearest farther level that has a
-                                         * filled sum; null: there is none */
+  /* level: the level whose sum is started; farther: the nearest farther level that has a filled sum, or null
+   * if there is none */
+  const cascade_level *level, *farther;
   const cascade_functions *functions;
 } start_task;
 

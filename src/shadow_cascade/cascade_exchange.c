@@ -15,21 +15,22 @@
 
 #include "shadow_cascade/cascade_passes.h"
 
-/* The approximate number of bytes that the posts of all parts take, if the exchange does not give a
+/* The approximate number of bytes that the posts of all parts take together, if the exchange does not set a
  * number. */
 enum { MOST_POSTED = 8 << 20 };
 
 /* The head of a post. */
 typedef struct post_head {
   uint32_t count;  /* number of this part's messages in all posts of the chunk */
-  uint32_t unused; /* messages begin at a multiple of 8 bytes */
+  uint32_t unused; /* fills the head up, so that messages begin at a multiple of 8 bytes */
 } post_head;
 
 /* The fields of a channel that a chunk changes: `absorbed` and `thin`, of the group at the chunk's start and
  * of the group at its end. */
 enum { MESSAGE_FIELDS = 4 };
 
-/* The head of a message. [channels][MESSAGE_FIELDS][TILE_PIXELS] pixels follow it. */
+/* The head of a message about one tile. The tile's pixels follow it:
+ * [channels][MESSAGE_FIELDS][TILE_PIXELS]. */
 typedef struct message_head {
   uint32_t tile;
   uint32_t filled; /* one bit for each field, in the order of the fields: 0 where the field is all zeros */
@@ -61,7 +62,8 @@ static const cascade_field *field_of(const cascade_group *start, const cascade_g
   return field % 2 == 0 ? &group->absorbed[channel] : &group->thin[channel];
 }
 
-/* The first function copies one tile's pixels from a field to a message, the second one copies them back. */
+/* Two functions that copy the pixels of one tile. The first one copies them from a field to a message, the
+ * second one from a message to a field. */
 static void pack_tile(const cascade_level *level, const cascade_field *field, size_t tile, field_pixel *to) {
   const field_pixel *from = field->pixels + tile / (size_t)level->tiles_x * TILE * level->stride +
                             tile % (size_t)level->tiles_x * TILE;
@@ -78,13 +80,13 @@ static void unpack_tile(const cascade_level *level, const cascade_field *field, 
   field->zeros[tile] = 0;
 }
 
-/* One chunk's exchange. */
+/* The groups whose pixels are exchanged after a chunk. */
 typedef struct chunk_exchange {
   soft_cascade *cascade;
   cascade_group *start, *end;
 } chunk_exchange;
 
-/* The groups at the ends of the last chunk. */
+/* The two groups at the ends of the chunk that ended last. */
 static chunk_exchange last_chunk(soft_cascade *cascade) {
   cascade_level *level = &cascade->level[0];
   return (chunk_exchange){cascade, &level->group[level->count - 2], &level->group[level->count - 1]};
@@ -117,7 +119,7 @@ static void read_message(const chunk_exchange *chunk, const unsigned char *messa
   }
 }
 
-/* Sends the next messages. */
+/* Sends the next messages about the chunk's tiles, as many as a post holds. */
 static void send_messages(const chunk_exchange *chunk) {
   cascade_exchange *exchange = &chunk->cascade->exchange;
   const cascade_level *level = &chunk->cascade->level[0];

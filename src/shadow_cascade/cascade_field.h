@@ -6,8 +6,9 @@
 
 #include "shadow/blur.h"
 
-/* Absorbed light in units of 1 / FIELD_ONE. It takes half of the memory traffic of a float. A pixel is at
- * most FIELD_ONE, but may be a little more in sums of several groups' penumbrae. */
+/* The type of the pixels of a cascade's fields: absorbed light in units of 1 / FIELD_ONE. A number of 16 bits
+ * takes half of the memory traffic of a float. A pixel is at most FIELD_ONE, but may be a little greater in
+ * sums of several groups' penumbrae. */
 typedef uint16_t field_pixel;
 enum { FIELD_ONE = 32768 };
 
@@ -17,8 +18,8 @@ typedef struct tile_rows {
 } tile_rows;
 static const tile_rows ALL_ROWS = {0, TILE};
 
-/* An operation on fields. A field is given by its pixel (0,0); its rows are `stride` apart, and zeros
- * surround its pixels. */
+/* An operation on fields, for the functions of cascade_functions. A field is given by its pixel (0,0). The
+ * field's rows are `stride` apart, and zeros surround its pixels. */
 typedef struct field_job {
   const field_pixel *a, *b; /* inputs; cascade_functions tells their resolutions. Null stands for zeros. `b`
                              * may be null only if it is not coarser than the output; `a` may be null only if
@@ -30,49 +31,54 @@ typedef struct field_job {
   tile_rows rows;
 } field_job;
 
-/* Returns whether any pixel of the tile's rows is more than zero. */
+/* The type of an operation on one tile of fields. It returns whether any pixel of the tile's rows is more
+ * than zero. */
 typedef int field_tile_function(const field_job *job, int tile_x, int tile_y);
 
 /* A blurred sum: to = a + (1 - thin) * (from, blurred along rows and columns), in one pass over memory; a
  * and thin may be null, which stands for 0. */
 typedef struct field_blur_job {
-  const field_pixel *from, *a; /* pixel (0,0); rows stride apart */
+  const field_pixel *from, *a; /* pixel (0,0) of the fields; rows are `stride` apart */
   const field_pixel *thin;
   field_pixel *to;
   size_t stride;
-  blur_box u, v; /* reach below BLUR_GREATEST_REACH */
+  /* the boxes of the blur along rows (u) and along columns (v); their reach is below BLUR_GREATEST_REACH */
+  blur_box u, v;
   tile_rows rows;
 } field_blur_job;
-/* Returns whether any pixel of the tile is more than zero. */
+/* The type of a blurred sum of one tile. It returns whether any pixel of the tile is more than zero. */
 typedef int field_blur_tile_function(const field_blur_job *job, int tile_x, int tile_y);
 
 /* How the buffer is refilled at a chunk's end. A pixel becomes the transmittance of the slabs of the chunk
  * that ends, times 1 - absorbed, which is limited to 0 to 1. */
 typedef struct refill_job {
-  const field_pixel *absorbed; /* rows stride apart */
-  float *absorbed_at_start;    /* rows are `stride` apart; at first 1 minus the light at the chunk's start,
-                                * afterwards 1 minus the new value of `to` */
-  float *to;                   /* rows stride_to apart; the buffer */
-  float *older;   /* rows are stride_to apart; the buffer's second planes. They get the old value of `to` if
-                   * `again` is set, else the new value */
+  const field_pixel *absorbed; /* the light that all groups absorb; rows are `stride` apart */
+  /* rows are `stride` apart; before the refill 1 minus the light at the old chunk's start, afterwards 1 minus
+   * the new value of `to` */
+  float *absorbed_at_start;
+  float *to; /* the pixels of the shadow buffer; rows are stride_to apart */
+  /* rows are stride_to apart; the buffer's second planes. They receive the old value of `to` if `again` is
+   * set, else the new value */
+  float *older;
   float *outside; /* rows are stride_to apart; the light at the outside of surfaces. Its difference from `to`
                    * stays the same. Null: there is none */
   size_t stride, stride_to;
-  int kept;  /* the chunk's slabs absorbed some light */
-  int again; /* whether `to` was also refilled at the chunk's start */
+  int kept;  /* whether the chunk's slabs absorbed some light */
+  int again; /* whether `to` was also refilled at the start of the chunk that ends */
 } refill_job;
 typedef void refill_tile_function(const refill_job *job, int tile_x, int tile_y);
 
-/* Weighted sums of a field's pixels around each pixel: to = sum of from + (1 - sum of thin) to. */
+/* Weighted sums of a field's pixels at the taps around each pixel: to = sum of from + (1 - sum of thin)
+ * to. */
 typedef struct field_emission_job {
-  const field_pixel *from, *thin; /* pixel (0,0); rows stride apart */
+  const field_pixel *from, *thin; /* pixel (0,0) of the fields; rows are `stride` apart */
   field_pixel *to;
   size_t stride;
   int count;
-  const ptrdiff_t *offset; /* [count]; from a pixel to each of its taps */
-  const float *weight;     /* [count] */
+  const ptrdiff_t *offset; /* [count]; offsets from a pixel to each of its taps, in pixels */
+  const float *weight;     /* [count]; the weight of each tap */
 } field_emission_job;
-/* Returns whether any pixel of the tile is more than zero. */
+/* The type of a weighted sum of one tile. It returns whether any pixel of the tile is more than zero. */
 typedef int field_emission_tile_function(const field_emission_job *job, int tile_x, int tile_y);
 
 enum { GREATEST_EDGE = 16 };
@@ -81,35 +87,39 @@ enum { GREATEST_EDGE = 16 };
  * absorbed_at_start) - now, and the fraction of this light that thin matter absorbed. The fraction moment /
  * (length * absorbed light) of the matter goes to the group at the chunk's end, the rest to the group at the
  * chunk's start. Where the chunk began in the dark, surfaces that left marks (shadow/attenuate.h) absorb the
- * light that passes the groups before the chunk; one half counts for each group. Within opaque surfaces, the
- * group at the chunk's end hides all matter before it. */
+ * light that passes the groups before the chunk. One half of this light goes to each of the two groups.
+ * Within opaque surfaces, the group at the chunk's end hides all matter before it. */
 typedef struct absorbed_job {
-  const float *absorbed_at_start; /* rows stride apart */
-  const float *now; /* transmittance at the chunk's end, or marks of surfaces; rows are stride_now apart;
-                     * readable up to `edge` pixels beside a tile */
-  float *moment;    /* sum, over the chunk's slabs, of the light that a slab absorbed times the slab's
-                     * position in the chunk; the function clears it */
-  float length;     /* of the chunk */
+  const float *absorbed_at_start; /* 1 minus the light at the chunk's start; rows are `stride` apart */
+  /* the transmittance at the chunk's end, or marks of surfaces in the dark; rows are stride_now apart;
+   * readable up to `edge` pixels beside a tile */
+  const float *now;
+  float *moment; /* sum, over the chunk's slabs, of the light that a slab absorbed times the slab's
+                  * position in the chunk; the function clears it */
+  float length;  /* the chunk's length, measured in omega */
   const field_pixel *before; /* rows are `stride` apart; the light that the groups before the chunk absorbed;
                               * null: it is not known */
-  field_pixel *start_absorbed, *start_thin; /* rows are `stride` apart; the matter is added to them */
-  field_pixel *end_absorbed, *end_thin;     /* rows are `stride` apart; the matter is written to them */
+  field_pixel *start_absorbed, *start_thin; /* the group at the chunk's start, to which matter is added;
+                                             * rows are `stride` apart */
+  field_pixel *end_absorbed, *end_thin;     /* the group at the chunk's end, to which matter is written;
+                                             * rows are `stride` apart */
   size_t stride, stride_now;
   int edge; /* along the edges of opaque surfaces, the width in pixels of a strip that does not hide the
              * matter before it; at most GREATEST_EDGE */
 } absorbed_job;
-/* Returns which of the four fields have pixels above zero, one bit each in the order of the fields. */
+/* The type of a function that adds matter in one tile. It returns which of the four fields of the two groups
+ * have pixels above zero, one bit each in the order of the fields. */
 typedef uint32_t absorbed_tile_function(const absorbed_job *job, int tile_x, int tile_y);
 
-/* Splits matter between two groups. The first output may be the input. */
+/* Splits the matter of one group between two groups. The first output may be the input. */
 typedef struct split_job {
-  const field_pixel *absorbed, *thin; /* pixel (0,0); rows stride apart */
+  const field_pixel *absorbed, *thin; /* pixel (0,0) of the group that is split; rows are `stride` apart */
   field_pixel *to_absorbed[2], *to_thin[2];
   size_t stride;
-  float late; /* the fraction that goes to the second */
+  float late; /* the fraction of the matter that goes to the second group */
 } split_job;
-/* Returns which of the four outputs have a pixel above zero, one bit each: absorbed and thin of the first
- * group, then of the second group. */
+/* The type of a function that splits one tile. It returns which of the four outputs have a pixel above zero,
+ * one bit each: absorbed and thin of the first group, then of the second group. */
 typedef uint32_t split_tile_function(const split_job *job, int tile_x, int tile_y);
 
 typedef struct cascade_functions {

@@ -6,7 +6,8 @@
 #include "shadow/blur_lanes.h"
 #include "shadow_cascade/cascade_field.h"
 
-/* Prefetches a tile's rows; each row is a cache line of its own. field: null: nothing is prefetched. */
+/* Prefetches the rows of a field's tile; each row is a cache line of its own. If `field` is null, nothing is
+ * prefetched. */
 LANES_INLINE void fetch_rows(const field_pixel *field, size_t stride, int tile_x, int tile_y, tile_rows rows,
                              const int to_write) {
   if (field == NULL) return;
@@ -17,7 +18,7 @@ LANES_INLINE void fetch_rows(const field_pixel *field, size_t stride, int tile_x
   }
 }
 
-/* The same for a tile of floats. */
+/* Prefetches the rows of a tile of floats. */
 LANES_INLINE void fetch_float_tile(const float *field, size_t stride, int tile_x, int tile_y) {
   const float *row = field + (size_t)tile_y * TILE * stride + (size_t)tile_x * TILE;
   for (int i = 0; i < TILE; i++, row += stride) __builtin_prefetch(row, 0);
@@ -30,7 +31,7 @@ LANES_INLINE void store_pixels(field_pixel *p, lanes pixels, lanes *greatest) {
 }
 LANES_INLINE int is_above_zero(lanes greatest) { return lanes_bits(greatest + 0.5f >= 1.0f) != 0; }
 
-/* 1 - thin. */
+/* The transmittance of thin matter: 1 - thin. */
 LANES_INLINE lanes transmittance_of(const field_pixel *thin) {
   return lanes_line(lanes_load_short(thin), -1.0f / FIELD_ONE, 1.0f);
 }
@@ -96,7 +97,7 @@ static int add_tile(const field_job *job, int tile_x, int tile_y) {
   return is_above_zero(greatest);
 }
 
-/* Sums of neighbours in 32 pixels. */
+/* Sums of neighbouring pixels: of each pair among 32 pixels in a row. */
 LANES_INLINE lanes sums_of_pairs(lanes first, lanes second) {
   return __builtin_shufflevector(first, second, 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30) +
          __builtin_shufflevector(first, second, 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
@@ -126,7 +127,7 @@ LANES_INLINE lanes double_row(const field_pixel *from, size_t stride, int tile_x
   const field_pixel *near = from + (ptrdiff_t)(y / 2) * (ptrdiff_t)stride + tile_x * TILE / 2 - 1;
   const field_pixel *far = y & 1 ? near + stride : near - stride;
   lanes coarse = lanes_add_scaled(0.25f * lanes_load_short(far), lanes_load_short(near),
-                                  0.75f); /* coarse pixels, of which the first one lies before the tile */
+                                  0.75f); /* sixteen coarse pixels; the first one lies before the tile */
   lanes own = __builtin_shufflevector(coarse, coarse, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8, 8);
   lanes other = __builtin_shufflevector(coarse, coarse, 0, 2, 1, 3, 2, 4, 3, 5, 4, 6, 5, 7, 6, 8, 7, 9);
   return lanes_add_scaled(0.25f * other, own, 0.75f);
@@ -202,14 +203,14 @@ static void emission_tile(const emission_job *job, int tile_x, int tile_y) {
   }
 }
 
-/* In the dark: the fraction of light that surfaces let pass. It is 1 where a pixel has no mark
- * (attenuate.h). */
+/* The fraction of light that surfaces let pass, where the chunk began in the dark. It is 1 where a pixel has
+ * no mark (attenuate.h). */
 LANES_INLINE lanes passing_in_dark(lanes end) {
   return lanes_select(end < 0.0f, end * (-1.0f / DARK_MARK), lanes_set(1.0f));
 }
 
-/* The transmittance of a chunk's own slabs. Where hardly any light was left at the chunk's start, it is the
- * transmittance of surfaces alone, because blocks of volumes are not composited there. */
+/* The transmittance of the slabs of one chunk. Where hardly any light was left at the chunk's start, it is
+ * the transmittance of surfaces alone, because blocks of volumes are not composited there. */
 LANES_INLINE lanes chunk_transmittance(lanes end, lanes start) {
   lanes least = lanes_set(DARK_AT_START);
   return lanes_select(start < least, passing_in_dark(end),
@@ -343,7 +344,8 @@ static uint32_t absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {
     lanes taken = lanes_max(before - lanes_max(now, lanes_set(0)), lanes_set(0));
     int marked = lanes_bits(now < 0.0f) != 0;
     lanes in_dark = marked && job->before != NULL ? taken_in_dark(job, at, before, now) : lanes_set(0);
-    if (!marked && lanes_bits(taken > 0.0f) == 0) { /* then the moment is zero */
+    if (!marked && lanes_bits(taken > 0.0f) == 0) { /* no matter is added here, because the moment is zero,
+                                                     * too */
       lanes_store_short(job->end_absorbed + at, lanes_set(0));
       lanes_store_short(job->end_thin + at, lanes_set(0));
       continue;

@@ -70,7 +70,8 @@ static cascade_field next_field(const cascade_level *level, size_t *used) {
   return field_of_plane(level, (*used)++);
 }
 
-/* Sets, for each column or row of tiles, the light's squared width as seen from there. */
+/* Sets, for each column or row of tiles, the light's squared width as it is seen from there, as a fraction of
+ * the square of the light's greater width. */
 static void set_parts(const soft_cascade *cascade, const sheet_light *light, int axis, int count, int scale,
                       cascade_box *boxes) {
   for (int tile = 0; tile < count; tile++) {
@@ -80,7 +81,7 @@ static void set_parts(const soft_cascade *cascade, const sheet_light *light, int
   }
 }
 
-/* A plane of floats. */
+/* The number of planes of field_pixel that a plane of floats takes. */
 enum { MOMENT_PLANES = sizeof(float) / sizeof(field_pixel) };
 
 static void plan_level(soft_cascade *cascade, int index, int tiles_x, int tiles_y) {
@@ -229,7 +230,7 @@ void hl_cascade_plan(light_shadow *shadow) {
   shadow_plan *plan = &shadow->plan;
   light_source middle = *setup->source;
   plan->cubic = is_read_cubic(setup);
-  plan->second = true; /* the light that samples fade from */
+  plan->second = true; /* the second planes hold the light from which samples fade */
   hl_plan_soft(shadow, hl_blurred_pixel(setup, plan->cubic));
   plan->extent.u = plan->seen.u;
   if (middle.parallel) middle.direction = vec3_normalise(plan->seen.middle);
@@ -265,7 +266,7 @@ void hl_cascade_begin_elsewhere(light_shadow *shadow) {
   memset(cascade->touched, 0, tiles);
   memset(cascade->refilled, 0, tiles);
   for (int i = 0; i < cascade->level_count; i++) begin_level(cascade, i, &shadow->plan.seen);
-  cascade->level[0].count = 1; /* at the first chunk's start */
+  cascade->level[0].count = 1; /* the first group lies at the first chunk's start */
   cascade->level[0].group[0].omega = cascade->chunk_start;
 }
 
@@ -304,7 +305,8 @@ static void clear_moments(const soft_cascade *cascade, hl_pool *pool) {
   }
 }
 
-/* Returns the memory filled with zeros, because the next frame expects zeros. */
+/* Fills the memory that the cascade keeps from frame to frame with zeros, because the next frame expects
+ * zeros. */
 void hl_cascade_end(light_shadow *shadow) {
   soft_cascade *cascade = shadow->state;
   hl_pool *pool = shadow->means.pool;

@@ -7,8 +7,8 @@
 /* The number of chunks after which a level's sums are made anew. */
 static uint64_t period_of(int level) { return level < 2 ? 1 : (uint64_t)1 << (level - 2); }
 
-/* The difference of the variances of two boxes, in squared pixels of the buffer. wide, narrow: the boxes'
- * widths where the light is widest. */
+/* The difference of the variances of two boxes of different widths, in squared pixels of the buffer. wide,
+ * narrow: the boxes' widths where the light is widest. */
 static double variance_between(double wide, double narrow) {
   return fmax(wide * wide - narrow * narrow, 0) / 12;
 }
@@ -21,8 +21,9 @@ static double resampled_by(const cascade_level *level) {
   return ((double)level->scale * level->scale - 1) / 3;
 }
 
-/* The blur that brings a level's sum to `omega`, on a level that is as fine or finer. If resampling alone
- * blurs by more than this, the excess is remembered (owed) and subtracted from the next blur. */
+/* The blur that brings a level's sum from its own omega to a given `omega`, on the way to a level that is as
+ * fine or finer. If resampling alone blurs by more than this, the excess is remembered (owed) and subtracted
+ * from the next blur. */
 static cascade_blur blur_towards(const cascade_level *from, double receiver, double omega,
                                  cascade_level *to) {
   double variance = variance_between(receiver - from->sum_omega, receiver - omega),
@@ -45,7 +46,7 @@ static void forget_oldest(cascade_level *level, int gone) {
   level->renewed = true;
 }
 
-/* A field is copied to another level. */
+/* Copies a field to the pixels of another level. */
 static void copy_field(const cascade_crew *crew, const cascade_level *level, const cascade_field *from,
                        const cascade_level *to_level, const cascade_field *to) {
   const cascade_sum sum = {
@@ -131,8 +132,8 @@ static void absorb_tile(const absorb_task *task, size_t tile_x, size_t tile_y, b
   }
 }
 
-/* Adds the light that the chunk's slabs have absorbed to the two groups at the chunk's ends. The tiles keep
- * their marks in `touched` until the buffer is refilled. */
+/* Adds the light that the chunk's slabs have absorbed to the two groups at the chunk's ends. The marks of
+ * tiles in `touched` stay until the buffer is refilled. */
 static void absorb_piece(void *data, size_t index, int worker) {
   (void)worker;
   const absorb_task *task = data;
@@ -187,13 +188,14 @@ static void push_chunk(soft_cascade *cascade, const light_shadow *shadow, double
     merge_up(cascade, i, crew);
 }
 
-/* The omega of the middle of the slab before a sheet. */
+/* The omega of the middle of the slab that ends at a sheet. */
 static double slab_omega(const soft_cascade *cascade, const sheet_stack *sheets, int sheet) {
   return hl_cascade_omega(cascade, (hl_sheet_height(sheets, sheet - 1) + hl_sheet_height(sheets, sheet)) / 2);
 }
 
-/* The reach of a pass whose result, at the scale `scale`, will be doubled until it has the scale of the sum.
- * The pass must compute the pixels within this reach around the tiles that are read. */
+/* The reach, in pixels of the buffer, of a pass whose result, at the scale `scale`, will be doubled until it
+ * has the scale of the sum. The pass must compute the pixels within this reach around the tiles that are
+ * read. */
 static int reach_at(const cascade_sum *sum, int scale) {
   int doubling = hl_cascade_doubling_reach(scale, sum->level->scale);
   return sum->reach == READ_EVERYWHERE ? sum->reach : sum->reach + doubling;
@@ -236,8 +238,8 @@ static void bring(cascade_sum sum, cascade_blur blur, const cascade_crew *crew) 
   crew->works->add(crew, &sum);
 }
 
-/* Adds a group to the sum of the groups before it. Before that, blurs this sum from the omega of the group
- * before to the omega of the new group. */
+/* Adds a group to the sum of the groups behind it. Before that, blurs this sum from the omega of the last
+ * added group to the omega of the new group. */
 static void pass_group(int channels, cascade_level *from, cascade_level *level, const cascade_group *group,
                        double receiver, int reach, const cascade_crew *crew) {
   cascade_blur blur = blur_towards(from, receiver, group->omega, level);
@@ -249,8 +251,8 @@ static void pass_group(int channels, cascade_level *from, cascade_level *level, 
           blur, crew);
 }
 
-/* Starts the sum with the farthest group. Look-ups also blur; so their blur is subtracted from the group's
- * blur. */
+/* Starts the sum of all groups with the farthest group. Look-ups also blur; so their blur is subtracted from
+ * the group's blur. */
 static void pass_first(const soft_cascade *cascade, cascade_level *level, const cascade_group *group,
                        const cascade_crew *crew) {
   level->owed[0] = level->owed[1] = cascade->lookup_variance;
@@ -260,7 +262,7 @@ static void pass_first(const soft_cascade *cascade, cascade_level *level, const 
 
 /* ---- where the next slabs read ---- */
 
-/* Finds the tiles that the sheets up to the end of the next chunk can touch. */
+/* Finds the tiles of the buffer that the sheets up to the end of the next chunk can touch. */
 static void find_reads(soft_cascade *cascade, const occupancy *occupancy, const light_shadow *shadow,
                        int sheet) {
   const sheet_stack *sheets = shadow->setup.sheets;
@@ -334,7 +336,7 @@ typedef struct refill_task {
   soft_cascade *cascade;
   shadow_buffer *buffer;
   const cascade_functions *functions;
-  bool any; /* cascade->absorbed is not all zeros */
+  bool any; /* whether any pixel of cascade->absorbed is not zero */
 } refill_task;
 
 static void refill_piece(void *data, size_t index, int worker) {
@@ -395,7 +397,7 @@ static bool find_shade(soft_cascade *cascade, double receiver, const cascade_cre
   return true;
 }
 
-/* Refills the buffer that sheets look up. */
+/* Refills the shadow buffer, which sheets look up, from the absorbed light of all groups. */
 static void refill_buffer(const cascade_crew *crew, const cascade_refilling *of) {
   refill_task task = {of->cascade, of->buffer, crew->functions, of->any};
   hl_pool_run(crew->pool, hl_cascade_row_pieces(&of->cascade->level[0]), refill_piece, &task);
@@ -421,7 +423,7 @@ static bool ends_chunk(const light_shadow *shadow, int sheet) {
   return isfinite(omega) && omega - cascade->chunk_start >= cascade->chunk;
 }
 
-/* Begins the next chunk at a sheet where a chunk ends. Returns its end. */
+/* Begins the next chunk at a sheet where a chunk ends. Returns the omega at which the new chunk ends. */
 static double start_next(soft_cascade *cascade, const sheet_stack *sheets, int sheet) {
   double omega = hl_cascade_omega(cascade, hl_sheet_height(sheets, sheet));
   double end = hl_cascade_chunks_on(cascade, omega, 1);
@@ -435,7 +437,7 @@ void hl_cascade_end_chunk(light_shadow *shadow, const occupancy *occupancy, int 
   soft_cascade *cascade = shadow->state;
   double end = start_next(cascade, shadow->setup.sheets, sheet);
   find_reads(cascade, occupancy, shadow, sheet);
-  /* this sum is made from the chunks before the one that ends here */
+  /* cascade->absorbed is made from the chunks before the chunk that ends here */
   bool any = find_shade(cascade, end, crew);
   push_chunk(cascade, shadow, cascade->chunk_start, any, crew);
   const cascade_refilling refilling = {cascade, shadow->buffer, sheet, any};
@@ -483,19 +485,21 @@ void hl_cascade_find_chunks(const light_shadow *planned, int first, cascade_slab
   }
 }
 
-/* Sets the part of a slab's light that its samples read from the buffer; they read the rest from the buffer's
- * second planes. The part is 0 at the beginning of a chunk, and 1 once the chunk has its whole length. */
+/* Sets the fraction of a slab's light that samples read from the buffer. They read the other fraction from
+ * the buffer's second planes. The first fraction is 0 at the beginning of a chunk, and 1 once the chunk has
+ * its whole length. */
 static void before_shading(light_shadow *shadow, int sheet, shadow_lookup *lookup) {
   lookup->young = young_of(shadow->state, shadow->setup.sheets, sheet);
 }
 
-/* Sets the slab's position in the chunk. */
+/* Sets the slab's position in its chunk, and lets surfaces leave marks in the dark. */
 static void before_slab(light_shadow *shadow, int sheet, attenuate_job *job) {
   job->position = position_of(shadow->state, shadow->setup.sheets, sheet);
   job->marks = true;
 }
 
-/* The slab is also composited into the second planes, and counted in the moments. */
+/* Prepares a tile so that its slab is also composited into the buffer's second planes, and counted in the
+ * moments. */
 static void before_tile(const light_shadow *shadow, size_t tile, attenuate_job *job) {
   const soft_cascade *cascade = shadow->state;
   const shadow_buffer *buffer = shadow->buffer;

@@ -8,7 +8,7 @@ void hl_cascade_clear_pixels(const cascade_level *level, const cascade_field *fi
   for (size_t row = 0; row < TILE; row++) memset(pixels + row * level->stride, 0, TILE * sizeof(field_pixel));
 }
 
-/* From this number of tiles on, memchr() is faster than a loop. */
+/* From this number of tiles on, memchr() finds tiles that are not zeros faster than a loop. */
 enum { MANY_TILES = 4 };
 
 bool hl_cascade_all_zeros(const cascade_level *level, const cascade_field *field, int x0, int x1, int y0,
@@ -59,7 +59,7 @@ static bool sum_is_zeros(const add_task *task, int x0, int x1, int y) {
   for (int i = 0; i < 2; i++) {
     if (fields[i] == NULL) continue;
     int scale = levels[i]->scale, own = sum->level->scale, first = x0, last = x1, top = y, bottom = y;
-    if (scale == own && x0 == x1) { /* the usual case, without a call */
+    if (scale == own && x0 == x1) { /* the usual case is tested without a call of a function */
       if (!fields[i]->zeros[y * sum->level->tiles_x + x0]) return false;
       continue;
     }
@@ -74,8 +74,8 @@ static bool row_is_zeros(const cascade_level *level, const cascade_field *field,
   return hl_cascade_all_zeros(level, field, piece.first, piece.end - 1, piece.y, piece.y);
 }
 
-/* Adds a row of tiles. Most rows are zeros and were zeros before; for such a row the function returns at
- * once. */
+/* Computes a sum in a piece of a row of tiles. Most rows are zeros and were zeros before; for such a row the
+ * function returns at once. */
 static void add_tiles(const add_task *task, row_piece piece) {
   const cascade_level *level = task->sum.level;
   const cascade_field *a = task->sum.a, *to = task->sum.to;
@@ -135,7 +135,7 @@ typedef struct blur_task {
   cascade_blurred_sum sum;
   field_blur_job job;
   field_blur_tile_function *function;
-  int reach_x, reach_y; /* reach of the blur; tiles */
+  int reach_x, reach_y; /* the numbers of tiles that the blur reads to each side of a tile */
 } blur_task;
 
 static void blur_piece(void *data, size_t index, int worker) {
@@ -202,7 +202,8 @@ void hl_cascade_blur_add(const cascade_crew *crew, const cascade_blurred_sum *su
 
 typedef struct split_task {
   const cascade_level *level;
-  const cascade_field *fields[4]; /* absorbed and thin of the first output, then of the second */
+  const cascade_field *fields[4]; /* the fields `absorbed` and `thin` of the first output, then of the
+                                   * second */
   split_job job;
   split_tile_function *function;
 } split_task;
@@ -223,7 +224,7 @@ static void split_row(void *data, size_t index, int worker) {
 
 typedef struct merge_task {
   const cascade_level *level;
-  int ratio; /* ratio of the levels' scales */
+  int ratio; /* the scale of the farther level divided by the scale of the nearer level */
   split_task split;
   add_task sums[MERGE_SUMS];
 } merge_task;

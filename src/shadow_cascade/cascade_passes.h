@@ -5,11 +5,14 @@
 
 #include "shadow_cascade/cascade.h"
 
-/* Rows of tiles are divided into pieces, so that threads finish at the same time. */
+/* The number of pieces into which rows of tiles are divided, so that threads finish at about the same
+ * time. */
 enum { ROW_PIECES = 2 };
 typedef struct row_piece {
   int y, first, end;
-} row_piece; /* tiles */
+  /* numbers of tiles: the row, and the piece's first and last column, of which the last one is not included
+   */
+} row_piece;
 
 static inline size_t hl_cascade_row_pieces(const cascade_level *level) {
   return (size_t)level->tiles_y * ROW_PIECES;
@@ -20,7 +23,7 @@ static inline row_piece hl_cascade_row_piece(const cascade_level *level, size_t 
                      level->tiles_x * (piece + 1) / ROW_PIECES};
 }
 
-/* The blur of a pass. */
+/* The blur of a pass over a field. */
 typedef struct cascade_blur {
   double variance;     /* the variance of the blur where the light is widest, in squared pixels of the level;
                         * columns and rows have fractions of it */
@@ -28,32 +31,34 @@ typedef struct cascade_blur {
                         * subtracted */
 } cascade_blur;
 
-/* A sum: to = a + (1 - thin) b. There are two kinds: a and b are both on levels twice as fine as the level of
- * `to`; or b alone is on a level twice as coarse. */
+/* A sum of fields: to = a + (1 - thin) b. There are two kinds of sums. In one kind, a and b are both on
+ * levels twice as fine as the level of `to`, or on the same level. In the other kind, only b is on a level
+ * twice as coarse. */
 typedef struct cascade_sum {
-  const cascade_level *level_a;  /* level of a and thin */
+  const cascade_level *level_a;  /* the level of the fields a and thin */
   const cascade_field *a, *thin; /* a: null stands for zeros; it is allowed only where b is coarser than `to`.
                                   * thin: null stands for zeros */
-  const cascade_level *level_b;  /* level of b; null where b is null */
+  const cascade_level *level_b;  /* the level of the field b; null where b is null */
   const cascade_field *b;        /* null stands for zeros; it is allowed only where a is not coarser than
                                   * `to` */
-  const cascade_level *level;    /* level of `to` */
+  const cascade_level *level;    /* the level of the field `to` */
   const cascade_field *to;
   int reach; /* `to` is computed in the tiles that are read, and within this many pixels of the buffer around
               * these tiles. READ_EVERYWHERE: `to` is computed in all tiles */
 } cascade_sum;
 void hl_cascade_add(const cascade_crew *crew, const cascade_sum *sum);
 
-/* A sum: to = a + (1 - thin) * (from, blurred). All fields are on one level. */
+/* A sum with a blur: to = a + (1 - thin) * (from, blurred). All fields are on one level. */
 typedef struct cascade_blurred_sum {
   const cascade_level *level;
-  const cascade_field *from, *a, *thin, *to; /* a and thin: null for zeros */
+  const cascade_field *from, *a, *thin, *to; /* a and thin may be null, which stands for zeros */
   cascade_blur blur;
-  int reach; /* as in cascade_sum */
+  /* as in cascade_sum: the pixels of the buffer around the tiles that are read in which `to` is computed */
+  int reach;
 } cascade_blurred_sum;
 void hl_cascade_blur_add(const cascade_crew *crew, const cascade_blurred_sum *sum);
 
-/* One channel of a group. */
+/* The fields of one colour channel of a group. */
 typedef struct cascade_matter {
   const cascade_field *absorbed, *thin;
 } cascade_matter;
@@ -63,46 +68,47 @@ typedef struct cascade_matter {
  * of a are added to the group `first`. */
 typedef struct cascade_merger {
   const cascade_level *level;
-  cascade_matter a, b;  /* on level; b is changed */
-  cascade_matter spare; /* on level; overwritten */
+  cascade_matter a, b;  /* fields of the level `level`; the fields of b are overwritten */
+  cascade_matter spare; /* fields of the level `level` for intermediate results */
   double late;          /* the fraction of b's matter that goes to `second` */
   const cascade_level *next;
-  cascade_matter first, second; /* on next */
+  cascade_matter first, second; /* fields of the level `next` */
 } cascade_merger;
-/* The sums of a merge after the split, in order. */
+/* The number of sums that a merge takes after the groups are split. */
 enum { MERGE_SUMS = 6 };
 void hl_cascade_find_merge_sums(const cascade_merger *merger, cascade_sum sums[MERGE_SUMS]);
 /* Merges two groups. Each row of tiles goes through all steps before the next row does. */
 void hl_cascade_merge(const cascade_crew *crew, const cascade_merger *merger);
 
-/* The light that a chunk's slabs absorbed goes to the groups at the chunk's two ends. */
+/* The task of adding the light that a chunk's slabs absorbed to the groups at the chunk's two ends. */
 typedef struct cascade_absorption {
   const soft_cascade *cascade;
-  const shadow_buffer *buffer; /* null where a device has it */
+  const shadow_buffer *buffer; /* null where the buffer is in the memory of a device */
   cascade_group *start, *end;
-  double length; /* of the chunk, in omega */
-  int edge;      /* as in absorbed_job */
-  bool any;      /* cascade->absorbed is not all zeros */
+  double length; /* length of the chunk, measured in omega */
+  int edge;      /* the width in pixels of a strip along the edges of opaque surfaces, as in absorbed_job */
+  bool any;      /* whether any pixel of cascade->absorbed is not zero */
 } cascade_absorption;
 
-/* The buffer is refilled from cascade->absorbed. */
+/* The task of refilling the shadow buffer from cascade->absorbed. */
 typedef struct cascade_refilling {
   soft_cascade *cascade;
-  shadow_buffer *buffer; /* null where a device has it */
+  shadow_buffer *buffer; /* null where the buffer is in the memory of a device */
   int sheet;
-  bool any; /* cascade->absorbed is not all zeros */
+  bool any; /* whether any pixel of cascade->absorbed is not zero */
 } cascade_refilling;
 
 /* Bits of cascade->refilled. REFILLED_BEFORE: the tile was refilled at the end of the chunk before.
  * REFILLED_NOW: the tile was refilled at the end of this chunk. */
 enum { REFILLED_BEFORE = 1, REFILLED_NOW = 2 };
 
-/* Who makes the passes: the processors, or a device. */
+/* The functions that make the passes over a cascade's fields: on the processors, or on a device. */
 typedef struct cascade_works {
   void (*add)(const cascade_crew *crew, const cascade_sum *sum);
   void (*blur_add)(const cascade_crew *crew, const cascade_blurred_sum *sum);
   void (*merge)(const cascade_crew *crew, const cascade_merger *merger);
-  /* Returns whether the chunk's slabs absorbed any light. */
+  /* Adds the light that a chunk's slabs absorbed to the groups. Returns whether the slabs absorbed any
+   * light. */
   bool (*absorb)(const cascade_crew *crew, const cascade_absorption *absorption);
   void (*refill)(const cascade_crew *crew, const cascade_refilling *refilling);
 } cascade_works;
@@ -118,10 +124,10 @@ int hl_cascade_doubling_reach(int from, int to);
 bool hl_cascade_all_zeros(const cascade_level *level, const cascade_field *field, int x0, int x1, int y0,
                           int y1);
 
-/* Makes a tile's pixels zeros. */
+/* Sets all pixels of a tile to zero. */
 void hl_cascade_clear_pixels(const cascade_level *level, const cascade_field *field, int x, int y);
 
-/* Clears a tile and marks it as zeros, unless it is marked already. */
+/* Sets all pixels of a tile to zero and marks the tile as zeros, unless it is marked already. */
 static inline void hl_cascade_clear_tile(const cascade_level *level, const cascade_field *field, int x,
                                          int y) {
   unsigned char *zeros = &field->zeros[y * level->tiles_x + x];

@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-/* Writes 1 for each tile that is read. Entries are shifted by one row and one column, as the summed-area
- * table needs them: a tile's entry is the one at its row + 1 and column + 1. */
+/* Writes 1 for each tile that is read. As the summed-area table needs it, the entry of a tile is at the
+ * tile's row + 1 and column + 1. */
 static void mark_tiles(cascade_reads *reads, const occupancy *occupancy, const int32_t *needed_until,
                        int first_sheet, int last_sheet) {
   size_t width = (size_t)reads->tiles_x, words = (size_t)occupancy->tile_words;

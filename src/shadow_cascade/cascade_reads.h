@@ -28,13 +28,13 @@ typedef struct read_band {
   const uint32_t *upper, *lower;
 } read_band;
 
-/* The tiles that are read around a row of tiles of a level: within `reach` pixels of the buffer. scale: edge
- * of the level's pixels. */
+/* Where the buffer is read around a row of tiles of a level, within a given number of pixels of the buffer.
+ * scale: edge of the level's pixels. */
 typedef struct read_row {
   int scale, reach, tiles_x;
-  int around;                     /* reach in tiles */
-  bool any;                       /* whether anything is read; if not, `blocks` is not set */
-  read_band all;                  /* around the whole row */
+  int around;                     /* the number of tiles within whose distance reading counts */
+  bool any;                       /* whether any tile is read; if not, `blocks` is not set */
+  read_band all;                  /* the band around the whole row of tiles */
   read_band blocks[TILE / BLOCK]; /* one band around each four rows of pixels of the row of tiles */
 } read_row;
 
