@@ -1,12 +1,12 @@
 /* shadow_paper/paper.c - the paper's soft shadows (sections 5.1 and 5.2), unchanged, as the baseline.
  *
- * One buffer is convolved again and again with a box, or with the light's emission image. The width of the
- * box or image is given by eq. (5) for the step from the last convolved sheet to the next one. Convolution
- * adds variances and not widths, so the widths of penumbrae grow with the square root of the distance. This
- * is the error that the other methods avoid.
+ * One buffer is convolved again and again with a box, or with the light's emission image. Eq. (5) gives the
+ * width of the box or image for the step from the last convolved sheet to the next one. Convolution adds
+ * variances and not widths, so the widths of penumbrae grow with the square root of the distance. This is the
+ * error that the other methods avoid.
  *
- * A part of a shared picture computes the pixels that it reads, and the pixels that the convolutions read to
- * make these. */
+ * Each part of a shared picture computes the pixels that it reads itself, and the pixels that the
+ * convolutions read to make these pixels. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -15,23 +15,26 @@
 #include "shadow/shadow_method.h"
 
 typedef struct soft_paper {
-  const light_emission *emission; /* null: boxes */
+  const light_emission *emission; /* the light's emission image; null: convolutions use boxes */
   bool parallel;
   double size;         /* the width L of the virtual light; for parallel light L / Z */
-  double light_height; /* height of a near light along the sheets' normal */
-  double pixel;        /* edge of a buffer's pixel: in frame units; for near light, the edge at distance 1 */
-  double last;         /* height of the last convolved sheet */
+  double light_height; /* height of a near light, measured along the sheets' normal */
+  double pixel;        /* edge of a buffer's pixel in frame units; for a near light, the edge at distance 1 */
+  double last;         /* height of the sheet for which the last convolution was made */
   double remainder;    /* width, in pixels, that was accumulated but not convolved yet */
   int reach;           /* number of pixels beyond a tile that blurs may read; also the width of the buffer's
                         * margin */
-  int32_t *reached;    /* [slabs]; used by widen_needs() */
-  int32_t *far;        /* [tiles of the buffer]; used by widen_needs() */
+  /* [slabs]; for each slab, the sum of the reaches of all convolutions before it, in pixels; working memory
+   * of widen_needs() */
+  int32_t *reached;
+  int32_t *far; /* [tiles of the buffer]; working memory of widen_needs() */
 } soft_paper;
 
 /* The virtual light is the orthogonal projection of the real one onto a plane parallel to the sheets (section
- * 5.2, (1)), of average size (section 5.2, (3)): a disk of diameter L that is tilted by t becomes an ellipse
- * with the axes L and L cos t. Z is measured along the sheets' normal. So for parallel light L / Z is (L / D)
- * / cos t, where L / D = 2 tan(angle / 2) is measured along the ray (derived). */
+ * 5.2, (1)), of average size (section 5.2, (3)). A disk of diameter L that is tilted by t becomes an ellipse
+ * with the axes L and L cos t. The distance Z from the light is measured along the sheets' normal. So for
+ * parallel light L / Z is (L / D) / cos t, where L / D = 2 tan(angle / 2) is measured along the ray
+ * (derived). */
 static void see_light(soft_paper *soft, const shadow_setup *setup, const view *view) {
   const light_source *source = setup->source;
   vec3 normal = setup->sheets->normal;
@@ -47,8 +50,9 @@ static void see_light(soft_paper *soft, const shadow_setup *setup, const view *v
   soft->remainder = 0;
 }
 
-/* eq. (5): dx = L dZ / Z; seen from the light's centre at distance 1, dx / (Z + dZ) = L (1/Z - 1/(Z +
- * dZ)). */
+/* The width dx, in pixels, by which a penumbra grows from one sheet to another: eq. (5) of the paper, dx = L
+ * dZ / Z, where L is the light's width and Z the distance from the light. Seen from the light's centre at
+ * distance 1 it is dx / (Z + dZ) = L (1/Z - 1/(Z + dZ)). */
 static double width_between(const soft_paper *soft, double from, double to) {
   if (soft->parallel) return soft->size * (to - from) / soft->pixel;
   double near = from - soft->light_height, far = to - soft->light_height;
@@ -70,7 +74,7 @@ static int widest_reach(const soft_paper *soft, const sheet_stack *sheets) {
  * tile at once. */
 typedef struct convolution {
   shadow_buffer *buffer;
-  const int32_t *needed_until; /* light_shadow's */
+  const int32_t *needed_until; /* borrowed from the light_shadow */
   int sheet, reach;            /* reach: the number of pixels around a tile that the convolution reads */
   unsigned char *wanted;       /* [tiles]; 1 for tiles that can change */
   shadow_plane kind;           /* the planes that are convolved now */
@@ -79,7 +83,7 @@ typedef struct convolution {
   blur_box box;
   /* the next members are used in place of `box` if there is an emission image: */
   int count;
-  const ptrdiff_t *offset; /* [count] */
+  const ptrdiff_t *offset; /* [count]; the offset of each tap, in floats */
   const emission_taps *taps;
 } convolution;
 
@@ -148,8 +152,8 @@ static void copy_back(void *data, size_t index, int worker) {
   }
 }
 
-/* Convolves the planes of one kind; planes of other kinds stay as they are. last: whether these are the last
- * planes that are convolved at the sheet; if so, the lit blocks of tiles are found again. */
+/* Convolves the planes of one kind; planes of other kinds stay as they are. last: whether these planes are
+ * the last ones that are convolved at the sheet. If so, the lit blocks of tiles are found again. */
 static void convolve_planes(const soft_paper *soft, convolution *task, shadow_plane kind, bool last,
                             hl_pool *pool) {
   size_t rows = (size_t)task->buffer->tiles_y;
@@ -181,7 +185,7 @@ static void convolve_with_emission(const soft_paper *soft, convolution *task, in
 
 /* ---- which tiles ---- */
 
-/* Whether any tile that is at most `around` tiles away has absorbed light. */
+/* Whether light was absorbed in any tile that is at most `around` tiles away from the tile (x, y). */
 static bool any_touched(const shadow_buffer *buffer, int x, int y, int around) {
   int x0 = x < around ? 0 : x - around, y0 = y < around ? 0 : y - around;
   for (int j = y0; j <= y + around && j < buffer->tiles_y; j++)
@@ -221,8 +225,8 @@ static void find_wanted(void *data, size_t index, int worker) {
   }
 }
 
-/* The number of pixels to each side of a pixel that a convolution reads. width: of the box or the image, in
- * pixels. */
+/* The number of pixels to each side of a pixel that a convolution reads. width: the width of the box or of
+ * the emission image, in pixels. */
 static int reach_of(const soft_paper *soft, int width) {
   if (soft->emission != NULL) return (int)(soft->emission->reach * width) + 2;
   blur_box box = hl_blur_box((float)width);
@@ -251,10 +255,11 @@ static void convolve(const soft_paper *soft, const light_shadow *shadow, int she
   for (size_t tile = 0; tile < tiles; tile++) buffer->tile_touched[tile] |= task.wanted[tile];
 }
 
-/* Section 5.2, (2): accumulates dx until it exceeds two pixels, convolves by the integer part of the sum and
- * carries the rest. An emission image has one tap per pixel, and along an axis at most as many taps as it has
- * cells; so greater widths take several convolutions. shadow: null: nothing is convolved, only the reach is
- * found. Returns the sum of the reaches of the convolutions at this sheet, in pixels. */
+/* Convolves at a sheet, as section 5.2, (2) of the paper says: the widths dx are added up until the sum
+ * exceeds two pixels. The buffer is then convolved by the integer part of the sum, and the rest is carried
+ * on. An emission image has one tap per pixel, and along an axis at most as many taps as it has cells; so
+ * greater widths take several convolutions. shadow: null: nothing is convolved, only the reach is found.
+ * Returns the sum of the reaches of the convolutions at this sheet, in pixels. */
 static int pass_sheet(soft_paper *soft, const sheet_stack *sheets, int sheet, const light_shadow *shadow) {
   double next = hl_sheet_height(sheets, sheet + 1);
   double width = soft->remainder + width_between(soft, soft->last, next);
@@ -304,7 +309,8 @@ static int32_t greatest_beside(const shadow_buffer *buffer, const int32_t *far, 
   return greatest;
 }
 
-/* The last slab whose entry in `reached` is at most `far`. reached: [slabs]; its numbers never fall. */
+/* The number of the last slab whose entry in `reached` is at most `far`. reached: [slabs]; its numbers never
+ * fall. */
 static int32_t last_slab(const int32_t *reached, int slabs, int32_t far) {
   int32_t low = 0, high = slabs;
   while (high - low > 1) {
@@ -358,7 +364,8 @@ static void plan_paper(light_shadow *shadow) {
   shadow_plan *plan = &shadow->plan;
   soft_paper *soft = shadow->state;
   plan->cubic = setup->settings->shadow_lookup == HL_LOOKUP_CUBIC;
-  plan->second = true; /* between two blurs */
+  /* the second planes hold a buffer between the two blurs, along rows and along columns */
+  plan->second = true;
   hl_plan_soft(shadow, hl_blurred_pixel(setup, plan->cubic));
   hl_shadow_view(setup->source, sheets->normal, &plan->extent, &plan->view);
   see_light(soft, setup, &plan->view);

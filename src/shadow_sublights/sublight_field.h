@@ -13,16 +13,17 @@ enum { SLAB_COPIES = 4 };
 
 typedef struct half_pixel_job {
   const float *slab;
-  float *moved[SLAB_COPIES]; /* outputs; the first is not used */
+  float *moved[SLAB_COPIES]; /* the copies that are filled; moved[0] is not used, because copy 0 is the
+                              * slab itself */
   size_t slab_stride;
 } half_pixel_job;
 
-/* Rows of a tile in which some pixel is below 1, in the slab or in one of its shifted copies: bit TILE * copy
- * + row. */
+/* The rows of a tile of the slab in which some pixel is below 1, in the slab or in one of its shifted copies.
+ * Row `row` of copy `copy` has the bit TILE * copy + row. */
 typedef uint64_t slab_rows;
 
-/* Fills a tile of the shifted copies, in those rows in which some pixel is below 1. Other rows hold ones
- * already. */
+/* The type of the function that fills one tile of the shifted copies. It fills those rows in which some pixel
+ * is below 1. All other rows hold ones already. */
 typedef slab_rows half_pixel_tile_function(const half_pixel_job *job, int tile_x, int tile_y);
 
 typedef struct sublight_job {
@@ -30,40 +31,47 @@ typedef struct sublight_job {
   /* the light at the outside of surfaces that is left after the slab, where full light comes to the slab */
   const float *slab_outside[HL_CHANNELS][SLAB_COPIES];
   size_t slab_stride;
-  const slab_rows *rows; /* [slab_tiles_y][slab_tiles_x] */
+  /* [slab_tiles_y][slab_tiles_x]; for each tile of the slab, the rows in which some pixel is below 1 */
+  const slab_rows *rows;
   int slab_tiles_x, slab_tiles_y;
-  float slab_width, slab_height; /* pixels; around them are up to 32 pixels of ones */
-  float scale[2], shift[2];      /* maps a pixel (u, v) of the sub-light to the slab, as scale * pixel +
-                                  * shift in continuous coordinates */
-  int half[2];                   /* shift in half pixels, rounded */
+  float slab_width, slab_height; /* size of the slab's image in pixels; around the image are up to 32
+                                  * pixels of ones */
+  float scale[2], shift[2];      /* map a continuous pixel (u, v) of the sub-light to the slab: scale *
+                                  * pixel + shift */
+  int half[2];                   /* `shift` in half pixels, rounded to whole numbers */
   sublight_pixel *transmittance[HL_CHANNELS]; /* pixel (0,0) of the sub-light's buffer; rows are `stride`
                                                * apart */
   sublight_pixel *outside[HL_CHANNELS];       /* pixel (0,0) of the light at the outside of surfaces, laid out
                                                * as the transmittance; null: there is none */
-  size_t stride;                              /* a tile's margin on either side */
+  size_t stride;                              /* number of pixels from row to row; a row has a margin of
+                                               * one tile on either side */
   int tiles_x;
-  float carry; /* a number between 0 and 1 that is added to a pixel's new value before the value is truncated
-                * to a whole number. It varies from slab to slab. So haze attenuates light by the right amount
-                * on average, even if each slab of it absorbs less than 1 / SUBLIGHT_ONE */
+  /* a number between 0 and 1 that is added to a pixel's new value before the value is truncated to a whole
+   * number. The number varies from slab to slab. So haze attenuates light by the right amount on average,
+   * even if each slab of it absorbs less than 1 / SUBLIGHT_ONE */
+  float carry;
   int channels;
 } sublight_job;
 
-/* Multiplies a tile of the sub-light by the slab. Returns whether the slab absorbed any light. */
+/* The type of the function that multiplies one tile of a sub-light's buffer by the slab's transmittance. It
+ * returns whether the slab absorbed any light. */
 typedef int sublight_tile_function(const sublight_job *job, int tile_x, int tile_y);
 
-/* Multiplies a row of the sub-light's tiles by the slab's tiles from `first` to `last`. The job's scale must
- * be 1. lit: [tiles_x]; for each tile, the blocks with light, one bit each. Tiles in which no block has light
- * are skipped. touched: [tiles_x]; becomes 1 for tiles in which light may have been absorbed. */
+/* The type of the function that multiplies a row of a sub-light's tiles by the transmittance of the slab's
+ * tiles from `first` to `last`. The job's scale must be 1. lit: [tiles_x]; for each tile, the blocks with
+ * light, one bit each. Tiles in which no block has light are skipped. touched: [tiles_x]; becomes 1 for tiles
+ * in which light may have been absorbed. */
 typedef void sublight_row_function(const sublight_job *job, int tile_y, int first, int last,
                                    const uint16_t *lit, unsigned char *touched);
 
-/* Those of the blocks `lit` that still have light. */
+/* The type of the function that returns which of the blocks `lit` of a tile still have light, one bit
+ * each. */
 typedef uint32_t sublight_lit_function(const sublight_job *job, int tile_x, int tile_y, uint32_t lit);
 
 /* The functions of this room that are compiled for each instruction set. */
 typedef struct sublight_functions {
   sublight_tile_function *composite;
-  sublight_row_function *composite_row; /* where pixels are only shifted */
+  sublight_row_function *composite_row; /* used where the slab's pixels are only shifted, not scaled */
   sublight_lit_function *lit;
   half_pixel_tile_function *half_pixel;
 } sublight_functions;

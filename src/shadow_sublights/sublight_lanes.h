@@ -1,11 +1,11 @@
 /* shadow_sublights/sublight_lanes.h - multiplies one tile of one sub-light's buffer by the scaled and shifted
  * slab, a row of sixteen pixels at a time.
  *
- * A sub-light's pixel is multiplied by the slab's transmittance at the nearest half pixel. Values at half
- * pixels come from cubic convolution with a = -1 (Keys, "Cubic convolution interpolation for digital image
- * processing", 1981), with weights -1/8, 5/8, 5/8, -1/8. These weights sharpen the slab by about as much as
- * the bilinear look-up of the buffer blurs it: the weights have the variance -1/4 at half pixels and 0 at
- * whole pixels, and the look-up has the variance 1/6 on average. */
+ * Each pixel of the sub-light is multiplied by the slab's transmittance at the nearest half pixel. Values at
+ * half pixels come from cubic convolution with a = -1 (Keys, "Cubic convolution interpolation for digital
+ * image processing", 1981), with weights -1/8, 5/8, 5/8, -1/8. These weights sharpen the slab by about as
+ * much as the bilinear look-up of the buffer blurs it: the weights have the variance -1/4 at half pixels and
+ * 0 at whole pixels, and the look-up has the variance 1/6 on average. */
 #ifndef HL_SHADOW_SUBLIGHTS_SUBLIGHT_LANES_H
 #define HL_SHADOW_SUBLIGHTS_SUBLIGHT_LANES_H
 
@@ -63,7 +63,8 @@ static slab_rows half_pixel_tile(const half_pixel_job *job, int tile_x, int tile
 
 static const float LANE_INDICES[LANES] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
-/* Sixteen coordinates scale * i + start, clamped to [-2, size + 1], in half pixels, rounded. */
+/* Rounds sixteen coordinates scale * i + start, i from 0 to 15, to half pixels. Before that they are clamped
+ * to [-2, size + 1]. The results count half pixels. */
 LANES_INLINE lanes_int nearest_halves(float scale, float start, float size) {
   return lanes_floor(lanes_clamp(lanes_load(LANE_INDICES) * scale + start, -2.0f, size + 1.0f) * 2.0f + 0.5f);
 }
@@ -75,8 +76,10 @@ enum { SUBLIGHT_TAPS = 8 };
  * little larger or smaller. So the half pixel that pixel i reads differs from 2 i by `first` to first + count
  * - 1. weight[k] is 1 for pixels with the difference first + k, else 0. */
 typedef struct row_taps {
-  int first, count; /* count 0: too many */
-  lanes_int half;   /* for each pixel, the half pixel that it reads, limited to the slab and its margin */
+  /* count: the number of different half pixels that pixels read, counted from `first`; 0: there are too many
+   * for the weights */
+  int first, count;
+  lanes_int half; /* for each pixel, the half pixel that it reads, limited to the slab and its margin */
   lanes weight[SUBLIGHT_TAPS];
 } row_taps;
 
@@ -148,7 +151,7 @@ LANES_INLINE uint32_t present_rows(const sublight_job *job, const int32_t half[T
 
 static const float DARK_SUBLIGHT = DARK * SUBLIGHT_ONE;
 
-/* The blocks, in a row of four blocks, that contain any of the given columns of pixels. */
+/* The blocks, in a row of four blocks, that contain any of the given columns of pixels; one bit each. */
 LANES_INLINE uint32_t blocks_of_columns(uint32_t columns) {
   uint32_t any = columns | columns >> 1;
   any |= any >> 2;
@@ -186,8 +189,8 @@ LANES_INLINE lanes composite_sublight(const sublight_job *job, int channel, ptrd
   return light;
 }
 
-/* The least fraction of light absorbed by a slab from which k can be found: below it, rounding hides which
- * part of this light surfaces keep. */
+/* The number k (attenuate.h) is found from the light that a slab absorbs. This is the least absorbed fraction
+ * for which it is found: below it, rounding hides which part of the light surfaces keep. */
 static const float LEAST_TAKEN = 1e-5f;
 
 /* Composites the slab into the light at the outside of surfaces. light: the sub-light's transmittance before
@@ -224,7 +227,7 @@ static int sublight_tile(const sublight_job *job, int tile_x, int tile_y) {
       ptrdiff_t at = (ptrdiff_t)(corner + (size_t)row * job->stride);
       lanes slab_transmittance = slab_row(&taps, rows);
       if (lanes_bits(slab_transmittance < 1.0f) == 0)
-        continue; /* so the sub-light's pixels in this row need not be loaded from memory */
+        continue; /* all factors are 1, so the sub-light's pixels need not be loaded */
       lanes light = composite_sublight(job, c, at, slab_transmittance);
       touched = 1;
       if (job->outside[c] == NULL) continue;
@@ -246,7 +249,7 @@ static int sublight_tile(const sublight_job *job, int tile_x, int tile_y) {
 /* The number of the slab's tiles that are prefetched ahead of the tile in use. */
 enum { SHIFTED_TILES = 16 };
 
-/* The index of the copy of the slab that is read. */
+/* The index of the copy of the slab from which a job reads if the slab is only shifted. */
 LANES_INLINE int copy_of_shift(const sublight_job *job) {
   return (job->half[0] & 1) + 2 * (job->half[1] & 1);
 }

@@ -38,7 +38,7 @@ static void lay_out_planes(sublights *sublights) {
   sublights->plane = ((size_t)sublights->tiles_y * TILE + ROWS_BEYOND) * sublights->stride;
 }
 
-/* The number of planes of one sub-light: all channels of all kinds of planes. */
+/* The number of planes of one sub-light: the product of the numbers of channels and of kinds of planes. */
 static size_t planes_of_sublight(const sublights *all) { return (size_t)all->channels * (size_t)all->kinds; }
 
 static void lay_out_sublights(light_shadow *shadow, shadow_layouts *layouts) {
@@ -59,13 +59,13 @@ static void lay_out_sublights(light_shadow *shadow, shadow_layouts *layouts) {
   all->found = hl_layout_take(layout, slab_tiles, sizeof *all->found);
 }
 
-/* Fills all buffers with full light. */
+/* Fills the buffers of all sub-lights with full light. */
 static void fill_sublights(const light_shadow *shadow, sublights *all) {
   hl_pool *pool = shadow->means.pool;
   size_t count = (size_t)all->count, pixels = count * planes_of_sublight(all) * all->plane;
   size_t tiles = (size_t)all->tiles_x * (size_t)all->tiles_y;
   size_t slab_tiles = (size_t)shadow->buffer->tiles_x * (size_t)shadow->buffer->tiles_y;
-  hl_pool_set(pool, all->memory, pixels * sizeof(sublight_pixel), 0xff); /* SUBLIGHT_ONE */
+  hl_pool_set(pool, all->memory, pixels * sizeof(sublight_pixel), 0xff); /* all bits set: SUBLIGHT_ONE */
   hl_pool_fill(pool, all->moved, all->moved_floats, 1);
   for (size_t i = 0; i < count * tiles; i++) all->flags[i] = ALL_BLOCKS;
   memset(all->marks, 0, count * tiles * sizeof *all->marks);
@@ -86,7 +86,8 @@ static hl_status weigh_sublights(hl_context *context, sublights *sublights, cons
   return HL_OK;
 }
 
-/* Pixel (0,0) of a channel: of the transmittance, or of the light at the outside of surfaces. */
+/* A pointer to pixel (0,0) of one channel of a sub-light: of its transmittance, or of its light at the
+ * outside of surfaces. */
 static sublight_pixel *sublight_plane(const sublights *all, const sublight *one, shadow_plane kind,
                                       int channel) {
   size_t number = (size_t)(kind == SHADOW_OUTSIDE ? all->channels : 0) + (size_t)channel;
@@ -121,7 +122,7 @@ static hl_status begin_sublights(light_shadow *shadow, hl_error *error) {
 
 /* ---- compositing ---- */
 
-/* Pixel (0,0) of a copy of the slab; copy 0 is the slab itself. */
+/* A pointer to pixel (0,0) of a copy of the slab; copy 0 is the slab itself. */
 static float *slab_copy(const sublights *sublights, const shadow_buffer *slab, shadow_plane kind, int channel,
                         int copy) {
   size_t number = (size_t)(kind == SHADOW_OUTSIDE ? sublights->channels : 0) + (size_t)channel;
@@ -200,12 +201,12 @@ typedef struct sublight_task {
   int x0, x1, y0, y1;          /* bounds of those tiles of the slab in which any pixel is below 1 */
   bool ends_run;               /* whether the slab is the last one of its run; if so, the lit blocks are found
                                 * after it */
-  const int32_t *needed_until; /* light_shadow's sublights_until */
+  const int32_t *needed_until; /* borrowed: sublights_until of the light_shadow */
   int slab_after;              /* number of the next slab, in the numbering of needed_until */
 } sublight_task;
 
-/* Finds, along one axis, the first and the last tile that hold pixels x to x + TILE after these have been
- * scaled and shifted. One more pixel on either side counts, too. */
+/* Finds, along one axis, the first and the last tile of the slab in which the pixels x to x + TILE of a
+ * sub-light lie after scaling and shifting. One more pixel on either side counts, too. */
 static void tiles_under(double x, double scale, double shift, int tiles, int *first, int *last) {
   double low = (scale * x + shift - 1) / TILE, high = (scale * (x + TILE) + shift + 1) / TILE;
   *first = low < 0 ? 0 : low > tiles ? tiles : (int)low;
@@ -219,7 +220,7 @@ static bool any_touched(const shadow_buffer *slab, int x0, int x1, int y0, int y
   return false;
 }
 
-/* Whether the slab has a pixel below 1 in some tiles. */
+/* Whether the slab has a pixel below 1 in some tile of a rectangle of tiles. */
 static bool any_present(const sublight_job *job, int x0, int x1, int y0, int y1) {
   for (int y = y0; y <= y1; y++)
     for (int x = x0; x <= x1; x++)
@@ -227,7 +228,8 @@ static bool any_present(const sublight_job *job, int x0, int x1, int y0, int y1)
   return false;
 }
 
-/* Finds bounds of those tiles of the slab in which any pixel is below 1. x1 < 0: there are no such tiles. */
+/* Finds bounds of those tiles of the slab in which any pixel is below 1. If there are no such tiles, x1
+ * becomes less than 0. */
 static void bound_present(sublight_task *task) {
   const shadow_buffer *slab = task->slab;
   task->x0 = slab->tiles_x;
@@ -271,7 +273,7 @@ static void lit_range(const sublight_task *task, const sublight *sublight, int y
   if (first > last) *x1 = *x0 - 1;
 }
 
-/* Multiplies a row of tiles of one sub-light by the slab. */
+/* Multiplies a row of tiles of one sub-light by the slab's transmittance. */
 static void composite_row(const sublight_task *task, sublight *sublight, int y) {
   const sublights *all = task->sublights;
   const shadow_buffer *slab = task->slab;
@@ -311,7 +313,7 @@ static void forget_tiles(const sublight_task *task, sublight *sublight, int y) {
     if (until[x] < task->slab_after) sublight->lit[row + x] = 0;
 }
 
-/* Finds the lit blocks again in those tiles of a row in which light was absorbed. */
+/* Finds the lit blocks of a sub-light again, in those tiles of a row in which light was absorbed. */
 static void find_sublight_lit(const sublight_task *task, sublight *sublight, int y) {
   int tiles_x = task->sublights->tiles_x;
   size_t row = (size_t)y * (size_t)tiles_x;
@@ -346,8 +348,8 @@ static void fill_ones(float *pixels, size_t stride, slab_rows of_copies) {
     for (size_t i = 0, row = (size_t)__builtin_ctz(rows); i < TILE; i++) pixels[row * stride + i] = 1;
 }
 
-/* Fills one row of tiles of the shifted copies. A tile of a copy also depends on pixels of the neighbouring
- * tiles. */
+/* Fills one row of tiles of the shifted copies of the slab. A tile of a copy also depends on pixels of the
+ * neighbouring tiles. */
 static void move_row(void *data, size_t index, int worker) {
   (void)worker;
   const sublight_task *task = data;
@@ -437,8 +439,9 @@ static void advance_sublights(light_shadow *shadow, const occupancy *occupancy, 
 
 /* ---- lit blocks of the slab ---- */
 
-/* The number of pixels around a block of the slab that count as part of it: a value at a half pixel depends
- * on two pixels on either side, so values in the block affect a sub-light's pixels up to this distance. */
+/* The number of pixels around a block of the slab that count as part of the block. A value at a half pixel
+ * depends on two pixels on either side, so the block's values affect a sub-light's pixels up to this
+ * distance. */
 enum { BLOCK_SPARE = 2 };
 
 /* The sub-light's blocks that lie under a tile of the slab: for each of the tile's four rows (or columns) of

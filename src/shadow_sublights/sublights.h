@@ -19,19 +19,21 @@ typedef struct sublight_map {
   double scale[2], shift[2];
 } sublight_map;
 
-/* One sub-light's buffer. */
+/* One sub-light with its buffer. */
 typedef struct sublight {
   view view;
   sublight_pixel *pixels; /* pixel (0,0) of the first channel of the transmittance; a part of `memory`. The
                            * other channels follow, each a plane apart; the channels of the light at the
                            * outside of surfaces come after them */
-  uint16_t *lit; /* [tiles]; blocks with light at the end of the last run of slabs; a part of `flags` */
+  /* [tiles]; the blocks that had light at the end of the last run of slabs, one bit each; a part of
+   * `flags` */
+  uint16_t *lit;
   unsigned char *touched; /* [tiles]; 1 where slabs have absorbed light since the lit blocks were found; a
                            * part of `marks` */
-  sublight_job job;       /* the current slab's */
+  sublight_job job;       /* how the current slab is composited into the sub-light's buffer */
   bool reaches;           /* whether the slab lies beyond the sub-light, so that the sub-light's rays reach
                            * the slab */
-  bool shifted;           /* the job's scale is 1 */
+  bool shifted;           /* whether the scale of `job` is 1, so that the slab is only shifted */
   sublight_map near, far; /* near: the sub-light's map for the first slab of the next run; far: its map for
                            * the last slab of this run */
   bool comes; /* whether the sub-light lies within the next run: its rays reach the last slab of the run, but
@@ -42,16 +44,16 @@ typedef struct sublights {
   int count, channels, tiles_x, tiles_y;
   int kinds; /* number of kinds of planes: 1, or 2 if there is light at the outside of surfaces */
   size_t stride, plane;
-  int slabs; /* composited so far */
-  /* in one block, see lay_out_sublights() */
-  sublight *sublight;       /* [count] */
-  sublight_lookup *lookups; /* [count] */
-  sublight_pixel *memory;   /* [count][kinds][channels] planes */
-  uint16_t *flags;          /* [count][tiles] */
-  unsigned char *marks;     /* [count][tiles] */
+  int slabs; /* number of slabs that have been composited so far */
+  /* the arrays below lie in one block of memory, which lay_out_sublights() lays out */
+  sublight *sublight;       /* [count]; the sub-lights */
+  sublight_lookup *lookups; /* [count]; how samples look up each sub-light's buffer */
+  sublight_pixel *memory;   /* [count][kinds][channels] planes; the buffers of all sub-lights */
+  uint16_t *flags;          /* [count][tiles]; the array `lit` of each sub-light */
+  unsigned char *marks;     /* [count][tiles]; the array `touched` of each sub-light */
   float *moved; /* [kinds][channels][SLAB_COPIES - 1] planes: the slab's copies shifted by half a pixel */
   size_t moved_floats;
-  slab_rows *rows; /* [tiles of the slab] */
+  slab_rows *rows; /* [tiles of the slab]; the rows in which some pixel is below 1 */
   uint32_t *found; /* [tiles of the slab]; the run of slabs for which the tile's lit blocks were found last;
                     * 0: they were never found */
 } sublights;
