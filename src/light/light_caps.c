@@ -3,15 +3,16 @@
 
 #include "light/light_extent.h"
 
-/* Number of points along each side of a part. The part's middle and spread are means over these points. */
+/* The number of points along each side of a part of a light. The part's middle and spread (light_cap) are
+ * means over these points. */
 enum { POINTS_OF_PART = 8 };
 
-/* A light stays one part if its apparent size is at most this fraction of its distance, and if its apparent
- * length and width are about equal. */
+/* The greatest apparent size of a light that is not cut into parts, as a fraction of the light's distance.
+ * The light's apparent length and width must also be about equal. */
 static const double NARROW = 0.35;
 
 /* Divides a rectangle into parts whose apparent length and width are about equal. length: the apparent
- * lengths of its edges. */
+ * lengths of the rectangle's edges. */
 static void cut_rect(const double length[2], int parts[2]) {
   int longer = length[1] > length[0], across = 1 - longer;
   double ratio = length[longer] / fmax(length[across], length[longer] / MOST_CAPS);
@@ -32,7 +33,7 @@ static void choose_parts(const light_source *source, int parts[2]) {
   if (kind->parallelogram) cut_rect(length, parts);
 }
 
-/* The offset of point k of a part from the centre of the light. */
+/* The offset of point number k of a part of a light from the light's centre. */
 static vec3 point_of_part(const light_source *source, const int parts[2], int part, int k) {
   int i = part % parts[0], j = part / parts[0];
   double a = (i + (k % POINTS_OF_PART + 0.5) / POINTS_OF_PART) / parts[0],

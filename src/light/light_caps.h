@@ -15,14 +15,14 @@ enum { MOST_CAPS = 4 };
 
 /* A part of a light. */
 typedef struct light_cap {
-  float middle[3]; /* frame space */
+  float middle[3]; /* the mean position of the part's points; frame space */
   float spread[6]; /* twice the mean of the matrix x x', where x is the vector from the part's middle to a
                     * point of the part. The elements are xx, yy, zz, xy, xz, yz. Seen along w, the part
                     * counts as a disk of the squared radius xx + yy + zz - w' spread w */
 } light_cap;
 
 typedef struct light_caps {
-  int count; /* number of parts; 0: the light is parallel, or is a point */
+  int count; /* number of parts; 0: the light is parallel or a point, and is not divided into parts */
   light_cap cap[MOST_CAPS];
 } light_caps;
 

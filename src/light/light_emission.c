@@ -4,11 +4,12 @@
 
 #include "core/memory.h"
 
-/* Number of samples of the image along each side of a cell. */
+/* The least and the greatest number of samples of the emission image along each side of a cell. */
 enum { LEAST_SAMPLES = 4, GREATEST_SAMPLES = 32 };
 
-/* Adds the colour at a point of the image, interpolated bilinearly between the middles of pixels. s, t: the
- * point's place in the image, to the right and upwards, each from -1 to 1. */
+/* Adds the colour at a point of the emission image to a sum. The colour is interpolated bilinearly between
+ * the middles of pixels. s, t: the point's place in the image, to the right and upwards, each from -1 to
+ * 1. */
 static void add_color(const light_picture *picture, double s, double t, double sum[HL_CHANNELS]) {
   const int size[2] = {picture->width, picture->height};
   const double position[2] = {(1 + s) / 2 * size[0] - 0.5, (1 - t) / 2 * size[1] - 0.5};
@@ -100,7 +101,7 @@ static vec3 middle_of_cell(const light_source *source, int i) {
  * At greater slopes, the outermost cells share taps. */
 static const double GREATEST_SLOPE = 0.5;
 
-/* Leaves dark cells out, and bounds the other cells. */
+/* Leaves the dark cells of an emission image out, and bounds the positions of the other cells. */
 static void finish(light_emission *emission) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   int count = 0;
@@ -124,8 +125,8 @@ static void finish(light_emission *emission) {
   }
 }
 
-/* For parallel light the unit is negative: light that travels more towards u comes from a place farther back
- * along u. */
+/* For parallel light, the unit of the cells' positions is negative: light that travels more towards u comes
+ * from a place farther back along u. */
 void hl_light_emission_see(const light_source *source, const sheet_light *seen, vec3 normal,
                            light_emission *emission) {
   double unit = fmax(seen->width_u, seen->width_v) * (source->parallel ? -1 : 1);
@@ -185,7 +186,8 @@ void hl_light_emission_taps(const light_emission *emission, double width, const 
   }
   for (int i = 0; i < emission->count; i++) {
     int x = tap[i][0] - first[0], y = tap[i][1] - first[1];
-    x = x < GRID - 1 ? x : GRID - 2; /* for slopes beyond GREATEST_SLOPE */
+    /* a position may lie outside of the grid for slopes beyond GREATEST_SLOPE */
+    x = x < GRID - 1 ? x : GRID - 2;
     y = y < GRID - 1 ? y : GRID - 2;
     for (int corner = 0; corner < 4; corner++) {
       int right = corner & 1, below = corner >> 1;

@@ -19,20 +19,23 @@ enum {
   EMISSION_GREATEST_STEP = 88
 };
 
-/* A cell's position on the plane on which shadows are measured, in units of the light's width on this plane.
- * z: the position along the sheets' normal, in the same unit. */
+/* A cell of an emission image: its position (u, v) on the plane on which shadows are measured, in units of
+ * the light's width on this plane. z: the cell's position along the sheets' normal, in the same unit. */
 typedef struct emission_cell {
   double u, v, z;
-  float weight[HL_CHANNELS]; /* its sum over all cells is 1 */
+  /* the fractions of the light's red, green and blue that the cell sends; the sum of each over all cells is
+   * 1 */
+  float weight[HL_CHANNELS];
 } emission_cell;
 
 typedef struct light_emission {
-  double mean[HL_CHANNELS]; /* the image's mean over the light */
+  double mean[HL_CHANNELS]; /* mean red, green and blue of the image over the light's surface */
   bool even; /* the whole image has one colour, so that the light's penumbrae are the same as without an
               * image */
   int count; /* number of cells that are not dark */
   emission_cell cells[EMISSION_CELLS];
-  bool tilted;     /* cells differ in z, so the taps depend on the slope of the rays to the receiver */
+  bool tilted;     /* whether cells differ in z, so that the taps depend on the slope of the rays to the
+                    * receiver */
   double reach;    /* the cells' greatest distance from the middle, for any receiver */
   double range[2]; /* the cells' extent along u and v, for any receiver */
 } light_emission;
@@ -52,7 +55,7 @@ hl_status hl_light_emission_create(hl_context *context, const light_source *sour
 void hl_light_emission_see(const light_source *source, const sheet_light *seen, vec3 normal,
                            light_emission *emission);
 /* Sets the cells' positions in the orthogonal projection of the light, along the buffer's axes, in units of
- * `size`. */
+ * `size`, the width of the light. */
 void hl_light_emission_project(const light_source *source, const view *view, double size,
                                light_emission *emission);
 
@@ -63,7 +66,7 @@ bool hl_light_emission_colored(const hl_light *light);
  * the taps weigh pixels, the pixels must be averaged over these distances. */
 typedef struct emission_taps {
   int count;
-  int32_t x[EMISSION_TAPS], y[EMISSION_TAPS]; /* pixels */
+  int32_t x[EMISSION_TAPS], y[EMISSION_TAPS]; /* places of the taps, in pixels from the receiver's pixel */
   float weight[HL_CHANNELS][EMISSION_TAPS];
 } emission_taps;
 

@@ -30,7 +30,7 @@ static vec3 onto_plane(vec3 x, vec3 normal) {
 }
 
 /* A first u axis in the sheets: the projection of an edge of a parallelogram, or for other lights of the
- * light's direction. It is turned to the principal axis later. */
+ * light's direction. The axis is turned to the principal axis later. */
 static vec3 first_axis(const light_source *source, vec3 normal) {
   vec3 along = source->shape.kind->parallelogram ? source->shape.edge1 : source->direction;
   vec3 axis = onto_plane(along, normal);
@@ -113,7 +113,7 @@ double hl_sheet_light_squared_width(const sheet_light *light, int axis, double s
   return 12 * fmax(xx - 2 * slope * xz + slope * slope * zz, 0);
 }
 
-/* The mean of both extents. */
+/* The average size is the mean of the extents of the light's projection along its two principal axes. */
 double hl_light_average_size(const light_source *source, vec3 normal) {
   vec3 u = vec3_perpendicular(normal), v = vec3_cross(normal, u);
   vec3 su = mat3_apply(source->spread, u), sv = mat3_apply(source->spread, v);

@@ -66,10 +66,10 @@ light_sectors hl_light_sectors(vec3 eye_direction, double widest) {
     vec3 across = vec3_add(vec3_scale(u, cos(turn)), vec3_scale(v, sin(turn)));
     sectors.axis[i] = vec3_add(vec3_scale(eye_direction, along), vec3_scale(across, sin(phi)));
   }
-  /* Take a direction at a right angle to the eye's direction, midway between two axes. The cosine of its
-   * angle to these axes is cos(30 degrees) sin(phi). Every direction has, with some axis, a cosine of at
-   * least 0.84 times this one (found over 200,000 directions, phi from 15 to 45 degrees). A sector ends a
-   * little farther from its axis, at 0.7 times this cosine, so that sectors fade into each other. */
+  /* A direction at a right angle to the eye's direction, midway between two axes, has the cosine cos(30
+   * degrees) sin(phi) with these axes. Every direction has, with some axis, a cosine of at least 0.84 times
+   * this number (found over 200,000 directions, phi from 15 to 45 degrees). A sector ends a little farther
+   * from its axis, at 0.7 times this cosine, so that sectors fade into each other. */
   sectors.least = 0.7 * cos(HL_PI / 6) * sin(phi);
   return sectors;
 }

@@ -12,11 +12,11 @@
 #include "scene/light/light_kind.h"
 #include "view/view.h"
 
-enum { HL_CHANNELS = 3 }; /* R, G, B */
+enum { HL_CHANNELS = 3 }; /* the colour channels of light: R, G, B */
 
 enum { LIGHT_SECTORS = 6 };
 
-/* The most lights that share one pass over the sheets. */
+/* The greatest number of lights that share one pass over the sheets. */
 enum { MAXIMUM_SWEEP_LIGHTS = 16 };
 
 typedef struct light_sectors {
@@ -32,7 +32,7 @@ light_sectors hl_light_sectors(vec3 eye_direction, double widest);
 /* The fraction of a ray's light that belongs to sector i. It is max(0, cos_i - least)^2, divided by the sum
  * of these numbers over all sectors; cos_i is the cosine of the angle between the ray and axis i. */
 typedef struct sector_fraction {
-  int count; /* number of sectors; 0: the light is whole */
+  int count; /* number of sectors; 0: the fraction belongs to a whole light */
   int sector;
   float axis[LIGHT_SECTORS][3];
   float least;
@@ -59,20 +59,21 @@ typedef struct light_source {
   bool parallel;
   vec3 direction; /* unit vector along which light travels: a parallel light's direction, a spot light's axis,
                    * or the way from the light's centre to the centre of its screen or of the content */
-  vec3 position;  /* position of the light's centre, unless parallel; frame space */
+  vec3 position;  /* position of the light's centre, for lights that are not parallel; frame space */
   vec3 content;   /* the content's middle; frame space */
   mat3 spread;    /* mean of the matrix x x' over the light. x is the offset of a point of the light from the
                    * light's centre; for parallel light, the offset of a direction from the mean direction, as
                    * directions are points at distance 1 */
-  hl_shadows shadows; /* off, hard or soft */
+  hl_shadows shadows; /* whether the light's shadows are off, hard or soft */
   hl_soft_method soft_method;
-  light_shape shape;      /* frame space; vertices of polygons are borrowed until the frame ends */
+  light_shape shape;      /* the light's shape in frame space; the vertices of polygons are borrowed until
+                           * the frame ends */
   light_screen screen;    /* the picture that the light projects */
   light_picture emission; /* the picture on the light's own surface */
   double of_sky;   /* where the light is a sun of the sky, which makes no highlights: the fraction of its
                     * light that lights media; for other lights 0 */
-  int light_index; /* index in the scene */
-  int row;         /* index in the frame's list of lights */
+  int light_index; /* index of the light in the scene */
+  int row;         /* index of this source in the frame's list of lights */
   const light_sectors *sectors; /* where this source is one sector of a light: the frame's sectors; else
                                  * null */
   int sector;
@@ -90,8 +91,8 @@ light_source hl_light_in_sector(const light_source *whole, const light_sectors *
 /* Brightness is smoothstep((cos(angle to the axis) - outer) * scale): 0 outside the cone, 1 within its
  * edge. */
 typedef struct light_cone {
-  float axis[3]; /* unit vector along which the light travels; frame space */
-  float outer;   /* cosine at which light begins */
+  float axis[3]; /* unit vector along which light travels in the middle of the cone; frame space */
+  float outer;   /* cosine of the angle at which the cone's light begins */
   float scale;   /* 1 / (inner - outer), where `inner` is the cosine of the angle within which brightness is
                   * full; 0: the light has no cone */
 } light_cone;

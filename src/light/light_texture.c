@@ -68,7 +68,8 @@ typedef struct axis_plan {
   double start, step, half_width; /* in pixels of the image that is convolved */
 } axis_plan;
 
-/* Finds the weights along one axis. length: the number of the image's pixels along the axis. */
+/* Finds the weights of a convolution along one axis. length: the number of the image's pixels along the
+ * axis. */
 static hl_status weigh_axis(hl_context *context, kernel_fraction *below, const axis_plan *plan, int length,
                             axis_weights *axis, hl_error *error) {
   double half_width = plan->half_width;
@@ -111,11 +112,11 @@ static void convolve_line(const float *from, size_t from_step, const axis_weight
 enum { LINES_BETWEEN_QUESTIONS = 16 };
 
 typedef struct texture_image {
-  const float *pixels; /* [height][width][3] */
+  const float *pixels; /* [height][width][3]; linear RGB */
   int width, height;
 } texture_image;
 
-/* Rows, then columns. */
+/* Convolves an image: first along its rows, then along its columns. */
 static hl_status convolve(hl_context *context, const texture_image *from, const axis_weights *u,
                           const axis_weights *v, float *to, hl_error *error) {
   size_t width = (size_t)from->width;
@@ -137,7 +138,7 @@ static hl_status convolve(hl_context *context, const texture_image *from, const 
   return cancelled ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing") : HL_OK;
 }
 
-/* The two passes of one level: along u and along v. */
+/* The two convolutions that make one blurred level of a texture: along u and along v. */
 typedef struct level_plan {
   axis_plan axis[2];
 } level_plan;

@@ -15,8 +15,8 @@
 #include "core/error.h"
 #include "light/light_source.h"
 
-/* The image blurred by the light's shape. The image has a border of zeros, because no light passes outside
- * the screen. */
+/* One blurred level of a light texture: the image, blurred by the light's shape. The level has a border of
+ * zeros, because no light passes outside the screen. */
 typedef struct texture_level {
   const float *pixels; /* [height][width][3]; in the light texture's memory */
   int width, height;
@@ -26,18 +26,20 @@ typedef struct texture_level {
 enum { TEXTURE_LEVELS = 24 };
 
 typedef struct light_texture {
-  const float *pixels; /* [height][width][3], linear RGB; null: the light has no texture */
+  const float *pixels; /* [height][width][3], linear RGB; the averaged image; null: the light has no
+                        * texture */
   int width, height;
-  float map[3][4];    /* maps frame space to (w, w u, w v), where u and v are pixels from the image's top left
-                       * corner. w <= 0: the sample's ray does not pass the screen's plane */
+  /* maps frame space to (w, w u, w v), where u and v are pixels from the image's top left corner. where w <=
+   * 0, the sample's ray does not pass the screen's plane */
+  float map[3][4];
   float sharpness[2]; /* along u and v: the edge of a pixel of the image, in pixels of the picture; at least
                        * 1 */
   float beyond[4];    /* for parallel light: maps frame space to the distance from the screen along the rays.
                        * For near light, the factor w of `map` is used instead */
   int parallel;
-  float first; /* 1 / square of the distance from the screen (near light: of 1 - Zs / Z) at which the blur is
-                * that of level 0. At 2^l times this square the blur is that of level l, which has 2^l times
-                * the variance */
+  /* 1 / square of the distance from the screen (near light: of 1 - Zs / Z) at which the blur is that of level
+   * 0. At 2^l times this square the blur is the blur of level l, whose variance is 2^l times greater */
+  float first;
   float edge[2];   /* along u and v: width, in pixels of the image, of a box whose variance is that of the
                     * blur at distance 1 */
   int level_count; /* number of levels; 0: the light's extent does not matter */
@@ -47,11 +49,11 @@ typedef struct light_texture {
 
 /* The content that a light texture falls on; frame space. */
 typedef struct texture_use {
-  const vec3 *points; /* [point_count]; corners of the content */
+  const vec3 *points; /* [point_count]; borrowed; corners of the content, frame space */
   int point_count;
-  vec3 content; /* the content's middle */
+  vec3 content; /* the content's middle; frame space */
 
-  double pixel; /* the edge of a picture's pixel at the content's middle */
+  double pixel; /* the edge of a picture's pixel at the content's middle; frame units */
 } texture_use;
 
 /* Makes the texture of a light. Release it with hl_light_texture_release(), after a failure too. */

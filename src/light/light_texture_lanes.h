@@ -14,8 +14,8 @@ LANES_INLINE lanes within_edges(lanes u, float size, lanes sharpness) {
          lanes_clamp(lanes_fma(size - u, sharpness, half), 0, 1);
 }
 
-/* One axis of a bilinear look-up: the two pixels, clamped to the image, and the fraction of the way between
- * them. */
+/* A bilinear look-up along one axis: the two pixels, clamped to the image, and the fraction of the way
+ * between them. */
 typedef struct texture_taps {
   lanes_int first, second;
   lanes fraction;
@@ -44,7 +44,8 @@ LANES_INLINE void read_image(const float *pixels, int width, int height, lanes u
   }
 }
 
-/* Adds the image, without blur, times a weight. The edges of the screen are blurred by a box. */
+/* Adds a light texture's image, without blur, times a weight. The edges of the screen are blurred by a
+ * box. */
 LANES_INLINE void sharp_pattern(const light_texture *texture, lanes blur, lanes u, lanes v, lanes weight,
                                 lanes pattern[3]) {
   lanes sharp_u = lanes_set(texture->sharpness[0]), sharp_v = lanes_set(texture->sharpness[1]);
@@ -58,11 +59,11 @@ LANES_INLINE void sharp_pattern(const light_texture *texture, lanes blur, lanes 
   for (int c = 0; c < 3; c++) pattern[c] = lanes_fma(color[c], inside, pattern[c]);
 }
 
-/* Interpolates between the two levels whose variances enclose the variance of the sample's blur; the variance
- * of the result is linear in the weights. Where the sample's variance is below that of level 0, the result is
- * a mean of level 0 and the image itself. The weight of level 0 is then the square of the ratio of the two
- * variances, so that the image stays sharp as long as it can. The edges of the screen are blurred in the
- * image itself, too. */
+/* Interpolates between the two levels of a light texture whose variances enclose the variance of the sample's
+ * blur; the variance of the result is linear in the weights. Where the sample's variance is below that of
+ * level 0, the result is a mean of level 0 and the image itself. The weight of level 0 is then the square of
+ * the ratio of the two variances, so that the image stays sharp as long as it can. The edges of the screen
+ * are blurred in the image itself, too. */
 LANES_INLINE void soft_pattern(const light_texture *texture, lanes blur, lanes u, lanes v, lanes ahead,
                                lanes pattern[3]) {
   lanes variance = lanes_min(blur * blur * texture->first, lanes_set(1e30f));
@@ -85,7 +86,7 @@ LANES_INLINE void soft_pattern(const light_texture *texture, lanes blur, lanes u
   }
 }
 
-/* Finds light_color(x) of eq. (2), the texture's colour, at samples in frame space. */
+/* Finds the texture's colour, light_color(x) of eq. (2) of the paper, at samples in frame space. */
 LANES_INLINE void texture_pattern(const light_texture *texture, lanes3 position, lanes pattern[3]) {
   lanes projected[3];
   for (int row = 0; row < 3; row++) projected[row] = row_of_point(texture->map[row], position);

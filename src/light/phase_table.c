@@ -53,7 +53,7 @@ static double mean_over_cap(double g, double c, double towards, const ring_place
     sum += rings->sine[i] * acos(fmin(fmax(edge, -1), 1)) / HL_PI;
   }
   sum *= (high - low) / 2 * HL_PI / RING_COUNT;
-  if (turn < half) sum += 1 / (1 - g) - high; /* rings that lie within the cap */
+  if (turn < half) sum += 1 / (1 - g) - high; /* the rings that lie completely within the cap */
   if (turn + half > HL_PI)
     sum += low - 1 / (1 + g); /* adds the rings around the opposite direction, which lie completely within the
                                * cap */
@@ -77,7 +77,7 @@ static bool scatters_unevenly(const hl_scene_volume *volume) {
   return volume->anisotropy != 0 && volume->shading != HL_SHADING_FLAT;
 }
 
-/* Whether some light is wide. near: only lights that are not parallel are looked at. */
+/* Whether some light of a scene is wide. near: only lights that are not parallel are looked at. */
 static bool has_wide_light(const hl_scene_description *scene, bool near) {
   bool found = false;
   for (size_t i = 0; i < scene->light_count; i++)
@@ -92,8 +92,8 @@ static bool needs_caps(const hl_scene_description *scene) {
   return scene->sky.type != HL_SKY_NONE || has_wide_light(scene, true);
 }
 
-/* The number of tables that a scene needs. Each volume that scatters unevenly needs a table for g and, where
- * light is scattered more than once, a table for g^2. */
+/* The number of tables that a scene needs. Each volume that scatters unevenly needs a table for its
+ * anisotropy g and, where light is scattered more than once, a table for g^2. */
 static size_t wanted_tables(const hl_scene_description *scene) {
   size_t count = 0;
   if (scene->render.compositing != HL_COMPOSITING_LIGHT ||
@@ -156,8 +156,8 @@ typedef struct phase_job {
   ring_places rings;
 } phase_job;
 
-/* Fills the rows of caps. Each row is stored in two places: as the numbers [0] of its own row of the table,
- * and as the numbers [1] of the row before. */
+/* Fills the rows of caps. The row of each cap size is stored in two places: as the numbers [0] of its own row
+ * of the table, and as the numbers [1] of the row before. */
 static void fill_caps(const phase_job *job, const phase_table *table, size_t row) {
   double g = table->g, part = (double)row / (PHASE_CAPS - 1), s = (1 - g) * pow((1 + g) / (1 - g), part);
   float(*to)[2] = table->caps[row];

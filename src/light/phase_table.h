@@ -23,21 +23,23 @@
 enum { PHASE_COLUMNS = 512, PHASE_CAPS = 64 };
 
 typedef struct phase_table {
-  double g;                         /* 0 < g < 1 */
-  float rows_per_log2;              /* number of rows of caps for each step of the binary logarithm of s^2 */
-  float (*caps)[PHASE_COLUMNS][2];  /* [PHASE_CAPS]; the numbers [0] belong to this row, the numbers [1] to
-                                     * the next row; set only where there is a sky, or where some light is
-                                     * wide and not parallel */
-  float (*parallel)[PHASE_COLUMNS]; /* [lights]; only rows of wide parallel lights are set */
+  double g;            /* the anisotropy of the table, 0 < g < 1 */
+  float rows_per_log2; /* number of rows of caps for each doubling of s^2 (see the head of the
+                        * file) */
+  /* [PHASE_CAPS]; for each size of a cap and each angle: the number [0] of this row, and the number [1] of
+   * the next row; set only where there is a sky, or where some light is wide and not parallel */
+  float (*caps)[PHASE_COLUMNS][2];
+  /* [lights]; a row for each light; only the rows of wide parallel lights are set */
+  float (*parallel)[PHASE_COLUMNS];
 } phase_table;
 
 /* The tables of a scene; kept between frames while anisotropies and lights stay the same. */
 typedef struct phase_tables {
-  void *memory;        /* owned; holds tables and numbers */
-  size_t bytes;        /* size of memory */
-  phase_table *tables; /* [count] */
-  size_t count;        /* number of tables; 0: no medium needs any */
-  float *numbers;      /* floats of all tables */
+  void *memory;        /* owned; the memory of `tables` and `numbers` */
+  size_t bytes;        /* bytes of `memory` */
+  phase_table *tables; /* [count]; in `memory` */
+  size_t count;        /* number of tables; 0: no medium of the scene needs any */
+  float *numbers;      /* the numbers of all tables, one table after the other; in `memory` */
   hl_key key;
 } phase_tables;
 
