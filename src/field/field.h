@@ -1,5 +1,5 @@
-/* field/field.h - the absorption and the light in a lattice of cells over the whole content. They do not
- * depend on the eye.
+/* field/field.h - the absorption and the light in a lattice of cells over the whole content. Neither depends
+ * on the eye.
  *
  * In: the grids and classifiers of a frame's volumes, its meshes, its sky. Out: how much light each cell
  * absorbs along each axis (opacity.c), and the sky's light that reaches each cell (sky_field.c). Samples look
@@ -25,14 +25,15 @@ enum {
 };
 
 typedef struct field_lattice {
-  int32_t count[3]; /* cells along x, y and z */
+  int32_t count[3]; /* numbers of cells along x, y and z */
   vec3 low;         /* the lattice's low corner; frame space */
   double cell;      /* the edge of a cell, which is a cube; frame units */
 } field_lattice;
 
 typedef struct field_slices {
   int axis, across, down;
-  int32_t slices, rows, columns, stride; /* stride: number of columns with padding */
+  int32_t slices, rows, columns, stride; /* stride: the number of columns, rounded up to whole vectors of
+                                          * lanes */
 } field_slices;
 
 static inline field_slices hl_field_slices(const field_lattice *lattice, int axis) {
@@ -48,16 +49,16 @@ static inline size_t hl_field_cells(const field_lattice *lattice) {
   return (size_t)lattice->count[0] * (size_t)lattice->count[1] * (size_t)lattice->count[2];
 }
 
-/* A volume's matter. */
+/* The matter of one volume, in the form in which this room samples it. */
 typedef struct field_matter {
   const grid *grid;
   const classifier *classifier;
-  float to_index[3][4];  /* frame space to index space */
+  float to_index[3][4];  /* maps frame space to the volume's index space */
   float low[3], high[3]; /* the volume's box; index space */
   float cast;            /* the extinction for lights divided by the extinction for the eye; 0: the volume
                           * casts no shadow */
   int visible;
-  int smooth; /* the voxels are coefficients of the interpolating kernel */
+  int smooth; /* whether the voxels are coefficients of the interpolating kernel */
 } field_matter;
 
 /* The optical depth of each cell, for each axis along which light crosses the cell. */
@@ -85,25 +86,27 @@ enum { LINKS_BEFORE = 1, LINKS_AFTER = 2 };
 
 /* Sixteen neighbouring cells along x. */
 typedef struct field_block {
-  const field_matter *matter; /* [count] */
+  const field_matter *matter; /* [count]; the volumes */
   int count;
   float corner[3]; /* the low corner of the first cell; frame space */
   float cell;
-  int samples;           /* number of samples along an edge of a cell */
-  int every_other;       /* of 2 x 2 x 2 samples, only the four are taken of which no two lie in one row; each
-                          * counts twice, so that each row along each axis has its depth */
+  int samples; /* number of samples along an edge of a cell */
+  /* whether only four of the 2 x 2 x 2 samples of a cell are taken: those of which no two lie in one row.
+   * Each of them counts twice, so that each row along each axis has its depth */
+  int every_other;
   const uint32_t *cells; /* [count]; the cells that a volume's bricks reach, one bit each */
 } field_block;
 
-/* Finds the optical depth d of each cell of the block along x, y and z; the cell lets 2^-d of the light
- * through. */
+/* The type of the function that finds the optical depth d of each cell of a block along x, y and z; the cell
+ * lets 2^-d of the light through. */
 typedef void field_opacity_function(const field_block *block, float depth[3][FIELD_LANES]);
 
-/* A direction from which the sky's light comes, as the slices meet it that are swept from one end of an
- * axis. */
+/* A direction from which the sky's light comes, in the form that a sweep along an axis needs, from slice to
+ * slice. */
 typedef struct sky_direction {
-  int32_t offset;     /* A cell gets this direction's light from four cells of the slice before. `offset` is
-                       * the distance, in floats, from the cell to the first of the four */
+  /* the distance, in floats, from a cell to the first of the four cells of the slice before from which the
+   * cell gets this direction's light */
+  int32_t offset;
   float weight[4];    /* weights of the four cells: the first cell, the next cell across, and the two cells
                        * below these two */
   int link;           /* the number of the link to the first of the four cells: 3 (1 + down) + 1 + across */
@@ -116,10 +119,12 @@ typedef struct sky_direction {
 } sky_direction;
 
 typedef struct sky_slice {
-  const sky_direction *directions; /* [direction_count] */
+  const sky_direction *directions; /* [direction_count]; the directions of the sweep */
   int direction_count, channels;
-  const float *depth;         /* [rows][3][stride] */
-  const unsigned char *flags; /* [rows][stride / FIELD_LANES] */
+  const float *depth;         /* [rows][3][stride]; the optical depths of the slice's cells, as in
+                               * opacity_field */
+  const unsigned char *flags; /* [rows][stride / FIELD_LANES]; the flags of the slice's blocks, as in
+                               * opacity_field */
   int32_t stride, columns;
   /* [rows + 2][FIELD_DIRECTIONS][light_stride]: the light that leaves the slice before. Rows of all
    * directions lie beside each other, because a row's cells read them one after the other. */
@@ -130,22 +135,25 @@ typedef struct sky_slice {
   const uint64_t *old_lit;
   uint64_t *left_lit;
   int32_t light_stride;
-  float *field;        /* the slice's first cell */
+  float *field;        /* the first float of the slice's first cell */
   size_t across, down; /* numbers of floats from a cell to the next cell in its row, and to the cell in the
                         * next row */
   int passing; /* index, among a cell's floats, of the mean of the cell's transmittances along three axes, to
                 * which the sweep adds a third of the transmittance along the slices' axis; 0: the sweep adds
                 * nothing */
-  const unsigned char *cut; /* [rows][stride / FIELD_LANES]; null: there are no surfaces */
-  unsigned char cut_here;   /* LINKS_BEFORE or LINKS_AFTER: the side from which the light comes through
-                             * links */
-  const unsigned char *taken[FIELD_LINKS]; /* [rows + 2][light_stride]; the part, in 255ths, that surfaces
-                                            * absorb of the light that goes along a link between cells */
+  /* [rows][stride / FIELD_LANES]; for each block of cells, whether surfaces cut its links: LINKS_BEFORE and
+   * LINKS_AFTER; null: there are no surfaces */
+  const unsigned char *cut;
+  unsigned char cut_here; /* LINKS_BEFORE or LINKS_AFTER: the side from which the light comes through
+                           * links */
+  /* [rows + 2][light_stride]; the fraction, in 255ths, that surfaces absorb of the light that goes along a
+   * link between cells */
+  const unsigned char *taken[FIELD_LINKS];
 } sky_slice;
 
-/* Moves the light of all directions to the next slice, in one row, and adds it to those cells near which
- * something is visible. In a block of cells that all get less than SKY_FAINT of a direction's light, this
- * light counts as 0 and is not moved on. */
+/* The type of the function that moves the light of all directions to the next slice, in one row of cells, and
+ * adds it to those cells near which something is visible. In a block of cells that all get less than
+ * SKY_FAINT of a direction's light, this light counts as 0 and is not moved on. */
 typedef void sky_row_function(const sky_slice *slice, int32_t row);
 
 typedef struct field_functions {

@@ -6,7 +6,7 @@
 #include "field/field.h"
 
 typedef struct field_planes {
-  int32_t stride; /* stride of rows */
+  int32_t stride; /* number of numbers from one row of a plane to the next */
   size_t plane;   /* number of numbers in a plane */
 } field_planes;
 
@@ -16,7 +16,7 @@ static inline field_planes hl_field_planes(const field_slices *s) {
   return planes;
 }
 
-/* A cell's place in a plane. */
+/* The index of a cell's number in a plane. */
 static inline size_t hl_plane_place(const field_planes *planes, int32_t row, int32_t column) {
   return (size_t)(row + 1) * (size_t)planes->stride + FIELD_LANES + (size_t)column;
 }

@@ -29,14 +29,15 @@ void hl_field_share_ranges(field_share *share, int32_t slabs) {
   while (part <= parts) share->first[part++] = slabs;
 }
 
-/* The n-th slab of a part; -1: the part has fewer slabs. */
+/* The n-th of the slabs that a process finds, where a slab is all cells of one z; -1: the process has fewer
+ * slabs. */
 static int32_t slab_of(const field_share *share, bool ranges, int part, int32_t n, int32_t slabs) {
   int32_t slab = ranges ? share->first[part] + n : part + n * share->with->parts,
           end = ranges ? share->first[part + 1] : slabs;
   return slab < end ? slab : -1;
 }
 
-/* The greatest number of slabs that a part has. */
+/* The greatest number of slabs, layers of cells of one z, that any process finds. */
 static int32_t most_slabs(const field_share *share, bool ranges, int32_t slabs) {
   int32_t most = 0;
   for (int part = 0; part < share->with->parts; part++)

@@ -9,22 +9,27 @@
 #include "core/memory.h"
 
 typedef struct field_share {
-  const light_exchange *with; /* borrowed; null: one process finds everything */
-  size_t piece;               /* the most bytes that each process gives at a time */
-  unsigned char *own, *all;   /* [piece]; [parts][piece] */
-  int32_t *first;             /* [parts + 1]; see hl_field_share_ranges() */
-  uint64_t *weights;          /* [slabs]; input of hl_field_share_ranges() */
+  const light_exchange *with; /* the exchange with the other processes; borrowed; null: this process finds
+                               * all slabs */
+  size_t piece;               /* the greatest number of bytes that each process gives in one exchange */
+  unsigned char *own, *all;   /* own: [piece], bytes of this process; all: [parts][piece], bytes of all
+                               * processes */
+  int32_t *first;             /* [parts + 1]; the first slab of each process's range, see
+                               * hl_field_share_ranges() */
+  uint64_t *weights;          /* [slabs]; the estimated work for each slab, the input of
+                               * hl_field_share_ranges() */
 } field_share;
 
 /* Takes the share's arrays from a layout. with: the exchange with the other processes; null: no arrays are
  * needed. */
 void hl_field_share_lay_out(const light_exchange *with, size_t slabs, field_share *share, hl_layout *layout);
 
-/* Cuts the slabs into a range for each process. The sums of share->weights in the ranges are about equal. A
- * process has the slabs first[part] to first[part + 1] - 1. All processes must have the same weights. */
+/* Divides the slabs, which are layers of cells of one z, into one range for each process. The sums of
+ * share->weights in the ranges are about equal. A process has the slabs first[part] to first[part + 1] - 1.
+ * All processes must have the same weights. */
 void hl_field_share_ranges(field_share *share, int32_t slabs);
 
-/* Whether this process finds a slab, where processes take slabs in turn. */
+/* Whether this process finds a given slab (all cells of one z), where processes take slabs in turn. */
 static inline bool hl_field_share_turn(const field_share *share, int32_t slab) {
   return share->with == NULL || slab % share->with->parts == share->with->part;
 }

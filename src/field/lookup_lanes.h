@@ -13,12 +13,14 @@
 /* The light that reaches sixteen samples, as sums of harmonics over the cells around each sample, in the
  * field's units. The caller divides each sum by the sum of the cells' weights. */
 typedef struct sky_rows {
-  float of[LANES][2 * LANES]; /* [lane][FIELD_HARMONICS][channels]; set for the active lanes */
-  lanes unit;                 /* 1 over the sum of the weights */
+  float of[LANES][2 * LANES]; /* [lane][FIELD_HARMONICS][channels]; the sums of each lane; set only for the
+                               * active lanes */
+  lanes unit;                 /* 1 over the sum of the weights of a lane's cells */
   uint32_t active;
 } sky_rows;
 
-/* Finds a position between cells along one axis. Returns the number of the first of the two cells. */
+/* Finds between which two cells a position lies along one axis. Returns the number of the first of these
+ * cells. *fraction: receives the fraction of the way to the second cell. */
 LANES_INLINE lanes place_between_cells(const sky_light *sky, int axis, lanes position, lanes *fraction) {
   lanes at = lanes_line(position - sky->low[axis], sky->inverse_cell, -0.5f);
   at = lanes_clamp(at, 0, (float)sky->count[axis] - 1.001f);
@@ -27,8 +29,8 @@ LANES_INLINE lanes place_between_cells(const sky_light *sky, int axis, lanes pos
   return whole;
 }
 
-/* The weight of a cell among the cells around a position. In media and on meshes (surface: 0) it is the
- * trilinear weight times the cell's transmittance. On a volume's surface (surface: 1) it is the trilinear
+/* The weight of a cell among the cells around a position. In media and on meshes (`surface` is 0) it is the
+ * trilinear weight times the cell's transmittance. On a volume's surface (`surface` is 1) it is the trilinear
  * weight times the sixth power of the transmittance, so that cells half filled with matter do not darken the
  * outside of the surface. */
 LANES_INLINE lanes weight_of_cell(lanes trilinear, lanes_int stored, lanes surface) {
@@ -37,9 +39,9 @@ LANES_INLINE lanes weight_of_cell(lanes trilinear, lanes_int stored, lanes surfa
   return trilinear * lanes_max(counted, lanes_set(LEAST_COUNTED));
 }
 
-/* The first of the eight cells around sixteen positions. */
+/* For each of sixteen positions, the first of the eight cells around it. */
 typedef struct sky_cells {
-  int32_t rows[LANES], columns[LANES]; /* numbers of rows, counted through all slices */
+  int32_t rows[LANES], columns[LANES]; /* the first cell's row, counted through all slices, and its column */
   lanes fraction[3];                   /* fraction of the way to the next cell along each axis */
 } sky_cells;
 
@@ -59,7 +61,8 @@ LANES_INLINE const int16_t *cell_of_lane(const sky_light *sky, const sky_cells *
   return sky->cells + (size_t)cells->rows[lane] * sky->row_numbers + (size_t)cells->columns[lane] * SKY_CELL;
 }
 
-/* The distance, in numbers of 16 bits, from the first of eight cells to each of them. */
+/* The distance, in numbers of 16 bits, from the first of a lane's eight cells to cell number `cell` of
+ * them. */
 LANES_INLINE size_t step_to_cell(const sky_steps *steps, int corner) {
   return steps->to_pair[corner >> 1] + (corner & 1 ? SKY_CELL : 0);
 }
@@ -172,14 +175,15 @@ LANES_INLINE void find_cells(const sky_light *sky, lanes3 position, sky_cells *c
   lanes first[3];
   for (int axis = 0; axis < 3; axis++)
     first[axis] = place_between_cells(sky, axis, at[axis], &cells->fraction[axis]);
-  /* whole numbers below 2^24, which floats hold exactly */
+  /* row numbers are whole numbers below 2^24, which floats hold exactly */
   lanes_int row = lanes_truncate(lanes_add_scaled(first[1], first[2], (float)sky->count[1])),
             column = lanes_truncate(first[0]);
   memcpy(cells->rows, &row, sizeof cells->rows);
   memcpy(cells->columns, &column, sizeof cells->columns);
 }
 
-/* Prefetches the cells around positions. Without this, samples would mostly wait for memory. */
+/* Prefetches the cells of the sky's field around positions. Without this, samples would mostly wait for
+ * memory. */
 LANES_INLINE void fetch_sky(const sky_light *sky, lanes3 position, uint32_t active) {
   const sky_steps steps = steps_of_sky(sky);
   sky_cells cells;

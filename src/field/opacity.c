@@ -20,7 +20,7 @@ field_lattice hl_field_lattice(const vec3 *points, int count, double voxel, doub
     size[a] = fmax(high[a] - low[a], voxel);
     cell = fmax(cell, size[a] / (MOST_CELLS_ALONG - 2 * FIELD_MARGIN - 1));
   }
-  for (;;) { /* the edge grows until there are few enough cells */
+  for (;;) { /* the edge of the cells grows until there are few enough cells */
     double cells = 1;
     for (int a = 0; a < 3; a++) cells *= ceil(size[a] / cell) + 2 * FIELD_MARGIN;
     if (cells <= most_cells) break;
@@ -51,11 +51,11 @@ typedef struct opacity_job {
   opacity_field *field;
   const field_content *content;
   const field_functions *functions;
-  int samples, every_other; /* as in field_block */
+  int samples, every_other; /* the members of field_block with the same names */
   const float (*reach)[3];  /* [count]; for each volume, half the extent of the box around a cell along each
                              * axis of the volume's index space */
   field_share *share;
-  int32_t first, end; /* the slabs that this process samples */
+  int32_t first, end; /* the range of z for which this process samples cells */
 } opacity_job;
 
 /* Whether a relevant brick of the grid holds points around `at` (index space). */
@@ -85,7 +85,7 @@ static bool volume_reaches(const opacity_job *job, int volume, const float middl
   return reaches_matter(matter->grid, at, reach);
 }
 
-/* The cells of a block that a volume reaches, one bit each. */
+/* The cells of a block of sixteen cells that a volume reaches, one bit each. */
 static uint32_t cells_of(const opacity_job *job, int volume, const float corner[3], int32_t valid) {
   const float half = (float)job->field->lattice.cell / 2;
   uint32_t bits = 0;
@@ -96,7 +96,8 @@ static uint32_t cells_of(const opacity_job *job, int volume, const float corner[
   return bits;
 }
 
-/* Adds optical depths to cells of the field. axes: number of the field's arrays to which they are added. */
+/* Adds optical depths to cells of the field. axes: the number of the field's arrays `depth` to which the
+ * depths are added. */
 static void add_depths(opacity_field *field, int axes, const int32_t cell[3], int32_t valid,
                        float depth[3][FIELD_LANES]) {
   for (int a = 0; a < axes; a++) {
@@ -151,8 +152,8 @@ static void find_slab(void *data, size_t index, int worker) {
 
 /* ---- processes that share a picture ---- */
 
-/* Estimates the time that a slab takes. A box of 4 x 4 cells counts 1. Each volume that reaches the box
- * adds SAMPLED, because the box's cells are then sampled. */
+/* Estimates the time that a slab, all cells of one z, takes. A box of 4 x 4 cells counts 1. Each volume that
+ * reaches the box adds SAMPLED, because the box's cells are then sampled. */
 static void weigh_slab(void *data, size_t index, int worker) {
   enum { BOX = 4, SAMPLED = 20 };
   const opacity_job *job = data;
@@ -173,8 +174,8 @@ static void weigh_slab(void *data, size_t index, int worker) {
   job->share->weights[index] = weight;
 }
 
-/* Copies the optical depths of a slab that another process has sampled from the third of the field's arrays
- * to the other two. */
+/* Copies the optical depths of a slab (all cells of one z) that another process has sampled, from the third
+ * of the field's arrays to the other two. */
 static void spread_depths(void *data, size_t index, int worker) {
   const opacity_job *job = data;
   opacity_field *field = job->field;
@@ -192,7 +193,8 @@ static void spread_depths(void *data, size_t index, int worker) {
     }
 }
 
-/* Samples the volumes in all slabs. */
+/* Samples the volumes in all slabs of cells, or, where processes share a picture, in the slabs of this
+ * process; then the processes exchange their slabs. */
 static void find_slabs(opacity_job *job, hl_pool *pool) {
   opacity_field *field = job->field;
   field_share *share = job->share;
@@ -284,7 +286,8 @@ static void find_flags(void *data, size_t slice, int worker) {
   }
 }
 
-/* The number of samples along a cell's edge that are no farther apart than voxels, at most FIELD_SAMPLES. */
+/* The number of samples along a cell's edge for which samples are no farther apart than voxels, but at most
+ * FIELD_SAMPLES. */
 static int samples_of(double cell, double voxel) {
   double samples = ceil(cell / voxel - 0.25);
   return samples < 1 ? 1 : samples > FIELD_SAMPLES ? FIELD_SAMPLES : (int)samples;

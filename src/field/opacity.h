@@ -9,28 +9,28 @@
 
 /* The content whose opacity is found. */
 typedef struct field_content {
-  const field_matter *matter; /* [count] */
+  const field_matter *matter; /* [count]; the matter of the volumes */
   int count;
-  const surfaces *surfaces; /* null: there are no meshes */
+  const surfaces *surfaces; /* the surfaces of meshes; null: there are no meshes */
   double voxel;             /* the smallest edge of a voxel; frame units */
 } field_content;
 
-/* FIELD_MARGIN: the width, in cells, of the margin that a lattice has on every side. The function makes a
- * lattice around points of the content, with at most `most_cells` cells, none of which is smaller than a
- * voxel. */
+/* FIELD_MARGIN is the width, in cells, of the margin that a lattice has on every side. hl_field_lattice()
+ * makes a lattice around points of the content, with at most `most_cells` cells, none of which is smaller
+ * than a voxel. */
 enum { FIELD_MARGIN = 3 };
 field_lattice hl_field_lattice(const vec3 *points, int count, double voxel, double most_cells);
 
 /* Temporary memory for finding the opacity. */
 typedef struct opacity_scratch {
-  unsigned char *seen; /* [z][y][x] */
+  unsigned char *seen; /* [z][y][x]; 1 for each cell in which something may be visible */
 } opacity_scratch;
 
-/* Takes the arrays of a field, whose lattice is set, and of its scratch memory from a layout. */
+/* Lays out the arrays of a field and of its scratch memory. The field's lattice must have been set. */
 void hl_opacity_lay_out(opacity_field *field, opacity_scratch *scratch, hl_layout *layout);
 
-/* Fills the field's arrays. Where processes share a picture, each of them samples the volumes in some
- * slabs. */
+/* Fills the arrays of an opacity field. Where processes share a picture, each of them samples the volumes in
+ * some slabs. */
 void hl_opacity_find(const field_content *content, const field_functions *functions,
                      const opacity_scratch *scratch, field_share *share, opacity_field *field, hl_pool *pool);
 

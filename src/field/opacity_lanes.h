@@ -28,8 +28,9 @@ LANES_INLINE float stored_number(const unsigned char *row, hl_storage storage, i
 /* A box of voxels that a cell's samples share. */
 enum { WINDOW_VOXELS = 512 };
 typedef struct voxel_window {
-  int32_t first[3], size[3];    /* size: 0 if the samples look their voxels up one by one */
-  double voxels[WINDOW_VOXELS]; /* [size[2]][size[1]][size[0]] */
+  /* corner and size of the box, in voxels; a size of 0: the samples look up their voxels one by one */
+  int32_t first[3], size[3];
+  double voxels[WINDOW_VOXELS]; /* [size[2]][size[1]][size[0]]; the values of the box's voxels */
 } voxel_window;
 
 /* Fills the window with the voxels on which the values in a box depend. low, high: the box's corners; index
@@ -72,8 +73,8 @@ LANES_INLINE void copy_voxels(const field_matter *matter, const voxel_window *wi
       for (int x = 0; x < side; x++) *voxels++ = (float)from[z * slice + y * row + x];
 }
 
-/* The value at a position of index space, linear between the voxels around it. Beyond the grid's faces the
- * values at the border continue. */
+/* The value of a volume at a position of index space, interpolated linearly between the voxels around the
+ * position. Beyond the grid's faces the values at the border continue. */
 LANES_INLINE float linear_value(const field_matter *matter, hl_storage storage, const voxel_window *window,
                                 const float at[3]) {
   const grid *grid = matter->grid;
@@ -85,7 +86,7 @@ LANES_INLINE float linear_value(const field_matter *matter, hl_storage storage, 
     next[a] = first[a] + 1 < grid->dimension[a] ? first[a] + 1 : first[a];
     fraction[a] = within - (float)first[a];
   }
-  float corner[2][2][2]; /* [z][y][x] */
+  float corner[2][2][2]; /* [z][y][x]; the values of the eight voxels around the position */
   if (grid->voxels != NULL) {
     for (int n = 0; n < 4; n++) {
       const unsigned char *row = hl_grid_row(grid, n & 1 ? next[1] : first[1], n >> 1 ? next[2] : first[2]);
@@ -105,7 +106,7 @@ LANES_INLINE float linear_value(const field_matter *matter, hl_storage storage, 
   return along[0] + (along[1] - along[0]) * fraction[2];
 }
 
-/* The value of a cubic B-spline over coefficients. */
+/* The value, at a position of index space, of a cubic B-spline over coefficients. */
 LANES_INLINE float smooth_value(const field_matter *matter, const voxel_window *window, const float at[3]) {
   float weight[3][FIELD_TAPS], voxels[FIELD_TAPS * FIELD_TAPS * FIELD_TAPS], sum = 0;
   int32_t first[3];
@@ -166,15 +167,16 @@ LANES_INLINE int cell_shows(const grid *grid, const float at[3]) {
   return (int)(grid->cell_bits[hl_brick_index(grid, brick)] >> bit & 1);
 }
 
-/* Whether cuts leave matter at a position. */
+/* Whether matter at a position absorbs light: either the cuts leave the matter there, or cut matter still
+ * casts shadows. */
 LANES_INLINE int cuts_leave_position(const grid *grid, const float at[3]) {
   return grid->cut_count == 0 || grid->cut_casts_shadow ||
          hl_cuts_leave(grid->cuts, grid->cut_count, (vec3){at[0], at[1], at[2]});
 }
 
-/* point: the position in frame space. Samples on the low faces of a volume's box lie in the box, and samples
- * on its high faces lie outside of it. A box therefore keeps its thickness where samples lie on both faces.
- */
+/* The extinction of a volume at a position `at` of its index space, which is `point` in frame space. Samples
+ * on the low faces of a volume's box lie in the box, and samples on its high faces lie outside of it. A box
+ * therefore keeps its thickness where samples lie on both faces. */
 LANES_INLINE float extinction_at_position(const field_matter *matter, hl_storage storage,
                                           const voxel_window *window, const float at[3],
                                           const float point[3]) {

@@ -38,7 +38,7 @@ typedef struct sky_end {
 
 /* ---- radiance ---- */
 
-/* The number of samples along each side of a square. */
+/* The number of samples of the sky along each side of a square of directions. */
 static int samples_of_sky(const hl_sky *sky) {
   if (sky->type != HL_SKY_IMAGE) return 8;
   int pixels = sky->width / (4 * SIDE) + 1;
@@ -145,7 +145,7 @@ static void move_row(void *data, size_t row, int worker) {
  * slice, where nothing hides the light. */
 static size_t light_of_slice(const field_slices *s) { return FIELD_DIRECTIONS * hl_field_planes(s).plane; }
 
-/* The number of floats that hold the light of one slice of the axis whose slices are the largest. */
+/* The number of floats that hold the light of one slice, for the axis whose slices need the most. */
 static size_t most_light(const sky_content *content) {
   size_t most = 0;
   for (int a = 0; a < 3; a++) {
@@ -180,10 +180,11 @@ static void open_light(const moving_light *moving, const field_slices *s, int di
   }
 }
 
-/* The light of how many slices has been moved, over all ends and passes. */
+/* How much of the work is done: the number of slices whose light has been moved, over all ends of axes and
+ * all passes. */
 typedef struct sky_progress {
   const hl_context *context;
-  double done, whole; /* slices */
+  double done, whole; /* done: number of slices whose light has been moved; whole: number of all slices */
 } sky_progress;
 
 static void tell_progress(sky_progress *progress, int32_t slices) {
@@ -193,13 +194,13 @@ static void tell_progress(sky_progress *progress, int32_t slices) {
 
 /* Where the field's light is added: the cells, and the harmonics that are kept of each cell. */
 typedef struct sky_target {
-  float *field;   /* begins with the first cell's first harmonic */
-  size_t step[3]; /* floats from cell to cell */
+  float *field;   /* the float of the first cell's first harmonic */
+  size_t step[3]; /* numbers of floats from one cell to the next along x, y and z */
 } sky_target;
 
-/* Sets the links through which light comes to a slice. rising: the light comes from the slice before; else it
- * comes from the slice after. A link is stored with the later of its two slices, so links to the slice after
- * are read with that slice, from their other ends. */
+/* Sets the links through which light comes to a slice. rising: whether the light comes from the slice before;
+ * if not, it comes from the slice after. A link is stored with the later of its two slices, so links to the
+ * slice after are read with that slice, from their other ends. */
 static void set_links(const surface_links *links, const field_slices *s, size_t slice, bool rising,
                       sky_slice *of) {
   const field_planes planes = hl_field_planes(s);
@@ -271,7 +272,7 @@ static size_t row_floats(const sky_content *content) {
   return (cell_floats(content) * (size_t)content->lattice.count[0] + 15) / 16 * 16;
 }
 
-/* The number of floats of all rows. */
+/* The number of floats of all rows of the field. */
 static size_t field_floats(const sky_content *content) {
   return row_floats(content) * (size_t)content->lattice.count[1] * (size_t)content->lattice.count[2];
 }
@@ -282,7 +283,7 @@ typedef struct passing_arrays {
   opacity_field opacity;
   moving_light moving;
   opacity_scratch scratch;
-  surface_links links; /* links along one axis, for content with surfaces */
+  surface_links links; /* the links between cells along one axis; used if the content has surfaces */
   field_matter *matter;
   field_share share;
 } passing_arrays;
@@ -386,9 +387,10 @@ static void find_open(const sky_content *content, sky_light *light) {
 enum { MOST_FLOATS = 3 * FIELD_HARMONICS + 1 + 3 };
 
 typedef struct store_rows {
-  float *field; /* [rows][row_floats()]; turned into cells in place */
+  float *field; /* [rows][row_floats]; the cells as floats, which are turned into numbers of 16 bits in
+                 * place */
   size_t row_floats, cell_floats, columns;
-  size_t used;              /* number of used floats of a cell */
+  size_t used;              /* number of floats of a cell that are stored */
   float scale[MOST_FLOATS]; /* [used]; the factors that turn floats into numbers of 16 bits */
   int place[MOST_FLOATS];   /* [used]; for each float of a cell, its place among the cell's numbers of 16
                              * bits */

@@ -15,13 +15,15 @@ typedef struct sky_light {
    * the indices of SKY_PLACE(), the channels of a harmonic beside each other. It is zero where nothing
    * visible is near. Null: there is no sky. */
   const int16_t *cells;
-  uint64_t version;   /* of the cells; rises each time that the field is made */
-  size_t row_numbers; /* numbers of 16 bits from row to row */
+  uint64_t version;   /* the version of `cells`; a number that rises each time the field is made */
+  size_t row_numbers; /* number of 16-bit numbers from one row of cells to the next */
   int32_t count[3];
-  float low[3], inverse_cell, cell; /* low corner and cell of the lattice */
+  /* low: the lattice's low corner, frame space; cell: the edge of a cell, frame units; inverse_cell: 1 /
+   * cell */
+  float low[3], inverse_cell, cell;
   float lift; /* distance by which look-ups are moved off a surface, along its normal; frame units */
   int channels;
-  int cut;                        /* surfaces may cut the ways between cells (SKY_CUT) */
+  int cut;                        /* whether surfaces may cut the ways between cells (SKY_CUT) */
   float stored_unit[3];           /* [channels]; the amount of light for which the number 1 in a cell
                                    * stands */
   float color[3];                 /* a factor on the field's light */
@@ -30,18 +32,18 @@ typedef struct sky_light {
 } sky_light;
 
 typedef struct sky_field {
-  void *memory; /* owned; the cells */
+  void *memory; /* owned; the memory of light.cells */
   size_t bytes;
   sky_light light;
   hl_key key; /* the key of the field's content */
 } sky_field;
 
-/* The content that a field is made of. Each matter's `cast` is 1 or 0. colors: relative extinctions,
- * [matter][3]. */
+/* The content from which a sky's field is made. The member `cast` of each matter must be 1 or 0. */
 typedef struct sky_content {
   const hl_sky *sky;
   field_content content;
-  const double (*colors)[3]; /* attenuation colours */
+  /* [number of matters]; for each volume, the relative extinction of red, green and blue light */
+  const double (*colors)[3];
   field_lattice lattice;
   int channels; /* number of channels: 3 where the light of the channels comes from different directions, or
                  * where matter attenuates the channels differently; else 1 */
@@ -53,7 +55,7 @@ typedef struct sky_content {
  * before. */
 void hl_sky_count(const sky_content *content, const sky_field *held, hl_layout *layout);
 
-/* Makes the field anew. */
+/* Makes the sky's field from its content. */
 hl_status hl_sky_make(hl_context *context, hl_pool *pool, const sky_content *content,
                       const field_functions *functions, sky_field *made, hl_error *error);
 void hl_sky_release(hl_context *context, sky_field *field);

@@ -18,7 +18,7 @@ static const float SKY_FAINT = 1.0f / 65536;
 
 /* The light of the directions that reach sixteen cells. */
 typedef struct sky_reaching {
-  lanes light[FIELD_DIRECTIONS]; /* [count] */
+  lanes light[FIELD_DIRECTIONS]; /* [count]; the light of each direction in sixteen cells */
   const float *basis[FIELD_DIRECTIONS];
   int count;
 } sky_reaching;
@@ -77,8 +77,9 @@ LANES_INLINE void find_open_links(const sky_slice *slice, size_t at, lanes open[
   }
 }
 
-/* The light of a direction that reaches sixteen cells. from: the light of that direction in the slice before,
- * at the first of the four cells that give light to the first of the sixteen. */
+/* The light of a direction that reaches sixteen neighbouring cells. Each of them gets light from four cells
+ * of the slice before. from: points to the light of this direction in the first of the four cells that belong
+ * to the first of the sixteen. */
 LANES_INLINE lanes light_from(const float *from, int32_t stride, const sky_direction *direction) {
   lanes light = lanes_load(from) * direction->weight[0];
   light = lanes_add_scaled(light, lanes_load(from + 1), direction->weight[1]);
@@ -86,7 +87,8 @@ LANES_INLINE lanes light_from(const float *from, int32_t stride, const sky_direc
   return lanes_add_scaled(light, lanes_load(from + stride + 1), direction->weight[3]);
 }
 
-/* The light of a direction that reaches sixteen cells where surfaces cut links. from: as in light_from(). */
+/* The light of a direction that reaches sixteen cells where surfaces cut links. from: as in light_from().
+ * open: the fraction of light that passes each link. */
 LANES_INLINE lanes light_past_surfaces(const float *from, int32_t stride, const sky_direction *direction,
                                        const lanes open[FIELD_LINKS]) {
   const lanes *link = open + direction->link;
@@ -109,15 +111,15 @@ LANES_INLINE uint64_t lit_around(const sky_slice *slice, size_t block) {
   return lit;
 }
 
-/* Makes a block dark for some directions. at: the place of the first direction's light. */
+/* Makes a block dark for some directions. at: the index of the first direction's light in the block. */
 LANES_INLINE void darken(const sky_slice *slice, size_t at, uint64_t directions) {
   for (; directions != 0; directions &= directions - 1)
     lanes_store(slice->left + at + (size_t)(__builtin_ctzll(directions) * slice->light_stride), lanes_set(0));
 }
 
-/* Moves the light of all directions to sixteen cells. block: the cells' place among the blocks. at: the place
- * of the first direction's light. squared: null where no matter lies in the cells. open: null where no
- * surface cuts their links. */
+/* Moves the light of all directions to sixteen cells. block: the number of the cells' block. at: the index of
+ * the first direction's light in the block. squared: null where no matter lies in the cells. open: null where
+ * no surface cuts their links. */
 LANES_INLINE void move_light(const sky_slice *slice, size_t block, size_t at, const lanes *squared,
                              const lanes *open, sky_reaching *reaching) {
   const int32_t row = FIELD_DIRECTIONS * slice->light_stride;
@@ -130,7 +132,7 @@ LANES_INLINE void move_light(const sky_slice *slice, size_t block, size_t at, co
     const sky_direction *direction = &slice->directions[d];
     const size_t here = at + (size_t)(d * slice->light_stride);
     const float *from = slice->old + here + direction->offset;
-    /* prefetches the light that the next row reads; after the last row, nothing reads it */
+    /* prefetches the light that the next row reads; after the last row, the light is not read */
     __builtin_prefetch(slice->old + here + 2 * row);
     lanes light = open == NULL ? light_from(from, row, direction)
                                : light_past_surfaces(from, row, direction, open);

@@ -8,11 +8,12 @@
 #include "field/field_planes.h"
 #include "surface/primitive_lattice.h"
 
-/* Links of one kind along an axis. */
+/* The links of one kind along an axis, as lines that may meet meshes. */
 typedef struct link_lines {
   field_slices slices;
   const surface_links *links;
-  const link_places *places; /* null: the links do not join neighbours along the axis */
+  /* receives the places where links are cut; null if the links do not join neighbours along the axis */
+  const link_places *places;
   lattice_lines lines;
   double cell; /* the edge of a cell; frame units */
   const surfaces *all;
@@ -47,8 +48,8 @@ void hl_surface_links_lay_out(const field_lattice *lattice, surface_links *links
 
 /* ---- a line meets a mesh ---- */
 
-/* Marks the block of a cell, which may lie beyond the lattice, with LINKS_BEFORE or LINKS_AFTER. The tasks of
- * several kinds of links mark the same blocks. */
+/* Marks the block of a cell with LINKS_BEFORE or LINKS_AFTER. The cell may lie beyond the lattice, and then
+ * nothing is marked. The tasks of several kinds of links mark the same blocks. */
 static void mark_block(const link_lines *lines, int32_t slice, int32_t row, int32_t column,
                        unsigned char mark) {
   const field_slices *s = &lines->slices;

@@ -3,7 +3,7 @@
  * A link is the straight line between the middles of two cells in slices that follow each other: a cell has
  * nine links to the slice before. Light moves from cell to cell along links. A surface absorbs a part of the
  * light of each link that it meets. So a closed wall lets no light through, however thin it is and whatever
- * its direction. Nor does a thin wall fill whole cells. */
+ * its direction. And a thin wall does not fill whole cells. */
 #ifndef HL_FIELD_SURFACE_LINKS_H
 #define HL_FIELD_SURFACE_LINKS_H
 
@@ -14,20 +14,21 @@
 /* The links along one axis. */
 typedef struct surface_links {
   unsigned char
-      /* [slices + 1][FIELD_LINKS][rows + 2][stride + 2 FIELD_LANES]; the part, in 255ths, that surfaces
+      /* [slices + 1][FIELD_LINKS][rows + 2][stride + 2 FIELD_LANES]; the fraction, in 255ths, that surfaces
        * absorb of the light that goes along each link from the slice before. The links of slice s lead to
        * slice s - 1. The links of slice number `slices`, beyond the last slice, are never cut. */
       *taken;
-  unsigned char *cut; /* [slices][rows][stride / FIELD_LANES]; LINKS_BEFORE and LINKS_AFTER */
+  /* [slices][rows][stride / FIELD_LANES]; the flags LINKS_BEFORE and LINKS_AFTER of each block of cells */
+  unsigned char *cut;
 } surface_links;
 
-/* Takes the memory of the arrays from a layout; they have room for the links along any axis. */
+/* Lays out the arrays of links; they have room for the links along any axis of the lattice. */
 void hl_surface_links_lay_out(const field_lattice *lattice, surface_links *links, hl_layout *layout);
 
 /* The places where links that join neighbours along an axis are cut. */
 typedef struct link_places {
-  float *first;   /* the float of the first cell */
-  size_t step[3]; /* floats from cell to cell along x, y and z */
+  float *first;   /* the float of the first cell that receives a place */
+  size_t step[3]; /* numbers of floats from one cell to the next along x, y and z */
 } link_places;
 
 /* Finds which links along an axis surfaces cut. places: receives, for each cell, the fraction (above 0) of

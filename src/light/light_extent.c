@@ -37,10 +37,10 @@ static vec3 first_axis(const light_source *source, vec3 normal) {
   return vec3_length(axis) > 1e-3 * vec3_length(along) ? vec3_normalise(axis) : vec3_perpendicular(normal);
 }
 
-/* Projects a point of the light onto the plane, along the ray from the content's middle to the point. If the
- * point is nearly as low as the content, it would be moved far away; so its distance from the content is
- * multiplied by at most four. If the light lies beside or below the content's middle, the point is projected
- * along the sheets' normal. */
+/* Projects a point of the light onto a plane that is parallel to the sheets, along the ray from the content's
+ * middle to the point. If the point is nearly as low as the content, it would be moved far away; so its
+ * distance from the content is multiplied by at most four. If the light lies beside or below the content's
+ * middle, the point is projected along the sheets' normal. */
 static vec3 seen_on_plane(const light_source *source, vec3 normal, vec3 offset) {
   if (source->parallel) {
     vec3 way = vec3_add(source->direction, offset);
