@@ -12,9 +12,9 @@
 
 enum { SOFT_SIDE = 3 /* points along each side of a soft light's square */ };
 
-/* exp(-x) for x >= 0, with the same result on every machine. Derived: it is 2^n (1 + a + ... + a^6 / 6!),
- * where n is -x / ln 2 rounded to a whole number, and a is ln 2 times the remainder of this rounding. |a| is
- * at most 0.35, so the remainder of the series is below 1e-7. */
+/* exp(-x) for x >= 0. The result is the same on every machine. Derived: exp(-x) is 2^n (1 + a + ... + a^6 /
+ * 6!), where n is -x / ln 2 rounded to a whole number, and a is ln 2 times the remainder of this rounding.
+ * |a| is at most 0.35, so the remainder of the series is below 1e-7. */
 static float falling(float x) {
   if (!(x < 80)) return 0;
   float y = -x * 1.44269504f, whole = floorf(y + 0.5f), a = (y - whole) * 0.693147181f;
@@ -30,7 +30,7 @@ typedef struct direct_job {
   const scatter_nodes *nodes;
   scatter_arrays *arrays;
   size_t node_count;
-  const hl_light *light; /* whose source is `source` */
+  const hl_light *light; /* the light in frame space; `source` is made from it */
   const light_source *source;
   light_cone cone;
   int side; /* number of points along each side of the unit square that stands for the light */
@@ -81,7 +81,7 @@ static void find_passing(const direct_job *job, const int32_t at[3], size_t node
   for (int c = job->arrays->channels; c < 3; c++) passing[c] = passing[0];
 }
 
-/* A spot light's brightness by direction, as in light_source.h. */
+/* The brightness of a spot light in a direction, as light_source.h defines it. */
 static float within_cone(const light_cone *cone, vec3 towards) {
   if (!(cone->scale > 0)) return 1;
   double cosine = -(cone->axis[0] * towards.x + cone->axis[1] * towards.y + cone->axis[2] * towards.z);
@@ -89,8 +89,7 @@ static float within_cone(const light_cone *cone, vec3 towards) {
   return (float)(x * x * (3 - 2 * x));
 }
 
-/* Multiplies the light by the fraction that a mesh lets through at the point where the light meets the
- * mesh. */
+/* Multiplies the light of a ray by the fraction that a mesh lets through where the ray meets the mesh. */
 static void meet_mesh(void *data, const surface_hit *hit) {
   float *passing = data;
   const double *color = hit->mesh->look.attenuation_color;

@@ -19,7 +19,7 @@
 
 typedef struct faces {
   const float *extinction;
-  float *const *lines; /* [SCATTER_LINES][nodes]; the light along each line */
+  float *const *lines; /* [SCATTER_LINES][nodes]; the light along each line at each node */
 } faces;
 
 typedef struct face_sums {

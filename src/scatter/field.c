@@ -26,7 +26,7 @@ void hl_scatter_release(hl_context *context, scatter_field *field) {
   *field = (scatter_field){0};
 }
 
-/* True if some matter scatters more light in some directions than in others. */
+/* Whether some matter scatters more light in some directions than in others. */
 static bool is_uneven(const hl_scene_description *scene) {
   bool uneven = false;
   for (size_t v = 0; v < scene->volume_count; v++)
@@ -53,7 +53,7 @@ static void add_box(const grid *grid, double low[3], double high[3]) {
   }
 }
 
-/* Places the nodes of the grid. Returns false if there is no matter. */
+/* Places the nodes of the grid around the scene's content. Returns false if there is no matter. */
 static bool place_nodes(const scatter_scene *scene, scatter_nodes *nodes) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, longest = 0;
   for (size_t v = 0; v < scene->scene->volume_count; v++)
@@ -73,7 +73,7 @@ static bool place_nodes(const scatter_scene *scene, scatter_nodes *nodes) {
 
 /* ---- memory ---- */
 
-/* The sizes and kinds of a field's arrays. */
+/* The sizes and kinds of the arrays that a field consists of. */
 typedef struct scatter_parts {
   size_t nodes;
   bool with_flux, with_sky, with_walls;
@@ -173,10 +173,10 @@ static void write_key(const void *data, hl_key *key) {
 
 /* ---- the whole ---- */
 
-/* The arrays of one channel. */
+/* The arrays of one colour channel. */
 typedef struct channel {
   const float *extinction, *scattering, *own, *direct;
-  const scatter_inflow *inflow; /* null: no sky */
+  const scatter_inflow *inflow; /* the sky's light that enters the grid; null: there is no sky */
   float *light, *flux;
 } channel;
 
@@ -187,9 +187,10 @@ static float mean_albedo(const channel *of, size_t count) {
   return met > 0 ? (float)(1 - kept / met) : 0;
 }
 
-/* Subtracts the fraction (1 - w) of the sky's unscattered light from the grid's light (parts.h). The evenly
- * scattering medium absorbs as much light as the real one (similarity, scatter.h). So the albedo w is 1 -
- * (extinction - scattering) / own. Empty nodes beside matter have the albedo of all matter. */
+/* Subtracts the fraction (1 - w) of the sky's unscattered light from the grid's light (parts.h), where w is
+ * the albedo of the matter at a node. The evenly scattering medium absorbs as much light as the real one
+ * (similarity, scatter.h). So the albedo w is 1 - (extinction - scattering) / own. Empty nodes beside matter
+ * have the albedo of all matter. */
 static void leave_sky(const channel *of, const scatter_work *work, size_t count) {
   float elsewhere = mean_albedo(of, count);
   for (size_t n = 0; n < count; n++) {

@@ -27,7 +27,8 @@ static bool is_relevant(const grid *grid, const double p[3]) {
          (grid->cut_casts_shadow || hl_cuts_leave(grid->cuts, grid->cut_count, vec3_of(p)));
 }
 
-/* The value between the voxels around a point, linear along each axis. */
+/* The value of a volume at a point of index space, linear along each axis between the voxels around the
+ * point. */
 static float value_between(const grid *grid, const double p[3]) {
   const int32_t first[3] = {(int32_t)floor(p[0]), (int32_t)floor(p[1]), (int32_t)floor(p[2])};
   double voxels[8];
@@ -58,7 +59,7 @@ static double gradient_at(const scatter_volume *volume, const double p[3]) {
   return vec3_length(gradient);
 }
 
-/* The factor by which gradient opacity multiplies extinction. */
+/* The factor by which gradient opacity multiplies extinction where the gradient has a given length. */
 static float gradient_factor(const classifier *classifier, double length) {
   double x = fmin(length * (double)classifier->steepness_scale, STEEPNESS_ENTRIES);
   size_t low = (size_t)x;
@@ -66,8 +67,8 @@ static float gradient_factor(const classifier *classifier, double length) {
          (float)(x - (double)low) * (classifier->steepness[low + 1] - classifier->steepness[low]);
 }
 
-/* The extinction of a volume at a point of frame space, and the colour there. The extinction is 0 where
- * nothing is visible. */
+/* The extinction of a volume at a point of frame space, and the colour there. The extinction is 0 where the
+ * volume shows nothing. */
 static float extinction_at(const scatter_volume *volume, vec3 point, float color[3]) {
   const classifier *classifier = volume->classifier;
   vec3 index = affine3_apply(volume->grid->frame_to_index, point);
@@ -98,7 +99,8 @@ static float extinction_at(const scatter_volume *volume, vec3 point, float color
   return found * hl_mask_factor(&classifier->mask, at);
 }
 
-/* Sums over the samples in a node's box, for the medium that scatters evenly and for the real medium. */
+/* Sums over the samples in a node's box: extinction and scattering of the medium that scatters evenly, and
+ * the extinction (own) of the real medium. */
 typedef struct matter {
   float extinction[3], scattering[3], own[3];
 } matter;
@@ -149,7 +151,7 @@ static void fill_node(const matter_job *job, const int32_t at[3], size_t node) {
   }
 }
 
-/* One slice of nodes. */
+/* Fills the extinction and the scattering of one slice of nodes. */
 static void fill_slice(void *data, size_t z, int worker) {
   (void)worker;
   const matter_job *job = data;

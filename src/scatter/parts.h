@@ -20,16 +20,18 @@ enum {
  * runs along an edge between triangles that lie in the planes of the grid. */
 #define SCATTER_BESIDE ((vec3){0.0117, 0.0071, 0.0139})
 
-/* Matter and light at the nodes. Each array is [channels][nodes]. */
+/* Matter and light at the nodes of the grid. Each array is [channels][nodes], unless its comment says
+ * otherwise. */
 typedef struct scatter_arrays {
   float *extinction; /* extinction, per frame unit, of the evenly scattering medium (scatter.h) that replaces
                       * the real one */
   float *scattering; /* scattering of the evenly scattering medium, per frame unit */
   float *own;        /* extinction of the real medium, per frame unit. If all media scatter evenly, this is
                       * the same array as `extinction` */
-  float *direct;     /* [3][nodes]; the mean, over all directions, of the light that was not scattered */
-  int channels;      /* number of channels of extinction and scattering: 1 if these are the same for all
-                      * colours, else 3 */
+  /* [3][nodes]; for each colour channel, the mean over all directions of the light that was not scattered */
+  float *direct;
+  int channels; /* number of channels of extinction and scattering: 1 if these are the same for all
+                 * colours, else 3 */
   const surface_tree *tree; /* borrowed; the tree of meshes; if there are no meshes, it has no boxes */
 } scatter_arrays;
 
@@ -40,17 +42,18 @@ typedef struct scatter_inflow {
   float along[SCATTER_LINES], against[SCATTER_LINES];
 } scatter_inflow;
 
-/* The step from a node to the next node of a line. */
+/* The step, in nodes along x, y and z, from a node to the next node of a line. */
 const int *hl_scatter_step(int line);
 
-/* The first function gives the unit direction of a line, or its opposite. The second gives the weight of
- * both directions together in the mean over all directions. */
+/* Two functions about a line's two directions. hl_scatter_way() gives the unit vector of one of them: the
+ * direction of the line, or its opposite. hl_scatter_line_weight() gives the weight of both directions
+ * together in the mean over all directions. */
 vec3 hl_scatter_way(int line, bool onwards);
 float hl_scatter_line_weight(int line);
 
 /* Finds the sky's light that enters the grid, in each channel. A direction of the grid gets the mean radiance
- * of those directions of the sky that are nearest to it. Then all 26 directions are multiplied by one factor,
- * so that their weighted sum is the light of the whole sky. */
+ * of those directions of the sky that are nearest to it. Then the radiances of all 26 directions are
+ * multiplied by one factor, so that their weighted sum is the light of the whole sky. */
 void hl_scatter_sky_inflow(const hl_sky *sky, scatter_inflow inflow[3]);
 
 /* How the sky's light is divided. The sky's field (field/sky_field.h) is finer than the nodes. It lights
@@ -64,8 +67,9 @@ void hl_scatter_sky_inflow(const hl_sky *sky, scatter_inflow inflow[3]);
  * the matter that gets less of the sky's light gets more scattered light. Under an even sky a medium of
  * albedo 1 is lit by 1 everywhere, exactly. */
 
-/* Meshes on the lines, each array [nodes]: the fractions of light that they let through, and the optical
- * depths that walls.c makes from these fractions and from a channel's extinction. */
+/* How meshes attenuate the light along the grid's lines: the fractions of light that meshes let through, and
+ * the optical depths that walls.c makes from these fractions and from a channel's extinction. Each array is
+ * [nodes]. */
 typedef struct scatter_walls {
   float *outside[SCATTER_LINES]; /* at the first node of a line: the fraction of light that meshes let through
                                   * between the sky and the node; at other nodes 0 */
@@ -79,22 +83,24 @@ typedef struct scatter_walls {
 
 /* Working memory of transport.c, one channel at a time. */
 typedef struct scatter_work {
-  float *pass[SCATTER_LINES];                         /* [nodes] */
-  float *along[SCATTER_LINES];                        /* [nodes] */
-  float *vectors[5];                                  /* [nodes] */
+  float *pass[SCATTER_LINES];                         /* [nodes]; for each line, the number g of each node
+                                                       * (transport.c) */
+  float *along[SCATTER_LINES];                        /* [nodes]; for each line, the light along the line
+                                                       * at each node, and intermediate results */
+  float *vectors[5];                                  /* [nodes]; vectors of the conjugate gradients */
   float *flux[SCATTER_LINES], *before[SCATTER_LINES]; /* [nodes]; null where no flux is wanted */
   float *sky;          /* [nodes]; the sky's light that was not scattered; null if there is no sky */
   float *sky_flux;     /* [3][nodes]; null where no flux is wanted */
-  scatter_walls walls; /* arrays are null without meshes */
+  scatter_walls walls; /* the meshes on the lines; without meshes the arrays are null */
 } scatter_work;
 
 /* Fills the nodes' extinction and scattering, and sets the number of channels. */
 void hl_scatter_fill_matter(const scatter_scene *scene, const scatter_nodes *nodes, scatter_arrays *arrays);
 
-/* Fills direct. */
+/* Fills the array `direct`: the lights' unscattered light at the nodes. */
 void hl_scatter_fill_direct(const scatter_scene *scene, const scatter_nodes *nodes, scatter_arrays *arrays);
 
-/* Fills the fractions of light that meshes let through. */
+/* Fills the fractions of light that meshes let through: the arrays `outside` and `after` of the walls. */
 void hl_scatter_fill_walls(const scatter_scene *scene, const scatter_nodes *nodes, const surface_tree *tree,
                            const scatter_walls *walls);
 
@@ -118,10 +124,10 @@ void hl_scatter_enter(hl_pool *pool, const scatter_nodes *nodes, const float *ex
                       const scatter_inflow *inflow, scatter_work *work, float *scratch, float *light,
                       float *flux);
 
-/* Solves one channel. direct: the lights' unscattered light. inflow: the sky's light that enters the grid;
- * null: there is none. light: receives the mean over all directions of two kinds of light: scattered light,
- * and the sky's light that was not scattered. flux: [3][nodes]; receives the mean of this light times its
- * direction of travel; null: not wanted. */
+/* Finds the light of one colour channel at the nodes. direct: the lights' unscattered light. inflow: the
+ * sky's light that enters the grid; null: there is none. light: receives the mean over all directions of two
+ * kinds of light: scattered light, and the sky's light that was not scattered. flux: [3][nodes]; receives the
+ * mean of this light times its direction of travel; null: not wanted. */
 void hl_scatter_solve(hl_pool *pool, const scatter_nodes *nodes, const float *extinction,
                       const float *scattering, const float *direct, const scatter_inflow *inflow,
                       scatter_work *work, float *light, float *flux);

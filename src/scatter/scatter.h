@@ -26,7 +26,7 @@
 
 /* A volume of the scene, in the form in which this room reads it. */
 typedef struct scatter_volume {
-  const hl_scene_volume *scene; /* in frame space */
+  const hl_scene_volume *scene; /* the volume in frame space */
   uint64_t plane_mark; /* the mark of the volume's function of two numbers, which identifies the function's
                         * content */
   const grid *grid;
@@ -37,11 +37,11 @@ typedef struct scatter_volume {
 typedef struct scatter_scene {
   hl_context *context;
   hl_pool *pool;
-  const hl_scene_description *scene; /* in frame space */
+  const hl_scene_description *scene; /* the scene in frame space */
   const double *sun_parts;           /* [scene->light_count]; for each light, `of_sky` of its light_source */
-  const scatter_volume *volumes;     /* [scene->volume_count] */
+  const scatter_volume *volumes;     /* [scene->volume_count]; the scene's volumes */
   uint64_t sky_mark;                 /* identifies the pixels of the sky's image */
-  const surfaces *surfaces;          /* the scene's meshes, which absorb light; null: none */
+  const surfaces *surfaces;          /* the scene's meshes, which absorb light; null: there are none */
 } scatter_scene;
 
 /* The places of the nodes, in frame space: node (x, y, z) lies at origin + spacing * (x, y, z). */
@@ -63,7 +63,7 @@ typedef struct scatter_field {
   hl_key key;   /* the key of the field's input */
 } scatter_field;
 
-/* True if some volume asks for multiple scattering and can show it. */
+/* Whether some volume asks for multiple scattering and can show it. */
 bool hl_scatter_wanted(const hl_scene_description *scene);
 
 /* Counts the memory that hl_scatter_update() takes where it has to make the field anew. */

@@ -15,13 +15,13 @@ LANES_INLINE lanes_int node_before(const scatter_nodes *nodes, int axis, lanes a
   return before;
 }
 
-/* The cell of nodes around samples. */
+/* For each of sixteen samples, the cell of eight nodes around it. */
 typedef struct node_cell {
-  lanes_int first; /* the index of its first node */
+  lanes_int first; /* the index of the cell's first node, which has the least coordinates */
   lanes fraction[3];
 } node_cell;
 
-/* position: x, y, z in frame space. */
+/* Finds the cells of nodes around sixteen positions. position: x, y and z in frame space. */
 LANES_INLINE node_cell node_cell_at(const scatter_nodes *nodes, const lanes position[3]) {
   node_cell cell;
   lanes_int x = node_before(nodes, 0, position[0], &cell.fraction[0]),
@@ -31,7 +31,7 @@ LANES_INLINE node_cell node_cell_at(const scatter_nodes *nodes, const lanes posi
   return cell;
 }
 
-/* table: [nodes]. */
+/* Interpolates a table of numbers at the nodes linearly, at the samples of `cell`. table: [nodes]. */
 LANES_INLINE lanes between_nodes(const scatter_nodes *nodes, const node_cell *cell, const float *table) {
   const int32_t row = nodes->count[0], slice = nodes->count[1] * row;
   lanes side[2];

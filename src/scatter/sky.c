@@ -11,8 +11,8 @@ enum { BANDS = 64, MOST_BANDS = 512 };
 
 enum { DIRECTIONS = 2 * SCATTER_LINES };
 
-/* The radiance of the sky for each direction of the grid in which light travels: first for the directions of
- * all lines, then for the opposite directions. */
+/* The radiance of the sky, summed up for each direction of the grid in which light travels: first for the
+ * directions of all lines, then for the opposite directions. */
 typedef struct sky_sums {
   vec3 directions[DIRECTIONS];
   double sums[DIRECTIONS][3], samples[DIRECTIONS];

@@ -65,26 +65,27 @@ const int *hl_scatter_step(int line) { return ways[line]; }
 typedef struct lines_job {
   const scatter_nodes *nodes;
   const float *extinction;
-  const scatter_inflow *inflow; /* null: none */
+  const scatter_inflow *inflow; /* the light that enters the grid at the ends of its lines; null: no light
+                                 * enters */
   const float *sent; /* [nodes]; the energy that a node sends out in all directions, per unit of length */
   scatter_work *work;
-  float *mean; /* [nodes] */
+  float *mean; /* [nodes]; receives the mean over all directions */
 } lines_job;
 
-/* Null: no meshes. */
+/* The meshes on the lines; null if there are no meshes. */
 static const scatter_walls *walls_of(const lines_job *job) {
   return job->work->walls.after[0] != NULL ? &job->work->walls : NULL;
 }
 
-/* A row of nodes along x, for lines of one direction. */
+/* A row of nodes along x, as a part of all lines of one direction. */
 typedef struct line_row {
   size_t at;         /* number of the row's first node */
-  size_t step;       /* step from a node to the next node of the line */
+  size_t step;       /* step, in node numbers, from a node to the next node of its line */
   int32_t low, high; /* the nodes of the row that have a next node: from low to high - 1 */
 } line_row;
 
-/* Row number `index` for lines of a direction, in the order in which light that travels onwards reaches the
- * rows. */
+/* Finds row number `index` for lines of one direction. Rows are counted in the order in which light that
+ * travels onwards reaches the rows. */
 static line_row row_of(const scatter_nodes *nodes, int line, size_t index) {
   const int *way = ways[line];
   const int32_t *count = nodes->count;
@@ -98,14 +99,15 @@ static line_row row_of(const scatter_nodes *nodes, int line, size_t index) {
   return row;
 }
 
-/* Finds g at all nodes, for lines of one direction; at last nodes of lines, 1 / (1 + f) takes its place. */
+/* Finds the number g (see the head of the file) at all nodes, for lines of one direction. At the last node of
+ * each line, 1 / (1 + f) takes its place. */
 static void begin_line(void *data, size_t line, int worker) {
   (void)worker;
   const lines_job *job = data;
   const int32_t *count = job->nodes->count;
   size_t rows = (size_t)count[1] * (size_t)count[2];
   float length = length_of((int)line) * job->nodes->spacing, *pass = job->work->pass[line],
-        *before = job->work->along[line]; /* f_{i-1} g_{i-1} of each node */
+        *before = job->work->along[line]; /* receives f_{i-1} g_{i-1} of each node */
   const float *e = job->extinction;
   const scatter_walls *walls = walls_of(job);
   for (size_t n = 0; n < rows * (size_t)count[0]; n++) before[n] = 1;
@@ -133,10 +135,10 @@ static float entering_last(const lines_job *job, int line) {
   return job->inflow != NULL ? job->inflow->against[line] : 0;
 }
 
-/* Sets y at each node before light goes along the line: the energy that the node sends out, plus the light
- * that enters the line. Without meshes every node gets the entering light, and go_forward() subtracts it
- * again from all nodes but the first. With meshes only the first node gets the entering light, as far as
- * walls let it in. */
+/* Sets the number y (see the head of the file) at each node before light goes along the line: the energy that
+ * the node sends out, plus the light that enters the line. Without meshes every node gets the entering light,
+ * and go_forward() subtracts it again from all nodes but the first. With meshes only the first node gets the
+ * entering light, as far as walls let it in. */
 static void begin_sums(const lines_job *job, int line, float *sums) {
   const scatter_walls *walls = walls_of(job);
   float length = length_of(line) * job->nodes->spacing, entered = entering(job, line);
@@ -152,14 +154,14 @@ static float taken_back(const lines_job *job, int line) {
   return walls_of(job) != NULL ? 0 : entering(job, line);
 }
 
-/* y along a row. */
+/* Finds the numbers y of a row of nodes, from the nodes before them on their lines. */
 static void go_forward(const lines_job *job, int line, const line_row *row) {
   const float *pass = job->work->pass[line] + row->at;
   float *from = job->work->along[line] + row->at, *to = from + row->step, entered = taken_back(job, line);
   for (int32_t x = row->low; x < row->high; x++) to[x] += from[x] * pass[x] - entered;
 }
 
-/* Finds u along a row, from y. */
+/* Finds the light u of a row of nodes, from the numbers y and from the nodes after them on their lines. */
 static void go_back(const lines_job *job, int line, const line_row *row) {
   float half = 0.5f * length_of(line) * job->nodes->spacing;
   const float *pass = job->work->pass[line] + row->at, *e = job->extinction + row->at, *ahead = e + row->step;
@@ -200,8 +202,8 @@ static void solve_line(void *data, size_t line, int worker) {
   }
 }
 
-/* Finds v at the nodes, for lines of one direction: at each node, the mean of v on the links before and after
- * it. */
+/* Finds, for lines of one direction, by how much the light that travels onwards exceeds the mean of both ways
+ * (v at the head of the file): at each node, the mean of v on the links before and after the node. */
 static void flux_line(void *data, size_t line, int worker) {
   (void)worker;
   const lines_job *job = data;
@@ -214,7 +216,7 @@ static void flux_line(void *data, size_t line, int worker) {
   float entered = taken_back(job, (int)line);
   begin_sums(job, (int)line, sent);
   for (size_t n = 0; n < nodes; n++) before[n] = 1;
-  /* along holds u; sent becomes y, later f */
+  /* the array `along` holds u; the array `sent` becomes y, and later f */
   for (size_t r = 0; r < rows; r++) {
     line_row row = row_of(job->nodes, (int)line, r);
     for (int32_t x = 0; x < count[0]; x++) {
@@ -234,7 +236,7 @@ static void flux_line(void *data, size_t line, int worker) {
   }
 }
 
-/* Sums the flux of one slice of nodes: [3][nodes] from job->mean on. */
+/* Sums the flux of one slice of nodes over all lines. The sums are [3][nodes], from job->mean on. */
 static void sum_flux(void *data, size_t z, int worker) {
   (void)worker;
   const lines_job *job = data;
@@ -252,7 +254,7 @@ static void sum_flux(void *data, size_t z, int worker) {
   }
 }
 
-/* Finds the mean over the lines, for one slice of nodes. */
+/* Finds the mean of the light over all lines, for one slice of nodes. */
 static void sum_slice(void *data, size_t z, int worker) {
   (void)worker;
   const lines_job *job = data;
@@ -266,7 +268,8 @@ static void sum_slice(void *data, size_t z, int worker) {
   }
 }
 
-/* mean = G sent. */
+/* Finds mean = G sent, where G is the linear map at the head of the file: the light at the nodes that results
+ * from the energy that nodes send out. */
 static void spread(hl_pool *pool, lines_job *job, const float *sent, float *mean) {
   job->sent = sent;
   job->mean = mean;
@@ -286,7 +289,8 @@ static double dot(const float *a, const float *b, size_t count) {
   return sum;
 }
 
-/* Finds product = (1 - sqrt(D) G sqrt(D)) v. scratch: [nodes]. */
+/* Finds product = (1 - sqrt(D) G sqrt(D)) v, the left side of the equation at the head of the file. scratch:
+ * [nodes]. */
 static void apply(hl_pool *pool, lines_job *job, const float *root, const float *v, float *scratch,
                   float *product) {
   size_t count = hl_scatter_node_count(job->nodes);
@@ -295,8 +299,8 @@ static void apply(hl_pool *pool, lines_job *job, const float *root, const float 
   for (size_t n = 0; n < count; n++) product[n] = v[n] - root[n] * product[n];
 }
 
-/* Solves for v by conjugate gradients, starting at v = 0. rest: the equation's right side; afterwards the
- * residual. */
+/* Solves for v by conjugate gradients, starting at v = 0. rest: receives the residual; before the call, the
+ * right side of the equation. */
 static void solve_symmetric(hl_pool *pool, lines_job *job, const float *root, float *rest, float *v) {
   size_t count = hl_scatter_node_count(job->nodes);
   float *way = job->work->vectors[1], *product = job->work->vectors[2], *scratch = job->work->vectors[3];
@@ -340,8 +344,8 @@ void hl_scatter_solve(hl_pool *pool, const scatter_nodes *nodes, const float *ex
   lines_job job = {.nodes = nodes, .extinction = extinction, .work = work};
   for (size_t n = 0; n < count; n++) root[n] = sqrtf(scattering[n]), sent[n] = scattering[n] * direct[n];
   job.inflow = inflow;
-  spread(pool, &job, sent, rest); /* after this, rest = G D b + E: the light that was scattered once, plus the
-                                   * light that enters */
+  /* `rest` becomes G D b + E: the light that was scattered once, plus the light that enters */
+  spread(pool, &job, sent, rest);
   job.inflow = NULL;
   for (size_t n = 0; n < count; n++) right[n] = root[n] * rest[n];
   solve_symmetric(pool, &job, root, right, light);

@@ -35,8 +35,8 @@ typedef struct wall_job {
   const scatter_walls *walls;
 } wall_job;
 
-/* The fractions that pass along one ray: before its first node, between its nodes, and after its last
- * node. */
+/* The fractions of light that meshes let through along one ray: before its first node, between its nodes, and
+ * after its last node. */
 typedef struct wall_ray {
   vec3 origin, step; /* position of the first node, and step from node to node */
   vec3 tilt;         /* added to the unit vector from an end of the ray towards the sky, so that rays spread
@@ -57,7 +57,7 @@ static void meet_between(void *data, const surface_hit *hit) {
 
 static void meet_beyond(void *data, const surface_hit *hit) { *(double *)data *= passing_of(hit); }
 
-/* Whether a place of the grid is a node. */
+/* Whether the grid has a node at a place, which is given in steps from the first node. */
 static bool is_node(const scatter_nodes *nodes, const int32_t at[3]) {
   for (int a = 0; a < 3; a++)
     if (at[a] < 0 || at[a] >= nodes->count[a]) return false;
@@ -80,7 +80,7 @@ static void place_ray(const scatter_nodes *nodes, int line, const int32_t from[3
   ray->tilt = vec3_scale(vec3_of(part), CELL_OF_SKY);
 }
 
-/* The fraction that passes between an end of the ray and the sky. */
+/* The fraction of light that meshes let through between an end of the ray and the sky. */
 static double passing_beyond(const surface_tree *tree, const wall_ray *ray, double at, double sign) {
   vec3 way = vec3_add(vec3_scale(vec3_normalise(ray->step), sign), ray->tilt);
   double passing = 1;
@@ -98,7 +98,7 @@ static void follow_ray(const surface_tree *tree, wall_ray *ray) {
   ray->passing[ray->count] = passing_beyond(tree, ray, last, 1);
 }
 
-/* Fills one line, from its first node on. */
+/* Finds the fractions that meshes let through along one line, from its first node on. */
 static void fill_line(const wall_job *job, int line, const int32_t from[3]) {
   const int32_t *count = job->nodes->count;
   const int *way = hl_scatter_step(line);
@@ -116,7 +116,7 @@ static void fill_line(const wall_job *job, int line, const int32_t from[3]) {
   }
 }
 
-/* Fills the lines of one direction that begin in one slice of nodes. */
+/* Finds the fractions for those lines of one direction that begin in one slice of nodes. */
 static void fill_lines(void *data, size_t index, int worker) {
   (void)worker;
   const wall_job *job = data;
