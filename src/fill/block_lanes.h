@@ -10,16 +10,19 @@
 #include "simd/narrow.h"
 #include "view/rays_lanes.h"
 
-/* The points where a block's rays cross the sheet. */
+/* The points where the rays of a block of pixels cross a sheet. */
 typedef struct block_points {
-  lanes3 position;   /* in index space, clamped to [-1, n) */
-  lanes_int cell[3]; /* floor(position): -1 .. n-1 */
-  int32_t low[3];    /* the least cell along each axis; set only where lowest_of_block() is called */
+  /* the points in index space; each coordinate is clamped to [-1, n), where n is the grid's number of voxels
+   * along the axis */
+  lanes3 position;
+  lanes_int cell[3]; /* the cells that hold the points: floor(position), from -1 to n-1 */
+  int32_t low[3];    /* the least coordinates of `cell` along each axis; set only where lowest_of_block()
+                      * is called */
   lanes_int inside;  /* lanes whose point lies in the grid, or at most GRID_MARGIN outside the grid */
 } block_points;
 
-/* The lanes whose density is above all densities that come before the first visible one, and so may be
- * visible. */
+/* The lanes whose density is above all densities that come before the first visible one in the classifier's
+ * table. Only these lanes may be visible. */
 LANES_INLINE lanes_int may_show(const fill_source *source, lanes density) {
   const classifier *classifier = source->classifier;
   if (classifier == NULL) return lanes_set_int(-1);
@@ -88,7 +91,7 @@ LANES_INLINE int tile_is_inside(const fill_source *source, int x, int y) {
   return lanes_bits(inside) == 0xffff;
 }
 
-/* Finds the points as find_points() does, for a tile for which tile_is_inside() holds. */
+/* Finds the points of a block as find_points() does, for a tile for which tile_is_inside() holds. */
 LANES_INLINE block_points find_points_inside(const fill_source *source, int x, int y) {
   block_points points;
   points.position = rays_positions(&source->rays, block_u(x), block_v(y));
@@ -205,7 +208,7 @@ LANES_INLINE uint32_t drop_last_block(uint32_t active, uint32_t starts) {
   return active & ((1u << (31 - __builtin_clz(starts & below))) - 1);
 }
 
-/* Copies from `some` to `slope` those lanes whose bits are set. */
+/* Copies the gradients in `some` to `slope`, in those lanes whose bits are set in `bits`. */
 LANES_INLINE void join_slopes(uint32_t bits, lanes3 some, lanes3 *slope) {
   lanes_int mask = lanes_from_bits(bits);
   *slope = (lanes3){lanes_select(mask, some.x, slope->x), lanes_select(mask, some.y, slope->y),

@@ -18,8 +18,9 @@ LANES_INLINE lanes skin_of_depth(lanes before, lanes depth) {
   return lanes_keep(depth > before, lanes_clamp(FACE_VOXELS - middle, 0, 1));
 }
 
-/* The skin of two opposite faces, which lie at the places low and high of an axis. scale: voxels per unit of
- * the axis. */
+/* The greater one of the skins of two opposite faces, which lie at the coordinates low and high of an axis.
+ * from, to: the coordinates of the rays on the slab's first and last sheet. scale: voxels per unit of the
+ * axis. */
 LANES_INLINE lanes skin_of_axis(lanes from, lanes to, lanes low, lanes high, lanes scale) {
   return lanes_max(skin_of_depth((from - low) * scale, (to - low) * scale),
                    skin_of_depth((high - from) * scale, (high - to) * scale));

@@ -14,8 +14,8 @@ typedef struct fill_source {
   const grid *grid;
   const kernel *kernel;
   const classifier *classifier; /* tells which blocks show nothing; null if all may show something */
-  sheet_rays rays;              /* maps pixels to index space */
-  const voxel_lists *lists;     /* read by splatting only */
+  sheet_rays rays;              /* maps pixels of the view to the grid's index space */
+  const voxel_lists *lists;     /* the sorted voxels; only splatting reads them */
   int sheet;
 } fill_source;
 
@@ -25,40 +25,44 @@ typedef struct filled_blocks {
   uint32_t filled, showing;
 } filled_blocks;
 
-/* Fills density[16][16] (block, lane) for the blocks in `need`. Also fills blocks in `others` whose points
- * lie in cells that may show something (grid/relevant.h). The densities of other blocks stay as they are. */
+/* The type of the functions that fill a tile of a sheet. They fill density[16][16] (block, lane) for the
+ * blocks whose bits are set in `need`. They also fill blocks in `others` whose points lie in cells that may
+ * show something (grid/relevant.h). The densities of other blocks stay as they are. */
 typedef filled_blocks fill_tile_function(const fill_source *source, int tile_x, int tile_y, uint32_t need,
                                          uint32_t others, float *density);
 
 /* A cut of a grid, in the units of a view. */
 typedef struct run_cut {
   const cut_shape *shape;
-  float rows[3][4]; /* maps index space to the shape's own space */
-  float size[3];    /* the lengths of the rows of the map from frame space to the shape's own space */
+  float rows[3][4]; /* maps index space to the space of the cut's shape */
+  float size[3];    /* the lengths of the rows of the map from frame space to the space of the cut's shape */
 } run_cut;
 
 /* A run: up to RUN_SLABS consecutive slabs of one grid, and the sheets around them. */
 enum { RUN_SLABS = 4 };
 typedef struct slab_run {
   const grid *grid;
-  sheet_rays rays[RUN_SLABS + 1]; /* map pixels to index space, one for each sheet */
-  float low[3], high[3];          /* corners in index space; between them the volume's box cuts nothing */
-  const run_cut *cuts;            /* [cut_count] */
+  sheet_rays rays[RUN_SLABS + 1]; /* map pixels to index space; one map for each sheet of the run */
+  float low[3], high[3];          /* corners of a box in index space within which the volume's box cuts
+                                   * nothing */
+  const run_cut *cuts;            /* [cut_count]; the cuts that remove parts of the grid */
   int cut_count;
   float beside;   /* the distance from the slabs up to which cuts count; frame units */
-  float voxel;    /* the grid's smallest edge; frame units */
+  float voxel;    /* the smallest distance between the grid's voxels; frame units */
   float steps[3]; /* the distances between voxels along the axes, in units of `voxel` */
 } slab_run;
 
-/* blocks: for each slab of a run, the needed blocks of a tile in which the slab may hold something visible.
- * uncut: whether neither the volume's box nor a cut cuts the slab in these blocks. */
+/* What a tile shows of a run of slabs. blocks: for each slab of the run, the needed blocks of a tile in which
+ * the slab may hold something visible. uncut: whether neither the volume's box nor a cut cuts the slab in
+ * these blocks. */
 typedef struct relevant_blocks {
   uint16_t blocks[RUN_SLABS];
-  uint16_t uncut; /* one bit for each slab */
+  uint16_t uncut; /* one bit for each slab of the run */
 } relevant_blocks;
 
-/* Sets the members of `found` for those slabs whose bits are set in `slabs`; the members for other slabs stay
- * as they are. need: the blocks that the caller needs. */
+/* The type of the function that finds the relevant blocks of a tile. It sets the members of `found` for those
+ * slabs whose bits are set in `slabs`; the members for other slabs stay as they are. need: the blocks that
+ * the caller needs. */
 typedef void relevant_blocks_function(const slab_run *run, int tile_x, int tile_y, uint32_t slabs,
                                       uint32_t need, relevant_blocks *found);
 

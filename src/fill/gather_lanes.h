@@ -11,7 +11,7 @@
 #include "fill/windows_lanes.h"
 #include "simd/gathers.h"
 
-/* The addresses of the 64 taps of every lane. All taps lie in the grid. */
+/* The addresses of the 64 taps (the voxels around a point) of every lane. All taps lie in the grid. */
 typedef struct tap_window {
   const unsigned char *voxels;
   lanes_offsets offsets; /* bytes from `voxels` to each lane's tap (0,0,0) */
@@ -56,8 +56,8 @@ static __attribute__((noinline)) lanes sum_f32(const grid *grid, const tap_windo
   return sum_taps(grid, HL_STORAGE_F32, window, weight);
 }
 
-/* Adds up the taps in the same order as sum_taps(), one lane at a time. For grids that are less than four
- * voxels thick along some axis. */
+/* Adds up the taps in the same order as sum_taps(), one lane at a time. This function is used for grids that
+ * are less than four voxels thick along some axis. */
 static __attribute__((noinline)) lanes sum_in_thin_grid(const grid *grid, const lanes_int cell[3],
                                                         uint32_t active, const lanes weight[3][4]) {
   lanes sums = lanes_set(0);
@@ -80,9 +80,9 @@ static __attribute__((noinline)) lanes sum_in_thin_grid(const grid *grid, const 
   return sums;
 }
 
-/* Moves taps that lie outside the grid into it, along one axis. Outside the grid the values at the border
- * continue. So the weights of outside taps are added to the border voxel's weight, and the four taps move
- * inside. The cells -1, 0, n-2 and n-1 have taps outside. Returns the moved cells. */
+/* Moves taps that lie outside the grid into the grid, along one axis. Outside the grid the values at the
+ * border continue. So the weights of outside taps are added to the border voxel's weight, and the four taps
+ * move inside. The cells -1, 0, n-2 and n-1 have taps outside. Returns the moved cells. */
 LANES_INLINE lanes_int fold_border(lanes_int cell, int32_t count, lanes weight[4]) {
   lanes zero = lanes_set(0);
   lanes_int first = cell == -1, second = cell == 0, last_but_one = cell == count - 2,
@@ -112,8 +112,8 @@ LANES_INLINE int axes_to_fold(const grid *grid, const lanes_int cell[3], uint32_
   return axes;
 }
 
-/* The window of every lane's taps. Offsets are counted from the first active lane's cell, so that they fit 32
- * bits in any volume. Inactive lanes read the taps of the first active lane's cell. */
+/* The window (addresses of taps) of every lane. Offsets are counted from the first active lane's cell, so
+ * that they fit 32 bits in any volume. Inactive lanes read the taps of the first active lane's cell. */
 LANES_INLINE tap_window window_at(const grid *grid, const lanes_int cell[3], uint32_t active) {
   int first = __builtin_ctz(active);
   int32_t reference[3];
@@ -128,8 +128,8 @@ LANES_INLINE tap_window window_at(const grid *grid, const lanes_int cell[3], uin
   return window;
 }
 
-/* The sums over voxels in memory. cell: tap 0 is at cell - 1; all taps of active lanes lie in the grid.
- * lowest: the parameter of sum_of_windows() with this name. */
+/* The weighted sums of the taps, for voxels in memory. cell: tap 0 is at cell - 1; all taps of active lanes
+ * lie in the grid. lowest: the parameter of sum_of_windows() with this name. */
 LANES_INLINE lanes sum_in_memory(const grid *grid, const lanes_int cell[3], const int32_t *lowest,
                                  uint32_t active, const lanes weight[3][4]) {
 #ifdef HL_WINDOWS
@@ -160,8 +160,8 @@ LANES_INLINE uint32_t lanes_in_page(const grid *grid, const lanes_int cell[3], u
   return lanes_bits(same);
 }
 
-/* The sums over voxels in pages, page by page. The sums are the same as if the voxels were in memory, because
- * no lane's sum depends on another lane. */
+/* The weighted sums of the taps, for voxels in pages, page by page. The sums are the same as if the voxels
+ * were in memory, because no lane's sum depends on another lane. */
 static __attribute__((noinline)) lanes sum_in_pages(const grid *grid, const lanes_int cell[3],
                                                     uint32_t active, const lanes weight[3][4]) {
   lanes sum = lanes_set(0);
@@ -179,14 +179,16 @@ static __attribute__((noinline)) lanes sum_in_pages(const grid *grid, const lane
 
 /* ---- fields in bricks ---- */
 
-/* The lanes whose points lie in one brick, and the positions of these points in the brick. */
+/* The lanes whose points lie in one brick of a field in bricks, and the positions of these points in the
+ * brick. */
 typedef struct brick_lanes {
   const hl_brick_entry *entry;
   uint32_t bits;
-  lanes_int cell[3]; /* the cells of the brick's level that hold the points, counted from the brick's first
-                      * cell, plus 1: tap 0 is at cell - 1 of the coefficients that the brick stores */
-  lanes part[3];     /* the position of each point between its cell's corners, 0 to 1 */
-  float step;        /* number of cells of the brick's level along a cell of level 0: 1 or less */
+  /* the cells of the brick's level that hold the points; the brick's first cell has the number 1, so that tap
+   * 0 is at cell - 1 of the coefficients that the brick stores */
+  lanes_int cell[3];
+  lanes part[3]; /* the position of each point between its cell's corners, 0 to 1 */
+  float step;    /* number of cells of the brick's level along a cell of level 0: 1 or less */
 } brick_lanes;
 
 /* Takes the first of the lanes `left`, and finds the brick that holds its point. Then finds all lanes of
@@ -200,8 +202,7 @@ LANES_INLINE void lanes_in_brick(const hl_bricks *bricks, const lanes_int cell[3
     int32_t at = cell[a][first] >> bricks->shift, last = (int32_t)bricks->directory_size[a] - 1;
     at = at < 0      ? 0
          : at > last ? last
-                     : at; /* whatever a ray's numbers are, the entry lies in the
-                            * directory */
+                     : at; /* clamped so that the entry lies in the directory, whatever a ray's numbers are */
     block = block * bricks->directory_size[a] + (size_t)at;
   }
   found->entry = &bricks->directory[block];
@@ -280,7 +281,7 @@ LANES_INLINE lanes gather_block(const fill_source *source, const block_points *p
   const lanes(*weights)[4] = (const lanes(*)[4])weight;
   int outside = inside ? 0 : axes_to_fold(grid, cell, active);
   if (outside != 0) {
-    /* weights are rounded before they are folded at the grid's border, as in splatting */
+    /* weights are rounded before taps outside the grid are folded into it, as in splatting */
     if (has_integer_weights(storage)) round_to_weights(weight[0]);
     if (grid->dimension[0] < 4 || grid->dimension[1] < 4 || grid->dimension[2] < 4)
       return sum_in_thin_grid(grid, cell, active, weights);

@@ -5,8 +5,8 @@
 
 #include "fill/gather_lanes.h"
 
-/* Sums the gradient's three components. They share the loads of voxels: each row is summed once with its
- * weights and once with its slopes. */
+/* Sums the gradient's three components. The three sums share the loads of voxels: each row is summed once
+ * with its weights and once with its slopes. */
 LANES_INLINE lanes3 sum_slopes(const grid *grid, hl_storage storage, const tap_window *window,
                                const tap_slope_weights *w) {
   lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
@@ -74,8 +74,8 @@ static lanes3 slopes_in_thin_grid(const grid *grid, const lanes_int cell[3], uin
   return slope;
 }
 
-/* The derivatives over voxels in memory. cell: tap 0 is at cell - 1; all taps of active lanes lie in the
- * grid. */
+/* The gradient's components, for voxels in memory. cell: tap 0 is at cell - 1; all taps of active lanes lie
+ * in the grid. */
 LANES_INLINE lanes3 slopes_in_memory(const grid *grid, const lanes_int cell[3], uint32_t active,
                                      uint32_t starts, const tap_slope_weights *w) {
   lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
@@ -94,7 +94,7 @@ LANES_INLINE lanes3 slopes_in_memory(const grid *grid, const lanes_int cell[3], 
   return sum;
 }
 
-/* The derivatives over voxels in pages, page by page. */
+/* The gradient's components, for voxels in pages, page by page. */
 static __attribute__((noinline)) lanes3 slopes_in_pages(const grid *grid, const lanes_int cell[3],
                                                         uint32_t active, uint32_t starts,
                                                         const tap_slope_weights *w) {
@@ -111,7 +111,8 @@ static __attribute__((noinline)) lanes3 slopes_in_pages(const grid *grid, const 
   return sum;
 }
 
-/* The derivatives over a field in bricks, brick by brick, with the parameters of sum_in_bricks(). */
+/* The gradient's components, for a field in bricks, brick by brick. The parameters are those of
+ * sum_in_bricks(). */
 static __attribute__((noinline)) lanes3 slopes_in_bricks(const grid *grid, const kernel *kernel,
                                                          const lanes_int cell[3], const lanes part[3],
                                                          uint32_t active, uint32_t starts) {

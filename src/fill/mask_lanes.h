@@ -6,7 +6,7 @@
 #include "simd/gathers.h"
 #include "view/rays_lanes.h"
 
-/* The lattice's cells in which sixteen points lie, and the points' places within these cells. */
+/* The cells of a mask's lattice in which sixteen points lie, and the points' places within these cells. */
 typedef struct mask_places {
   lanes_int cell[3], outside;
   lanes part[3];
@@ -38,20 +38,21 @@ LANES_INLINE void points_of_places(const mask_lattice *lattice, const mask_place
   }
 }
 
-/* The offsets of the bricks that hold the points, in bytes from the first brick. */
+/* The offsets, in bytes from the first brick of a mask's lattice, of the bricks that hold the points. */
 LANES_INLINE lanes_int bricks_of_places(const mask_lattice *lattice, const mask_places *p) {
   lanes_int at = lanes_set_int(0);
   for (int a = 0; a < 3; a++) at += (p->cell[a] >> HL_MASK_BRICK_SHIFT) * lattice->brick_step[a];
   return at * (int32_t)sizeof *lattice->bricks;
 }
 
-/* The first (word: 0) or the second (word: 1) 32-bit word of each lane's brick. bricks: the bricks' offsets
- * in bytes. */
+/* The first 32-bit word of each lane's brick (`word` is 0), or the second one (`word` is 1). bricks: the
+ * bricks' offsets in bytes. */
 LANES_INLINE lanes_int words_of_bricks(const mask_lattice *lattice, lanes_int bricks, int word) {
   return lanes_gather_bytes((const unsigned char *)&lattice->bricks[0][word], bricks);
 }
 
-/* Interpolates linearly between the lattice's points, in whole steps. */
+/* Interpolates the mask's factor linearly between the lattice's points. The result is in the units of the
+ * stored factors. */
 LANES_INLINE lanes steps_between_points(const mask_lattice *lattice, const mask_places *p) {
   lanes_int near[3], far[3];
   lanes plane[2];
@@ -59,7 +60,9 @@ LANES_INLINE lanes steps_between_points(const mask_lattice *lattice, const mask_
   for (int k = 0; k < 2; k++) {
     lanes line[2];
     for (int j = 0; j < 2; j++) {
-      lanes_int a, b; /* at the lattice's end, b is an arbitrary number with the weight 0 */
+      /* a, b: neighbouring points along an axis; at the lattice's end, b is an arbitrary number with the
+       * weight 0 */
+      lanes_int a, b;
       lanes_gather_short_pairs(lattice->factors, near[0] + (j ? far[1] : near[1]) + (k ? far[2] : near[2]),
                                &a, &b);
       line[j] = lanes_fma(lanes_from_int(b - a), p->part[0], lanes_from_int(a));
@@ -80,7 +83,8 @@ LANES_INLINE lanes mask_factor(const mask_lattice *lattice, lanes3 point, uint32
   return lanes_select(p.outside, lanes_set(lattice->rest), steps * (1.0f / 65535));
 }
 
-/* Interpolates linearly between the slopes of the lattice's points, per step along each axis. */
+/* Interpolates the slopes of the mask's factor linearly between the lattice's points. A slope is the change
+ * of the factor per step of the lattice along an axis. */
 LANES_INLINE void slopes_between_points(const mask_lattice *lattice, const mask_places *p, lanes sum[3]) {
   lanes_int near[3], far[3];
   points_of_places(lattice, p, near, far);

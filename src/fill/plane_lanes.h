@@ -9,8 +9,8 @@
 
 /* ---- another volume's value ---- */
 
-/* The weighted sums over voxels in memory, for lanes that may belong to several blocks of pixels. The
- * parameters are those of slopes_in_memory(). */
+/* The weighted sums of the taps of another volume whose voxels are in memory, for lanes that may belong to
+ * several blocks of pixels. The parameters are those of slopes_in_memory(). */
 LANES_INLINE lanes values_in_memory(const grid *grid, const lanes_int cell[3], uint32_t active,
                                     uint32_t starts, const lanes weight[3][4]) {
   lanes sum = lanes_set(0);
@@ -49,8 +49,8 @@ LANES_INLINE lanes values_of_degree(const grid *grid, const kernel *kernel, int 
   return values_in_memory(grid, cell, active, starts, weights);
 }
 
-/* A volume's values at points of its index space, in stored units, set in the active lanes. At least one lane
- * is active. starts: the first lane of each block of pixels, one bit each. */
+/* The values of another volume at points of that volume's index space, in stored units. Only the active lanes
+ * are set. At least one lane is active. starts: the first lane of each block of pixels, one bit each. */
 static __attribute__((noinline)) lanes values_at(const grid *grid, const kernel *kernel, lanes3 point,
                                                  uint32_t active, uint32_t starts) {
   return kernel->degree == HL_BSPLINE_DEGREE
@@ -78,9 +78,10 @@ LANES_INLINE lanes row_of_matter(const plane_table *table, const kernel *kernel,
 
 /* ---- the function along a row ---- */
 
-/* A row of the table and the distance to the next row. */
+/* A row of a table of a function of two numbers, and how far the second number lies between this row and the
+ * next. */
 typedef struct plane_row {
-  lanes_int start; /* the row's first point */
+  lanes_int start; /* index of the row's first point in the table */
   lanes part;
 } plane_row;
 
@@ -99,14 +100,15 @@ LANES_INLINE lanes_int depends_on_row(const plane_table *table, lanes from, lane
   return lanes_max(column_of(table, from), column_of(table, to)) >= table->even_before;
 }
 
-/* Extinction at a column, and its integral over columns up to that column. Extinction is linear between
- * columns. After the fraction f of a column the integral has therefore grown by f e0 + f^2 (e1 - e0) / 2
- * (derived). */
+/* Finds the extinction at a column, sums[0], and the extinction's integral over columns up to this column,
+ * sums[1]. Extinction is linear between columns. After the fraction f of a column the integral has therefore
+ * grown by f e0 + f^2 (e1 - e0) / 2 (derived). */
 LANES_INLINE void sums_at_column(const plane_table *table, plane_row row, lanes column, lanes sums[2]) {
   lanes_int whole = lanes_truncate(column);
   lanes part = column - lanes_from_int(whole), of_row[2][2];
-  lanes here[4], next[4]; /* at a column and at the next one: extinction and its integral in the row, then
-                           * both in the next row */
+  /* the extinction and its integral, in the row and then in the next row: `here` at a column, `next` at the
+   * next column */
+  lanes here[4], next[4];
   lanes_gather_quad_pairs(&table->sums[0][0], row.start + whole, here, next);
   for (int r = 0; r < 2; r++) {
     lanes rise = next[2 * r] - here[2 * r];
@@ -146,7 +148,7 @@ LANES_INLINE void colors_at_column(const plane_table *table, plane_row row, lane
   for (int i = 0; i < 4; i++) sums[i] = lanes_fma(of_row[1][i] - of_row[0][i], row.part, of_row[0][i]);
 }
 
-/* The sums of colors_at_column() between two columns that are at least two apart. */
+/* The sums of colors_at_column() over the columns between a and b and one column on either side. */
 LANES_INLINE void colors_between(const plane_table *table, plane_row row, lanes a, lanes b, lanes sums[4]) {
   lanes low[4], high[4];
   lanes from = lanes_clamp(lanes_min(a, b) - 1.0f, 0, PLANE_COLUMNS - 1),
@@ -156,8 +158,8 @@ LANES_INLINE void colors_between(const plane_table *table, plane_row row, lanes 
   for (int i = 0; i < 4; i++) sums[i] = high[i] - low[i];
 }
 
-/* The visible part of a way gets a colour of its own where the sum of opacities over its columns is at least
- * this great. Where the sum is smaller, the colour is the mean over the whole way. */
+/* The least sum of opacities over the columns of the visible part of a way at which this part gets a colour
+ * of its own. Where the sum is smaller, the colour is the mean over the whole way. */
 static const float SOME_OPACITY = 1e-4f;
 
 /* The colour in a row where matter is visible, in linear RGB: the mean over the visible part of a way and one

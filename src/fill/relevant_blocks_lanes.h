@@ -12,11 +12,12 @@
 
 typedef struct lanes_box {
   lanes low[3], high[3];
-} lanes_box; /* in index space */
+} lanes_box; /* sixteen boxes, one in each lane; index space */
 
-/* The box of a block's points on a sheet. Derived: on the sheet at base + P / H, the next pixel's point lies
- * (Pu - (Hu / H) P) / H further. The pixels' centres are at most 3/2 pixels from the block's middle in either
- * direction. The box is made a little larger than that, because H changes within the block. */
+/* The box of a block's points on a sheet. Derived: a pixel's point is base + P / H (sheet_rays), where P and
+ * H are linear functions of the pixel, which change by Pu and Hu. So the next pixel's point lies (Pu - (Hu /
+ * H) P) / H further. The pixels' centres are at most 3/2 pixels from the block's middle in either direction.
+ * The box is made a little larger than that, because H changes within the block. */
 LANES_INLINE lanes_box box_on_sheet(const sheet_rays *rays, lanes u, lanes v) {
   const float reach = 1.5f * 1.02f;
   lanes3 p = rays_linear(rays->p0, rays->pu, rays->pv, u, v);
@@ -34,9 +35,9 @@ LANES_INLINE lanes_box box_on_sheet(const sheet_rays *rays, lanes u, lanes v) {
   return box;
 }
 
-/* The lanes whose box may show something. One look-up answers for each lane. *wide: receives the lanes whose
- * box spans more units than a look-up covers; the result leaves these lanes out. shift: converts cells to
- * units. low, high: the box's first and last cells. */
+/* The lanes whose box of cells may show something. One look-up answers for each lane. *wide: receives the
+ * lanes whose box spans more units than a look-up covers; the result leaves these lanes out. shift: converts
+ * cells to units. low, high: the box's first and last cells. */
 LANES_INLINE lanes_int box_visible(const cell_lookup *lookup, int shift, const lanes_int low[3],
                                    const lanes_int high[3], lanes_int inside, lanes_int *wide) {
   lanes_int first = lanes_set_int(0), bit = first, fits = lanes_set_int(-1);
@@ -61,7 +62,7 @@ LANES_INLINE lanes_box box_of_slab(const lanes_box *a, const lanes_box *b) {
   return box;
 }
 
-/* The blocks whose boxes show something. */
+/* The blocks whose boxes show something, one bit each. */
 LANES_INLINE uint32_t visible_boxes(const grid *grid, const lanes_box *box) {
   lanes_int inside = lanes_set_int(-1), first[3], last[3];
   for (int axis = 0; axis < 3; axis++) {

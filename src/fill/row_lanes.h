@@ -8,7 +8,8 @@
 
 /* ---- weights as integers ---- */
 
-/* Weights and slopes are integers: see WEIGHT_UNITS. */
+/* Weights and slopes are rounded to integers, in units of 1 / WEIGHT_UNITS and 1 / SLOPE_UNITS. These
+ * constants turn them back into floats. */
 static const float WEIGHT_INVERSE = 1.0f / WEIGHT_UNITS, SLOPE_INVERSE = 1.0f / SLOPE_UNITS;
 
 typedef struct integer_weights {
@@ -22,16 +23,16 @@ LANES_INLINE lanes_int round_to_units(lanes x, int units) {
   return (lanes_int)lanes_line(x, (float)units, shift) - (lanes_int)lanes_set(shift);
 }
 
-/* Rounds weights to integers: it rounds the sums of weights from the first tap on, and not each weight. The
- * error of a row of voxels is then half a unit times the differences between neighbours, and constant rows
- * are exact. total: the sum of all four weights. */
+/* Rounds the four weights of a row of voxels to integers: it rounds the sums of weights from the first tap
+ * on, and not each weight. The error of a row of voxels is then half a unit times the differences between
+ * neighbours, and constant rows are exact. total: the sum of all four weights. */
 LANES_INLINE integer_weights round_weights(const lanes weight[4], int units, int total) {
   lanes_int first = round_to_units(weight[0], units), two = round_to_units(weight[0] + weight[1], units);
   lanes_int last = round_to_units(weight[3], units);
   return (integer_weights){{first, two - first, total * units - last - two, last}};
 }
 
-/* Rounds weights to integers and converts them back to floats. */
+/* Rounds weights to integers and converts the integers back to floats. */
 LANES_INLINE void round_to_weights(lanes weight[4]) {
   integer_weights integers = round_weights(weight, WEIGHT_UNITS, 1);
   for (int tap = 0; tap < 4; tap++) weight[tap] = lanes_from_int(integers.tap[tap]) * WEIGHT_INVERSE;
@@ -55,8 +56,8 @@ typedef struct byte_slopes {
   __m512i digit[2];
 } byte_slopes;
 
-/* The lower bytes, or the higher ones, of four 16-bit numbers in each lane, in order. even: numbers 0 and 2.
- * odd: numbers 1 and 3. */
+/* Two functions that collect the lower bytes, or the higher bytes, of four 16-bit numbers in each lane, in
+ * order. even: numbers 0 and 2. odd: numbers 1 and 3. */
 LANES_INLINE __m512i lower_bytes(__m512i even, __m512i odd) {
   return _mm512_ternarylogic_epi32(_mm512_set1_epi32(0x00ff00ff), even, _mm512_slli_epi32(odd, 8),
                                    0xca); /* selects a ? b : c */
@@ -159,7 +160,7 @@ LANES_INLINE short_weights pair_weights(const integer_weights *integers) {
 LANES_INLINE short_slopes pair_slopes(const integer_weights *integers) { return pair_weights(integers); }
 
 /* The sum of a lane's four voxels, each multiplied by its slope. The voxels must have been reduced by 32768.
- * The four slopes add up to 0, so the sum is the same as that of the original voxels. */
+ * The four slopes add up to 0, so the sum equals the sum over the original voxels. */
 LANES_INLINE lanes_int slope_of_signed(lanes_int low, lanes_int high, const short_slopes *slopes) {
   return lanes_multiply_shorts(low, slopes->pair[0]) + lanes_multiply_shorts(high, slopes->pair[1]);
 }

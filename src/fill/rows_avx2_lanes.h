@@ -11,7 +11,7 @@
 #include "simd/gathers.h"
 #include "view/rays_lanes.h"
 
-/* The taps of lanes k and k + 4 of eight lanes. */
+/* The addresses of the taps of two lanes: lane k and lane k + 4 of eight lanes. */
 typedef struct pair_of_taps {
   const unsigned char *first, *second;
 } pair_of_taps;
@@ -33,17 +33,17 @@ LANES_INLINE void turn_rows(const __m256i of_two[4], __m256 row[4]) {
   row[3] = _mm256_cvtepi32_ps(_mm256_unpackhi_epi64(c, d));
 }
 
-/* Eight of sixteen lanes. */
+/* Eight of the sixteen lanes: the lower half (`half` is 0) or the upper half (1). */
 LANES_INLINE __m256 half_of(const lanes *x, int half) { return _mm256_loadu_ps((const float *)x + 8 * half); }
 
-/* The weighted sum of four rows along y. */
+/* The sum of four rows of taps, weighted along y, for eight lanes. */
 LANES_INLINE __m256 add_rows(const __m256 row[4], const lanes weight[4], int half) {
   __m256 plane = _mm256_setzero_ps();
   for (int y = 0; y < 4; y++) plane = _mm256_fmadd_ps(row[y], half_of(&weight[y], half), plane);
   return plane;
 }
 
-/* The sums of eight lanes. */
+/* The weighted sums of all 64 taps, for eight lanes. */
 LANES_INLINE __m256 add_slices(const sums_of_rows *rows, const lanes weight[3][4], int half) {
   __m256 sum = _mm256_setzero_ps();
   for (int z = 0; z < 4; z++) {
@@ -54,7 +54,7 @@ LANES_INLINE __m256 add_slices(const sums_of_rows *rows, const lanes weight[3][4
   return _mm256_mul_ps(sum, _mm256_set1_ps(WEIGHT_INVERSE));
 }
 
-/* The gradients of eight lanes. */
+/* The gradients of eight lanes: three components. */
 typedef struct half_slope {
   __m256 x, y, z;
 } half_slope;
@@ -85,29 +85,29 @@ LANES_INLINE void store_half(half_slope of, int half, lanes3 *slope) {
 
 /* ---- u16 voxels, straight from the volume ---- */
 
-/* Finds the taps of lanes k and k + 4. voxels: address of the voxels. offsets: bytes from there to each
- * lane's first tap. */
+/* Finds the taps of lanes k and k + 4. voxels: address of the voxels. offsets: bytes from this address to
+ * each lane's first tap. */
 LANES_INLINE pair_of_taps short_taps_of_pair(const unsigned char *voxels, const lanes_offsets *offsets,
                                              int half, int k) {
   const int32_t *at = offsets->at + 8 * half + k;
   return (pair_of_taps){voxels + at[0], voxels + at[4]};
 }
 
-/* Two rows of a lane's taps. */
+/* Loads two rows of a lane's taps, of four u16 voxels each. */
 LANES_INLINE __m128i two_short_rows(const unsigned char *first, size_t row_bytes) {
   double row[2];
   memcpy(&row[0], first, sizeof row[0]);
   memcpy(&row[1], first + row_bytes, sizeof row[1]);
   return _mm_castpd_si128(_mm_set_pd(row[1], row[0]));
 }
-/* Two rows of the taps of each of two lanes, reduced by 32768. */
+/* Loads two rows of taps for each of two lanes; the voxels are reduced by 32768. */
 LANES_INLINE __m256i short_rows_of_two(const pair_of_taps *taps, size_t at, size_t row_bytes) {
   __m256i rows = _mm256_castsi128_si256(two_short_rows(taps->first + at, row_bytes));
   rows = _mm256_inserti128_si256(rows, two_short_rows(taps->second + at, row_bytes), 1);
   return _mm256_xor_si256(rows, _mm256_set1_epi32(VOXEL_SIGN));
 }
 
-/* A slice of two lanes' taps: four rows. */
+/* A slice of two lanes' taps: four rows of four taps. upper: the first two rows; lower: the other two. */
 typedef struct short_slice {
   __m256i upper, lower;
 } short_slice;
@@ -135,8 +135,8 @@ LANES_INLINE __m256i weigh_short_slice(const short_slice *slice, __m256i weights
   return _mm256_add_epi32(slope_short_slice(slice, weights), _mm256_set1_epi32(LESS_BY));
 }
 
-/* The weighted sums of all lanes' 64 taps. voxels: address of the voxels. offsets: bytes from there to each
- * lane's first tap. */
+/* The weighted sums of all lanes' 64 taps. voxels: address of the voxels. offsets: bytes from this address to
+ * each lane's first tap. */
 LANES_INLINE lanes sum_short_rows(const grid *grid, const unsigned char *voxels, const lanes_offsets *offsets,
                                   const lanes weight[3][4]) {
   size_t row_bytes = grid->row_bytes, slice_bytes = grid->slice_bytes;

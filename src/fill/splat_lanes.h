@@ -17,8 +17,8 @@ typedef struct tile_points {
   lanes3 low, high;
 } tile_points;
 
-/* Clears `inside` for points outside relevant bricks, since the voxels of other bricks are not in the
- * lists. */
+/* Clears the member `inside` for points outside relevant bricks, because the voxels of other bricks are not
+ * in the lists. */
 LANES_INLINE void keep_relevant(const grid *grid, block_points *points) {
   if (lanes_bits(points->inside) == 0) return;
   lanes_int brick = (points->cell[2] + 1) >> 2;
@@ -49,7 +49,8 @@ static void find_tile_points(const fill_source *source, int tile_x, int tile_y, 
   }
 }
 
-/* The blocks within reach of a voxel at (x, y, z). */
+/* The blocks of a tile that have points within `reach` of a voxel at (x, y, z), along each axis; one bit
+ * each. */
 LANES_INLINE uint32_t blocks_in_reach(const tile_points *tile, float x, float y, float z, float reach) {
   lanes_int mask = (tile->low.x < x + reach) & (tile->high.x > x - reach) & (tile->low.y < y + reach) &
                    (tile->high.y > y - reach) & (tile->low.z < z + reach) & (tile->high.z > z - reach);

@@ -28,21 +28,22 @@ LANES_INLINE lanes factor_of_slope(const classifier *classifier, lanes3 slope) {
   return lanes_fma(b - a, x - lanes_from_int(entry), a);
 }
 
-/* A volume's matter on sixteen ways through a slab. */
+/* The matter of one volume on sixteen ways of rays through a slab. */
 typedef struct matter_way {
   const grid *grid;
   const kernel *kernel;
   const classifier *classifier;
   const float (*to_index)[4]; /* maps frame space to index space */
-  lanes3 point;               /* frame space; the point where the matter would be seen if extinction depended
-                               * on the value alone */
-  lanes from, to;             /* coordinates in the tables where a sample's part of the ray begins and ends */
-  lanes extinction;           /* the mean extinction on the way, as if extinction depended on the value
-                               * alone */
-  uint32_t active, starts;    /* active: the lanes with extinction, of which there is at least one; starts:
-                               * the first lane of each block of pixels; both: one bit for each lane */
-  int wants_slope;            /* whether the caller reads the slope, even where the factor does not depend on
-                               * it */
+  /* the point at which the matter would be seen if extinction depended on the value alone; frame space */
+  lanes3 point;
+  lanes from, to;          /* coordinates in the classifier's tables: the values where each way begins
+                            * and ends */
+  lanes extinction;        /* the mean extinction on the way, as if extinction depended on the value
+                            * alone */
+  uint32_t active, starts; /* active: the lanes with extinction, of which there is at least one; starts:
+                            * the first lane of each block of pixels; both: one bit for each lane */
+  int wants_slope;         /* whether the caller reads the slope, even where the factor does not depend on
+                            * it */
 } matter_way;
 
 /* The factor on a volume's extinction. */
@@ -53,7 +54,8 @@ typedef struct matter_factor {
   lanes row;    /* the row of the second number in the table of a function of two numbers */
 } matter_factor;
 
-/* This large function is not inlined, so that frames that do not need it do not carry its code. */
+/* The factor for the matter on sixteen ways. This large function is not inlined, so that frames that do not
+ * need it do not carry its code. */
 static __attribute__((noinline)) matter_factor factor_of_matter(const matter_way *way) {
   const classifier *classifier = way->classifier;
   const plane_table *plane = &classifier->plane;

@@ -18,15 +18,15 @@ typedef struct sort_job {
   voxel_lists *lists;
   uint32_t *cursor; /* [tiles * buckets + 1]; in the first pass, the number of entries of each bucket; in the
                      * second, the index of the bucket's next entry */
-  bool writing;     /* if false, voxels are only counted */
+  bool writing;     /* whether voxels are written (second pass); if not, they are only counted (first pass) */
 } sort_job;
 
 static int32_t clamp_brick(int32_t cell, int32_t cells) {
   return (cell < 0 ? 0 : cell > cells ? cells : cell) / HL_BRICK_CELLS;
 }
 
-/* Whether a voxel contributes to a cell of a relevant brick. Along each axis, voxel i contributes to points
- * with floor(p) in i-2 .. i+1, and so to the cells i-1 .. i+2. */
+/* Whether a voxel contributes to a cell of a relevant brick. Along each axis, voxel i contributes to points p
+ * with floor(p) from i-2 to i+1, and so to the cells i-1 to i+2. */
 static bool voxel_relevant(const grid *grid, const int32_t v[3]) {
   int32_t first[3], last[3];
   for (int axis = 0; axis < 3; axis++) {
@@ -129,7 +129,8 @@ static hl_status prepare(const voxel_sort *sort, voxel_lists *lists, sort_job *j
   return HL_OK;
 }
 
-/* Turns counts into starts of buckets: start[c] is the sum of the counts before c. */
+/* Turns the numbers of entries of the buckets into the indices at which the buckets start: start[c] is the
+ * sum of the counts before bucket c. Returns the sum of all counts. */
 static uint64_t accumulate(const uint32_t *count, size_t cells, uint32_t *start) {
   uint64_t sum = 0;
   for (size_t cell = 0; cell < cells; cell++) {

@@ -7,7 +7,8 @@
 #include "fill/row_lanes.h"
 #include "simd/lanes.h"
 
-/* A slice of a window. Its number of registers depends on the voxels' type. */
+/* A slice of a window of voxels, in registers. The number of registers that are used depends on the voxels'
+ * type. */
 typedef struct window_slice {
   __m512i part[4];
 } window_slice;
@@ -23,7 +24,8 @@ enum { WINDOW_ROWS = GRID_COLUMN - 1 }; /* number of rows in a window of u16 or 
 
 /* ---- u16: two taps a word ---- */
 
-/* The indices of each lane's first two taps. x, y: the coordinates of each lane's first tap in the window. */
+/* The indices, in a slice of a window, of each lane's first two taps. x, y: the coordinates of each lane's
+ * first tap in the window. */
 LANES_INLINE __m512i index_u16(__m512i x, __m512i y) {
   __m512i first = _mm512_add_epi32(_mm512_slli_epi32(y, 3), x);
   return _mm512_add_epi32(_mm512_or_si512(first, _mm512_slli_epi32(first, 16)),
@@ -32,7 +34,7 @@ LANES_INLINE __m512i index_u16(__m512i x, __m512i y) {
 
 LANES_INLINE __m128i row_of_shorts(const unsigned char *row) { return _mm_loadu_si128((const __m128i *)row); }
 
-/* Loads a slice of voxels, reduced by 32768: four rows, and the three rows below them. */
+/* Loads a slice of a window of u16 voxels, reduced by 32768: four rows, and the three rows below them. */
 LANES_INLINE window_slice slice_u16(const unsigned char *row, size_t row_bytes) {
   window_slice slice;
   __m512i upper = _mm512_castsi128_si512(row_of_shorts(row)),
@@ -62,7 +64,7 @@ LANES_INLINE __m512i third_u16(__m512i index) {
   return _mm512_add_epi32(index, _mm512_set1_epi32(0x00020002));
 }
 
-/* Takes the four taps of every lane. */
+/* Takes the four taps of a row, for every lane, from rows of a slice. */
 LANES_INLINE window_taps taps_u16(const window_slice *rows, __m512i index) {
   window_taps taps;
   taps.part[0] = _mm512_permutexvar_epi16(index, rows->part[0]);
@@ -70,13 +72,13 @@ LANES_INLINE window_taps taps_u16(const window_slice *rows, __m512i index) {
   return taps;
 }
 
-/* The lanes whose first tap lies in a slice. */
+/* The lanes whose first tap lies in slice number `slice` of a window. */
 LANES_INLINE window_lanes starting_u16(__m512i start, int slice) {
   __m512i both = _mm512_or_si512(start, _mm512_slli_epi32(start, 16));
   return _mm512_cmpeq_epi16_mask(both, _mm512_set1_epi16((short)slice));
 }
 
-/* Replaces the taps of the lanes `some` by taps from another slice. */
+/* Replaces the taps of the lanes in `some` by taps from another slice of the window. */
 LANES_INLINE void replace_taps_u16(window_taps *taps, window_lanes some, const window_slice *rows,
                                    __m512i index) {
   taps->part[0] = _mm512_mask_permutexvar_epi16(taps->part[0], (__mmask32)some, index, rows->part[0]);
@@ -99,7 +101,7 @@ LANES_INLINE __m256i row_of_floats(const unsigned char *row) {
   return _mm256_loadu_si256((const __m256i *)row);
 }
 
-/* Loads a slice of seven rows, two in each register. */
+/* Loads a slice of a window of f32 voxels: seven rows, two in each register. */
 LANES_INLINE window_slice slice_f32(const unsigned char *row, size_t row_bytes) {
   window_slice slice;
   for (int pair = 0; pair < 3; pair++, row += 2 * row_bytes)
@@ -109,7 +111,7 @@ LANES_INLINE window_slice slice_f32(const unsigned char *row, size_t row_bytes) 
   return slice;
 }
 
-/* The two rows from row y on. */
+/* The two rows of a slice from row y on. */
 LANES_INLINE __m512i rows_f32(const window_slice *slice, int y) {
   const __m512i *pair = slice->part + y / 2;
   return y % 2 == 0 ? pair[0] : _mm512_alignr_epi64(pair[1], pair[0], 4);

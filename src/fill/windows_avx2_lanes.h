@@ -11,7 +11,7 @@
 #include "simd/narrow.h"
 
 enum {
-  WINDOW_SIDE = GRID_COLUMN,       /* in voxels */
+  WINDOW_SIDE = GRID_COLUMN,       /* width of a window, in voxels */
   WINDOW_SPREAD = WINDOW_SIDE - 4, /* the greatest distance, in voxels, between the first taps of lanes */
   USUAL_SPREAD = 2,                /* the greatest distance between first taps in most blocks; because it is a
                                     * constant, the compiler unrolls loops */
@@ -20,9 +20,10 @@ enum {
 enum { COPY_BYTES = 4 * WINDOW_SIDE, SLICE_BYTES = (WINDOW_SPREAD + 1) * COPY_BYTES };
 
 typedef struct voxel_window {
-  const unsigned char *first; /* the window's first row, in its column */
+  const unsigned char *first; /* the address of the window's first row, in its column */
   size_t slice_bytes;
-  size_t beside;      /* bytes to the next column; 0 where the window lies within one column */
+  size_t beside;      /* bytes from the column to the next column; 0 where the window lies within one
+                       * column */
   int shift;          /* bits from the column's first voxel to the window's first voxel, in every row */
   int slices, copies; /* slices: number of slices; copies: number of copies of each slice, which is one more
                        * than the greatest distance along x between the first taps of lanes */
@@ -34,7 +35,7 @@ typedef struct window_copies {
   _Alignas(32) unsigned char slice[WINDOW_SIDE][SLICE_BYTES];
 } window_copies;
 
-/* Whether a grid has windows. */
+/* Whether windows of voxels can be opened in a grid. */
 LANES_INLINE int has_windows(const grid *grid) {
   return grid->columns != NULL && grid->dimension[2] >= USUAL_SLICES;
 }
@@ -61,7 +62,7 @@ LANES_INLINE int open_window_at(const grid *grid, const lanes_int cell[3], const
   __m256i slice = _mm256_mullo_epi16(offset[2], _mm256_set1_epi16(SLICE_BYTES));
   __m256i copy = _mm256_mullo_epi16(offset[0], _mm256_set1_epi16(COPY_BYTES));
   window->taps = _mm256_add_epi16(_mm256_add_epi16(slice, copy),
-                                  _mm256_slli_epi16(offset[1], 2)); /* rows of four bytes */
+                                  _mm256_slli_epi16(offset[1], 2)); /* a row of a copy has four bytes */
   uint32_t first_voxel = (uint32_t)low[0], within = first_voxel % GRID_COLUMN;
   window->slice_bytes = grid->column_slice_bytes;
   window->first = grid->columns + (size_t)(first_voxel / GRID_COLUMN) * grid->column_bytes +
@@ -85,14 +86,14 @@ LANES_INLINE int open_window(const grid *grid, const lanes_int cell[3], uint32_t
   return open_window_at(grid, cell, lowest, active, window);
 }
 
-/* Two neighbouring rows of eight voxels, and the two rows that lie four rows later. */
+/* Loads two neighbouring rows of eight voxels, and the two rows that lie four rows below them. */
 LANES_INLINE __m256i rows_apart(const unsigned char *first) {
   __m256i rows = _mm256_castsi128_si256(_mm_loadu_si128((const __m128i *)(const void *)first));
   return _mm256_inserti128_si256(
       rows, _mm_loadu_si128((const __m128i *)(const void *)(first + 4 * GRID_COLUMN)), 1);
 }
 
-/* Stores the lower or upper half of each row, in the order of the rows. */
+/* Stores the lower or the upper half of each row in a copy, in the order of the rows. */
 LANES_INLINE void store_copy(unsigned char *copy, const __m256i rows[2], int upper) {
   __m256 a = _mm256_castsi256_ps(rows[0]), b = _mm256_castsi256_ps(rows[1]);
   _mm256_store_ps((float *)(void *)copy,
@@ -108,7 +109,8 @@ LANES_INLINE void copy_slice_of(const voxel_window *window, int slice, int count
   for (int i = 0; i < 2; i++) {
     rows[i] = _mm256_or_si256(_mm256_srl_epi64(rows_apart(first + 2 * i * GRID_COLUMN), left),
                               _mm256_sll_epi64(rows_apart(beside + 2 * i * GRID_COLUMN), right));
-    rows[i] = _mm256_xor_si256(rows[i], _mm256_set1_epi8((char)0x80)); /* the columns hold voxels less 128 */
+    /* adds 128, because the columns hold voxels reduced by 128 */
+    rows[i] = _mm256_xor_si256(rows[i], _mm256_set1_epi8((char)0x80));
   }
   if (count > 4) store_copy(copy + 4 * COPY_BYTES, rows, 1);
   for (int x = 0; x < count && x < 4; x++) {
@@ -145,7 +147,7 @@ LANES_INLINE weights_of_two weights_of_pair(const byte_weights *weights, int hal
       {lanes_of_two(&weights->pair[0], half, k), lanes_of_two(&weights->pair[1], half, k)}};
 }
 
-/* The taps of lanes k and k + 4 of eight, in the copies of windows. */
+/* The addresses of the taps of two lanes, lane k and lane k + 4 of eight, in the copies of windows. */
 LANES_INLINE pair_of_taps copied_taps_of_pair(const window_copies *copies, const narrow_offsets *taps,
                                               int half, int k) {
   const uint16_t *at = narrow_pair(taps, half, k);
@@ -164,7 +166,7 @@ LANES_INLINE taps_of_two slice_of_two(const pair_of_taps *taps, int z) {
   return (taps_of_two){{_mm256_and_si256(bytes, _mm256_set1_epi16(255)), _mm256_srli_epi16(bytes, 8)}};
 }
 
-/* The weighted sum of each row. */
+/* The weighted sum of each row of two lanes' taps. */
 LANES_INLINE __m256i weigh_two(const taps_of_two *taps, const weights_of_two *weights) {
   return _mm256_add_epi32(_mm256_madd_epi16(taps->pair[0], weights->pair[0]),
                           _mm256_madd_epi16(taps->pair[1], weights->pair[1]));
@@ -196,7 +198,7 @@ static __attribute__((noinline)) lanes sum_window_u8(const voxel_window *window,
 }
 
 LANES_INLINE lanes sum_of_window(hl_storage storage, const voxel_window *window, const lanes weight[3][4]) {
-  (void)storage; /* only u8 voxels have windows */
+  (void)storage; /* the storage is always u8, because other voxels have no windows */
   return sum_window_u8(window, weight);
 }
 

@@ -11,18 +11,20 @@
 #endif
 
 enum {
-  WINDOW_SIDE = GRID_COLUMN,      /* voxels */
+  WINDOW_SIDE = GRID_COLUMN,      /* width of a window, in voxels */
   WINDOW_SPREAD = WINDOW_SIDE - 4 /* the greatest distance, in voxels, between the first taps of lanes */
 };
 
 typedef struct voxel_window {
-  const unsigned char *first; /* the window's first row; for u8 voxels, the address of this row in its
+  const unsigned char *first; /* the address of the window's first row; for u8 voxels, of this row in its
                                * column */
   size_t row_bytes, slice_bytes;
-  size_t beside; /* for u8: bytes to the next column; 0 where the window lies within one column */
-  __m512i shift; /* for u8: bits from the column's first voxel to the window's first voxel, in every row */
-  __m512i index; /* index of each lane's taps in tap row 0 */
-  __m512i start; /* the slice of each lane's first tap; 0 for idle lanes */
+  /* for u8 voxels: bytes from the column to the next column; 0 where the window lies within one column */
+  size_t beside;
+  __m512i shift; /* for u8 voxels: bits from the column's first voxel to the window's first voxel, in every
+                  * row */
+  __m512i index; /* index of each lane's taps in tap row 0, counted in a slice of the window */
+  __m512i start; /* the window's slice that holds each lane's first tap; 0 for inactive lanes */
   int slices;
 } voxel_window;
 
@@ -54,7 +56,7 @@ LANES_INLINE void locate_window(const grid *grid, const int32_t low[3], voxel_wi
   }
 }
 
-/* Whether a grid has windows. */
+/* Whether windows of voxels can be opened in a grid. */
 LANES_INLINE int has_windows(const grid *grid) {
   if (grid->storage == HL_STORAGE_U8) return grid->columns != NULL;
   return grid->dimension[0] >= WINDOW_SIDE && grid->dimension[1] >= WINDOW_SIDE;
@@ -108,7 +110,8 @@ LANES_INLINE window_slice slice_of_window(hl_storage storage, const voxel_window
  * each slice of the window would. */
 typedef struct own_slices {
   window_slice voxels[WINDOW_SIDE];
-  window_lanes later[WINDOW_SPREAD + 1]; /* element s: the lanes whose first tap lies in slice s */
+  window_lanes later[WINDOW_SPREAD + 1]; /* element s: the lanes whose first tap lies in slice s of the
+                                          * window */
 } own_slices;
 
 LANES_INLINE void load_own_slices(hl_storage storage, const voxel_window *window, int spread,

@@ -31,7 +31,7 @@ LANES_INLINE int sum_of_windows(const grid *grid, const lanes_int cell[3], const
                                 uint32_t active, const lanes weight[3][4], lanes *sum) {
   hl_storage storage = grid->storage;
   voxel_window window, below;
-  const uint32_t upper = 0x00ff; /* the lanes of half a block */
+  const uint32_t upper = 0x00ff; /* the lanes of one half of the block */
   if (!has_windows(grid)) return 0;
   if ((lowest != NULL && open_window_at(grid, cell, lowest, active, &window)) ||
       open_window(grid, cell, active, &window)) {
