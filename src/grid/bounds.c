@@ -14,7 +14,8 @@
 enum { BEFORE = BRICK_BEFORE, AFTER = BRICK_AFTER, WINDOW = BEFORE + AFTER + 1 };
 _Static_assert((int)HL_BRICK_CELLS == (int)BRICK_SIDE, "volumes and grids have the same bricks");
 
-/* Readable bytes after the last element of an array whose bytes are read four at a time. */
+/* The number of bytes that may be read after the last element of an array whose bytes are read four at a
+ * time. */
 enum { READ_BEYOND = 4 };
 
 static int32_t clamp_index(int64_t i, int32_t count) {
@@ -24,11 +25,14 @@ static int32_t clamp_index(int64_t i, int32_t count) {
 typedef struct brick_job {
   const grid *grid;
   bound_rows_function *bound_rows;
-  float *columns;        /* [threads][2][dimension 0] */
+  /* [threads][2][dimension 0]; for each x, the least and the greatest value of the voxels of a row of
+   * bricks */
+  float *columns;
   unsigned char *copies; /* [threads][WINDOW * WINDOW][copy_bytes]; copies of rows, for grids with pages */
   size_t copy_bytes;
-  size_t first; /* the first layer of bricks of this job. Over ranks, other ranks bound the layers before
-                 * it */
+  /* number of the first layer of bricks that this job bounds. Over ranks, other ranks bound the layers before
+   * it */
+  size_t first;
 } brick_job;
 
 /* Stores the least and the greatest value of a brick, converted to the voxels' type. low and high are floats,
@@ -102,7 +106,8 @@ static void bound_layer_of_bricks(void *data, size_t index, int worker) {
                     job->copies + (size_t)worker * WINDOW * WINDOW * job->copy_bytes);
 }
 
-/* The bounds that were found while the volume's voxels were stored; null: there are no such bounds. */
+/* The bounds of bricks that were found while the volume's voxels were stored; null: there are no such
+ * bounds. */
 static void *stored_bounds(const grid *grid) {
   const hl_brick_bounds *bricks = grid->pages != NULL ? grid->pages->bricks : NULL;
   return bricks != NULL && hl_brick_bounds_whole(bricks) ? bricks->bounds : NULL;
@@ -137,7 +142,7 @@ static void bound_layer_of_field(void *data, size_t index, int worker) {
     }
 }
 
-/* Lays out the scratch memory of all threads. */
+/* Lays out the scratch memory of all threads for bounds of bricks. */
 static void lay_out_columns(brick_job *job, int threads, hl_layout *layout) {
   size_t width = (size_t)job->grid->dimension[0];
   job->columns = hl_layout_take(layout, (size_t)threads * 2 * width, sizeof *job->columns);
@@ -145,7 +150,7 @@ static void lay_out_columns(brick_job *job, int threads, hl_layout *layout) {
   job->copies = hl_layout_take(layout, (size_t)threads * WINDOW * WINDOW, job->copy_bytes);
 }
 
-/* Bounds the layers of bricks. Over ranks each rank bounds its share of the layers. */
+/* Bounds the layers of bricks. Over ranks, each rank bounds a part of the layers. */
 static void bound_layers_of_bricks(hl_pool *pool, brick_job *job) {
   const grid *grid = job->grid;
   size_t layers = (size_t)grid->brick_count[2];
@@ -190,8 +195,8 @@ static void set_cell_range(const hl_volume *volume, grid *grid) {
   grid->cell_step = grid->storage == HL_STORAGE_U8 ? 1 : high > low ? fmaxf((high - low) / 255, FLT_MIN) : 1;
 }
 
-/* Finds the bounds of all cells. They are computed slice by slice and kept packed, for all later transfer
- * functions. Packing saves memory because most bricks of a volume are empty or even. */
+/* Finds the bounds of all cells. The bounds are computed slice by slice and kept packed, for all later
+ * transfer functions. Packing saves memory because most bricks of a volume are empty or even. */
 enum { CELL_LAYERS = HL_BRICK_CELLS / HL_LOOKUP_CELLS, LAYERS_A_TASK = 4 };
 
 typedef struct cell_job {
@@ -200,8 +205,8 @@ typedef struct cell_job {
   bool smooth; /* whether the kernel is the B-spline */
   hl_context *context;
   size_t plane;                /* number of 2x2x2 cells in a slice */
-  struct bound_slices *slices; /* [workers] */
-  bool failed;                 /* set where memory is short; atomic */
+  struct bound_slices *slices; /* [workers]; the scratch memory of each worker */
+  bool failed;                 /* set where memory is short; read and written atomically */
 } cell_job;
 
 /* Finds the bounds of 2x2 cells in one slice of voxels, along x and y. slice: [2][cells y][cells x]; receives
@@ -236,7 +241,7 @@ static void round_bounds(const grid *grid, const float *low, const float *high, 
   for (size_t i = 0; i < count; i++) {
     float a = floorf((low[i] - grid->cell_base) * inverse + 1e-4f),
           b = ceilf((high[i] - grid->cell_base) * inverse - 1e-4f);
-    /* a bound is NaN if the voxels' owner has changed voxels to NaN */
+    /* the bound `a` is NaN if the voxels' owner has changed voxels to NaN */
     to_low[i] = (unsigned char)(a > 255 ? 255 : a > 0 ? a : 0);
     to_high[i] = (unsigned char)(b < 0 ? 0 : b < 255 ? b : 255);
   }
@@ -267,7 +272,7 @@ static bool all_alike(const unsigned char cells[BRICK_CELLS]) {
   return memcmp(cells, cells + 1, BRICK_CELLS - 1) == 0;
 }
 
-/* Packs the bounds of a layer of bricks (bounds.h). Returns the number of bytes. bounds:
+/* Packs the bounds of a layer of bricks (bounds.h). Returns the number of bytes of the packed bounds. bounds:
  * [CELL_LAYERS][2][plane]; lower, then upper bounds. */
 static size_t pack_layer(const grid *grid, const unsigned char *bounds, size_t plane, unsigned char *to) {
   const int32_t *count = grid->lookup[0].count;
@@ -315,16 +320,17 @@ void hl_cell_bounds_at(const grid *grid, const int32_t cell[3], float *low, floa
 /* One worker's scratch memory: bounds of slices of voxels along x and y, and the bounds of cells made from
  * these. */
 typedef struct bound_slices {
-  float *slices;           /* [CELL_TAPS][2][plane]; slice z of the volume is element z % CELL_TAPS */
-  float *out;              /* [2][plane] */
+  float *slices;           /* [CELL_TAPS][2][plane]; bounds along x and y; slice z of the volume is element
+                            * z % CELL_TAPS */
+  float *out;              /* [2][plane]; bounds of cells along all axes */
   float *rows, *padded;    /* scratch memory of bound_slice() */
   unsigned char *bounds;   /* [CELL_LAYERS][2][plane]; bounds of a layer of bricks */
-  unsigned char *packed;   /* the same bounds, packed */
+  unsigned char *packed;   /* the numbers of `bounds` after packing */
   int32_t held[CELL_TAPS]; /* for each element of `slices`, the number of the volume's slice that the element
                             * holds; -1: it holds no slice */
 } bound_slices;
 
-/* Computes the bounds of a slice of cells. */
+/* Computes the bounds of the cells in a slice from the bounds of slices of voxels. */
 static void bound_cells(const cell_job *job, bound_slices *s, int32_t f, unsigned char *bounds) {
   const grid *grid = job->grid;
   const float *low[CELL_TAPS], *high[CELL_TAPS];
@@ -383,8 +389,8 @@ void hl_cells_lay_out(grid *grid, hl_layout *layout) {
   grid->cell_bounds = hl_layout_take(layout, (size_t)grid->brick_count[2], sizeof *grid->cell_bounds);
 }
 
-/* Lays out the scratch memory of all threads. In a pass that only counts bytes, `plane` is the only member of
- * *job that is set. */
+/* Lays out the scratch memory of all threads for bounds of cells. In a pass that only counts bytes, `plane`
+ * is the only member of *job that is set. */
 static void lay_out_slices(cell_job *job, int threads, hl_layout *layout) {
   const grid *grid = job->grid;
   size_t width = (size_t)grid->lookup[0].count[0], plane = width * (size_t)grid->lookup[0].count[1];
@@ -408,7 +414,8 @@ void hl_bounds_count(const grid *grid, int threads, hl_layout *layout) {
     lay_out_columns(&(brick_job){.grid = grid}, threads, layout);
   hl_layout_give_back(layout, kept);
   if (!cells_have_bounds(grid)) return;
-  hl_layout_take(layout, (size_t)grid->brick_count[2], greatest_layer_bytes(grid)); /* once packed */
+  /* room for the packed bounds of all layers */
+  hl_layout_take(layout, (size_t)grid->brick_count[2], greatest_layer_bytes(grid));
   const size_t packed = layout->bytes;
   lay_out_slices(&(cell_job){.grid = grid}, threads, layout);
   hl_layout_give_back(layout, packed);
@@ -419,7 +426,7 @@ hl_status hl_cells_bound(hl_context *context, hl_pool *pool, const grid_function
   cell_job job = {.grid = grid, .functions = functions, .smooth = smooth, .context = context};
   size_t layers = (size_t)grid->brick_count[2];
   set_cell_range(volume, grid);
-  if (!cells_have_bounds(grid)) return HL_OK; /* bricks alone tell what is visible */
+  if (!cells_have_bounds(grid)) return HL_OK; /* without bounds of cells, bricks alone tell what is visible */
   hl_layout layout = {0};
   while (hl_layout_pass(&layout, context)) lay_out_slices(&job, hl_pool_threads(pool), &layout);
   if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the bounds of a volume's cells");

@@ -1,5 +1,5 @@
 /* grid/bounds.h - the least and the greatest value that samples in each brick, and in each group of 2x2x2
- * cells, can have. Found once for each volume.
+ * cells, can have. The bounds are found once for each volume.
  *
  * A brick is bounded by the voxels that its cells and the cells around it depend on. Cells are bounded more
  * tightly: in a cell, a cubic B-spline lies between the least and the greatest of its Bezier points. For the
@@ -15,8 +15,8 @@
 
 /* ---- bricks ---- */
 
-/* Takes the memory of the grid's brick_bounds, `relevant` and relevant_list. storage and brick_count must be
- * set. */
+/* Lays out the grid's arrays brick_bounds, `relevant` and relevant_list. The grid's storage and brick_count
+ * must be set. */
 void hl_bricks_lay_out(grid *grid, hl_layout *layout);
 /* Fills the grid's brick_bounds, and clears `relevant`. */
 hl_status hl_bricks_bound(hl_context *context, hl_pool *pool, const grid_functions *functions, grid *grid,
@@ -26,11 +26,11 @@ void hl_bounds_of_brick(const grid *grid, size_t brick, float bounds[2]);
 
 /* ---- cells ---- */
 
-/* Takes the memory of the grid's look-ups and cell_bounds, and sets the counts of the look-ups. dimension and
- * brick_count must be set. Takes no memory where 32 bits cannot number the cells. */
+/* Lays out the grid's look-ups and the array cell_bounds, and sets the counts of the look-ups. The grid's
+ * dimension and brick_count must be set. Lays out nothing where 32 bits cannot number the cells. */
 void hl_cells_lay_out(grid *grid, hl_layout *layout);
-/* Fills the grid's cell_bounds, which must be null: each layer is allocated when packing has found the
- * layer's size. smooth: whether the kernel is the B-spline. */
+/* Fills the grid's array cell_bounds, whose elements must be null: each layer is allocated when packing has
+ * found the layer's size. smooth: whether the kernel is the B-spline. */
 hl_status hl_cells_bound(hl_context *context, hl_pool *pool, const grid_functions *functions, bool smooth,
                          const hl_volume *volume, grid *grid, hl_error *error);
 void hl_cell_bounds_release(hl_context *context, grid *grid);

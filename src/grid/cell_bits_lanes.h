@@ -50,7 +50,8 @@ LANES_INLINE lanes bits_two_held_rows(const grid *grid, int32_t x, int32_t y, in
  * and each is the mean of the inner points on its two sides: (b + 4 c + d) / 6 = ((b + 2 c) / 3 + (2 c + d) /
  * 3) / 2. */
 typedef struct bits_thirds {
-  lanes first, second; /* the points at a third and at two thirds of the way from b to c */
+  lanes first, second; /* the points at a third and at two thirds of the way from the voxel b to the voxel
+                        * c */
 } bits_thirds;
 
 LANES_INLINE bits_thirds thirds_between(lanes b, lanes c) {
@@ -76,7 +77,8 @@ LANES_INLINE void greatest_of_four(const lanes v[CELL_BIT_TAPS], lanes greatest[
 
 /* ---- a brick ---- */
 
-/* Finds bounds along z: [cell z][y][x]. There are seven rows; the eighth only fills the lanes. */
+/* Finds bounds of a brick's cells along z, as [cell z][y][x]. A layer has seven rows; an eighth row only
+ * fills the lanes. */
 LANES_INLINE void bits_along_z(const grid *grid, hl_storage storage, const int32_t brick[3], float sign,
                                float bounds[HL_BRICK_CELLS][BITS_ROWS][BITS_ROW]) {
   const int32_t *count = grid->dimension;
@@ -100,7 +102,8 @@ LANES_INLINE void bits_along_z(const grid *grid, hl_storage storage, const int32
   }
 }
 
-/* Continues with bounds along y, two layers of cells at a time: [cell z][cell y][x]. */
+/* Finds the bounds along y from the bounds along z, as [cell z][cell y][x], for two layers of cells at a
+ * time. */
 LANES_INLINE void bits_along_y(float from[HL_BRICK_CELLS][BITS_ROWS][BITS_ROW],
                                float bounds[HL_BRICK_CELLS][HL_BRICK_CELLS][BITS_ROW]) {
   for (int layer = 0; layer < HL_BRICK_CELLS; layer += 2) {
@@ -129,7 +132,7 @@ LANES_INLINE uint64_t bits_of_brick(const grid *grid, hl_storage storage, const 
     for (int tap = 0; tap < 4; tap++) v[tap] = lanes_load_block(&along_y[layer][0][tap], BITS_ROW);
     lanes greatest = greatest_of_cell(thirds_between(v[0], v[1]), thirds_between(v[1], v[2]),
                                       thirds_between(v[2], v[3]));
-    /* values are multiplied by 3 for each of the three axes */
+    /* bounds are 27 times too large, because they were multiplied by 3 along each of the three axes */
     bits |= (uint64_t)lanes_bits(greatest > lanes_set(27 * threshold)) << (16 * layer);
   }
   return bits;

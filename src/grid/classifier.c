@@ -6,8 +6,8 @@
 #include "core/memory.h"
 #include "core/sheet_constants.h"
 
-/* The extinction sigma that belongs to an opacity alpha: sigma = -ln(1 - alpha) / u. alpha is clamped to
- * 0.9999. */
+/* The extinction sigma that belongs to an opacity alpha: sigma = -ln(1 - alpha) / u, where u is the length
+ * for which the transfer function's opacities hold. alpha is clamped to 0.9999. */
 static double extinction_of(const hl_transfer_function *function, double value) {
   double alpha = hl_transfer_function_opacity(function, value);
   if (alpha <= 0) return 0;
@@ -20,8 +20,9 @@ double hl_transparent_below(const hl_volume *volume, const hl_transfer_function 
   return below_all ? (empty + volume->minimum) / 2 : -INFINITY;
 }
 
-/* Integrates the table exactly: extinction is linear between entries. Over one step the mean extinction is
- * (e0 + e1) / 2, and the extinction's moment about the step's start is (e0 + 2 e1) / 6 (derived). */
+/* Fills the table of extinction's integrals. The integrals are exact, because extinction is linear between
+ * entries. Over one step the mean extinction is (e0 + e1) / 2, where e0 and e1 are the extinctions at its two
+ * ends. The extinction's moment about the step's start is (e0 + 2 e1) / 6 (derived). */
 static void integrate(classifier *classifier) {
   double integral = 0, moment = 0;
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES + 1; entry++) {
@@ -34,9 +35,9 @@ static void integrate(classifier *classifier) {
   }
 }
 
-/* Integrates extinction times colour, and extinction alone. Over one step both are linear: extinction goes
- * from e0 to e1, the colour from c0 to c1. The integral of extinction times colour is then (e0 (2 c0 + c1) +
- * e1 (c0 + 2 c1)) / 6 (derived). */
+/* Fills the table of the integrals of extinction times colour, and of extinction alone. Over one step both
+ * are linear: extinction goes from e0 to e1, the colour from c0 to c1. The integral of extinction times
+ * colour is then (e0 (2 c0 + c1) + e1 (c0 + 2 c1)) / 6 (derived). */
 static void integrate_colors(classifier *classifier) {
   double integral[4] = {0, 0, 0, 0};
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES + 1; entry++) {
@@ -128,7 +129,8 @@ static void fill_outside(classifier *classifier) {
   }
 }
 
-/* The integral of extinction from 0 to x. x is a coordinate of the tables, which counts entries. */
+/* The integral of extinction over table entries from 0 to x. x is a coordinate of the tables, which counts
+ * entries. */
 static float integral_to(const classifier *classifier, float x) {
   const float *at = classifier->sums[(int)x], *next = classifier->sums[(int)x + 1];
   return at[1] + (next[1] - at[1]) * (x - (float)(int)x);
@@ -180,15 +182,16 @@ static void fill_tables(const hl_scene_volume *volume, double empty, double low,
   fill_beginnings(classifier);
 }
 
-/* The least gradient of a surface: a thousandth of the transfer function's span of values, per voxel edge. */
+/* The least gradient of values that counts as a surface: a thousandth of the transfer function's span of
+ * values, per voxel edge. */
 static float normal_edge(const hl_scene_volume *volume, double entries_per_value) {
   const hl_transfer_function *function = &volume->transfer_function;
   double span = function->opacity_count == 0
                     ? 0
                     : function->opacity[function->opacity_count - 1].value - function->opacity[0].value;
   if (!(span > 0)) span = 1;
-  mat3 placed = volume->volume->index_to_world.linear; /* the map's rotation is left out, because it keeps
-                                                        * lengths */
+  /* the map's rotation is left out, because a rotation keeps lengths */
+  mat3 placed = volume->volume->index_to_world.linear;
   for (int axis = 0; axis < 3; axis++)
     placed.row[axis] = vec3_scale(placed.row[axis], volume->axis_scale[axis]);
   double edge = mat3_shortest_column(placed) * volume->scale;
@@ -240,7 +243,8 @@ hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volum
   memset(layout.base, 0, layout.bytes);
   double empty = grid->empty * grid->value_scale + grid->value_offset;
   double low = fmin(volume->volume->minimum, empty), high = fmax(volume->volume->maximum, empty);
-  if (!(high > low)) high = low + fmax(1, 1e-12 * fabs(low)); /* adding 1 to 1e30 changes nothing */
+  /* the factor is needed because adding 1 to 1e30 changes nothing */
+  if (!(high > low)) high = low + fmax(1, 1e-12 * fabs(low));
   high = fmax(high, low + NARROWEST_RANGE * fabs(grid->value_scale));
   classifier->scale = (float)(grid->value_scale * CLASSIFIER_ENTRIES / (high - low));
   classifier->offset = (float)((empty - low) * CLASSIFIER_ENTRIES / (high - low));

@@ -21,7 +21,7 @@ typedef struct classifier {
   float (*sums)[4];  /* [0]: extinction per world unit. [1]: the integral of extinction over entries, from
                       * entry 0. [2]: the integral of extinction times the entry's number. [3]: the integral
                       * [1] up to the coordinate that `outside` has for this entry */
-  float (*color)[4]; /* linear RGB; 0 */
+  float (*color)[4]; /* linear RGB of each entry; the fourth number is 0 */
   float (*shown)[4]; /* integrals over entries, from entry 0: [0] to [2] integrate extinction times linear
                       * RGB, [3] extinction alone */
   /* Sums, from entry 0 to each entry, of the changes of the colour's slope. Only changes at entries count
@@ -39,12 +39,12 @@ typedef struct classifier {
                           * coordinate at which all surfaces begin */
   float first_visible, last_visible; /* table coordinates; no value below first_visible or above last_visible
                                       * has extinction */
-  /* [STEEPNESS_ENTRIES + 2], in the same block; gradient opacity: for each length of the gradient, the factor
-   * that multiplies extinction. Null if the factor is 1 everywhere. Table coordinate = length *
+  /* [STEEPNESS_ENTRIES + 2], in the block of `sums`; gradient opacity: for each length of the gradient, the
+   * factor that multiplies extinction. Null if the factor is 1 everywhere. Table coordinate = length *
    * steepness_scale, clamped to [0, STEEPNESS_ENTRIES]; the length is in stored units per frame unit. */
   float *steepness;
   float steepness_scale;
-  mask_lattice mask; /* the mask of the frame's scene */
+  mask_lattice mask; /* the volume's mask in the frame's scene */
   plane_table plane; /* the tables of a function of two numbers; for such a function the other tables hold
                       * bounds over all second numbers */
   float normal_edge; /* the least gradient (table entries per frame unit) that counts as a surface */
@@ -66,8 +66,7 @@ static inline bool hl_classifier_needs_gradient(const classifier *classifier) {
 hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volume,
                                const hl_scene_volume *second, const grid *grid, classifier *classifier,
                                hl_error *error);
-/* Takes the memory of a classifier's arrays from a layout. The arrays form one block, which begins with
- * `sums`. */
+/* Lays out the arrays of a classifier in one block of memory. `sums` is the first array of the block. */
 void hl_classifier_lay_out(const hl_transfer_function *function, classifier *classifier, hl_layout *layout);
 void hl_classifier_release(hl_context *context, classifier *classifier);
 
@@ -76,9 +75,10 @@ void hl_classifier_release(hl_context *context, classifier *classifier);
  * between the empty value and the least value; else it is -infinity. */
 double hl_transparent_below(const hl_volume *volume, const hl_transfer_function *function, double empty);
 
-/* True if some stored value in [low, high] is visible. */
+/* Whether some stored value from `low` to `high` is visible. */
 bool hl_classifier_span_visible(const classifier *classifier, const grid *grid, float low, float high);
-/* True if some stored value in the range from low to high, widened to include the empty value, is visible. */
+/* Whether some stored value in the range from `low` to `high`, widened to include the empty value, is
+ * visible. */
 bool hl_classifier_range_visible(const classifier *classifier, const grid *grid, float low, float high);
 
 #endif

@@ -30,11 +30,12 @@ LANES_INLINE void table_values(float (*table)[4], table_coordinate at, lanes val
   for (int i = 0; i < 3; i++) values[i] = lanes_fma(b[i] - a[i], at.fraction, a[i]);
 }
 
-/* Integrals of a table from coordinate a to coordinate b. */
+/* Integrals of the classifier's tables over the entries from coordinate a to coordinate b. I is the integral
+ * of extinction. */
 typedef struct way_sums {
-  lanes extinction; /* the mean, (I(b) - I(a)) / (b - a) */
-  lanes integral;   /* I(b) - I(a), 0 where the ends are close */
-  lanes moment;     /* the integral of extinction times the entry's number */
+  lanes extinction; /* the mean extinction, (I(b) - I(a)) / (b - a) */
+  lanes integral;   /* I(b) - I(a); 0 where a and b are close together */
+  lanes moment;     /* the integral, from a to b, of extinction times the entry's number */
 } way_sums;
 
 /* The integrals of extinction over entries, from entry 0 to each of the two ends of a way. */
@@ -66,7 +67,8 @@ LANES_INLINE lanes_int may_be_visible(const classifier *classifier, table_coordi
   return (lanes_max(a.x, b.x) > classifier->first_visible) & (lanes_min(a.x, b.x) < classifier->last_visible);
 }
 
-/* The integral of extinction from 0 to x. x is a coordinate of the tables, which counts entries. */
+/* The integral of extinction over table entries from 0 to x. x is a coordinate of the tables, which counts
+ * entries. */
 LANES_INLINE lanes integral_to(const classifier *classifier, lanes x) {
   lanes values[3];
   table_values(classifier->sums, split_coordinate(x), values);

@@ -7,7 +7,7 @@
 #include "grid/field.h"
 #include "grid/relevant.h"
 
-/* The two axes along a face that is perpendicular to an axis. */
+/* The two axes that run along a face of a box; the face is perpendicular to `axis`. */
 static int row_axis(int axis) { return axis == 0 ? 1 : 0; }
 static int column_axis(int axis) { return axis == 2 ? 1 : 2; }
 
@@ -17,11 +17,11 @@ typedef struct face_job {
   const classifier *classifier;
   int axis;
   int32_t last_cell; /* the last cell of the grid along the axis */
-  field_taps across; /* the taps across the face */
-  int visible;       /* whether any point is visible */
+  field_taps across; /* the four voxels on which the field depends across the face, and their weights */
+  int visible;       /* whether any point of the face is visible */
 } face_job;
 
-/* The field at a point of the face. */
+/* The value of the volume's field at a point of the face. */
 static float value_at(const face_job *job, const field_taps *column, const field_taps *row) {
   static const int step[3] = {1, FIELD_TAPS, FIELD_TAPS * FIELD_TAPS};
   const int u = row_axis(job->axis), v = column_axis(job->axis);

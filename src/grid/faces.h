@@ -1,13 +1,14 @@
-/* grid/faces.h - finds which faces of a volume's box cut through visible matter. The faces are the box's own
- * at the grid's border, or the faces of `clip`. */
+/* grid/faces.h - finds which faces of a volume's box cut through visible matter. A face of the box is the
+ * border of the grid, or a face of the scene's box `clip`. */
 #ifndef HL_GRID_FACES_H
 #define HL_GRID_FACES_H
 
 #include "core/pool.h"
 #include "grid/classifier.h"
 
-/* Finds grid->face_shows. Call it after hl_grid_mark_relevant(). It looks at one point for each voxel of the
- * faces, where relevant bricks reach the faces. */
+/* Finds grid->face_shows: whether something is visible on each face of the box. Call it after
+ * hl_grid_mark_relevant(). It looks at one point for each voxel of the faces, where relevant bricks reach the
+ * faces. */
 void hl_faces_find(hl_pool *pool, const kernel *kernel, const classifier *classifier, grid *grid);
 
 #endif

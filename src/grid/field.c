@@ -11,7 +11,7 @@ static void kernel_at(const kernel *kernel, double distance, double *value, doub
   const float *piece = a < 1 ? kernel->inner : kernel->outer;
   if (a >= 1) a -= 1;
   for (int power = kernel->degree; power >= 0; power--) {
-    rise = rise * a + sum; /* Horner's scheme for the derivative */
+    rise = rise * a + sum; /* the derivative by Horner's scheme */
     sum = sum * a + (double)piece[power];
   }
   *value = sum;

@@ -9,7 +9,7 @@
 
 enum { FIELD_TAPS = 4 };
 
-/* The four voxels along an axis that a coordinate depends on, and their weights. */
+/* The four voxels along an axis on which the field at a coordinate depends, and their weights. */
 typedef struct field_taps {
   int32_t first;
   double weight[FIELD_TAPS];
@@ -20,7 +20,8 @@ field_taps hl_field_taps(const kernel *kernel, double at);
 /* Copies a box of voxels to `values`, [size[2]][size[1]][size[0]]. */
 void hl_field_window(const grid *grid, const int32_t first[3], const int32_t size[3], double *values);
 
-/* The field's value at a point. *slope: receives the derivatives with respect to the index coordinates. */
+/* The value of the field at a point. *slope: receives the derivatives with respect to the index
+ * coordinates. */
 double hl_field_value_and_slope(const grid *grid, const kernel *kernel, vec3 at, vec3 *slope);
 
 #endif

@@ -27,8 +27,8 @@ enum {
 
 /* A table that tells which small boxes of the grid show something. There are two tables: the unit of one is a
  * group of 2x2x2 cells, the unit of the other a brick. Eight boxes begin at each unit; each is two or three
- * units long along each axis. A unit has a byte with a bit for each of the eight boxes: bit i + 2 j + 4 k
- * tells whether the box of 2 + i by 2 + j by 2 + k units shows something. */
+ * units long along each axis. Each unit has a byte, which has a bit for each of the eight boxes: bit i + 2 j
+ * + 4 k tells whether the box of 2 + i by 2 + j by 2 + k units shows something. */
 enum { LOOKUP_SIZES = 2, LOOKUP_REACH = 3 /* units along an axis that one look-up covers */ };
 typedef struct cell_lookup {
   int32_t count[3];
@@ -63,13 +63,14 @@ typedef struct grid {
    * signed numbers. [column][dimension[2]][dimension[1]][GRID_COLUMN]; null where nothing reads the
    * columns. */
   unsigned char *columns;
-  size_t column_slice_bytes, column_bytes; /* bytes from slice to slice, and from column to column */
+  size_t column_slice_bytes, column_bytes; /* bytes from slice to slice of a column, and from column to
+                                            * column */
   hl_storage storage;
   int32_t dimension[3];
-  float empty;                      /* stored units */
+  float empty;                      /* the empty value, in stored units */
   double value_scale, value_offset; /* data value = value_scale * stored + value_offset */
   affine3 index_to_frame, frame_to_index;
-  double box_low[3], box_high[3]; /* index space; the volume exists within this box */
+  double box_low[3], box_high[3]; /* corners of the box within which the volume exists; index space */
   /* The places of the box's faces along each axis, in index space. A face that cuts nothing visible gets a
    * place far outside. So does, in a frame, a face beyond which another volume goes on. */
   float face_low[3], face_high[3];
@@ -78,13 +79,15 @@ typedef struct grid {
   void *brick_bounds;      /* [bricks z][y][x][2], of the voxels' type; the least and the greatest stored
                             * value among the voxels on which the brick's cells and the cells around the brick
                             * depend */
-  unsigned char *relevant; /* [bricks z][y][x]; 1 where the transfer function may show something */
-  cell_lookup lookup[LOOKUP_SIZES]; /* look-ups of groups of 2x2x2 cells, and of bricks */
+  unsigned char *relevant; /* [bricks z][y][x]; 1 where the transfer function may show something in the
+                            * brick */
+  cell_lookup lookup[LOOKUP_SIZES]; /* two look-ups: of groups of 2x2x2 cells, and of bricks */
   /* [bricks z]; for each layer of bricks, the packed bounds of all groups of 2x2x2 cells in the layer
-   * (bounds.h). Each layer is owned, and has the size that packing finds. Stored value = cell_base +
-   * cell_step * bound. Null where 32 bits cannot number the cells */
+   * (bounds.h). Each layer is owned, and has the size that packing finds. A bound stands for the stored value
+   * cell_base + cell_step * bound. Null where 32 bits cannot number the cells */
   unsigned char **cell_bounds;
-  float cell_base, cell_step; /* stored units */
+  float cell_base, cell_step; /* the stored value for the bound 0, and the step from one bound to the next;
+                               * stored units */
   uint64_t *cell_bits;        /* [bricks z][y][x]; bit x + 4 y + 16 z tells whether the cell (x, y, z) of the
                                * brick may show something; may be null */
   bool cell_bits_tell;        /* whether so many cells show nothing that it pays to read their bits */
@@ -100,38 +103,39 @@ typedef struct grid {
   const cut_shape *cuts; /* borrowed; [cut_count]; the shapes that are removed from the box */
   size_t cut_count;
   bool cut_casts_shadow; /* whether the matter that cuts remove still casts shadows */
-  float *finite_voxels;  /* a copy of the voxels in which the empty value replaces non-finite ones; or, for an
-                          * interpolating kernel, the kernel's coefficients (prefilter.h). May be null */
-  uint64_t kept_voxels;  /* number of voxels of the relevant bricks: 64 for each brick, fewer for bricks at
-                          * the borders */
+  /* in the grid's memory; a copy of the voxels in which the empty value replaces non-finite ones; or, for an
+   * interpolating kernel, the kernel's coefficients (prefilter.h). May be null */
+  float *finite_voxels;
+  uint64_t kept_voxels; /* number of voxels of the relevant bricks: 64 for each brick, fewer for bricks at
+                         * the borders */
 } grid;
 
 /* ---- the functions of this room that are compiled for each instruction set ---- */
 
-/* Finds the least and the greatest value of several rows, element by element. rows: row_count pointers to
- * `count` stored values of one type. */
+/* The type of the function that finds the least and the greatest value of several rows of voxels, element by
+ * element. rows: row_count pointers to `count` stored values of one type. */
 typedef void bound_rows_function(const void *const *rows, int row_count, size_t count, float *least,
                                  float *greatest);
 
 enum { CELL_TAPS = 5 /* voxels along an axis on which two neighbouring cells depend */ };
 
-/* Finds the bounds of pairs of cells along x. Pair f depends on the voxels 2f-2 .. 2f+2; beyond the row's
- * ends the last voxel repeats. row: count stored values. padded: scratch memory of count + 6 floats. low,
- * high: count / 2 + 1. smooth: whether the kernel is the B-spline. */
+/* The type of the function that finds the bounds of pairs of cells along x. Pair f depends on the voxels 2f-2
+ * .. 2f+2; beyond the row's ends the last voxel repeats. row: count stored values. padded: scratch memory of
+ * count + 6 floats. low, high: count / 2 + 1. smooth: whether the kernel is the B-spline. */
 typedef void bound_along_function(hl_storage storage, const void *row, int32_t count, bool smooth,
                                   float *padded, float *low, float *high);
-/* Finds the bounds of pairs of cells along y or z, as bound_along_function does along x. It works element by
- * element on CELL_TAPS rows of bounds. */
+/* The type of the function that finds the bounds of pairs of cells along y or z, as bound_along_function does
+ * along x. The function works element by element on CELL_TAPS rows of bounds. */
 typedef void bound_across_function(const float *const low_rows[CELL_TAPS],
                                    const float *const high_rows[CELL_TAPS], size_t count, bool smooth,
                                    float *low, float *high);
 
-/* The bits of a brick. Bit x + 4 y + 16 z tells whether the field times `sign` may exceed a threshold (stored
- * units) somewhere in the cell (x, y, z). */
+/* The type of the function that finds the bits of a brick's cells. Bit x + 4 y + 16 z tells whether the field
+ * times `sign` may exceed a threshold (stored units) somewhere in the cell (x, y, z). */
 typedef uint64_t brick_bits_function(const grid *grid, const int32_t brick[3], float sign, float threshold);
 
 typedef struct grid_functions {
-  bound_rows_function *rows[3]; /* one function for each hl_storage */
+  bound_rows_function *rows[3]; /* bounds of rows of voxels; one function for each hl_storage */
   bound_along_function *along;
   bound_across_function *across;
   brick_bits_function *brick_bits;
@@ -146,7 +150,7 @@ static inline size_t hl_grid_bricks(const grid *grid) {
 
 /* The smallest edge of a voxel; frame units. */
 static inline double hl_smallest_edge(const grid *grid) {
-  double most = 0; /* voxels per frame unit */
+  double most = 0; /* the greatest number of voxels per frame unit along an axis */
   for (int axis = 0; axis < 3; axis++) {
     double along = vec3_length(grid->frame_to_index.linear.row[axis]);
     most = along > most ? along : most;
@@ -154,7 +158,7 @@ static inline double hl_smallest_edge(const grid *grid) {
   return 1 / most;
 }
 
-/* The index of the brick with given coordinates. */
+/* The index of the brick that has given coordinates. */
 static inline size_t hl_brick_index(const grid *grid, const int32_t b[3]) {
   return ((size_t)b[2] * (size_t)grid->brick_count[1] + (size_t)b[1]) * (size_t)grid->brick_count[0] +
          (size_t)b[0];
@@ -170,14 +174,14 @@ static inline bool hl_any_brick_relevant(const grid *grid, const int32_t first[3
   return false;
 }
 
-/* The coordinates of the brick with an index. */
+/* The coordinates of the brick that has a given index. */
 static inline void hl_brick_coordinates(const grid *grid, uint32_t brick, int32_t b[3]) {
   b[0] = (int32_t)(brick % (uint32_t)grid->brick_count[0]);
   b[1] = (int32_t)(brick / (uint32_t)grid->brick_count[0] % (uint32_t)grid->brick_count[1]);
   b[2] = (int32_t)(brick / (uint32_t)grid->brick_count[0] / (uint32_t)grid->brick_count[1]);
 }
 
-/* The first voxel of a row of a grid without pages. */
+/* The address of the first voxel of a row, in a grid without pages. */
 static inline const unsigned char *hl_grid_row(const grid *grid, int64_t y, int64_t z) {
   return (const unsigned char *)grid->voxels + (size_t)z * grid->slice_bytes + (size_t)y * grid->row_bytes;
 }
@@ -202,7 +206,8 @@ static inline void hl_grid_of_page(const grid *grid, const size_t page[3], struc
 /* Does the work of hl_stored_value() for a grid with pages or bricks. */
 float hl_value_outside_memory(const grid *grid, int64_t x, int64_t y, int64_t z);
 
-/* Places the grid in a frame: the volume's index space to frame space. False if the axes are singular. */
+/* Places the grid in a frame. voxel_to_frame: maps the volume's index space to frame space. Returns false if
+ * the volume's axes are singular. */
 static inline bool hl_grid_place(grid *grid, affine3 voxel_to_frame) {
   const vec3 moved = mat3_apply(voxel_to_frame.linear, vec3_of(grid->shift));
   grid->index_to_frame = (affine3){voxel_to_frame.linear, vec3_subtract(voxel_to_frame.offset, moved)};

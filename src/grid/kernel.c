@@ -14,8 +14,8 @@ static const kernel bspline = {
     .degree = HL_BSPLINE_DEGREE,
 };
 
-/* The interpolating kernel: the cubic B-spline. It is summed over coefficients for which the sum passes
- * through the voxels' values. */
+/* The interpolating kernel: the cubic B-spline. This B-spline is summed over coefficients that are chosen so
+ * that the sum passes through the voxels' values. */
 static const kernel interpolating = {
     .name = "interpolating",
     .support = 2,
@@ -41,7 +41,7 @@ static const kernel gaussian = {
     .degree = 5,
 };
 
-/* Linear interpolation: 1 - |d|. */
+/* The kernel of linear interpolation: 1 - |d|, where d is the distance. */
 static const kernel linear = {
     .name = "linear",
     .support = 1,

@@ -19,8 +19,10 @@ typedef struct kernel {
   const char *name;
   float support;                     /* radius in voxels: 1 or 2 */
   double variance;                   /* the kernel's variance along an axis, in voxels^2: how much it blurs */
-  float inner[HL_KERNEL_DEGREE + 1]; /* |d| in [0,1]: coefficients of a^0 .. a^5, a = |d| */
-  float outer[HL_KERNEL_DEGREE + 1]; /* |d| in [1,2]: coefficients, a = |d| - 1 */
+  float inner[HL_KERNEL_DEGREE + 1]; /* the polynomial for distances |d| in [0,1]: coefficients of a^0 ..
+                                      * a^5, where a = |d| */
+  float outer[HL_KERNEL_DEGREE + 1]; /* the polynomial for distances |d| in [1,2]: coefficients of a^0 ..
+                                      * a^5, where a = |d| - 1 */
   int degree;                        /* the highest power with a coefficient other than zero */
   bool interpolates;                 /* whether the kernel is summed over coefficients (prefilter.h) and not
                                       * over the voxels themselves */

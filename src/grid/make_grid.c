@@ -13,11 +13,11 @@
 
 /* ---- copies of voxels ---- */
 
-/* The source of finite_voxels: the volume's voxels. */
+/* The input for making the array finite_voxels: the volume's voxels. */
 typedef struct copy_job {
   const grid *grid;
   const hl_volume *volume;
-  float greatest;      /* the parameter of hl_grid_value() with this name */
+  float greatest;      /* the greatest magnitude of a value, the parameter `greatest` of hl_grid_value() */
   unsigned char *rows; /* [threads][volume->row_bytes]; memory for rows of sparse pages; null if the voxels
                         * are in one array */
 } copy_job;
@@ -51,8 +51,8 @@ static void set_voxels(grid *grid, const void *voxels, size_t row_bytes, size_t 
   grid->slice_bytes = slice_bytes;
 }
 
-/* Copies voxels as floats, with the empty value in place of every non-finite one. For an interpolating kernel
- * the copies become coefficients. */
+/* Copies voxels as floats, with the empty value in place of every non-finite one. For an interpolating
+ * kernel, the copies then become the kernel's coefficients. */
 static hl_status replace_voxels(hl_pool *pool, const hl_volume *volume, const kernel *kernel, grid *grid,
                                 hl_error *error) {
   const size_t threads = (size_t)hl_pool_threads(pool);
@@ -76,8 +76,8 @@ static size_t odd_lines(size_t bytes) {
   return ((bytes + LINE - 1) / LINE | 1) * LINE;
 }
 
-/* Takes the memory of the columns, where something reads them and slices are large enough for windows of 8x8
- * voxels. */
+/* Lays out the memory of the columns, where some instruction set reads columns and slices are large enough
+ * for windows of 8x8 voxels. */
 static void lay_out_columns(grid *grid, const grid_functions *functions, hl_layout *layout) {
   const int32_t *dimension = grid->dimension;
   if (!functions->reads_columns || grid->storage != HL_STORAGE_U8 || dimension[0] < GRID_COLUMN ||
@@ -89,8 +89,8 @@ static void lay_out_columns(grid *grid, const grid_functions *functions, hl_layo
                                  grid->column_bytes);
 }
 
-/* Copies a slice into all columns; the values are reduced by 128. Beyond the row's end the last column is not
- * filled, because no sum includes these values. */
+/* Copies a slice of voxels into all columns; the values are reduced by 128. Beyond the row's end the last
+ * column is not filled, because no sum includes these values. */
 static void copy_slice(void *data, size_t index, int worker) {
   (void)worker;
   const grid *grid = data;
@@ -118,16 +118,16 @@ static bool needs_other_values(const hl_volume *volume, const kernel *kernel) {
   return volume->bricks == NULL && (volume->nonfinite_count > 0 || kernel->interpolates);
 }
 
-/* The greatest number that a cell can have. In a grid of voxels it is the number of voxels. In a grid of
- * bricks it is the number of the cell that holds the box's end, but at most that of the lattice's last cell;
- * the lattice's first cell has the number 0. */
+/* The greatest number that a cell can have along an axis. In a grid of voxels it is the number of voxels
+ * along the axis. In a grid of bricks it is the number of the cell that holds the box's end, but at most that
+ * of the lattice's last cell; the lattice's first cell has the number 0. */
 static int32_t greatest_cell(const hl_volume *volume, int axis) {
   if (volume->bricks == NULL) return (int32_t)volume->dimension[axis];
   double end = ceil(volume->bricks->origin[axis] + (double)volume->dimension[axis] - 1.5);
   return (int32_t)fmin(end, (double)hl_bricks_cells(volume->bricks, axis) - 1);
 }
 
-/* Whether the grid gets one array of values in place of sparse pages. */
+/* Whether a grid gets one array of values in place of the sparse pages of its volume. */
 static bool leaves_sparse_pages(const hl_volume *volume, const kernel *kernel) {
   return volume->pages != NULL && hl_pages_are_sparse(volume->pages) && needs_other_values(volume, kernel);
 }
@@ -143,7 +143,7 @@ static void set_size(const hl_volume *volume, const kernel *kernel, grid *grid) 
   }
 }
 
-/* Takes the memory of a copy of the bricks, whose arrays are set. */
+/* Lays out the memory of a copy of a field in bricks, whose arrays are set. */
 static void lay_out_bricks(const hl_bricks *bricks, grid *grid, hl_layout *layout) {
   const size_t *n = bricks->directory_size;
   hl_bricks arrays = {0};
@@ -204,7 +204,7 @@ static hl_status allocate(hl_context *context, const grid_functions *functions, 
   if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the grid of a volume");
   grid->memory = layout.base;
   for (int32_t layer = 0; grid->cell_bounds != NULL && layer < grid->brick_count[2]; layer++)
-    grid->cell_bounds[layer] = NULL; /* the layer is not packed yet */
+    grid->cell_bounds[layer] = NULL; /* the packed bounds of the layer are not made yet */
   return HL_OK;
 }
 

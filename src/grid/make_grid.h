@@ -6,9 +6,9 @@
 #include "grid/grid.h"
 
 typedef struct grid_source {
-  const hl_scene_volume *volume; /* kept alive by the caller */
+  const hl_scene_volume *volume; /* the volume; the caller keeps it alive as long as the grid */
   const kernel *kernel;          /* the kernel for which cells are bounded */
-  affine3 index_to_frame;        /* index space to frame space */
+  affine3 index_to_frame;        /* maps the volume's index space to frame space */
   double empty;                  /* the data value of empty space */
 } grid_source;
 

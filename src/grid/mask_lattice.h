@@ -1,5 +1,5 @@
 /* grid/mask_lattice.h - a volume's mask, prepared for frames: factors of extinction, and colours, on a
- * lattice of its own, linear between its points. */
+ * lattice of points. Between the points they are interpolated linearly. */
 #ifndef HL_GRID_MASK_LATTICE_H
 #define HL_GRID_MASK_LATTICE_H
 
@@ -7,29 +7,32 @@
 #include "scene/scene.h"
 
 typedef struct mask_lattice {
-  const uint16_t *factors;     /* [k][j][i]; borrowed from the scene; 65535 stands for 1; null if there is no
-                                * mask. One element more may be read */
-  const unsigned char *colors; /* [k][j][i][4] (label/mask.h); null if the mask has no colours */
-  const signed char *slopes;   /* [k][j][i][4] (label/mask.h) */
-  const uint32_t (*bricks)[2]; /* (label/mask.h) */
+  /* [k][j][i]; the factor of extinction at each point; 65535 stands for 1; borrowed from the scene; null if
+   * there is no mask. One element more may be read */
+  const uint16_t *factors;
+  const unsigned char *colors; /* [k][j][i][4]; the colour at each point, as in label/mask.h; null if the
+                                * mask has no colours */
+  const signed char *slopes;   /* [k][j][i][4]; the slope of the factor at each point, as in label/mask.h */
+  const uint32_t (*bricks)[2]; /* the bricks of the lattice, as in label/mask.h */
   int32_t brick_step[3];       /* distance in `bricks` from a brick to the next one along i, j, k */
   int32_t last[3];             /* the greatest index along i, j, k */
   int32_t step[3];             /* distance in `factors` from a point to the next one along i, j, k */
-  float to_index[3][4];        /* maps frame space to index space */
+  float to_index[3][4];        /* maps frame space to the lattice's index space */
   float rest;                  /* the factor outside the lattice */
 } mask_lattice;
 
-/* Sets a lattice up. volume: in frame space. Without a mask the lattice is empty. */
+/* Prepares the lattice of a volume's mask. volume: in frame space. Without a mask the lattice is empty. */
 void hl_mask_lattice_set_up(mask_lattice *lattice, const hl_scene_volume *volume);
 
-/* The points around a position, and where the position lies between them. */
+/* The points of the lattice around a position, and where the position lies between them. */
 typedef struct mask_cell {
   int32_t near[3], far[3]; /* for each axis, the offsets in `factors` of the points before and after the
                             * position */
   float part[3];
 } mask_cell;
 
-/* Finds the cell that holds a position of frame space. False where the position is outside the lattice. */
+/* Finds the points of the lattice around a position of frame space. Returns false where the position lies
+ * outside the lattice. */
 static inline bool hl_mask_cell_at(const mask_lattice *lattice, const float point[3], mask_cell *cell) {
   for (int a = 0; a < 3; a++) {
     const float *row = lattice->to_index[a], last = (float)lattice->last[a];
@@ -67,8 +70,8 @@ static inline float hl_mask_factor(const mask_lattice *lattice, const float poin
   return sum * (1.0f / 65535);
 }
 
-/* Whether the factor is 0 everywhere in a box of frame space: middle + t0 half[0] + t1 half[1] + t2 half[2],
- * each t from -1 to 1. */
+/* Whether the mask's factor is 0 everywhere in a box of frame space: middle + t0 half[0] + t1 half[1] + t2
+ * half[2], each t from -1 to 1. */
 bool hl_mask_hides_box(const mask_lattice *lattice, vec3 middle, const vec3 half[3]);
 
 /* Moves a colour towards the mask's colour at a position in frame space. */

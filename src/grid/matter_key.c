@@ -19,7 +19,7 @@ void hl_matter_key_add(hl_key *key, const hl_scene_volume *volume, uint64_t plan
   const hl_transfer_function *function = &volume->transfer_function;
   hl_key_add_whole(key, (int64_t)(uintptr_t)volume->volume);
   hl_key_add_affine(key, &grid->index_to_frame);
-  hl_key_add_numbers(key, grid->box_low, 3); /* the box that clipping leaves */
+  hl_key_add_numbers(key, grid->box_low, 3); /* the box that remains after clipping */
   hl_key_add_numbers(key, grid->box_high, 3);
   hl_key_add_whole(key, 2 * (int64_t)grid->cut_count + grid->cut_casts_shadow);
   hl_cuts_key_add(key, grid->cuts, grid->cut_count);

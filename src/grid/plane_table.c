@@ -1,8 +1,8 @@
 /* grid/plane_table.c - see plane_table.h.
  *
  * A point of the table holds the function's mean over a part of the plane: the part that is nearer to this
- * point than to others, and that lies within the range of the data. So a box of the function that ends at the
- * end of this range has its full weight there. */
+ * point than to others, and that lies within the range of the data. So a box of the function that ends where
+ * this range ends has its full weight there. */
 #include "grid/plane_table.h"
 
 #include <math.h>
@@ -49,7 +49,7 @@ static plane_box reach_of_data(const hl_scene_volume *volume, const hl_scene_vol
 /* An axis of the table. Point n of it stands for start + n * step. */
 typedef struct table_axis {
   double start, step;
-  double low, high; /* the range that the data reach */
+  double low, high; /* the range that the data can reach along the axis */
   double nothing;   /* below this value there is no matter */
 } table_axis;
 
@@ -75,8 +75,8 @@ static void part_of_axis(const table_axis *axis, int n, double *low, double *hig
 
 static size_t place_of(int row, int column) { return (size_t)row * PLANE_STRIDE + (size_t)column; }
 
-/* Fills one row. Extinction is linear between columns, so that its integral over one column is the mean of
- * the column's two ends. */
+/* Fills one row of the table. Extinction is linear between columns, so that its integral over one column is
+ * the mean of the column's two ends. */
 static void fill_row(const hl_transfer_function *function, const table_axis axes[2], int row,
                      plane_table *table) {
   double integral = 0, before = 0, sums[4] = {0, 0, 0, 0}, opacity_before[4] = {0, 0, 0, 0};
@@ -111,7 +111,7 @@ static void repeat_last(float *table, size_t width) {
          width * PLANE_STRIDE * sizeof *table);
 }
 
-/* Stores beside each point's sums the sums of the next row's point. */
+/* Stores, beside the sums of each point of the table, the sums of the point in the next row. */
 static void join_rows(const plane_table *table) {
   for (int row = 0; row <= PLANE_ROWS; row++) {
     int next = row < PLANE_ROWS ? row + 1 : row;
@@ -137,7 +137,7 @@ static void find_greatest(const plane_table *table, int entries, float (*greates
   }
 }
 
-/* Tables are read up to this many columns beyond a position. */
+/* The number of columns beyond a position that are read from a table. */
 enum { BEYOND = 3 };
 
 /* The first column that differs between rows. In the columns before it all rows hold the same numbers, so
@@ -188,7 +188,8 @@ void hl_plane_table_set_second(plane_table *table, const hl_volume *volume, cons
 
 /* ---- looking up one point ---- */
 
-/* A position along an axis of a table: the point before the position, and the distance from this point. */
+/* A position along an axis of a table: the table's point before the position, and the distance from this
+ * point. */
 typedef struct table_place {
   int at;
   float part;
@@ -201,9 +202,9 @@ static table_place place_between(float x, int count) {
   return (table_place){(int)x, x - (float)(int)x};
 }
 
-/* A channel of the colour, as a mean over the column of the table that holds a position; it is interpolated
- * between two rows. In a row, the mean is the difference of the channel's integrals at the column's two
- * ends. */
+/* A channel of the function's colour, as a mean over the column of the table that holds a position; it is
+ * interpolated between two rows. In a row, the mean is the difference of the channel's integrals at the
+ * column's two ends. */
 static float color_between(const plane_table *table, table_place column, table_place row, int c) {
   float of_row[2];
   for (int r = 0; r < 2; r++) {

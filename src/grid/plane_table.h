@@ -13,16 +13,17 @@
 enum { PLANE_COLUMNS = 512, PLANE_ROWS = 256, PLANE_STRIDE = PLANE_COLUMNS + 1 };
 
 typedef struct plane_table {
-  /* Both arrays: [PLANE_ROWS + 1][PLANE_STRIDE]; the last row and the last column are stored twice; borrowed
-   * from the classifier's block; null if the transfer function has no second number */
+  /* the two arrays are [PLANE_ROWS + 1][PLANE_STRIDE]; the last row and the last column are stored twice;
+   * borrowed from the classifier's block; null if the transfer function has no second number */
   float (*sums)[4];  /* [0]: extinction per world unit. [1]: the integral of extinction over columns, from
                       * column 0. [2], [3]: these two numbers of the next row, so that one load gets
                       * everything around a position */
   float (*color)[4]; /* integrals over columns, from column 0: [0] to [2] integrate linear RGB times opacity,
                       * [3] opacity alone */
-  float column_scale, column_offset; /* column = coordinate in the classifier's tables * scale + offset */
-  /* Row = second number * scale + offset. A gradient is in stored units per frame unit, another volume's
-   * value in stored units above that volume's empty value. */
+  /* a coordinate x in the classifier's tables belongs to the column x * column_scale + column_offset */
+  float column_scale, column_offset;
+  /* A second number s belongs to the row s * row_scale + row_offset. A gradient is in stored units per frame
+   * unit, another volume's value in stored units above that volume's empty value. */
   float row_scale, row_offset;
   float even_before; /* the first column that differs between rows; the columns before are the same in all
                       * rows */
@@ -34,7 +35,7 @@ typedef struct plane_table {
   float to_second[3][4]; /* maps frame space to the second volume's index space */
 } plane_table;
 
-/* Takes the tables' memory from a layout, if the function is one of two numbers. */
+/* Lays out the tables if the transfer function is a function of two numbers. */
 void hl_plane_table_lay_out(const hl_transfer_function *function, plane_table *table, hl_layout *layout);
 
 /* The values that a classifier's tables cover, from their entry 0 to their last; values below `nothing` are
@@ -43,27 +44,28 @@ typedef struct plane_values {
   double low, high, nothing;
 } plane_values;
 
-/* Fills the tables. volume: the function's volume, in frame space. second: the other volume; null where the
- * second number is the gradient. entries: the number of entries of the classifier's tables, less one.
- * greatest: [entries + 1]; element [0] of each entry receives a bound: the greatest extinction that values
- * around the entry have with any second number. The bound is 0 where nothing shows. */
+/* Fills the tables of a function of two numbers. volume: the function's volume, in frame space. second: the
+ * other volume; null where the second number is the gradient. entries: the number of entries of the
+ * classifier's tables, less one. greatest: [entries + 1]; element [0] of each entry receives a bound: the
+ * greatest extinction that values around the entry have with any second number. The bound is 0 where nothing
+ * shows. */
 void hl_plane_table_fill(const hl_scene_volume *volume, const hl_scene_volume *second, const grid *grid,
                          const plane_values *values, int entries, plane_table *table, float (*greatest)[4]);
 
-/* Sets the other volume for a frame. */
+/* Sets the volume whose values are the second number, for a frame. */
 void hl_plane_table_set_second(plane_table *table, const hl_volume *volume, const grid *second);
 
-/* The function at one point. */
+/* The value of a function of two numbers at one point of its plane. */
 typedef struct plane_point {
   float extinction, color[3];
 } plane_point;
 
-/* The value of the transfer function at a point of its plane. coordinate: in the classifier's tables.
- * second: in the units of row_scale. */
+/* The value of the transfer function at a point of its plane. coordinate: the value, as a coordinate in the
+ * classifier's tables. second: the second number, in the units of row_scale. */
 plane_point hl_plane_table_at(const plane_table *table, float coordinate, float second);
 
-/* The other volume's value at a position in frame space, linear between the volume's voxels, in stored units
- * above the volume's empty value. */
+/* The value of the volume that gives the second number, at a position in frame space, linear between the
+ * volume's voxels, in stored units above the volume's empty value. */
 float hl_plane_second_at(const plane_table *table, const float point[3]);
 
 #endif

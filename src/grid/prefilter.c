@@ -1,14 +1,15 @@
 /* grid/prefilter.c - see prefilter.h. */
 #include "grid/prefilter.h"
 
-/* The filter along an axis. A voxel's value is (c[i-1] + 4 c[i] + c[i+1]) / 6 with the coefficients c. Beyond
- * the grid the last coefficient repeats, as voxels do: at both ends the value is (5 c[i] + c[i+-1]) / 6.
- * Elimination (Thomas) gives d[i] = (6 value - d[i-1]) r[i] with r[i] = 1 / (4 - r[i-1]) on the way forwards,
- * and c[i] = d[i] - r[i] c[i+1] on the way back (derived). r tends to Unser's pole, 2 - sqrt(3), which it
- * reaches in float precision after RATIOS steps. */
+/* The filter that turns voxels into coefficients, along an axis. A voxel's value is (c[i-1] + 4 c[i] +
+ * c[i+1]) / 6 with the coefficients c. Beyond the grid the last coefficient repeats, as voxels do: at both
+ * ends the value is (5 c[i] + c[i+-1]) / 6. Elimination (Thomas) gives d[i] = (6 value - d[i-1]) r[i] with
+ * r[i] = 1 / (4 - r[i-1]) on the way forwards, and c[i] = d[i] - r[i] c[i+1] on the way back (derived). r
+ * tends to Unser's pole, 2 - sqrt(3), which it reaches in float precision after RATIOS steps. */
 enum { RATIOS = 12 };
 typedef struct ratios {
-  float inner[RATIOS], last; /* inner: r[0], r[1], ...; last: r at the axis's last voxel */
+  float inner[RATIOS], last; /* the numbers r[i] of the filter. inner: r[0], r[1], ...; last: r at the
+                              * axis's last voxel */
 } ratios;
 
 static ratios ratios_of_axis(int32_t count) {
@@ -44,8 +45,8 @@ void hl_prefilter_back(float *here, const float *after, size_t width, size_t at,
   filter_back(here, after, width, ratio_at(&r, (int32_t)at, (int32_t)count));
 }
 
-/* Filters `width` neighbouring lines of `count` voxels each, in place. stride: distance from voxel to
- * voxel. */
+/* Filters `width` neighbouring lines of `count` voxels each, in place. stride: number of floats from a voxel
+ * to the next voxel of its line. */
 static void filter_lines(float *lines, size_t width, int32_t count, size_t stride) {
   if (count < 2) return;
   const ratios r = ratios_of_axis(count);

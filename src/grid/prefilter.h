@@ -21,7 +21,8 @@ static inline float hl_greatest_value(const kernel *kernel) {
   return kernel->interpolates ? FLT_MAX / 64 : FLT_MAX;
 }
 
-/* The value that sampling uses in place of a stored value. empty: replaces a value that is not finite. */
+/* The value that sampling uses in place of a stored value. empty: the value that replaces a value that is not
+ * finite. */
 static inline float hl_grid_value(float stored, float greatest, float empty) {
   return isfinite(stored) ? fminf(fmaxf(stored, -greatest), greatest) : empty;
 }
@@ -34,7 +35,7 @@ void hl_prefilter(hl_pool *pool, grid *grid);
 /* Filters a slice along x and y, in place. slice: [height][width]. */
 void hl_prefilter_slice(float *slice, size_t width, size_t height);
 
-/* Both functions filter `width` neighbouring lines along an axis of `count` voxels, 2 or more. First call
+/* Two functions that filter `width` neighbouring lines along an axis of `count` voxels, 2 or more. First call
  * hl_prefilter_forward() for each voxel of the lines, from the first to the last. Then call
  * hl_prefilter_back() for each voxel but the last, from the last but one to the first. here: [width]; the
  * lines' values at voxel `at`. before, after: [width]; the values at the voxel before or after it, which must

@@ -18,7 +18,7 @@ void hl_brick_bounds(const grid *grid, const int32_t b[3], double margin, double
   }
 }
 
-/* The box around the bricks from first to last. */
+/* Finds the box, in index space, around the bricks from `first` to `last`. */
 static void box_of_bricks(const grid *grid, const int32_t first[3], const int32_t last[3], double margin,
                           double low[3], double high[3]) {
   double centre[3], half[3];
@@ -47,7 +47,8 @@ typedef struct brick_job {
   const classifier *classifier;
 } brick_job;
 
-/* Whether brick b's own cells overlap the clipped box. */
+/* Whether the cells of brick b overlap the box to which the volume is clipped, or come closer to it than a
+ * voxel. */
 static bool overlaps_box(const grid *grid, const int32_t b[3]) {
   for (int axis = 0; axis < 3; axis++) {
     double low = (double)b[axis] * HL_BRICK_CELLS - 1, high = low + HL_BRICK_CELLS;
@@ -101,7 +102,7 @@ static void mark_bricks(void *data, size_t index, int worker) {
     }
 }
 
-/* Widens the range from low to high so that it includes a brick. */
+/* Widens a range of bricks, from low to high, so that it includes brick b. */
 static void widen_to_brick(const int32_t b[3], bool first, int32_t low[3], int32_t high[3]) {
   for (int axis = 0; axis < 3; axis++) {
     if (first || b[axis] < low[axis]) low[axis] = b[axis];
@@ -129,7 +130,7 @@ static int voxels_along(int32_t b, int32_t count) {
   return last > first ? last - first : 0;
 }
 
-/* Whether a brick has a visible cell. Call after mark_cells() and before fill_lookups(). */
+/* Whether a brick has a visible cell. Call this function after mark_cells() and before fill_lookups(). */
 static bool has_visible_cell(const grid *grid, size_t brick) {
   return grid->lookup[1].visible == NULL || grid->lookup[1].visible[brick];
 }
@@ -214,7 +215,8 @@ static void mark_cells(grid *grid, const classifier *classifier, hl_pool *pool) 
 
 /* ---- look-ups of boxes of cells ---- */
 
-/* In a byte of `visible` (cell_lookup): the bits of the boxes that are three units long along x, y or z. */
+/* Masks for a byte of `visible` (cell_lookup): the bits of the boxes that are three units long along x, y or
+ * z. */
 enum { THREE_ALONG_X = 0xaa, THREE_ALONG_Y = 0xcc, THREE_ALONG_Z = 0xf0 };
 
 /* Converts a row's marks (1: the unit is visible) into the bytes of look-ups (grid.h) along x. */
@@ -268,8 +270,9 @@ static void fill_lookups(grid *grid, hl_pool *pool) {
 
 /* ---- a bit for each cell ---- */
 
-/* The greatest number of bytes that cells' bits may take; larger volumes have no bits. The bits take an
- * eighth of a byte per voxel, which would be much beside the other memory that a large volume takes. */
+/* The greatest number of bytes that the bits of cells (grid->cell_bits) may take; volumes that would need
+ * more have no bits. The bits take an eighth of a byte per voxel, which would be much beside the other memory
+ * that a large volume takes. */
 static const uint64_t GREATEST_BYTES = 8 << 20;
 /* Bits are read only if they tell that at least this fraction of the cells in visible bricks shows
  * nothing. */
@@ -284,15 +287,16 @@ void hl_cell_bits_lay_out(grid *grid, hl_layout *layout) {
 typedef struct bits_job {
   grid *grid;
   brick_bits_function *brick_bits;
-  float sign, threshold;     /* a value is visible where sign * stored value > threshold */
-  uint64_t bricks, set_bits; /* number of visible bricks, and number of those of their cells that may show
-                              * something; atomic */
+  float sign, threshold; /* a value is visible where sign * stored value > threshold */
+  /* number of visible bricks, and number of the cells of these bricks that may show something; changed
+   * atomically */
+  uint64_t bricks, set_bits;
 } bits_job;
 
 /* Finds the comparison that tells whether a voxel is visible: whether its value, times a sign, lies above a
  * threshold. Sums of floats and the rounded weights of u8 voxels may have errors of 6e-6 of the greatest
- * number and of 1e-3 of a table's entry. The threshold is lowered by more than these errors. False if floats
- * are too coarse to tell values apart at the threshold. */
+ * number and of 1e-3 of a table's entry. The threshold is lowered by more than these errors. Returns false if
+ * floats are too coarse to tell values apart at the threshold. */
 static bool find_threshold(const grid *grid, const classifier *classifier, bits_job *job) {
   double high = (double)grid->cell_base + 255.0 * (double)grid->cell_step;
   double greatest = fmax(fmax(fabs((double)grid->cell_base), fabs(high)), fabs((double)grid->empty));
@@ -309,8 +313,8 @@ static bool find_threshold(const grid *grid, const classifier *classifier, bits_
   return isfinite(job->threshold);
 }
 
-/* Finds the bits of a brick. A brick that is not relevant needs bits, too, because a ray may come from its
- * values on one sheet to a visible value on the next. */
+/* Finds the bits of a brick's cells. A brick that is not relevant needs bits, too, because a ray may come
+ * from its values on one sheet to a visible value on the next. */
 static uint64_t find_bits(const bits_job *job, size_t at, const int32_t brick[3]) {
   const grid *grid = job->grid;
   float bounds[2];
@@ -350,8 +354,8 @@ static void find_cell_bits(grid *grid, const classifier *classifier, brick_bits_
 
 /* ---- all steps together ---- */
 
-/* Finds which faces of the box cut something visible. These are the faces that the box around all relevant
- * bricks touches or comes closer to than a voxel. */
+/* Finds which faces of the box can cut something visible: the faces that the box around all relevant bricks
+ * touches or comes closer to than a voxel. */
 static void find_faces(grid *grid, bool any_relevant) {
   grid->cut = any_relevant && grid->cut_count > 0;
   for (int axis = 0; axis < 3; axis++) {

@@ -1,4 +1,4 @@
-/* grid/relevant.h - which bricks and cells the transfer function shows. This is found once for each transfer
+/* grid/relevant.h - which bricks and cells the transfer function shows. Both are found once for each transfer
  * function.
  *
  * A voxel can be left out only if every point to which it contributes is transparent, whichever other voxels
@@ -13,7 +13,8 @@
 #include "core/memory.h"
 #include "grid/classifier.h"
 
-/* Finds which bricks are relevant, the look-ups of visible cells, and the cells' bits. */
+/* Finds, for a grid and a transfer function, which bricks are relevant, the look-ups of visible cells, and
+ * the bits of cells. */
 void hl_grid_mark_relevant(grid *grid, const grid_functions *functions, const classifier *classifier,
                            hl_pool *pool);
 
@@ -27,7 +28,7 @@ bool hl_relevant_bounds(const grid *grid, double margin, double low[3], double h
  * least one. */
 void hl_content_bounds(const grid *grid, double margin, double low[3], double high[3]);
 
-/* Where faces that cut nothing off are put: this far outside of the grid, in voxels. */
+/* The place, in voxels, to which faces that cut nothing visible are moved: far outside of the grid. */
 #define FACE_FAR_OUT 1e9f
 
 /* Opens faces of a grid that touch another grid's box: matter goes on beyond these faces, so they are moved
@@ -43,7 +44,7 @@ enum {
   CELL_BIT_TAPS = HL_BRICK_CELLS + 3 /* voxels along an axis on which a brick's cells depend: 4b-2 .. 4b+4 */
 };
 
-/* Takes the memory of the grid's cell_bits. Takes no memory for large volumes, which have no bits. */
+/* Lays out the grid's array cell_bits. Large volumes get no such array. */
 void hl_cell_bits_lay_out(grid *grid, hl_layout *layout);
 
 #endif

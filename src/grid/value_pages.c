@@ -20,19 +20,19 @@ static const char subject[] = "values of a volume larger than memory";
 typedef struct value_job {
   const hl_volume *volume;
   hl_pool *pool;
-  float empty, greatest; /* parameters of hl_grid_value() */
+  float empty, greatest; /* the parameters `empty` and `greatest` of hl_grid_value() */
   bool filters;
   size_t width, height, slice; /* width: voxels of a row; height: rows of a slice; slice: voxels of a slice */
-  size_t first;                /* number of the slice in slices[0] */
-  float *slices;               /* [slices loaded at once][slice] */
+  size_t first;                /* number of the slice that is loaded in slices[0] */
+  float *slices;               /* [slices loaded at once][slice]; the loaded slices */
   float *beside;               /* [slice]; in the forward run, the slice before the loaded slices; in the run
                                 * back, the slice after them */
   bool any_beside;             /* whether `beside` holds a slice */
-  unsigned char *rows;         /* [threads][row_bytes] */
+  unsigned char *rows;         /* [threads][row_bytes]; a row of stored values for each thread */
   size_t row_bytes;
 } value_job;
 
-/* Loads a slice, and filters it along x and y. */
+/* Loads a slice of voxels. If the values are coefficients, filters the slice along x and y. */
 static void load_slice(void *data, size_t index, int worker) {
   const value_job *job = data;
   float *slice = job->slices + index * job->slice, *to = slice;
@@ -195,9 +195,9 @@ static void replace_own(const value_job *job, const hl_own_voxels *own, hl_own_v
   for (size_t n = 0; n < count; n++) values[n] = hl_grid_value(values[n], job->greatest, job->empty);
 }
 
-/* Turns this rank's slices into coefficients. Along z the ranks filter one after the other. In the forward
- * run each rank sends its last slice to the next rank; in the run back each rank sends its first slice to the
- * rank before. */
+/* Turns this rank's slices into coefficients. Along z the ranks filter one after the other. In the run
+ * forwards each rank sends its last slice to the next rank; in the run back each rank sends its first slice
+ * to the rank before. */
 static void filter_own(value_job *job, hl_ranks *ranks, hl_own_voxels *made) {
   const size_t count = made->box.count[2], bytes = job->slice * sizeof(float);
   job->slices = (float *)(void *)made->slices;
