@@ -40,13 +40,13 @@ void hl_frame_content(const grid *grid, vec3 corners[8]) {
         (vec3){corner & 1 ? high[0] : low[0], corner & 2 ? high[1] : low[1], corner & 4 ? high[2] : low[2]});
 }
 
-/* A half space: normal . x + offset >= 0. */
+/* A half space: all points x with normal . x + offset >= 0. */
 typedef struct half_space {
   vec3 normal;
   double offset;
 } half_space;
 
-/* Cuts a segment to the part within half spaces. Returns false if nothing is left. */
+/* Cuts a segment to the part that lies within half spaces. Returns false if nothing is left. */
 static bool clip_segment(vec3 *a, vec3 *b, const half_space *planes, int count) {
   for (int i = 0; i < count; i++) {
     double da = vec3_dot(planes[i].normal, *a) + planes[i].offset;
@@ -123,8 +123,8 @@ int hl_frame_visible_points(const frame *frame, vec3 *points) {
 
 /* ---- the eye ---- */
 
-/* The edge of a pixel at the depth where the content is nearest to the eye, but not nearer than a third of
- * the depth of the content's middle: closer voxels are larger than pixels anyway. */
+/* The edge of the eye's pixel at the depth where the content is nearest to the eye, but not nearer than a
+ * third of the depth of the content's middle: closer voxels are larger than pixels anyway. */
 static double pixel_at_content(const frame *frame, double middle_depth) {
   const view *eye = &frame->eye;
   double edge = fmax(vec3_length(eye->du), vec3_length(eye->dv));
@@ -144,10 +144,11 @@ static double box_volume(const vec3 corners[8]) {
   return fmax(fabs(vec3_dot(vec3_cross(x, y), z)), 1e-300);
 }
 
-/* The mean of the boxes' centres, each weighted by its box's volume V. Derived: where a box is cut into
- * parts, the sum of V c over the parts is V c of the box. So a volume that is cut into parts keeps its
- * middle, if the boxes around the relevant bricks of the parts fill the box around all relevant bricks. The
- * directions of near lights, and so the directions of sheets, follow from the middle. */
+/* The mean of the centres of the content's boxes, each weighted by the volume of its box. Derived: let a box
+ * have the volume V and the centre c. Where a box is cut into parts, the sum of V c over the parts is V c of
+ * the whole box. So a volume that is cut into parts keeps its middle, if the boxes around the relevant bricks
+ * of the parts fill the box around all relevant bricks. The directions of near lights, and so the directions
+ * of sheets, follow from the middle. */
 static vec3 content_middle(const frame *frame) {
   vec3 sum = {0, 0, 0};
   double volumes = 0;
@@ -184,8 +185,8 @@ static void look(frame *frame) {
 
 /* Voxels that are smaller than pixels could fall between pixels. So a frame of such a volume has smaller
  * pixels than the picture, about as large as voxels. A pixel of the picture is a mean of pixels of the frame.
- * GREATEST_OVERSAMPLING: the frame's pixels along a side of a picture's pixel, at most.
- * GREATEST_OVERSAMPLED_SIDE: the frame's pixels along a side, at most. */
+ * GREATEST_OVERSAMPLING: the greatest number of the frame's pixels along a side of a picture's pixel.
+ * GREATEST_OVERSAMPLED_SIDE: the greatest number of the frame's pixels along a side of the frame. */
 enum { GREATEST_OVERSAMPLING = 8, GREATEST_OVERSAMPLED_SIDE = 4096 };
 
 static int oversampling(const frame *frame, const hl_scene_description *scene) {

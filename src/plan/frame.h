@@ -22,27 +22,28 @@ typedef struct frame_content {
 } frame_content;
 
 typedef struct frame {
-  int width, height; /* in pixels of the frame: the picture's size times oversampling */
+  int width, height; /* width and height in pixels of the frame: the picture's size times oversampling */
   int oversampling;  /* a pixel of the picture is the mean of oversampling x oversampling pixels of the
                       * frame */
   view eye;
-  vec3 eye_direction;  /* e: unit, from the eye towards the content */
+  vec3 eye_direction;  /* the direction e: a unit vector from the eye towards the content */
   double pixel;        /* edge of a picture's pixel at the place where the content is nearest, frame units */
   double middle_pixel; /* edge of a picture's pixel at the content's middle, frame units */
-  double spacing;      /* ds: the distance of sheets, frame units */
+  double spacing;      /* the distance ds of neighbouring sheets, frame units */
   frame_content content;
-  light_sectors sectors; /* the sectors of lights within the content */
+  light_sectors sectors; /* the directions of the sectors into which lights within the content are divided */
   light_source *lights;  /* [light_count]; owned by the caller; the sectors of one light follow each other */
   int light_count;
-  const surfaces *surfaces;    /* surfaces of the scene's meshes; null: none */
-  const surface_tree *contact; /* the tree of surfaces for which the light close behind them is corrected
-                                * (render/late/) */
+  const surfaces *surfaces;    /* surfaces of the scene's meshes; null: the scene has no meshes */
+  const surface_tree *contact; /* the tree of those surfaces for which the light close behind them is
+                                * corrected (render/late/) */
 } frame;
 
-/* The eye's view in width x height pixels. */
+/* Makes the eye's view of width x height pixels. */
 hl_status hl_frame_eye(const hl_camera *camera, int width, int height, view *eye, hl_error *error);
 
-/* Sets the frame's size, oversampling, eye and middle. The frame's points and voxel must be set. */
+/* Sets the frame's size, oversampling, eye and middle. The members `points` and `voxel` of the frame's
+ * content must have been set. */
 hl_status hl_frame_set_up_eye(frame *frame, const hl_scene_description *scene, hl_error *error);
 
 /* Whether the picture of any volume or mesh depends on arriving light. Flat colours and maximum projections
@@ -53,11 +54,12 @@ static inline bool hl_is_maximum(const hl_render_settings *settings) {
   return settings->compositing == HL_COMPOSITING_MAXIMUM;
 }
 
-/* Finds the corners of the box around a grid's relevant bricks. There must be at least one. */
+/* Finds the corners of the box around a grid's relevant bricks. The grid must have at least one relevant
+ * brick. */
 void hl_frame_content(const grid *grid, vec3 corners[8]);
 
 /* Finds corners that bound the part of the content that the eye sees; a shadow buffer must cover this part.
- * points: room for CONTENT_POINTS points for each grid. Returns their number. */
+ * points: room for CONTENT_POINTS points for each grid. Returns the number of points. */
 int hl_frame_visible_points(const frame *frame, vec3 *points);
 
 #endif

@@ -10,7 +10,7 @@
 #include "plan/framed_scene.h"
 #include "surface/surfaces.h"
 
-/* How a volume's matter looks, and how much light it takes. */
+/* How a volume's matter looks, and how much light it absorbs. */
 typedef struct volume_look {
   hl_shading shading;
   hl_cut_shading cut_shading;
@@ -22,11 +22,13 @@ typedef struct volume_look {
 
 /* A volume of the frame. Its grid is the plan's grid with the same index. */
 typedef struct frame_volume {
-  const char *name;                 /* borrowed; null: none */
-  const hl_volume *volume;          /* borrowed; for its colours and the range of its values */
-  const hl_volume *tints;           /* borrowed; the colours of its mask; null: none */
+  const char *name;                 /* the volume's name; borrowed; null: it has none */
+  const hl_volume *volume;          /* the volume; borrowed for its own colours and for the range of its
+                                     * values */
+  const hl_volume *tints;           /* the mask whose colours tint the volume; borrowed; null: there is
+                                     * none */
   const classifier *classifier;     /* borrowed; the transfer function's tables */
-  double empty;                     /* data value beyond the volume */
+  double empty;                     /* the data value of the space beyond the volume */
   uint64_t version, tables_version; /* versions of the grid's voxels, and of all tables that follow from the
                                      * transfer function. A version rises with each change */
   int object;                       /* the volume's number in the layer of objects */
@@ -37,31 +39,34 @@ typedef struct frame_volume {
 /* A light of the frame, as a whole. Its light_source, or the light_source of each of its sectors, says where
  * its rays run. */
 typedef struct frame_light {
-  int index;              /* the light's number in the scene's list of lights; suns of a sky follow the
-                           * lights of the list */
-  double sun_part;        /* where the light is a sun of the sky: the fraction of the light that a medium
-                           * takes; for other lights 0 */
-  bool is_wide;           /* the light has an extent, or its rays have several directions at a point */
-  bool is_inverse_square; /* the light that a sample receives is the intensity divided by the square of the
-                           * sample's distance */
-  bool has_image;         /* the light projects a picture, or shows a picture on its surface */
-  bool has_colored_image; /* the light shows a picture of several colours on its surface, so that its colours
-                           * come from different places */
-  double color[HL_CHANNELS], intensity; /* frame space */
+  int index;       /* the light's number in the scene's list of lights; suns of a sky follow the
+                    * lights of the list */
+  double sun_part; /* where the light is a sun of the sky: the fraction of the light that a medium
+                    * takes; for other lights 0 */
+  bool is_wide;    /* whether the light has an extent, or its rays have several directions at a
+                    * point */
+  /* whether the light that a sample receives is the intensity divided by the square of the sample's
+   * distance */
+  bool is_inverse_square;
+  bool has_image; /* whether the light projects a picture, or shows a picture on its surface */
+  /* whether the light shows a picture of several colours on its surface, so that its colours come from
+   * different places */
+  bool has_colored_image;
+  double color[HL_CHANNELS], intensity; /* linear RGB, and the intensity in units of frame space */
 } frame_light;
 
 /* A mesh of the frame, or an isosurface of a volume. Its primitives are those of the mesh with the same index
  * in the frame's surfaces. */
 typedef struct frame_mesh {
-  const char *name; /* borrowed; null: none */
+  const char *name; /* the mesh's name; borrowed; null: it has none */
   int object;       /* the mesh's number in the layer of objects; an isosurface has the number of its
                      * volume */
   surface_look look;
 } frame_mesh;
 
-/* Each function describes one thing of the scene for the frame: a volume, a light or a mesh. framed: must
- * live until the frame ends. The caller sets the volume's classifier, its value beyond the volume, and its
- * versions. */
+/* Three functions, each of which describes one thing of the scene for the frame: a volume, a light or a mesh.
+ * framed: the scene in frame space, which must live until the frame ends. The caller sets the volume's
+ * classifier, its value beyond the volume, and its versions. */
 frame_volume hl_frame_volume(const framed_scene *framed, size_t index);
 frame_light hl_frame_light(const framed_scene *framed, size_t index);
 frame_mesh hl_frame_mesh(const framed_scene *framed, size_t index);

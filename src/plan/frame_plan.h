@@ -21,30 +21,30 @@
 
 /* The picture of the plan, and the part of this picture that this renderer makes. */
 typedef struct plan_picture {
-  int width, height;       /* pixels */
+  int width, height;       /* size of the picture in pixels */
   int tiles_x;             /* number of the frame's tiles in a row of tiles */
   size_t tiles;            /* number of the frame's tiles */
-  picture_share share;     /* the part that is made */
+  picture_share share;     /* the division of the picture into parts, and the part that this renderer makes */
   const hl_layers *layers; /* borrowed; the layers that are wanted; null: none */
 } plan_picture;
 
-/* The volumes, and how their samples are made. */
+/* The volumes of a frame, and how their samples are made. */
 typedef struct plan_volumes {
-  frame_volume *list; /* owned; [count] */
-  grid *grids;        /* owned; [count] */
+  frame_volume *list; /* owned; [count]; the properties of the volumes */
+  grid *grids;        /* owned; [count]; the volumes made ready for sampling */
   /* owned; [count]; in a maximum projection, the values that each visible volume shows; else null */
   float (*shown)[SHOWN_ENTRIES][4];
   int count;
   const kernel *kernel;
-  bool splat; /* densities are splatted; else they are gathered */
+  bool splat; /* whether densities are splatted; if not, they are gathered */
 } plan_volumes;
 
-/* Light that does not travel from sheet to sheet: it is found on grids of its own. */
+/* Light that does not travel from sheet to sheet, because it is found on grids of its own. */
 typedef struct plan_fields {
-  bool scatters;                  /* media scatter light more than once */
+  bool scatters;                  /* whether media scatter light more than once */
   const scatter_field *scattered; /* borrowed; the light that media scatter more than once; null: none */
-  const sky_light *sky;           /* borrowed; null: none */
-  const phase_tables *phases;     /* borrowed */
+  const sky_light *sky;           /* borrowed; the light of the sky; null: there is no sky */
+  const phase_tables *phases;     /* borrowed; the means of phase functions over wide lights */
 } plan_fields;
 
 /* A light of a sweep. */
@@ -53,20 +53,22 @@ typedef struct light_plan {
   light_emission *emission; /* owned; the picture on the light's own surface; null: none */
   light_shadow shadow;      /* the shadow as it was planned; a back end works on a copy of it
                              * (hl_light_shadow_begin) */
-  shadow_layouts memory;    /* memory of the shadow's method */
+  shadow_layouts memory;    /* how much memory the shadow's method takes */
 } light_plan;
 
 /* One pass over the sheets. */
 typedef struct sweep_plan {
   const sweep_sheets *geometry;
-  light_plan *lights;   /* [geometry->light_count] */
-  bool adds_even_light; /* ambient light, emission, the sky and scattered light are added in this sweep */
-  bool measures;        /* depth and normals are measured in this sweep, which goes front to back */
+  light_plan *lights;   /* [geometry->light_count]; the lights of this sweep */
+  bool adds_even_light; /* whether ambient light, emission, the sky and scattered light are added in this
+                         * sweep */
+  bool measures;        /* whether depth and normals are measured in this sweep, which then goes front to
+                         * back */
 } sweep_plan;
 
 typedef struct plan_sweeps {
-  sweep_sheets *sheets; /* owned; [count] */
-  sweep_plan *list;     /* owned; [count] */
+  sweep_sheets *sheets; /* owned; [count]; the direction and the sheets of each sweep */
+  sweep_plan *list;     /* owned; [count]; the plan of each sweep */
   light_plan *lights;   /* owned; [light_count]; the lights of all sweeps; the lights of one sweep follow
                          * those of the sweep before */
   int count, light_count;
@@ -76,12 +78,12 @@ typedef struct frame_plan {
   hl_render_settings settings; /* settings of the scene; its texts are not used */
   plan_picture picture;
   double unit;                 /* the length in the world of one unit of frame space */
-  double ambient[HL_CHANNELS]; /* light from everywhere, R, G, B */
+  double ambient[HL_CHANNELS]; /* ambient light, which comes from all directions: R, G, B */
   frame frame;                 /* the eye, the lights and the surfaces; the plan owns the arrays of the
                                 * frame */
   frame_light *lights; /* owned; [light_count]; the `row` of a light_source is an index into this list */
   int light_count;
-  frame_mesh *meshes; /* owned; [mesh_count] */
+  frame_mesh *meshes; /* owned; [mesh_count]; the properties of the meshes */
   int mesh_count;
   plan_volumes volumes;
   plan_fields fields;
@@ -97,8 +99,8 @@ hl_status hl_frame_plan_create(hl_context *context, const framed_scene *framed, 
                                hl_error *error);
 void hl_frame_plan_release(hl_context *context, frame_plan *plan);
 
-/* Chooses the sweeps. Refuses a frame for which no direction of sheets works. Call it after the frame's eye
- * and lights are set up. */
+/* Chooses the sweeps. Refuses a frame for which no direction of sheets works. Call this function after the
+ * frame's eye and lights are set up. */
 hl_status hl_plan_sweeps(hl_context *context, frame_plan *plan, hl_error *error);
 
 /* Whether some wanted layer must be measured: depth, normals or objects. If so, some sweep must go from front
@@ -110,7 +112,7 @@ hl_status hl_plan_lights(hl_context *context, frame_plan *plan, hl_error *error)
 
 /* ---- what light reaches ---- */
 
-/* Whether a slab lies beyond the light, on the side to which the light's rays travel in this sweep. */
+/* Whether a slab lies beyond a light, on the side to which the light's rays travel in this sweep. */
 static inline bool hl_is_beyond(const sheet_stack *sheets, const light_source *source, int sheet) {
   return source->parallel || hl_sheet_height(sheets, sheet - 1) >= vec3_dot(sheets->normal, source->position);
 }

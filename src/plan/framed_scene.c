@@ -24,7 +24,8 @@ static void move_camera(const hl_frame_space *space, hl_camera *camera) {
   camera->height /= space->unit;
 }
 
-/* Derived: I / d^2 is (I / unit^2) / (d / unit)^2. */
+/* Moves a light to frame space. Derived: where light falls off with the square of the distance d, I / d^2 is
+ * (I / unit^2) / (d / unit)^2, so the intensity I is divided by unit^2. */
 static void move_light(const hl_frame_space *space, hl_light *light, double (*vertices)[3]) {
   move_point(space, light->position);
   light->radius /= space->unit;
@@ -52,8 +53,8 @@ static void move_volume(const hl_frame_space *space, hl_scene_volume *volume) {
     function->plane.second_scale = hl_plane_second_scale(&function->plane) / space->unit;
 }
 
-/* Converts gradient opacity to frame space: gradients are values per unit of length. points: room for the new
- * points. */
+/* Converts gradient opacity to frame space: gradients are values per unit of length. points: receives the new
+ * points of the function; there must be room for them. */
 static void move_gradients(const hl_frame_space *space, hl_transfer_function *function,
                            hl_opacity_point *points) {
   if (function->gradient_opacity_count == 0) return;
@@ -72,7 +73,8 @@ static void move_cut(const hl_frame_space *space, hl_cut *cut) {
   cut->radius /= space->unit;
 }
 
-/* Converts cuts whose lengths are in the world to frame space. cuts: room for the volume's cuts. */
+/* Converts cuts whose lengths are in the world to frame space. cuts: receives the volume's cuts; there must
+ * be room for them. */
 static void move_cuts(const hl_frame_space *space, hl_scene_volume *volume, hl_cut *cuts) {
   if (volume->cut_count == 0) return;
   memcpy(cuts, volume->cuts, volume->cut_count * sizeof *cuts);
@@ -114,8 +116,8 @@ static hl_status copy_arrays(hl_context *context, const hl_scene_description *sc
   return HL_OK;
 }
 
-/* Copies what the scene knows of its lights and volumes, in the order that frames use. In the scene, suns are
- * the last lights. */
+/* Copies the scene's findings about its lights and volumes (sun parts and plane marks), in the order that
+ * frames use. In the scene, suns are the last lights. */
 static void copy_findings(const hl_scene *scene, const drawn_scene *drawn, framed_scene *framed) {
   const hl_scene_description *d = &drawn->description;
   const scene_order *order = &drawn->order;

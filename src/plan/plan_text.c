@@ -40,7 +40,7 @@ static json_t *whole_light_of(const frame_light *light) {
                    light->is_wide, "image", light->has_image);
 }
 
-/* Makes the JSON of a mesh. placed: the same mesh among the frame's surfaces. */
+/* Makes the JSON text of a mesh. placed: the same mesh among the frame's surfaces. */
 static json_t *mesh_of(const frame_mesh *mesh, const surface_mesh *placed) {
   json_t *made = json_pack("{s: i, s: f, s: b, s: b}", "object", mesh->object, "opacity", mesh->look.opacity,
                            "visible", mesh->look.visible, "casts_shadow", mesh->look.casts_shadow);
@@ -51,7 +51,8 @@ static json_t *mesh_of(const frame_mesh *mesh, const surface_mesh *placed) {
   return made;
 }
 
-/* The JSON of the buffer of a light's shadows, and of the memory that the shadow method takes beside it. */
+/* Adds the JSON of the buffer of a light's shadows, and of the memory that the shadow method takes beside
+ * it. */
 static void add_shadow(const light_plan *light, json_t *to) {
   const light_shadow *shadow = &light->shadow;
   if (shadow->method == NULL) return;

@@ -4,8 +4,8 @@
 
 #include "plan/frame_plan.h"
 
-/* A JSON object, as halflight/render.h describes it (hl_renderer_plan); null-terminated; free with
- * hl_release(). */
+/* Writes a plan as a JSON object, as halflight/render.h describes it (hl_renderer_plan); null-terminated;
+ * free with hl_release(). */
 hl_status hl_plan_text(hl_context *context, const frame_plan *plan, char **text, hl_error *error);
 
 #endif

@@ -9,10 +9,11 @@
 #include "grid/relevant.h"
 #include "shadow/shadow_method.h"
 
-/* A cell of the picture, with the key by which cells are sorted. */
+/* A cell of the picture, by which the picture is divided (share.h), with the key by which cells are
+ * sorted. */
 typedef struct share_cell {
-  double key;    /* rises from band to band */
-  double weight; /* how much matter lies under it */
+  double key;    /* the key by which cells are sorted; it rises from band to band */
+  double weight; /* a measure of the matter that lies under the cell */
   int32_t index;
 } share_cell;
 
@@ -22,7 +23,7 @@ enum { MOST_BANDS = 3, DEPTHS = 32 };
 
 /* The arrays that are used while a picture is divided into parts. */
 typedef struct share_arrays {
-  share_cell *cells;        /* [cells] */
+  share_cell *cells;        /* [cells]; the cells in the order of their keys */
   double *each;             /* owned; [cells], by the cell's index; the weight of each single brick under a
                              * cell */
   int32_t *cut[MOST_BANDS]; /* [cells], by the cell's index; the part to which the cell belongs. Array b is
@@ -66,7 +67,7 @@ static bool is_divided(const picture_share *share, const light_source *source) {
   return method->divides || (method->exchanges && share->exchange != NULL);
 }
 
-/* The brightest light whose shadows are divided among the parts; null: no light's shadows are. */
+/* The brightest light whose shadows are divided among the parts; null: no light has such shadows. */
 static const light_source *brightest(const share_content *content, const picture_share *share) {
   const frame *frame = content->frame;
   const light_source *found = NULL;
@@ -85,7 +86,7 @@ typedef struct light_image {
 
 static light_image image_of(const view *eye, const light_source *source) {
   double rows[3][4], at[3];
-  if (source == NULL) return (light_image){0, 1, 0}; /* bands of rows */
+  if (source == NULL) return (light_image){0, 1, 0}; /* without such a light, the lines are rows of pixels */
   vec3 p = source->parallel ? source->direction : source->position;
   hl_view_homogeneous(eye, affine3_identity(), rows);
   for (int i = 0; i < 3; i++)
@@ -151,7 +152,7 @@ static const double LEAST_WEIGHT = 0.1;
 typedef void brick_action(const share_content *content, const picture_share *share, share_arrays *arrays,
                           size_t cell, double height, double bricks);
 
-/* Finds the cell of a point of the frame; false: the point lies beside the picture. */
+/* Finds the cell over which a point of the frame lies. Returns false if the point lies beside the picture. */
 static bool cell_of(const frame *frame, const picture_share *share, vec3 point, size_t *cell) {
   double uv[2], side = (double)TILE * share->oversampling;
   if (!hl_view_project(&frame->eye, point, uv)) return false;
@@ -183,7 +184,7 @@ static void visit_bricks(const share_content *content, const picture_share *shar
                          share_arrays *arrays) {
   size_t bricks = 0;
   for (int g = 0; g < content->grid_count; g++) bricks += hl_grid_bricks(&content->grids[g]);
-  /* With an odd step, the samples lie in several columns of bricks. */
+  /* `step` is made odd, so that the sampled bricks lie in several columns of bricks */
   for (int g = 0; g < content->grid_count; g++)
     visit_grid(content, share, &content->grids[g], bricks / SHARE_BRICKS | 1, act, arrays);
 }
@@ -194,8 +195,8 @@ static void count_brick(const share_content *content, const picture_share *share
   arrays->cells[cell].weight += bricks;
 }
 
-/* Finds the weights of the cells. Call it before the cells are put in order, while each cell is still stored
- * at its index. */
+/* Finds the weights of the cells. Call this function before the cells are put in order, while each cell is
+ * still stored at its index. */
 static void weigh_cells(const share_content *content, const picture_share *share, share_arrays *arrays) {
   share_cell *cells = arrays->cells;
   double sum = 0;
@@ -219,9 +220,9 @@ static int compare_cells(const void *a, const void *b) {
 }
 
 /* Divides the ordered cells into bands of equal weight: a cell belongs to the band in which the middle of the
- * cell's weight lies. Then gives the bands to the parts, in forward and backward order by turns. So the last
- * part gets two neighbouring bands. With three bands for each part, the first part gets two neighbouring
- * bands, too. */
+ * cell's weight lies. Then gives the bands to the parts: first in forward order, then in backward order, and
+ * so on by turns. So the last part gets two neighbouring bands. With three bands for each part, the first
+ * part gets two neighbouring bands, too. */
 static void cut_bands(const picture_share *share, const share_cell *cells, int bands, int32_t *part_of) {
   double sum = 0, before = 0;
   const int parts = share->parts;
@@ -257,8 +258,8 @@ static bool is_at_border(const picture_share *share, const int32_t *part_of, int
 }
 
 /* The cost of a division into bands, in units of the mean cost of a part. At each depth the slowest part
- * counts, because the others wait for it. Half of the cells at borders between parts are added, for light
- * that several parts work through (measured: docs/laboratory/ranks.md). */
+ * counts, because the other parts wait for it. Half of the cells at borders between parts are added, for
+ * light that several parts work through (measured: docs/laboratory/ranks.md). */
 static double cost_of(const picture_share *share, const share_arrays *arrays, int bands) {
   const int32_t *part_of = arrays->cut[bands - 1];
   double(*depths)[DEPTHS] = arrays->depths[bands - 1], all = 0, slowest = 0, cells = 0, border = 0;

@@ -25,14 +25,14 @@ typedef struct picture_share {
   int cells_x, cells_y;           /* number of cells of the whole picture */
   int oversampling;               /* number of the frame's tiles along each side of a cell */
   unsigned char *memory;          /* owned; holds part_of; null: the picture is not shared */
-  int32_t *part_of;               /* [cells_y][cells_x] */
+  int32_t *part_of;               /* [cells_y][cells_x]; the part to which each cell belongs */
 } picture_share;
 
 /* What the picture shows, as far as its division into parts depends on it. */
 typedef struct share_content {
   const frame *frame;        /* the frame, whose eye and lights must be set up */
   const frame_light *lights; /* the frame's lights; a light source names its light by `row` */
-  const grid *grids;         /* [grid_count]; the frame's */
+  const grid *grids;         /* [grid_count]; the grids of the frame's volumes */
   int grid_count;
   const sheet_stack *sheets; /* sheets of the frame's first sweep */
 } share_content;

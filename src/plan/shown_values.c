@@ -16,7 +16,7 @@ enum { BISECTIONS = 30 };
 /* The input of the search: a volume's transfer function, and the map from coordinates of the classifier's
  * tables to data values. */
 typedef struct shown_values {
-  const hl_transfer_function *function; /* borrowed */
+  const hl_transfer_function *function; /* the volume's transfer function; borrowed */
   double low, step; /* low: the data value of coordinate 0; step: the difference of data values from one
                      * coordinate to the next */
   double nothing;   /* the data value below which there is no matter */
@@ -29,10 +29,11 @@ static bool shows(const shown_values *values, double from, double to) {
   return low <= high && hl_transfer_function_visible(values->function, low, high);
 }
 
-/* The greatest, or the least, value that is shown between entry and entry + 1. */
+/* The greatest value that is shown between an entry and the next one (`greatest` is set), or the least one,
+ * as a coordinate of the table. */
 static double end_of_step(const shown_values *values, int entry, bool greatest) {
   double inside = entry, outside = entry + 1;
-  /* When searching for the greatest value: something is shown between `inside` and entry + 1. */
+  /* if the greatest value is searched for: something is shown between `inside` and entry + 1 */
   for (int i = 0; i < BISECTIONS; i++) {
     double middle = (inside + outside) / 2;
     bool some = greatest ? shows(values, middle, entry + 1) : shows(values, entry, middle);

@@ -12,13 +12,13 @@
 
 enum { SHOWN_ENTRIES = CLASSIFIER_ENTRIES + 2 };
 
-/* The numbers of an entry's row; all of them are table coordinates. Between the entry and the next one, the
- * function shows values above SHOWN_FROM and up to SHOWN_TO. SHOWN_BELOW is the greatest shown value below
- * the entry; -1: there is no such value. */
+/* The first three numbers of an entry's row in the table of shown values. All of them are table coordinates.
+ * Between the entry and the next one, the function shows values above SHOWN_FROM and up to SHOWN_TO.
+ * SHOWN_BELOW is the greatest shown value below the entry; -1: there is no such value. */
 enum { SHOWN_FROM, SHOWN_TO, SHOWN_BELOW };
 
 /* Fills the table of a volume. function: the volume's transfer function, in frame space. rows:
- * [SHOWN_ENTRIES]; the fourth number of a row is 0. */
+ * [SHOWN_ENTRIES]; receives the rows of the table; the fourth number of each row is 0. */
 void hl_shown_values_fill(const hl_transfer_function *function, const frame_volume *volume, const grid *grid,
                           float (*rows)[4]);
 

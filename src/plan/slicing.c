@@ -3,16 +3,16 @@
 
 #include "scene/light/light_kind.h"
 
-/* cos 60 degrees: lights share a sweep only if the eye's direction and the direction of each light are within
- * this angle of the slicing axis. */
+/* The cosine of 60 degrees. Lights share a sweep only if the eye's direction and the direction of each light
+ * are within this angle of the slicing axis. */
 static const double STEEPEST = 0.5;
 
-/* Limits of the |cos| of angles to the slicing axis, below which a frame is refused. FLATTEST_EYE_RAY: for
- * the picture's outermost rays (87 degrees). FLATTEST_LIGHT: for a light's direction (80 degrees). */
+/* The least |cos| of angles to the slicing axis; a frame with a smaller |cos| is refused. FLATTEST_EYE_RAY:
+ * for the picture's outermost rays (87 degrees). FLATTEST_LIGHT: for a light's direction (80 degrees). */
 static const double FLATTEST_EYE_RAY = 0.05, FLATTEST_LIGHT = 0.17;
 
-/* The least |cos| of the angle between h and the eye's rays through the picture's corners. It is 0 unless all
- * these rays cross the sheets in the same direction. */
+/* The least |cos| of the angle between a slicing axis h and the eye's rays through the picture's corners. It
+ * is 0 unless all these rays cross the sheets in the same direction. */
 static double flattest_eye_ray(const view *eye, vec3 h) {
   double least = INFINITY, sense = 0;
   for (int corner = 0; corner < 4; corner++) {
@@ -26,9 +26,10 @@ static double flattest_eye_ray(const view *eye, vec3 h) {
   return least;
 }
 
-/* The slicing axis h is normalise(e + l) if e.l >= 0, else normalise(l - e) (fig. 3); for several lights, l
- * is the sum of their directions. In a wide picture, rays through the corners may run along these sheets.
- * Then h leans towards the eye until all rays cross the sheets. */
+/* The slicing axis h for the eye's direction e and a light's direction l: normalise(e + l) if e.l >= 0, else
+ * normalise(l - e) (fig. 3 of the paper). For several lights, l is the sum of their directions. In a wide
+ * picture, rays through the corners may run along these sheets. Then h leans towards the eye until all rays
+ * cross the sheets. */
 static vec3 slicing_axis(const frame *frame, const hl_render_settings *settings, vec3 light,
                          bool *back_to_front) {
   *back_to_front = vec3_dot(frame->eye_direction, light) < 0;
@@ -122,7 +123,7 @@ static bool axis_of_light(const frame *frame, const hl_render_settings *settings
   return true;
 }
 
-/* Whether the same sheets suit the light and the eye. If not, the light must be divided into sectors. */
+/* Whether the same sheets suit a light and the eye. If not, the light must be divided into sectors. */
 static bool serves(const frame *frame, const hl_render_settings *settings, const light_source *source) {
   bool back_to_front;
   vec3 h;
@@ -246,7 +247,7 @@ static void add_shadowing_light(const frame *frame, const hl_render_settings *se
   (void)try_light(frame, settings, &sweeps[(*count)++], light);
 }
 
-/* Section 2.2: h = e. */
+/* The normal h of the added sweep's sheets is the eye's direction e (section 2.2 of the paper). */
 void hl_frame_add_eye_sweep(const frame *frame, sweep_sheets *sweeps, int *count) {
   sweep_sheets *added = &sweeps[(*count)++];
   *added = (sweep_sheets){.sheets = {.normal = frame->eye_direction}};
@@ -254,7 +255,8 @@ void hl_frame_add_eye_sweep(const frame *frame, sweep_sheets *sweeps, int *count
 }
 
 /* Adds a light without shadows to any sweep with room. If there is none, adds a sweep whose sheets are
- * parallel to the picture. light: -1 only makes sure that there is a sweep with room. */
+ * parallel to the picture. light: the light's index; if it is -1, the function only makes sure that there is
+ * a sweep with room. */
 static void add_plain_light(const frame *frame, int light, sweep_sheets *sweeps, int *count) {
   int s = 0;
   while (s < *count && sweeps[s].light_count == FRAME_LIGHTS) s++;

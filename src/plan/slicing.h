@@ -12,16 +12,17 @@ typedef struct sweep_sheets {
   sheet_stack sheets;
   bool back_to_front; /* whether the eye's rays meet the sheets from the last to the first. The lights' rays
                        * always meet them from the first to the last */
-  bool of_sectors;    /* the sweep's lights are sectors of lights; the slicing direction is the one for
-                       * sectors */
-  int light[FRAME_LIGHTS]; /* indices into frame lights */
+  /* whether the sweep's lights are sectors of lights; the slicing direction is then the direction of these
+   * sectors */
+  bool of_sectors;
+  int light[FRAME_LIGHTS]; /* [light_count]; indices into the frame's lights */
   int light_count;
 } sweep_sheets;
 
 /* Brings the lights to frame space. A light for which no sheets suit the eye and all its rays is divided into
- * sectors. Call it after the eye is set up. Narrow spot lights and lights with a texture shine in one
- * direction and are never divided. The array of the frame's lights needs room for LIGHT_SECTORS sources for
- * each light. */
+ * sectors. Call this function after the eye is set up. Narrow spot lights and lights with a texture shine in
+ * one direction and are never divided. The array of the frame's lights needs room for LIGHT_SECTORS sources
+ * for each light. */
 void hl_frame_set_up_lights(frame *frame, const framed_scene *framed);
 
 /* Groups lights into sweeps, and chooses the sheets of each sweep (section 3.1 and fig. 3). sweeps: room for
