@@ -8,8 +8,9 @@ enum { PARTS = HL_VOXEL_PARTS, TAPS = HL_VOXEL_TAPS };
 
 typedef struct measuring {
   label_enclosed *enclosed;
-  float weights[PARTS][TAPS]; /* weights of the coefficients on which a voxel depends along an axis, at the
-                               * middle of each of its parts */
+  /* weights of the coefficients on which a voxel depends along an axis, at the middle of each part of the
+   * voxel */
+  float weights[PARTS][TAPS];
 } measuring;
 
 /* The cubic B-spline's value at a distance. */
@@ -25,7 +26,7 @@ static void find_weights(float weights[PARTS][TAPS]) {
       weights[part][tap] = (float)spline((part + 0.5) / PARTS - 0.5 - (tap - TAPS / 2));
 }
 
-/* Copies the coefficients on which a voxel's parts depend. Beyond the field's ends the coefficients at the
+/* Copies the coefficients on which a voxel's parts depend. Beyond the field's ends the coefficients at its
  * border repeat. */
 static void find_window(const label_field *field, size_t x, size_t y, size_t z,
                         float window[TAPS][TAPS][TAPS]) {
@@ -43,8 +44,8 @@ static void find_window(const label_field *field, size_t x, size_t y, size_t z,
     }
 }
 
-/* Marks the voxels of a row that the surface may cross. Returns how many of the other voxels are above the
- * level. room: scratch memory, [voxels of the row + 2]. */
+/* Marks the voxels of a row that the surface may cross. Returns how many of the other voxels have values
+ * above the level. room: scratch memory, [voxels of the row + 2]. */
 static int32_t find_crossed(const label_enclosed *enclosed, size_t y, size_t z, float *room, float *crossed) {
   const label_field *field = enclosed->field;
   const size_t nx = field->size[0], ny = field->size[1], nz = field->size[2], slice = nx * ny;
@@ -81,8 +82,9 @@ static void measure_slice(void *data, size_t z, int worker) {
 
 void hl_label_enclose(hl_pool *pool, label_enclosed *enclosed) {
   enum { STEPS_OF_NEWTON = 2 };
-  static const double FARTHEST = 0.01; /* greatest distance of the level from 1/2; with a greater one, sheets
-                                        * would miss things that are a voxel thin */
+  /* the greatest distance of the level from 1/2; with a level farther away, sheets would miss things that are
+   * a voxel thin */
+  static const double FARTHEST = 0.01;
   measuring job = {.enclosed = enclosed};
   find_weights(job.weights);
   enclosed->level = 0.5f;

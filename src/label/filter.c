@@ -35,7 +35,7 @@ static void filter_slice(void *data, size_t z, int worker) {
   const size_t nx = field->size[0], ny = field->size[1];
   float *slice = field->values + z * nx * ny, *kept = field->lines + (size_t)worker * field->line_floats;
   for (size_t y = 0; y < ny; y++) filter_row(job, kept, slice + y * nx);
-  /* rows y - REACH .. y + REACH with their unfiltered values, [HL_FILTER_ROWS][nx] */
+  /* loads the rows y - REACH to y + REACH with their unfiltered values, [HL_FILTER_ROWS][nx] */
   for (size_t r = 0; r < HL_FILTER_ROWS; r++) {
     size_t y = r < REACH ? 0 : r - REACH < ny ? r - REACH : ny - 1;
     memcpy(kept + r * nx, slice + y * nx, nx * sizeof *slice);
@@ -45,8 +45,8 @@ static void filter_slice(void *data, size_t z, int worker) {
     for (size_t r = 0; r < HL_FILTER_ROWS; r++) rows[r] = kept + (y + r) % HL_FILTER_ROWS * nx;
     add_rows(job, rows, slice + y * nx);
     size_t next = y + REACH + 1;
-    /* The next row of the field is not filtered yet. Beyond the field's last row, copies of the unfiltered
-     * last row are used. */
+    /* the next row of the field, which is not filtered yet; beyond the field's last row, a copy of the
+     * unfiltered last row */
     const float *from = next < ny ? slice + next * nx : rows[2 * REACH];
     memmove(kept + y % HL_FILTER_ROWS * nx, from, nx * sizeof *slice);
   }

@@ -6,17 +6,17 @@
 #include "label/row_functions.h"
 
 typedef struct label_field {
-  float *values;  /* [size z][y][x] */
-  size_t size[3]; /* along x, y, z */
+  float *values;  /* [size z][y][x]; the values of the field */
+  size_t size[3]; /* number of values along x, y and z */
   const label_row_functions *functions;
   float *lines; /* [threads][line_floats]; working space of the filters */
   size_t line_floats;
 } label_field;
 
-/* One half of a symmetric filter: the middle tap first, and then the taps for values at distances from 1 to
- * `reach`. */
+/* One half of a symmetric filter: the weight of the middle value first, and then the weights of values at
+ * distances from 1 to `reach`. */
 typedef struct label_filter {
-  int reach; /* 2, 4 or HL_FILTER_REACH */
+  int reach; /* the greatest distance of a value that the filter reads: 2, 4 or HL_FILTER_REACH */
   float taps[HL_FILTER_REACH + 1];
 } label_filter;
 

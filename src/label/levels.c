@@ -13,12 +13,12 @@ enum { LEVEL_SUMS = HL_LEVEL_FALL + 1, LEVEL_BLENDED = HL_LEVEL_THIN + 1 };
 static const label_filter BLUR = {2, {0.5f, 0.25f, 0}};
 
 /* The weight of an imaginary face that is added, at every voxel, to the sums over the faces of the label's
- * border. On this face the field has the values that it should have, so that it asks for no correction: it
- * decides where the voxel lies far from any border. */
+ * border. On this imaginary face the field has the values that it should have, so that the face asks for no
+ * correction. It decides where a voxel lies far from any border. */
 static const float FAINT = 1e-3f;
 
-/* The least fall across the border's faces. A smaller fall counts as this one, so that the field is not made
- * too steep. */
+/* The least fall of the field across the border's faces. A smaller fall counts as this one, so that the field
+ * is not made too steep. */
 static const float LEAST_FALL = 0.04f;
 
 /* Limits of a field's values, which must fit the bytes that store them (occupancy.c). */
@@ -50,7 +50,7 @@ static float *plane_of(const label_levels *levels, int plane) {
 /* A row of voxels, and the four rows beside it. At the field's ends the row itself takes the place of a
  * missing row. */
 typedef struct border_row {
-  size_t at, beside[4]; /* indices of the rows' first voxels */
+  size_t at, beside[4]; /* indices of the first voxels of the row and of the four rows beside it */
 } border_row;
 
 static border_row row_at(const label_field *field, size_t y, size_t z) {
@@ -72,8 +72,8 @@ static void mark_border(const level_job *job, const border_row *row, unsigned ch
   for (size_t x = nx - 1; x > 0; x--) marks[x] |= own[x] ^ own[x - 1];
 }
 
-/* Adds the faces between a voxel and its neighbours to the sums. Each face is added twice, once from each
- * side. */
+/* Adds the faces of the label's border between a voxel and its neighbours to the sums. Each face is added
+ * twice, once from each side. */
 static void add_faces(const level_job *job, const border_row *row, size_t x, float sums[LEVEL_SUMS]) {
   const size_t at = row->at + x, nx = job->field->size[0];
   const size_t beside[6] = {row->beside[0] + x, row->beside[1] + x,  row->beside[2] + x,
@@ -88,13 +88,14 @@ static void add_faces(const level_job *job, const border_row *row, size_t x, flo
   }
 }
 
-/* Updates the greatest values of cells by the values of a row. */
+/* Raises the greatest values of cells to the values of a row of voxels. */
 static void raise_most(const float *values, size_t count, float *most) {
   for (size_t x = 0; x < count; x++)
     if (values[x] > most[x / CELL]) most[x / CELL] = values[x];
 }
 
-/* Computes the sums over the faces in a slice of cells, and the cells' greatest values. */
+/* Computes the sums over the border's faces in a slice of cells, and the greatest value of the field in each
+ * cell. */
 static void sum_cells(void *data, size_t cell_z, int worker) {
   const level_job *job = data;
   const label_field *field = job->field;
@@ -118,7 +119,7 @@ static void sum_cells(void *data, size_t cell_z, int worker) {
     }
 }
 
-/* The greatest value in a cell and in the cells beside it. */
+/* The greatest value of the field in a cell and in the cells beside it. */
 static float most_around(const label_levels *levels, const size_t cell[3]) {
   const float *most = plane_of(levels, HL_LEVEL_MOST);
   size_t low[3], high[3];
@@ -150,8 +151,8 @@ static void find_thin(void *data, size_t z, int worker) {
 
 /* ---- the field ---- */
 
-/* The two cells along an axis between whose middles the middle of a voxel lies: its own cell, a quarter of a
- * cell away, and another cell. */
+/* The two cells along an axis between whose middles the middle of a voxel lies: the voxel's own cell, whose
+ * middle is a quarter of a cell away, and the next cell on the other side. */
 typedef struct cells_around {
   size_t own, other;
 } cells_around;

@@ -11,14 +11,15 @@
 #include "label/shelf.h"
 #include "volume/colors.h"
 
-/* Matter at a place belongs in part to the labels, and else to the rest. The part of all labels together (the
- * common share) rises from 0 to 1 while the sum of their occupancies rises from SHARE_FROM to SHARE_TO. It is
- * divided among the labels in proportion to the squares of their occupancies. Derived: between two labels
- * with the occupancies a and 1 - a, the first label's part a^2 / (a^2 + (1 - a)^2) rises from 0 to 1 with the
- * slope 2 in the middle, as the common share does. Where three labels meet, their parts still add up to 1. */
+/* The fraction of the matter at a place that belongs to all labels together (the common share) rises from 0
+ * to 1 while the sum of their occupancies rises from SHARE_FROM to SHARE_TO. The other matter belongs to the
+ * rest. The common share is divided among the labels in proportion to the squares of their occupancies.
+ * Derived: between two labels with the occupancies a and 1 - a, the first label's fraction a^2 / (a^2 + (1 -
+ * a)^2) rises from 0 to 1 with the slope 2 in the middle, as the common share does. Where three labels meet,
+ * their fractions still add up to 1. */
 static const float SHARE_FROM = 0.25f, SHARE_TO = 0.75f;
-/* In the weights of colours, the labels' occupancy times this factor is added to their common share. So the
- * labels' colours continue to places where the share is 0. */
+/* In the weights of colours, the occupancy of all labels times this factor is added to the labels' common
+ * share. So the labels' colours continue to places where the share is 0. */
 static const float FAINT = 1e-3f;
 /* Occupancies up to this number are ignored, because they come from the tails of the smoothing and from
  * rounding to bytes. */
@@ -27,11 +28,12 @@ static const float LEAST = 1.0f / 16;
 typedef struct mask_job {
   const hl_mask *mask;
   hl_volume *const *occupancies; /* [label_count]; an element is null if no voxel has the label */
-  uint16_t *factors;             /* [k][j][i] */
-  unsigned char *colors;         /* [k][j][i][HL_COLOR_BYTES]; null if no label tints */
-  signed char *slopes;           /* [k][j][i][4] (mask.h) */
-  uint32_t (*bricks)[2];         /* [bk][bj][bi][2] (mask.h) */
-  float *sums;                   /* [threads][slice floats] */
+  uint16_t *factors;             /* [k][j][i]; the factor of extinction at each point of the lattice */
+  unsigned char *colors;         /* [k][j][i][HL_COLOR_BYTES]; the colour at each point of the lattice;
+                                  * null if no label tints */
+  signed char *slopes;           /* [k][j][i][4]; the slopes of the factor, as in mask.h */
+  uint32_t (*bricks)[2];         /* [bk][bj][bi][2]; the bricks of the lattice, as in mask.h */
+  float *sums;                   /* [threads][slice floats]; the sums of each thread over the labels */
   size_t slice_floats;
 } mask_job;
 
@@ -72,8 +74,8 @@ static unsigned char code_of(float value) {
   return (unsigned char)(value <= 0 ? 0 : value >= 1 ? 255 : value * 255 + 0.5f);
 }
 
-/* Stores the lattice's values at a voxel. The matter there is a mixture of the labels and the rest; each part
- * has its own factor. A label's colour has the weight of its visible part. */
+/* Stores the values of a mask's lattice at a voxel. The matter of the voxel is a mixture of the labels and
+ * the rest, each with a factor of its own. A label's colour has the weight of its visible part. */
 static void store_voxel(const mask_job *job, float *const sums[SUMS], size_t at, size_t voxel) {
   const float occupancy = sums[SUM_OCCUPANCY][at], tint = sums[SUM_TINT][at];
   float share = (occupancy - SHARE_FROM) / (SHARE_TO - SHARE_FROM);

@@ -36,13 +36,13 @@ static const float STEPS = 128, ZERO = 64;
 
 typedef struct occupancy_job {
   const hl_volume *map;
-  const int64_t *labels; /* [count], rising */
+  const int64_t *labels; /* [count], rising; the labels whose common occupancy is made */
   size_t count;
   hl_label_part part;
   unsigned char *inside; /* [size z][y][x]; first: 1 if the voxel has one of the labels, else 0; at the end:
                           * the occupancy as bytes */
   size_t *inside_counts; /* [size z]; the number of voxels that have one of the labels */
-  label_field smooth;    /* the smoothed field, of the part's size */
+  label_field smooth;    /* the smoothed field, of the size of `part` */
   label_levels levels;
   label_enclosed enclosed;
   hl_label_work *work;
@@ -147,12 +147,12 @@ static hl_status adopt(hl_context *context, const occupancy_job *job, unsigned c
   grid.value_offset = -(double)(ZERO / STEPS);
   grid.space = job->map->space;
   hl_status status = hl_volume_adopt(context, &grid, "labels", voxels, made, error);
-  if (status == HL_OK) (*made)->has_surroundings = true; /* voxels outside count as 0 */
+  if (status == HL_OK) (*made)->has_surroundings = true; /* beyond the volume, values count as 0 */
   if (status == HL_OK) (*made)->surface_slope = job->enclosed.slope;
   return status;
 }
 
-/* Allocates the memory for all steps; the result is allocated elsewhere. */
+/* Allocates the memory for all steps of making an occupancy; the result is allocated elsewhere. */
 static bool make_room(hl_context *context, int threads, occupancy_job *job) {
   const size_t count = hl_label_part_voxels(&job->part);
   label_field *field = &job->smooth;

@@ -11,32 +11,34 @@
 
 /* A part of a map's grid: the box that holds some labels, with a margin for their smooth surface. */
 typedef struct hl_label_part {
-  size_t first[3], size[3]; /* voxels along i, j, k; the size is 0 if no voxel has the label */
+  size_t first[3], size[3]; /* first voxel and number of voxels along i, j and k; the size is 0 if no voxel
+                             * has the label */
 } hl_label_part;
 
-/* Finds the parts of several labels in one pass over the map. labels: [count], rising; parts: [count]. */
+/* Finds the parts of several labels in one pass over the map. labels: [count], rising. parts: [count];
+ * receives the part of each label. */
 hl_status hl_label_parts(hl_context *context, hl_pool *pool, const hl_volume *map, const int64_t *labels,
                          size_t count, hl_label_part *parts, hl_error *error);
 
 /* The smallest part that holds several parts. Parts of size 0 do not count. */
 hl_label_part hl_label_part_of_all(const hl_label_part *parts, size_t count);
 
-/* The place of a voxel's label in a rising list; `count` if the list lacks it. */
+/* The index of a voxel's label in a rising list of labels; `count` if the list lacks the label. */
 size_t hl_label_place(const int64_t *labels, size_t count, const hl_volume *map, hl_number_row row, size_t i);
 
 enum { HL_LABEL_STEPS = 6 }; /* the number of passes over the voxels that smooth a box around a label */
 
-/* The smoothing of labels. */
+/* The work of smoothing labels, for reports of progress. */
 typedef struct hl_label_work {
   const hl_context *context; /* its progress callback gets the fraction of the work that is done, as the stage
                               * "prepare" */
-  double whole;              /* voxels of all boxes */
+  double whole;              /* number of voxels of all boxes that are smoothed */
   double done;               /* number of voxels that passes have visited so far, each visit counted */
 } hl_label_work;
 
 size_t hl_label_part_voxels(const hl_label_part *part);
 
-/* Adds voxels that have taken some steps, and reports the progress. */
+/* Adds the voxels of a box that have taken some steps to the work that is done, and reports the progress. */
 void hl_label_worked(hl_label_work *work, size_t voxels, int steps);
 
 /* Makes the occupancy of all labels of a list together, over their common part. labels: [count], rising.

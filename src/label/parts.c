@@ -13,9 +13,9 @@ typedef struct label_bounds {
 
 typedef struct parts_job {
   const hl_volume *map;
-  const int64_t *labels; /* [count], rising */
+  const int64_t *labels; /* [count], rising; the labels whose parts are found */
   size_t count;
-  label_bounds *bounds; /* [threads][count] */
+  label_bounds *bounds; /* [threads][count]; the bounds of each label's voxels that each thread has found */
 } parts_job;
 
 size_t hl_label_place(const int64_t *labels, size_t count, const hl_volume *map, hl_number_row row,
@@ -56,7 +56,8 @@ static void bound_slice(void *data, size_t z, int worker) {
   }
 }
 
-/* The part between the given bounds, with a margin; its size is 0 if the bounds hold no voxels. */
+/* The part of a map's grid between the given bounds, with a margin. Its size is 0 if the bounds hold no
+ * voxels. */
 static hl_label_part part_of(const hl_volume *map, const label_bounds *bounds) {
   hl_label_part part = {{0}, {0}};
   for (int axis = 0; axis < 3 && bounds->high[axis] >= 0; axis++) {
@@ -96,7 +97,7 @@ hl_label_part hl_label_part_of_all(const hl_label_part *parts, size_t count) {
     if (parts[n].size[0] == 0) continue;
     for (int a = 0; a < 3; a++) {
       size_t first = parts[n].first[a], end = first + parts[n].size[a], all_end = all.first[a] + all.size[a];
-      if (all_end == 0) all.first[a] = first, all_end = end; /* the first part that has voxels */
+      if (all_end == 0) all.first[a] = first, all_end = end; /* this is the first part that has voxels */
       if (first < all.first[a]) all.first[a] = first;
       all.size[a] = (end > all_end ? end : all_end) - all.first[a];
     }

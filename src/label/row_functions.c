@@ -10,7 +10,7 @@ extern const label_row_functions hl_label_rows_neon;
 
 const label_row_functions *hl_label_row_functions(hl_instruction_set set) {
 #if defined(HL_SCALAR_ONLY)
-  /* scalar builds have no other table */
+  /* builds without vectors have no other table */
 #elif defined(__x86_64__)
   if (set == HL_INSTRUCTION_SET_AVX512_VBMI) return &hl_label_rows_avx512_vbmi;
   if (set == HL_INSTRUCTION_SET_AVX512) return &hl_label_rows_avx512;

@@ -32,7 +32,8 @@ enum {
 /* A row of a field and its neighbours, each [count]. At the field's ends the row itself takes the place of a
  * missing neighbour. */
 typedef struct row_neighbours {
-  const float *x[3]; /* the row a voxel earlier, the row itself, and the row a voxel later */
+  /* rows shifted by one voxel along x: the row a voxel earlier, the row itself, and the row a voxel later */
+  const float *x[3];
   const float *y[2], *z[2];
 } row_neighbours;
 

@@ -6,7 +6,7 @@
 
 enum { PARTS = HL_VOXEL_PARTS, TAPS = HL_VOXEL_TAPS, ALL_PARTS = PARTS * PARTS * PARTS };
 
-/* Inlined once for each reach, so that the compiler knows the reach. */
+/* This function is inlined once for each reach of a filter, so that the compiler knows the reach. */
 static inline __attribute__((always_inline)) void add_rows(const float *taps, int reach,
                                                            const float *const rows[HL_FILTER_ROWS],
                                                            size_t count, float *restrict out) {
@@ -67,8 +67,8 @@ static void find_parts(const float weights[PARTS][TAPS], const float window[TAPS
 }
 
 /* Finds the differences between neighbouring parts along a line of PARTS rows of `width` values. They are
- * central differences, but one-sided differences at the line's ends. Inlined, so that the compiler knows the
- * width. */
+ * central differences, but one-sided differences at the line's ends. The function is inlined, so that the
+ * compiler knows the width. */
 static inline __attribute__((always_inline)) void find_differences(const float *rows, int width,
                                                                    float *restrict differences) {
   for (int n = 0; n < width; n++) {
@@ -85,8 +85,8 @@ static const float LEAST_GRADIENT = 0.05f / PARTS;
 
 /* Finds the lengths of the gradients at the parts, and the fraction of each part above the level. Derived: if
  * the surface is a plane and the gradient has the length g per part, the fraction above the level t is (f -
- * t) / g + 1/2, where f is the field in the part's middle. It is clamped to [0, 1] later, when fractions are
- * summed. */
+ * t) / g + 1/2, where f is the field in the part's middle. The fraction is clamped to [0, 1] later, when
+ * fractions are summed. */
 static void find_shares(const float *parts, float level, float *restrict gradients, float *restrict shares) {
   float dx[ALL_PARTS], dy[ALL_PARTS], dz[ALL_PARTS];
   for (int row = 0; row < ALL_PARTS; row += PARTS) find_differences(parts + row, 1, dx + row);

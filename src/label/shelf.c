@@ -8,15 +8,15 @@ enum { PLACES = 1024 };
 typedef struct place {
   bool used;
   int64_t label;
-  hl_volume *made; /* null if no voxel has the label */
+  hl_volume *made; /* the occupancy that was made of the label; null if no voxel has the label */
 } place;
 
 /* A volume that was made of several labels together. */
 typedef struct joint_place {
-  hl_label *labels; /* owned; [label_count]; without names */
+  hl_label *labels; /* owned; [label_count]; the labels of which the volume was made, without their names */
   size_t label_count;
   double rest;     /* for a mask: the factor of matter outside the labels */
-  hl_volume *made; /* null if nothing was made */
+  hl_volume *made; /* the volume that was made; null if there is none yet */
 } joint_place;
 
 typedef struct shelf {
@@ -81,9 +81,9 @@ static void keep(hl_volume *map, int64_t label, hl_volume *made) {
 
 /* The labels of a list whose occupancies are not on the shelf yet. */
 typedef struct missing_labels {
-  int64_t *labels;      /* owned; [count] */
+  int64_t *labels;      /* owned; [count]; the missing labels, rising */
   size_t *places;       /* owned; the labels' places in the caller's list */
-  hl_label_part *parts; /* owned */
+  hl_label_part *parts; /* owned; [count]; the part of the map's grid that holds each label */
   size_t count;
 } missing_labels;
 

@@ -13,14 +13,15 @@
 
 typedef struct solids_job {
   hl_volume *map;
-  const hl_label *labels; /* [count] */
+  const hl_label *labels; /* [count]; the labels that are solid together */
   size_t count;
-  /* [count]; an element is null if no voxel has the label. The array is null if no colours are made */
+  /* [count]; the occupancy of each label; an element is null if no voxel has the label. The array is null if
+   * no colours are made */
   hl_volume **occupancies;
-  hl_label_part part; /* the common part of all labels */
+  hl_label_part part; /* the common part of the map's grid that holds all labels */
   hl_srgb_encoder encoder;
-  unsigned char *colors; /* [size z][y][x][HL_COLOR_BYTES] */
-  float *sums;           /* [threads][slice floats] */
+  unsigned char *colors; /* [size z][y][x][HL_COLOR_BYTES]; the colours of the volume's voxels */
+  float *sums;           /* [threads][slice floats]; the sums of each thread over the labels */
   size_t slice_floats;
 } solids_job;
 
@@ -78,7 +79,7 @@ static bool one_color(const hl_label *labels, size_t count) {
   return true;
 }
 
-/* Gives the volume its colours. */
+/* Gives the volume of several labels its colours. */
 static hl_status add_colors(hl_context *context, hl_pool *pool, solids_job *job, hl_volume *made,
                             hl_error *error) {
   const size_t slice = job->part.size[0] * job->part.size[1], count = slice * job->part.size[2];
@@ -100,7 +101,8 @@ static hl_status add_colors(hl_context *context, hl_pool *pool, solids_job *job,
   return status;
 }
 
-/* Makes the volume. values: [count], the values of the labels; parts: [count], scratch memory. */
+/* Makes the volume of several labels. values: [count], the values of the labels; parts: [count], scratch
+ * memory. */
 static hl_status make(hl_context *context, hl_pool *pool, int threads, solids_job *job, const int64_t *values,
                       hl_label_part *parts, hl_volume **made, hl_error *error) {
   hl_status status = hl_label_parts(context, pool, job->map, values, job->count, parts, error);
