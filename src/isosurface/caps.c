@@ -14,9 +14,9 @@
  * different triangles. Their edges lie apart by less than this distance, so no gap shows between them. */
 static const double OVERLAP = 0.03;
 
-/* A face, described in a space of its own with coordinates q. On the face q[axis] is `height`, and the other
- * two coordinates run from -1 to 1. For a sphere this is a face of a cube, whose points are then scaled to
- * the length 1. */
+/* A face of the box or of a cut, described in a space of its own with coordinates q. On the face q[axis] is
+ * `height`, and the other two coordinates run from -1 to 1. For a sphere this is a face of a cube, whose
+ * points are then scaled to the length 1. */
 typedef struct cap_face {
   affine3 to_index, from_index;
   int axis;
@@ -24,7 +24,7 @@ typedef struct cap_face {
   double outward; /* 1: the face's normal points to greater q[axis], or for a sphere away from its centre; -1:
                    * the normal points the other way */
   bool sphere;
-  size_t cut; /* index of the grid's cut; cut_count stands for a face of the box */
+  size_t cut; /* index of the cut in grid->cuts; cut_count stands for a face of the box */
 } cap_face;
 
 typedef struct capping {
@@ -34,7 +34,7 @@ typedef struct capping {
   iso_triangles patch;
   double *inside;   /* owned; [vertices]; for each vertex, the difference of the field and the surface's
                      * value, with the sign that makes it positive inside; stored units */
-  size_t across[2]; /* number of cells along the two coordinates */
+  size_t across[2]; /* number of cells of triangles along the face's two coordinates */
 } capping;
 
 /* ---- a face's triangles ---- */
@@ -75,7 +75,8 @@ static bool near_box(const grid *grid, vec3 point) {
   return true;
 }
 
-/* Places a row of the patch's vertices. Vertices far from the box count as outside. */
+/* Places a row of the vertices of the triangles that cover a face. Vertices far from the box count as
+ * outside. */
 static void place_row(void *data, size_t row, int worker) {
   (void)worker;
   capping *cap = data;
@@ -139,8 +140,8 @@ static void add_inside(capping *cap, const uint32_t corner[3]) {
   for (int i = 1; i + 1 < count; i++) add_triangle(&cap->patch, kept[0], kept[i], kept[i + 1]);
 }
 
-/* Visits the two triangles of every cell. If `add` is set, adds the parts of triangles that lie inside the
- * surface. Returns the number of triangles that the surface cuts. */
+/* Visits the two triangles of every cell of a face. If `add` is set, adds the parts of triangles that lie
+ * inside the surface. Returns the number of triangles that the surface cuts. */
 static size_t visit_cells(capping *cap, bool add) {
   size_t crossed = 0;
   const size_t row = cap->across[0] + 1;
@@ -163,7 +164,7 @@ static hl_status fail_cap(size_t vertices, hl_error *error) {
   return hl_fail_memory(error, vertices * 2 * sizeof(float[3]), "the faces of an isosurface");
 }
 
-/* Covers the face with triangles, and cuts them by the field. */
+/* Covers a face with triangles, and cuts them where the field has the surface's value. */
 static hl_status make_patch(hl_pool *pool, capping *cap, hl_error *error) {
   iso_triangles *patch = &cap->patch;
   const size_t cells = cap->across[0] * cap->across[1];
@@ -176,8 +177,8 @@ static hl_status make_patch(hl_pool *pool, capping *cap, hl_error *error) {
   patch->vertex_count = vertices;
   hl_status status = hl_lattice_run(pool, cap->across[1] + 1, place_row, cap, error);
   if (status != HL_OK) return status;
-  const size_t crossed = visit_cells(cap, false); /* each of these triangles may add two vertices and a
-                                                   * triangle */
+  /* each of these triangles may add two vertices and a triangle */
+  const size_t crossed = visit_cells(cap, false);
   vertices += 2 * crossed;
   void *positions = hl_reallocate(cap->context, patch->positions, vertices, sizeof *patch->positions);
   if (positions != NULL) patch->positions = positions;
@@ -235,10 +236,10 @@ static hl_status trim(hl_context *context, const grid *grid, size_t cut, iso_tri
   return status;
 }
 
-/* The number of cells along a face. half: half of the face's length, in voxels. A cell is at most a voxel
- * wide. On a sphere of radius r, cells of width h have diagonals of length sqrt(2) h, whose middles lie up to
- * h^2 / (4 r) below the sphere (derived, as in refine.c). On spheres, cells are so small that this depth is
- * at most MOST_DEPTH. */
+/* The number of cells of triangles along a face. half: half of the face's length, in voxels. A cell is at
+ * most a voxel wide. On a sphere of radius r, cells of width h have diagonals of length sqrt(2) h, whose
+ * middles lie up to h^2 / (4 r) below the sphere (derived, as in refine.c). On spheres, cells are so small
+ * that this depth is at most MOST_DEPTH. */
 static size_t cells_along(const cap_face *face, double half) {
   enum { MOST_CELLS = 8192 };
   static const double MOST_DEPTH = 0.015;
@@ -277,7 +278,7 @@ static hl_status cap_box(hl_pool *pool, const lattice *lattice, iso_triangles *m
   const double halves[3] = {half.x, half.y, half.z};
   for (int a = 0; a < 3; a++) face.to_index.linear.row[a] = unit_of_axis(a, halves[a]);
   hl_status status = HL_OK;
-  if (!affine3_invert(face.to_index, &face.from_index)) return HL_OK; /* an empty box */
+  if (!affine3_invert(face.to_index, &face.from_index)) return HL_OK; /* the box is empty */
   for (int n = 0; n < 6 && status == HL_OK; n++) {
     face.axis = n / 2;
     face.height = face.outward = n % 2 ? 1 : -1;

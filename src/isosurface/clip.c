@@ -5,15 +5,16 @@
 
 #include "core/memory.h"
 
-/* The state of one cut at one face. The side that is kept is the half space normal . p + offset >= 0, or the
- * inside of a sphere, |q|^2 <= 1. Each triangle gets vertices of its own on the edges that are cut, because
- * the mesh is open there anyway. */
+/* The state of one cut at one face. The side that is kept is the half space of the points p with normal . p +
+ * offset >= 0, or the inside of a sphere, |q|^2 <= 1 in the sphere's own coordinates q. Each triangle gets
+ * vertices of its own on the edges that are cut, because the mesh is open there anyway. */
 typedef struct cutting {
   hl_context *context;
   iso_triangles *made;
   double normal[3], offset;
   const affine3 *sphere; /* index space to q; null: a half space */
-  bool both;             /* keeps both sides, cut apart */
+  bool both;             /* maps index space to the coordinates q of a sphere; null: the kept side is a
+                          * half space */
 } cutting;
 
 static vec3 position_of(const cutting *cut, uint32_t vertex) {
@@ -28,8 +29,9 @@ static double height(const cutting *cut, uint32_t vertex) {
   return 1 - vec3_dot(q, q);
 }
 
-/* Where the edge from a to b crosses the sphere, as a fraction of the edge: the root of |q + t d|^2 = 1
- * between 0 and 1. */
+/* Where the edge from vertex a to vertex b crosses a sphere, as a fraction of the edge: the root t between 0
+ * and 1 of |q + t d|^2 = 1, where q is the edge's beginning and d its direction in the sphere's
+ * coordinates. */
 static double crossing_of_sphere(const cutting *cut, uint32_t a, uint32_t b) {
   vec3 q = affine3_apply(*cut->sphere, position_of(cut, a));
   vec3 d = vec3_subtract(affine3_apply(*cut->sphere, position_of(cut, b)), q);
@@ -39,8 +41,8 @@ static double crossing_of_sphere(const cutting *cut, uint32_t a, uint32_t b) {
   return fmin(fmax(t, 0), 1);
 }
 
-/* Adds the vertex where the edge from a to b crosses the face. The two triangles that share the edge add
- * vertices at the same position. */
+/* Adds the vertex where the edge from vertex a to vertex b crosses the face. The two triangles that share the
+ * edge add vertices at the same position. */
 static uint32_t cross_edge(cutting *cut, uint32_t a, uint32_t b) {
   if (a > b) {
     uint32_t kept = a;
@@ -124,7 +126,7 @@ static hl_status cut_all(cutting *cut, hl_error *error) {
   return HL_OK;
 }
 
-/* Whether some vertex lies on the side of the face that is not kept. */
+/* Whether some vertex lies on the side of a face that is not kept. */
 static bool cuts(const cutting *cut) {
   for (size_t v = 0; v < cut->made->vertex_count; v++)
     if (height(cut, (uint32_t)v) < 0) return true;

@@ -4,11 +4,11 @@
 
 #include "isosurface/triangles.h"
 
-/* Keeps the parts of triangles that lie in a box; index space. */
+/* Keeps the parts of an isosurface's triangles that lie in a box; index space. */
 hl_status hl_iso_clip_box(hl_context *context, iso_triangles *triangles, const double low[3],
                           const double high[3], hl_error *error);
 
-/* Keeps the parts of triangles that cuts leave; index space. */
+/* Keeps the parts of an isosurface's triangles that cuts leave; index space. */
 hl_status hl_iso_cut(hl_context *context, iso_triangles *triangles, const cut_shape *shapes, size_t count,
                      hl_error *error);
 

@@ -13,23 +13,23 @@ int hl_cube_edge_corner(int edge) {
   return (across & 1) << low | (across >> 1) << high;
 }
 
-/* The edge between two corners. */
+/* The number of the edge between two corners of a cube. */
 static int edge_between(int a, int b) {
-  int axis = (a ^ b) >> 1, from = a & b; /* 1, 2, 4 become 0, 1, 2 */
+  int axis = (a ^ b) >> 1, from = a & b; /* the difference 1, 2 or 4 becomes the axis 0, 1 or 2 */
   int low = axis == 0 ? 1 : 0, high = axis == 2 ? 1 : 2;
   return 4 * axis + (from >> low & 1) + 2 * (from >> high & 1);
 }
 
-/* Finds the four corners of a face, in order around the face. Faces 2 a and 2 a + 1 are the low and the
- * high face across axis a. */
+/* Finds the four corners of a face of a cube, in order around the face. Faces 2 a and 2 a + 1 are the low and
+ * the high face across axis a. */
 static void corners_of_face(int face, int corner[4]) {
   int axis = face / 2, u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3;
   const int low[4] = {0, v, u | v, u}, high[4] = {0, u, u | v, v};
   for (int i = 0; i < 4; i++) corner[i] = face % 2 ? high[i] | 1 << axis : low[i];
 }
 
-/* For each edge at which a walk around the face enters the inside, sets next[edge] to the edge at which the
- * walk leaves the inside again. */
+/* For each edge of a cube at which a walk around the face enters the inside, sets next[edge] to the edge at
+ * which the walk leaves the inside again. */
 static void link_face(int pattern, int face, int next[CUBE_EDGES]) {
   int corner[4];
   corners_of_face(face, corner);

@@ -13,8 +13,8 @@ enum { CUBE_EDGES = 12, CUBE_PATTERNS = 256, CUBE_TRIANGLES = 10 };
 /* The corner at which an edge begins. */
 int hl_cube_edge_corner(int edge);
 
-/* The triangles for one pattern of corners. A triangle is given by the three edges on which its vertices lie,
- * counter-clockwise as seen from outside. */
+/* The triangles by which a surface cuts a cube, for one pattern of corners. A triangle is given by the three
+ * edges on which its vertices lie, counter-clockwise as seen from outside. */
 typedef struct cube_triangles {
   uint8_t count;
   uint8_t edge[CUBE_TRIANGLES][3];

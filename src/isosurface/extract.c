@@ -29,12 +29,12 @@ enum { EDGE_VOXELS = FIELD_TAPS + 2 };
 typedef struct edge_field {
   const kernel *kernel;
   double start;  /* coordinate of the edge's beginning along the edge's axis */
-  int32_t first; /* of the voxels */
+  int32_t first; /* index, along the edge's axis, of the first voxels in `sums` */
   double sums[EDGE_VOXELS];
 } edge_field;
 
 static edge_field field_of_edge(const lattice *lattice, int axis, const double from[3]) {
-  int low = axis == 0 ? 1 : 0, high = axis == 2 ? 1 : 2; /* the axes across */
+  int low = axis == 0 ? 1 : 0, high = axis == 2 ? 1 : 2; /* the two axes across the edge */
   field_taps taps[3];
   int32_t first[3], size[3];
   double voxels[EDGE_VOXELS * FIELD_TAPS * FIELD_TAPS];
@@ -143,7 +143,8 @@ static bool is_cell(const lattice *lattice, const lattice_brick *brick, const in
   return true;
 }
 
-/* The pattern of a cell: which of its corners lie inside. It is 0 where the lattice has no such cell. */
+/* The pattern of a cell: which of its corners lie inside the surface, one bit each. It is 0 where the lattice
+ * has no such cell. */
 static int pattern_of_cell(const lattice *lattice, const lattice_brick *const around[8], const int cell[3]) {
   int pattern = 0;
   if (!is_cell(lattice, around[0], cell)) return 0;
@@ -155,7 +156,7 @@ static int pattern_of_cell(const lattice *lattice, const lattice_brick *const ar
   return pattern;
 }
 
-/* The vertex on an edge of a cell. */
+/* The number of the vertex on an edge of a cell. */
 static uint32_t vertex_of_edge(const lattice_brick *const around[8], const int cell[3], int edge) {
   int corner = hl_cube_edge_corner(edge), axis = edge / 4;
   const int p[3] = {cell[0] + (corner & 1), cell[1] + (corner >> 1 & 1), cell[2] + (corner >> 2)};
@@ -166,8 +167,8 @@ static uint32_t vertex_of_edge(const lattice_brick *const around[8], const int c
   return vertex + (uint32_t)__builtin_popcountll(before);
 }
 
-/* Cuts the cells of a brick into triangles, and returns their number. triangles: null: the triangles are
- * only counted. */
+/* Cuts the cells of a brick into triangles, and returns their number. triangles: receives the triangles; if
+ * it is null, they are only counted. */
 static size_t cut_cells(const extraction *job, size_t index, uint32_t (*triangles)[3]) {
   const lattice *lattice = job->lattice;
   const lattice_brick *around[8];

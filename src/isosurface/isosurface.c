@@ -46,7 +46,7 @@ static hl_status place(hl_pool *pool, const hl_scene_volume *volume, const grid 
                        hl_error *error) {
   move_job job = {.placement = placement_of(volume, grid), .made = made};
   mat3 inverse, m = job.placement.linear;
-  if (!mat3_invert(m, &inverse)) return HL_OK; /* refused when the scene was checked */
+  if (!mat3_invert(m, &inverse)) return HL_OK; /* such a map was refused when the scene was checked */
   job.normals = mat3_transpose(inverse);
   const size_t runs = (made->vertex_count + RUN_VERTICES - 1) / RUN_VERTICES;
   hl_status status = hl_lattice_run(pool, runs, move_vertices, &job, error);

@@ -14,7 +14,7 @@ hl_status hl_isosurface_create(hl_pool *pool, const hl_scene_volume *volume, con
                                const kernel *kernel, double value, hl_mesh **mesh, hl_error *error);
 
 /* Describes isosurface i of a volume as a mesh of the scene, with the volume's transform and material. mesh:
- * borrowed. */
+ * the isosurface; borrowed. */
 hl_scene_mesh hl_scene_mesh_of_iso(const hl_scene_volume *volume, size_t i, hl_mesh *mesh);
 
 #endif

@@ -23,9 +23,9 @@ const lattice_brick *hl_lattice_brick(const lattice *lattice, const int32_t at[3
 
 enum { CROSSED = 1, KEPT = 2 };
 
-/* Whether the surface's value may occur in a brick's cells. These are the cells of the grid's brick at the
- * same place. With an interpolating kernel the voxels are coefficients. The field is a weighted mean of
- * coefficients, so the bounds of the coefficients are bounds of the field. */
+/* Whether the surface's value may occur in the cells of a lattice's brick. These are the cells of the grid's
+ * brick at the same place. With an interpolating kernel the voxels are coefficients. The field is a weighted
+ * mean of coefficients, so the bounds of the coefficients are bounds of the field. */
 static bool brick_crossed(const lattice *lattice, const int32_t at[3]) {
   const grid *grid = lattice->grid;
   float bounds[2];
@@ -35,7 +35,7 @@ static bool brick_crossed(const lattice *lattice, const int32_t at[3]) {
   return bounds[0] <= lattice->value && bounds[1] >= lattice->value;
 }
 
-/* Marks two kinds of bricks to be kept: a crossed brick, and the bricks beside it that hold points of its
+/* Marks bricks to be kept: a brick that the surface crosses, and the bricks beside it that hold points of its
  * cells. */
 static void keep_around(const lattice *lattice, const int32_t at[3], unsigned char *marks) {
   for (int corner = 0; corner < 8; corner++) {
@@ -90,7 +90,7 @@ static void weigh_axis(const double weight[SIDE][WINDOW], const double *from, in
       }
 }
 
-/* Finds the weights of the window's voxels for the brick's points along an axis. *first becomes the
+/* Finds the weights of the window's voxels for the brick's points along an axis. *first: receives the
  * coordinate of the window's first voxel. */
 static void weights_of_axis(const lattice *lattice, int axis, int32_t brick, int32_t *first,
                             double weight[SIDE][WINDOW]) {

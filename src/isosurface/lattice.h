@@ -13,14 +13,14 @@
 
 /* The points and edges of a brick. Point (x, y, z) of the brick has bit x + 4 y + 16 z. */
 typedef struct lattice_brick {
-  int32_t at[3];     /* coordinates, in bricks */
-  uint8_t crossed;   /* the surface may run through its cells */
-  uint64_t inside;   /* the points that lie inside */
+  int32_t at[3];     /* coordinates of the brick in the lattice, counted in bricks */
+  uint8_t crossed;   /* whether the surface may run through the brick's cells */
+  uint64_t inside;   /* the points of the brick that lie inside the surface, one bit each */
   uint64_t cross[3]; /* for each axis, the points from which an edge along this axis begins that crosses the
                       * surface; one bit each */
   uint32_t vertex;   /* number of the brick's first vertex; its other vertices follow, sorted by axis and
                       * then by point */
-  uint32_t triangle; /* number of its first triangle */
+  uint32_t triangle; /* number of the brick's first triangle */
 } lattice_brick;
 
 enum { LATTICE_NONE = UINT32_MAX };
@@ -32,15 +32,15 @@ typedef struct lattice {
   double value;      /* the surface's value; stored units */
   double sign;       /* 1: the side of greater values is the inside; -1: the side of lesser values is */
   double outside[3]; /* the distance of the outermost points from the outermost voxels */
-  int32_t points[3]; /* n + 2 */
+  int32_t points[3]; /* number of points along each axis: number of voxels + 2 */
   int32_t brick_count[3];
   uint32_t *slot;        /* owned; [bricks z][y][x]; the index of each brick in `bricks`; LATTICE_NONE: the
                           * brick is not kept */
-  lattice_brick *bricks; /* owned; [count]; in rising order */
+  lattice_brick *bricks; /* owned; [count]; the kept bricks, in rising order */
   size_t count;
 } lattice;
 
-/* Makes the lattice of a surface. value: the field's value on the surface; data values. grid, kernel:
+/* Makes the lattice of a surface. value: the field's value on the surface, as a data value. grid, kernel:
  * borrowed. Release the lattice after a failure, too. */
 hl_status hl_lattice_create(hl_context *context, hl_pool *pool, const grid *grid, const kernel *kernel,
                             double value, lattice *made, hl_error *error);
@@ -58,7 +58,7 @@ static inline double hl_lattice_position(const lattice *lattice, int axis, int32
                                           : i - 1.0;
 }
 
-/* The brick at some coordinates; null: this brick is not kept. */
+/* The brick of the lattice that has given coordinates; null: this brick is not kept. */
 const lattice_brick *hl_lattice_brick(const lattice *lattice, const int32_t at[3]);
 
 #endif

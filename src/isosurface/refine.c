@@ -66,8 +66,8 @@ static int compare_keys(const void *a, const void *b) {
   return x < y ? -1 : x > y;
 }
 
-/* Lists the edges that are to be halved, and returns their number. keys: room for three edges for each
- * triangle; null: the edges are only counted. */
+/* Lists the edges that are to be halved, and returns their number. keys: receives the edges; it has room for
+ * three edges for each triangle. If it is null, the edges are only counted. */
 static size_t list_edges(const halving *job, uint64_t *keys) {
   const iso_triangles *made = job->made;
   size_t count = 0, kept = 0;
@@ -85,7 +85,7 @@ static size_t list_edges(const halving *job, uint64_t *keys) {
   return kept;
 }
 
-/* The vertex in the middle of an edge; -1: the edge is left whole. */
+/* The vertex in the middle of the edge between vertices a and b; -1: the edge is left whole. */
 static int64_t middle_of(const halving *job, uint32_t a, uint32_t b) {
   if (!bends(job, a, b)) return -1;
   uint64_t key = key_of(a, b);
@@ -226,15 +226,15 @@ static hl_status halve(hl_pool *pool, halving *job, size_t listed, hl_error *err
   return status;
 }
 
-/* Halves all edges that lie too far from the surface, once. *any becomes false where there is no such edge,
- * or no room for more triangles. */
+/* Halves once all edges that lie too far from the surface. *any: set to false where there is no such edge, or
+ * no room for more triangles. */
 static hl_status halve_edges(hl_pool *pool, const lattice *lattice, iso_triangles *triangles, bool *any,
                              hl_error *error) {
   halving job = {.lattice = lattice, .made = triangles};
   const mat3 placed = lattice->grid->index_to_frame.linear;
   mat3 inverse;
   *any = false;
-  if (!mat3_invert(placed, &inverse)) return HL_OK; /* refused when the grid was made */
+  if (!mat3_invert(placed, &inverse)) return HL_OK; /* such a map was refused when the grid was made */
   const double voxel = mat3_shortest_column(placed);
   const mat3 turned = mat3_transpose(inverse);
   for (int row = 0; row < 3; row++) {
@@ -257,8 +257,8 @@ static hl_status halve_edges(hl_pool *pool, const lattice *lattice, iso_triangle
 hl_status hl_iso_refine(hl_pool *pool, const lattice *lattice, iso_triangles *triangles, hl_error *error) {
   enum {
     ROUNDS = 8
-  }; /* the greatest number of rounds; cells that are twenty times as wide along one axis as along another
-      * need five */
+  }; /* the greatest number of rounds of halving; cells that are twenty times as wide along one axis as
+      * along another need five */
   hl_status status = HL_OK;
   bool any = true;
   for (int round = 0; round < ROUNDS && any && status == HL_OK; round++)

@@ -6,9 +6,10 @@
 #include "isosurface/lattice.h"
 
 typedef struct iso_triangles {
-  float (*positions)[3];    /* owned; [vertex_count]; index space */
-  float (*normals)[3];      /* owned; [vertex_count]; unit vectors in index coordinates */
-  uint32_t (*triangles)[3]; /* owned; [triangle_count]; counter-clockwise as seen from outside */
+  float (*positions)[3]; /* owned; [vertex_count]; index space */
+  float (*normals)[3];   /* owned; [vertex_count]; unit vectors in index coordinates */
+  /* owned; [triangle_count]; indices of vertices, counter-clockwise as seen from outside */
+  uint32_t (*triangles)[3];
   size_t vertex_count, triangle_count;
 } iso_triangles;
 
