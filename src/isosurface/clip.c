@@ -12,9 +12,9 @@ typedef struct cutting {
   hl_context *context;
   iso_triangles *made;
   double normal[3], offset;
-  const affine3 *sphere; /* index space to q; null: a half space */
-  bool both;             /* maps index space to the coordinates q of a sphere; null: the kept side is a
+  const affine3 *sphere; /* maps index space to the coordinates q of a sphere; null: the kept side is a
                           * half space */
+  bool both;             /* whether both sides of the face are kept, cut apart */
 } cutting;
 
 static vec3 position_of(const cutting *cut, uint32_t vertex) {
