@@ -21,9 +21,12 @@ typedef struct edge_search {
   float (*sums)[3]; /* owned; [vertex_count]; sums of the cross products of each vertex's triangles */
   uint16_t *marks;  /* owned; [vertex_count]; at first, whether the vertex is at a crease; later, the number
                      * of its corners that were listed */
-  uint32_t *first;  /* owned; [vertex_count + 1]; index in `corners` at which the corners of a vertex at a
-                     * crease begin */
-  size_t *corners;  /* owned; [first[vertex_count]]; 3 x triangle + corner */
+  /* owned; [vertex_count + 1]; for each vertex at a crease, the index in `corners` at which the vertex's
+   * corners begin */
+  uint32_t *first;
+  /* owned; [first[vertex_count]]; the corners at creases, each as 3 x triangle + number of the corner in the
+   * triangle */
+  size_t *corners;
 } edge_search;
 
 static vec3 position_of(const hl_mesh_description *d, uint32_t vertex) {
@@ -49,8 +52,8 @@ static void add_up(edge_search *search) {
   }
 }
 
-/* Marks the vertices of a triangle at which its normal differs much from the mean. Returns whether there is
- * one. */
+/* Marks the vertices at which a triangle's normal differs much from the mean of the vertex's normals. Returns
+ * whether any vertex was marked. */
 static bool mark_edges(edge_search *search) {
   const hl_mesh_description *d = search->mesh;
   bool any = false;
@@ -94,8 +97,8 @@ static void list_corners(edge_search *search, uint32_t (*edges)[3]) {
     }
 }
 
-/* Finds the normals of one vertex's corners. A corner's normal is the mean over the triangles whose normals
- * differ little from that of the corner's own triangle. */
+/* Finds the normals of the corners of one vertex at a crease. A corner's normal is the mean over the
+ * triangles whose normals differ little from that of the corner's own triangle. */
 static void find_normals_of(const edge_search *search, size_t vertex, float (*normals)[3]) {
   vec3 cross[MOST_TRIANGLES], unit[MOST_TRIANGLES];
   const size_t *corners = search->corners + search->first[vertex];

@@ -30,7 +30,7 @@ static const json_t *item(const gltf_reader *reader, const char *list, size_t in
   return json_array_get(json_object_get(reader->file.root, list), index);
 }
 
-/* Reads an array of numbers; false where the key has no array of this length. */
+/* Reads an array of numbers from a JSON object. Returns false where the key has no array of this length. */
 static bool read_numbers(const json_t *object, const char *key, size_t count, double *numbers) {
   const json_t *list = json_object_get(object, key);
   if (json_array_size(list) != count) return false;
@@ -76,7 +76,7 @@ static hl_status find_attribute(gltf_reader *reader, const json_t *primitive, co
   return status;
 }
 
-/* The base colour of a primitive's material, linear. It is opaque unless the material blends. */
+/* The base colour of a primitive's material, linear. The colour is opaque unless the material blends. */
 static void base_color(const gltf_reader *reader, const json_t *primitive, double color[4]) {
   size_t index = 0;
   for (int c = 0; c < 4; c++) color[c] = 1;
@@ -105,7 +105,7 @@ static void add_color(gltf_reader *reader, const json_t *primitive, const gltf_a
     }
 }
 
-/* Adds vertices. Normals are turned by the inverse transpose of the node's transform. */
+/* Adds the vertices of a primitive. Normals are turned by the inverse transpose of the node's transform. */
 static void add_vertices(gltf_reader *reader, const gltf_accessor *positions, const gltf_accessor *normals,
                          affine3 place) {
   mesh_parts *parts = reader->parts;
@@ -180,7 +180,7 @@ static hl_status add_primitive(gltf_reader *reader, const json_t *primitive, aff
   if (json_object_get(extensions, "KHR_draco_mesh_compression") != NULL &&
       !has_plain_positions(reader, primitive))
     return fail_compressed(reader, "KHR_draco_mesh_compression");
-  if (mode < MODE_TRIANGLES || mode > MODE_FAN) return HL_OK; /* points and lines */
+  if (mode < MODE_TRIANGLES || mode > MODE_FAN) return HL_OK; /* points and lines are not shown */
   hl_status status = find_attribute(reader, primitive, "POSITION", 3, 3, &positions, &has_positions);
   if (status == HL_OK) status = find_attribute(reader, primitive, "NORMAL", 3, 3, &normals, &has_normals);
   if (status == HL_OK) status = find_attribute(reader, primitive, "COLOR_0", 3, 4, &colors, &has_colors);
@@ -283,7 +283,8 @@ static hl_status find_chunks(gltf_reader *reader, mesh_text text, mesh_text *jso
   if (length > text.length - after) return refuse(reader, "its JSON is cut short");
   *json = (mesh_text){text.bytes + after, length};
   size_t padded = after + (length + 3) / 4 * 4;
-  after = is_buffer(text, after + length) ? after + length : padded; /* some programs leave the padding out */
+  /* some programs leave the padding before the buffer out */
+  after = is_buffer(text, after + length) ? after + length : padded;
   if (after > text.length || text.length - after < CHUNK) return HL_OK;
   length = word_at(text.bytes + after);
   after += CHUNK;
@@ -300,7 +301,7 @@ static hl_status parse(gltf_reader *reader, mesh_text json) {
                  told.line, told.text);
 }
 
-/* Warns about content of the file that is not shown. */
+/* Warns about content of the file that is ignored. */
 static void tell_passed(const gltf_reader *reader) {
   const json_t *root = reader->file.root;
   bool textures = json_array_size(json_object_get(root, "textures")) > 0;

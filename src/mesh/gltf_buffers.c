@@ -73,7 +73,7 @@ static int hex_value(char c) {
 static void decode_uri(const char *uri, char *name) {
   for (; *uri != 0; uri++) {
     int high = *uri == '%' ? hex_value(uri[1]) : -1, low = high >= 0 ? hex_value(uri[2]) : -1;
-    bool coded = low >= 0 && (high > 0 || low > 0); /* a coded zero byte is not decoded */
+    bool coded = low >= 0 && (high > 0 || low > 0); /* a byte that is coded as %00 is not decoded */
     *name++ = coded ? (char)(16 * high + low) : *uri;
     if (coded) uri += 2;
   }
@@ -151,7 +151,7 @@ static int components_of(const char *name) {
   return 0;
 }
 
-/* Finds the bytes of a buffer view from an offset on. */
+/* Finds the bytes of a buffer view, from an offset within the view on. */
 static bool find_view(const gltf_file *file, size_t index, size_t offset, gltf_buffer *bytes,
                       size_t *stride) {
   const json_t *view = json_array_get(json_object_get(file->root, "bufferViews"), index);
@@ -168,8 +168,8 @@ static bool find_view(const gltf_file *file, size_t index, size_t offset, gltf_b
   return true;
 }
 
-/* Sets an accessor's bytes and stride from its buffer view. False where the view does not hold the
- * accessor. */
+/* Sets an accessor's bytes and stride from its buffer view. Returns false where the view does not hold all
+ * numbers of the accessor. */
 static bool place_accessor(const gltf_file *file, const json_t *described, size_t count,
                            gltf_accessor *accessor) {
   size_t view, offset = 0, element = bytes_of_type(accessor->type) * (size_t)accessor->components;
@@ -203,7 +203,7 @@ static hl_status keep_numbers(gltf_file *file, size_t count, double **numbers, h
   return HL_OK;
 }
 
-/* Replaces some elements of an accessor's numbers (glTF 2.0, section 3.6.2.3). */
+/* Replaces the elements of a sparse accessor that the file lists (glTF 2.0, section 3.6.2.3). */
 static hl_status put_sparse(const gltf_file *file, const json_t *sparse, size_t index,
                             gltf_accessor *accessor, double *numbers, hl_error *error) {
   size_t count = 0, type = 0, components = (size_t)accessor->components;

@@ -6,15 +6,16 @@
 #include "core/memory.h"
 #include "mesh/mesh.h"
 
-/* The search for the parts. */
+/* The search for the closed parts of a mesh. */
 typedef struct part_search {
   const hl_mesh_description *mesh;
-  uint32_t *parent; /* owned; [vertex_count]; another vertex of the same part; a part's root is its own
-                     * parent */
-  uint64_t *ways;   /* owned; [vertex_count]; for roots: the sum of the hashes of the part's edges, which is 0
-                     * if the part is closed */
-  double *volume;   /* owned; [vertex_count]; for roots: six times the volume that the part encloses, negative
-                     * if its fronts face inwards */
+  /* owned; [vertex_count]; for each vertex, another vertex of the same part; each part has one root, a vertex
+   * that is its own parent */
+  uint32_t *parent;
+  uint64_t *ways; /* owned; [vertex_count]; for roots: the sum of the hashes of the part's edges, which is 0
+                   * if the part is closed */
+  double *volume; /* owned; [vertex_count]; for roots: six times the volume that the part encloses, negative
+                   * if its fronts face inwards */
 } part_search;
 
 static uint32_t root_of(uint32_t *parent, uint32_t vertex) {
@@ -28,7 +29,7 @@ static void join(uint32_t *parent, uint32_t a, uint32_t b) {
   else parent[a] = b;
 }
 
-/* Six times the volume between a triangle and the origin. */
+/* Six times the signed volume of the tetrahedron between a triangle and the origin. */
 static double volume_of(const hl_mesh_description *d, const uint32_t corner[3]) {
   const float *a = d->positions[corner[0]], *b = d->positions[corner[1]], *c = d->positions[corner[2]];
   return a[0] * ((double)b[1] * c[2] - (double)b[2] * c[1]) +
@@ -36,10 +37,11 @@ static double volume_of(const hl_mesh_description *d, const uint32_t corner[3]) 
          a[2] * ((double)b[0] * c[1] - (double)b[1] * c[0]);
 }
 
-/* Finds the parts, and adds up their edges and volumes. Returns whether the whole mesh is closed: each edge
- * runs as often one way as the other, and the triangles enclose a volume above 0. Derived: the hashes of an
- * edge's two directions add up to 0. So the sum over a closed part is 0, and any other sum means that there
- * is a boundary edge. With a boundary edge, a sum of 0 has the probability 2^-64. */
+/* Finds the parts of a mesh, and adds up the hashes of their edges and their volumes. Returns whether the
+ * whole mesh is closed: each edge runs as often one way as the other, and the triangles enclose a volume
+ * above 0. Derived: the hashes of an edge's two directions add up to 0. So the sum over a closed part is 0,
+ * and any other sum means that there is a boundary edge. With a boundary edge, a sum of 0 has the probability
+ * 2^-64. */
 static bool find_parts(part_search *search) {
   const hl_mesh_description *d = search->mesh;
   uint64_t sum = 0;

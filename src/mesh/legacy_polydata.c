@@ -8,13 +8,13 @@
 #include "volume/io/numbers.h"
 
 typedef struct legacy_file {
-  hl_legacy_vtk file; /* must be the first member: callbacks get its address, and find the other members by
-                       * it */
+  hl_legacy_vtk file; /* must be the first member, because callbacks get its address and find the other
+                       * members by it */
   polydata data;
   bool is_polydata;
 } legacy_file;
 
-/* Reads `count` numbers; *numbers is owned by the caller. */
+/* Reads `count` numbers of a file. *numbers is owned by the caller. */
 static hl_status read_numbers(hl_legacy_vtk *file, hl_voxel_type type, size_t count, double **numbers,
                               hl_error *error) {
   hl_number_code code = {.type = type, .text = file->text, .big_endian = true};

@@ -24,7 +24,9 @@ enum { FORMAT_COUNT = sizeof formats / sizeof *formats };
 hl_status hl_mesh_get_format(size_t index, hl_file_format *format) {
   if (format == NULL || format->struct_size != sizeof *format || index > FORMAT_COUNT)
     return HL_ERROR_ARGUMENT;
-  bool listed = index < FORMAT_COUNT; /* .vtk files may hold meshes or volumes; their content tells which */
+  /* the format after the last one of the table is .vtk; the content of a .vtk file tells whether it holds a
+   * mesh or a volume */
+  bool listed = index < FORMAT_COUNT;
   *format = (hl_file_format){
       .struct_size = sizeof *format, .name = listed ? formats[index].name : "VTK .vtk", .reads = 1};
   hl_endings_add(format->read_endings, listed ? formats[index].ending : ".vtk");
@@ -38,7 +40,8 @@ static bool begins_as_polydata(hl_context *context, const char *path) {
   hl_error unused;
   int file;
   if (hl_file_open_again(context, path, &file, &unused) != HL_OK) return false;
-  bool regular = fstat(file, &about) == 0 && S_ISREG(about.st_mode); /* the bytes of a pipe are read once */
+  /* only regular files are looked at, because the bytes of a pipe can be read only once */
+  bool regular = fstat(file, &about) == 0 && S_ISREG(about.st_mode);
   size_t length = 0, got = regular ? 1 : 0;
   for (; got > 0 && length < sizeof bytes - 1; length += got)
     if (hl_file_pull(context, file, path, bytes + length, sizeof bytes - 1 - length, &got, &unused) != HL_OK)

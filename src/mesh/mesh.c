@@ -58,7 +58,7 @@ static void grow_bounds(hl_mesh *mesh, const float at[3], double radius) {
   }
 }
 
-/* Keeps only the triangles that can be seen. The mesh owns its arrays, so that they may be changed here. */
+/* Keeps only the triangles that can be seen. The mesh owns its arrays, so this function may change them. */
 static hl_status keep_triangles(hl_mesh *mesh, hl_error *error) {
   hl_mesh_description *d = &mesh->description;
   uint32_t(*triangles)[3] = (uint32_t(*)[3])d->triangles;
@@ -113,7 +113,8 @@ static hl_status keep_visible(hl_mesh *mesh, hl_error *error) {
 
 /* The hash of the edge from vertex a to vertex b, where a is less than b. */
 static uint64_t hash_of_edge(uint32_t a, uint32_t b) {
-  uint64_t hash = ((uint64_t)a << 32 | b) + 0x9e3779b97f4a7c15u; /* splitmix64 (Steele et al. 2014) */
+  /* the hash function splitmix64 (Steele et al. 2014) */
+  uint64_t hash = ((uint64_t)a << 32 | b) + 0x9e3779b97f4a7c15u;
   hash = (hash ^ hash >> 30) * 0xbf58476d1ce4e5b9u;
   hash = (hash ^ hash >> 27) * 0x94d049bb133111ebu;
   return hash ^ hash >> 31;
@@ -121,7 +122,7 @@ static uint64_t hash_of_edge(uint32_t a, uint32_t b) {
 
 uint64_t hl_hash_of_way(uint32_t a, uint32_t b) { return a < b ? hash_of_edge(a, b) : -hash_of_edge(b, a); }
 
-/* Whether all colours have an opacity of 1; true if `colors` is null. */
+/* Whether all colours of an array have an opacity of 1. The result is true if `colors` is null. */
 static bool are_opaque(const float (*colors)[4], size_t count) {
   for (size_t n = 0; colors != NULL && n < count; n++)
     if (!(colors[n][3] >= 1)) return false;
@@ -199,7 +200,7 @@ static hl_status check_arrays(const hl_mesh_description *d, hl_error *error) {
                              d->line_point_count);
 }
 
-/* A copy of an array that may be null. */
+/* Copies an array. Returns true for a null array, which needs no copy. */
 static bool copy_array(hl_context *context, const void *from, size_t count, size_t size, void *to) {
   if (from == NULL) return true;
   void *copy = hl_allocate(context, count, size);

@@ -16,19 +16,20 @@ enum { HL_LIMIT_TRIANGLES = 1 << 28, HL_LIMIT_SPHERES = 1 << 26, HL_LIMIT_LINE_P
  * the surface counts as rounded at the vertex; otherwise it has a crease there. */
 #define HL_MESH_ROUNDED 0.766
 
-/* The index of a corner that has no normal of its own. */
+/* In hl_mesh.edges: the index of a corner that has no normal of its own. */
 #define HL_NO_EDGE UINT32_MAX
 
 struct hl_mesh {
   hl_context *context;
   atomic_int references;
-  hl_mesh_description description;        /* its arrays are owned */
-  size_t given_vertices, given_triangles; /* numbers of the vertices and triangles that are not those of
-                                           * tubes; those of tubes follow them */
+  hl_mesh_description description; /* the mesh's arrays and their sizes; the arrays are owned */
+  /* numbers of the vertices and triangles that do not belong to tubes; the vertices and triangles of tubes
+   * follow them */
+  size_t given_vertices, given_triangles;
   /* owned; [triangle_count]; for each corner, the index of its normal in edge_normals; HL_NO_EDGE: the corner
    * has its vertex's normal. Null if all corners have their vertices' normals */
   uint32_t (*edges)[3];
-  float (*edge_normals)[3]; /* owned; [edge_normal_count]; unit */
+  float (*edge_normals)[3]; /* owned; [edge_normal_count]; unit normals of corners at creases */
   size_t edge_normal_count;
   double low[3], high[3]; /* bounds of the visible elements; world units */
   bool closed;            /* whether the mesh encloses an inside and its fronts face outwards: each edge has
@@ -46,7 +47,7 @@ struct hl_mesh {
  * up to 0. Two different edges have the same hash with a probability of one in 2^64. */
 uint64_t hl_hash_of_way(uint32_t from, uint32_t to);
 
-/* A polygon that was added as a fan of triangles; `first` is the first triangle. */
+/* A polygon that a reader added as a fan of triangles. `first` is the number of the fan's first triangle. */
 typedef struct mesh_polygon {
   size_t first, count;
 } mesh_polygon;
@@ -54,31 +55,36 @@ typedef struct mesh_polygon {
 /* A mesh that is being read, as growing arrays. */
 typedef struct mesh_parts {
   hl_context *context;
-  const char *path;         /* the file's name in errors */
-  float (*positions)[3];    /* owned; [vertex_count] */
-  float (*normals)[3];      /* owned; [vertex_count]; null if vertices have no normals */
-  float (*colors)[4];       /* owned; [vertex_count]; null if vertices have no colours */
-  uint32_t (*triangles)[3]; /* owned; [triangle_count] */
-  float (*face_colors)[4];  /* owned; [triangle_count]; null if triangles have no colours */
+  const char *path;      /* the file's name in errors */
+  float (*positions)[3]; /* owned; [vertex_count]; positions of vertices */
+  /* owned; [vertex_count]; unit normals of vertices; null if vertices have no normals */
+  float (*normals)[3];
+  /* owned; [vertex_count]; colours of vertices, linear RGB and opacity; null if vertices have no colours */
+  float (*colors)[4];
+  uint32_t (*triangles)[3]; /* owned; [triangle_count]; the three vertices of each triangle */
+  /* owned; [triangle_count]; colours of triangles; null if triangles have no colours */
+  float (*face_colors)[4];
   size_t vertex_count, vertex_room, triangle_count, triangle_room;
-  float (*spheres)[4];       /* owned; [sphere_count] */
-  float (*sphere_colors)[4]; /* owned; [sphere_count]; null if spheres have no colours */
+  float (*spheres)[4];       /* owned; [sphere_count]; centre and radius of each sphere */
+  float (*sphere_colors)[4]; /* owned; [sphere_count]; colours of spheres; null if spheres have no colours */
   size_t sphere_count;
-  float (*line_points)[4]; /* owned; [line_point_count] */
-  float (*line_colors)[4]; /* owned; [line_point_count]; null if lines have no colours */
-  uint32_t *line_lengths;  /* owned; [line_count] */
+  float (*line_points)[4]; /* owned; [line_point_count]; position and radius of each point of a line */
+  /* owned; [line_point_count]; colours of the points of lines; null if lines have no colours */
+  float (*line_colors)[4];
+  uint32_t *line_lengths; /* owned; [line_count]; the number of points of each line */
   size_t line_point_count, line_count;
   mesh_polygon *polygons; /* owned; [polygon_count]; polygons of more than three corners */
   size_t polygon_count, polygon_room;
 } mesh_parts;
 
-/* Makes room for vertices or triangles. count: their number in all, those that are there already included.
- * with_normals, with_colors: whether the vertices have normals and colours. */
+/* Two functions that make room for vertices or triangles. count: the number of all vertices or triangles for
+ * which there must be room, including those that exist already. with_normals, with_colors: whether the
+ * vertices have normals and colours. */
 hl_status hl_mesh_reserve_vertices(mesh_parts *parts, size_t count, bool with_normals, bool with_colors,
                                    hl_error *error);
 hl_status hl_mesh_reserve_triangles(mesh_parts *parts, size_t count, hl_error *error);
 
-/* Adds a triangle. Makes room for it in `triangles`, but not in `face_colors`. */
+/* Adds a triangle. Makes room for the triangle in the array `triangles`, but not in `face_colors`. */
 hl_status hl_mesh_add_triangle(mesh_parts *parts, uint32_t a, uint32_t b, uint32_t c, hl_error *error);
 
 /* Notes that the triangles from `first` to the last one are a polygon: a fan around its first corner. */
@@ -95,15 +101,15 @@ hl_status hl_mesh_add_tubes(mesh_parts *parts, hl_error *error);
  * caller. */
 hl_status hl_mesh_of_parts(mesh_parts *parts, hl_mesh **mesh, hl_error *error);
 
-/* Finds the creases of a mesh without normals, and the normals of the corners there. Called once, when the
- * mesh is made. */
+/* Finds the creases of a mesh without normals, and the normals of the corners there. This function is called
+ * once, when the mesh is made. */
 hl_status hl_mesh_find_edges(hl_mesh *mesh, hl_error *error);
 
 /* Finds the closed parts of a mesh: sets insides and closed. */
 hl_status hl_mesh_find_insides(hl_mesh *mesh, hl_error *error);
 
-/* Marks a mesh as closed, although its parts share no edges where they meet. It is called for meshes of
- * several parts that enclose an inside together. The fronts must face outwards. */
+/* Marks a mesh as closed, although its parts share no edges where they meet. The function is called for
+ * meshes of several parts that enclose an inside together. The fronts must face outwards. */
 void hl_mesh_take_as_closed(hl_mesh *mesh);
 
 /* Describes the mesh that would be made of the parts now. The description borrows its arrays from the
@@ -114,11 +120,11 @@ void hl_mesh_parts_release(mesh_parts *parts);
 
 /* A file's content in memory, followed by one zero byte. */
 typedef struct mesh_text {
-  const unsigned char *bytes; /* [length] */
+  const unsigned char *bytes; /* [length]; the bytes of the file */
   size_t length;
 } mesh_text;
 
-/* A format's reader, which fills empty parts. */
+/* The type of the readers of mesh formats. A reader fills `parts`, which are empty before. */
 typedef hl_status mesh_reader(mesh_text text, mesh_parts *parts, hl_error *error);
 mesh_reader hl_mesh_read_ply, hl_mesh_read_stl, hl_mesh_read_obj, hl_mesh_read_gltf, hl_mesh_read_vtp,
     hl_mesh_read_legacy_vtk;

@@ -3,7 +3,7 @@
  *
  * Groups, texture coordinates and curves are ignored. A vertex has one normal; if faces give it several, the
  * last one counts. Colours of vertices displace colours of materials. */
-#define _GNU_SOURCE /* memrchr */
+#define _GNU_SOURCE /* for memrchr() */
 #include <math.h>
 #include <string.h>
 
@@ -14,7 +14,7 @@
 
 typedef struct obj_reader {
   mesh_parts *parts;
-  const char *at, *end; /* the rest of the text */
+  const char *at, *end; /* the part of the text that has not been read yet */
   int line;
   float (*normals)[3]; /* owned; [normal_count]; the file's normals */
   size_t normal_count, normal_room;
@@ -44,8 +44,8 @@ static size_t continuation(const obj_reader *reader, const char *at) {
   return end > 0 ? end + 1 : 0;
 }
 
-/* Takes the next word of the line, which may continue after a backslash. False at the line's end, or at a
- * comment. */
+/* Takes the next word of the line, which may continue after a backslash. Returns false at the line's end, or
+ * at a comment. */
 static bool next_word(obj_reader *reader, const char **word, size_t *length) {
   for (size_t skipped;;) {
     skipped = continuation(reader, reader->at);
@@ -65,7 +65,8 @@ static bool next_word(obj_reader *reader, const char **word, size_t *length) {
   return *length > 0;
 }
 
-/* The rest of the line without blanks around it and without a comment, cut to the buffer. */
+/* Copies the rest of the line, without blanks around it and without a comment. A rest that is too long for
+ * the buffer is cut off. */
 static void rest_of_line(obj_reader *reader, char *text, size_t size) {
   size_t length = 0;
   const char *at = reader->at;
@@ -87,7 +88,8 @@ static void skip_line(obj_reader *reader) {
   reader->line++;
 }
 
-/* Reads up to `most` numbers of the line. Returns how many were read, or -1 if a word is no number. */
+/* Reads at most `most` numbers of the line. Returns the number of numbers that were read, or -1 if a word is
+ * no number. */
 static int read_numbers(obj_reader *reader, double *numbers, int most) {
   const char *word;
   size_t length;
@@ -134,7 +136,8 @@ static hl_status read_normal(obj_reader *reader) {
 }
 
 /* The index of a vertex, normal or texture coordinate that a face's corner names. The text counts from 1, or
- * backwards from -1, which is the last of the `count` ones so far. -1 if the index is out of range. */
+ * backwards from -1, which is the last of the `count` ones so far. Returns -1 if the index is out of
+ * range. */
 static int64_t index_of(const char *text, size_t length, size_t count) {
   double number;
   if (!hl_text_number(text, length, &number) || fabs(number) > 1e15 || number != floor(number)) return -1;
@@ -158,8 +161,8 @@ static hl_status set_normal(obj_reader *reader, uint32_t vertex, const char *tex
   return HL_OK;
 }
 
-/* Gives the triangles of one face, from number `first` on, the colour of the face's material. As soon as one
- * face has a colour, all triangles have one; without a material it is white. */
+/* Gives the colour of a face's material to the triangles of this face, which are the triangles from number
+ * `first` on. As soon as one face has a colour, all triangles have one; without a material it is white. */
 static hl_status color_face(obj_reader *reader, size_t first) {
   mesh_parts *parts = reader->parts;
   if (parts->face_colors == NULL && reader->material == NULL) return HL_OK;

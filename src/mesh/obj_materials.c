@@ -71,8 +71,8 @@ hl_status hl_obj_read_materials(hl_context *context, const char *path, const cha
     return HL_OK;
   }
   bool had_images = materials->has_images;
-  char *text = (char *)buffer.bytes; /* the text may be changed, because the block is our own; a zero byte
-                                      * follows it */
+  /* the block is owned here, so the text in it may be changed; a zero byte follows the text */
+  char *text = (char *)buffer.bytes;
   for (char *line = text; status == HL_OK && line != NULL && line < text + buffer.length;) {
     size_t length = strcspn(line, "\r\n");
     bool last = line + length >= text + buffer.length;

@@ -10,16 +10,16 @@ typedef struct obj_material {
 } obj_material;
 
 typedef struct obj_materials {
-  obj_material *list; /* owned; [count] */
+  obj_material *list; /* owned; [count]; the materials */
   size_t count, room;
   bool has_images; /* whether a library names images for its colours, which are not read */
 } obj_materials;
 
 /* Adds the materials of a library beside the OBJ file `path`. A library that cannot be read causes a warning
- * and adds none. */
+ * and adds no materials. */
 hl_status hl_obj_read_materials(hl_context *context, const char *path, const char *name,
                                 obj_materials *materials, hl_error *error);
-/* The material with this name; null if there is none. */
+/* The material with a given name; null if there is no such material. */
 const obj_material *hl_obj_find_material(const obj_materials *materials, const char *name);
 
 #endif

@@ -20,7 +20,7 @@ typedef enum ply_type {
   PLY_F64
 } ply_type;
 static const struct {
-  const char *names; /* alternative names of the type */
+  const char *names; /* the names of the type in files, with "|" between them */
   ply_type type;
   hl_voxel_type voxel; /* the voxel type with the same kind of numbers */
   int bytes;
@@ -58,15 +58,17 @@ static const char *const role_names[ROLES] = {"x",
 enum { MOST_PROPERTIES = 64, MOST_ELEMENTS = 16, WORD_BYTES = 64 };
 
 typedef struct ply_property {
-  ply_type count, type; /* count: for a list, the type of the number before it, which is its length; PLY_NONE:
-                         * the property is no list */
+  /* count: if the property is a list, the type of the number before the list, which tells the list's length;
+   * PLY_NONE: the property is no list. type: the type of the property's numbers */
+  ply_type count, type;
   int role;
 } ply_property;
 
 typedef struct ply_element {
-  bool vertices, faces, strips; /* what the element's items are. Strips are faces whose corners make strips of
-                                 * triangles, with -1 between strips */
-  bool face_colors;             /* whether faces have colours */
+  /* what the items of the element are: vertices, faces or strips of triangles. Strips are faces whose corners
+   * make strips of triangles, with -1 between strips */
+  bool vertices, faces, strips;
+  bool face_colors; /* whether faces have colours */
   size_t count;
   ply_property property[MOST_PROPERTIES];
   int property_count;
@@ -74,7 +76,7 @@ typedef struct ply_element {
 
 typedef struct ply_reader {
   mesh_parts *parts;
-  const char *at, *end; /* the rest of the file */
+  const char *at, *end; /* the part of the file that has not been read yet */
   int line;             /* number of the header line */
   bool ascii, big_endian;
   char line_end; /* the end of header lines: LF, or CR alone */
@@ -82,7 +84,7 @@ typedef struct ply_reader {
   int element_count;
   size_t face_color_room; /* number of triangles for which parts->face_colors has memory */
   size_t colored;         /* number of triangles that have colours */
-  bool has_vertices;      /* whether the element with the vertices was read */
+  bool has_vertices;      /* whether the element with the vertices has been read already */
   hl_error *error;
 } ply_reader;
 
@@ -108,7 +110,7 @@ static bool next_line(ply_reader *reader, const char **line, size_t *length) {
   return true;
 }
 
-/* Splits a header line into words. Returns the number of words. */
+/* Splits a header line into words, and returns the number of words. */
 static int split(const char *line, size_t length, char word[6][WORD_BYTES]) {
   int count = 0;
   for (size_t at = 0; at < length && count < 6;) {
@@ -197,7 +199,7 @@ static bool read_word(ply_reader *reader, double *value) {
   return hl_text_number(start, (size_t)(reader->at - start), value);
 }
 
-/* Reads the next number of a type. False at the end of the file. */
+/* Reads the next number, which has a given type. Returns false at the end of the file. */
 static bool read_number(ply_reader *reader, ply_type type, double *value) {
   if (reader->ascii) return read_word(reader, value);
   int bytes = types[type].bytes;
@@ -215,7 +217,8 @@ static double fraction_of(ply_type type, double value) {
   return fmin(fmax(value / most, 0), 1);
 }
 
-/* Sets one channel of a colour, which is linear RGB and alpha. role: ROLE_COLOR for red, and so on. */
+/* Sets one channel of a colour, which is linear RGB and alpha. role: ROLE_COLOR for red, the next numbers for
+ * green, blue and alpha. */
 static void set_color(float color[4], int role, ply_type type, double value) {
   double fraction = fraction_of(type, value);
   bool linear = type >= PLY_F32 || role == ROLE_COLOR + 3;
@@ -229,8 +232,8 @@ static void set_vertex(mesh_parts *parts, int role, ply_type type, double value)
   else set_color(parts->colors[v], role, type, value);
 }
 
-/* Gives the triangles of one face, from `first` on, the face's colour. Earlier triangles without colours
- * become white. */
+/* Gives a face's colour to the triangles of this face, which are the triangles from `first` on. Earlier
+ * triangles without colours become white. */
 static hl_status color_faces(ply_reader *reader, size_t first, const float color[4]) {
   mesh_parts *parts = reader->parts;
   if (parts->triangle_count > reader->face_color_room || parts->face_colors == NULL) {
@@ -270,12 +273,12 @@ static hl_status read_corners(ply_reader *reader, const ply_property *property) 
   return hl_mesh_note_polygon(reader->parts, first_triangle, reader->error);
 }
 
-/* Reads the corners of strips. Each corner makes a triangle with the two corners before it, and every second
- * triangle is turned over; -1 ends a strip. */
+/* Reads the corners of strips of triangles. Each corner makes a triangle with the two corners before it, and
+ * every second triangle is turned over; -1 ends a strip. */
 static hl_status read_strips(ply_reader *reader, const ply_property *property) {
   double count, corner;
   uint32_t last[2] = {0, 0};
-  size_t length = 0; /* number of corners of the strip so far */
+  size_t length = 0; /* number of corners of the current strip so far */
   if (!read_number(reader, property->count, &count)) return fail_short(reader);
   for (double n = 0; n < count; n++) {
     if (!read_number(reader, property->type, &corner)) return fail_short(reader);
@@ -335,7 +338,7 @@ static bool has_role(const ply_element *element, int first, int last) {
   return true;
 }
 
-/* The fewest bytes that an item of an element takes. */
+/* The least number of bytes that an item of an element takes in the file. */
 static size_t least_bytes(const ply_reader *reader, const ply_element *element) {
   size_t bytes = 0;
   for (int p = 0; p < element->property_count; p++) {

@@ -120,7 +120,8 @@ static void color_of_bytes(const cell_values *values, float (*colors)[4]) {
   }
 }
 
-/* Makes the colours of all points or cells. *colors is owned by the caller; null if there are none. */
+/* Makes the colours of all points or cells. *colors is owned by the caller; it is null if the file has no
+ * colours. */
 static hl_status make_colors(const polydata *data, const cell_values *values, float (**colors)[4],
                              hl_error *error) {
   *colors = NULL;
@@ -134,7 +135,7 @@ static hl_status make_colors(const polydata *data, const cell_values *values, fl
 
 /* ---- parts ---- */
 
-/* The state of a conversion. */
+/* The state of the conversion of PolyData to the parts of a mesh. */
 typedef struct conversion {
   const polydata *data;
   mesh_parts *parts;
@@ -142,25 +143,25 @@ typedef struct conversion {
   bool of_points;
   size_t first_cell[CELL_KINDS]; /* for each kind of cells, its first cell's index among the cells of all
                                   * kinds */
-  double radius;                 /* the radius where the file gives none */
+  double radius;                 /* the radius of spheres and tubes where the file gives no radius */
   hl_error *error;
 } conversion;
 
 static size_t begin_of(const cells *cells, size_t n) { return n > 0 ? (size_t)cells->ends[n - 1] : 0; }
 
-/* The colour of a point that a cell uses; null if there is none. */
+/* The colour of a point, or of the cell that uses the point; null if there are no colours. */
 static const float *color_of(const conversion *c, size_t point, size_t cell) {
   if (c->colors == NULL) return NULL;
   return c->colors[c->of_points ? point : cell];
 }
 
-/* Writes a point and its radius. */
+/* Writes a point and its radius as four numbers. */
 static void round_point(const conversion *c, size_t point, float to[4]) {
   for (int i = 0; i < 3; i++) to[i] = (float)c->data->points[3 * point + (size_t)i];
   to[3] = (float)(c->data->radii.values != NULL ? c->data->radii.values[point] : c->radius);
 }
 
-/* Allocates points with radii, and colours if there are any. */
+/* Allocates arrays for points with radii, and for their colours if there are any. */
 static bool make_round(const conversion *c, size_t count, float (**points)[4], float (**colors)[4]) {
   if (count == 0) return true;
   *points = hl_allocate(c->data->context, count, sizeof **points);
@@ -227,7 +228,7 @@ static hl_status add_cell(const conversion *c, const cells *cells, size_t n, boo
   return status;
 }
 
-/* Gives a colour to the triangles that were added after the mesh had `before` triangles. */
+/* Gives the colour of a cell to the triangles from number `before` on. */
 static void color_faces(const conversion *c, size_t before, size_t cell) {
   for (size_t t = before; t < c->parts->triangle_count; t++)
     memcpy(c->parts->face_colors[t], c->colors[cell], sizeof *c->parts->face_colors);
@@ -255,7 +256,7 @@ static size_t triangle_count(const cells *cells) {
   return count;
 }
 
-/* Makes the vertices of the triangles from the points. */
+/* Makes the vertices of a mesh's triangles from the points of PolyData. */
 static hl_status convert_points(const conversion *c) {
   const polydata *data = c->data;
   mesh_parts *parts = c->parts;

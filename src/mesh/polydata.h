@@ -9,8 +9,10 @@
 typedef enum cell_kind { CELLS_VERTICES, CELLS_LINES, CELLS_POLYGONS, CELLS_STRIPS, CELL_KINDS } cell_kind;
 
 typedef struct cells {
-  double *ends;   /* owned; [count], rising; for each cell, the index in `points` one past its last point */
-  double *points; /* owned; [point_count]; indices of points */
+  /* owned; [count], rising; for each cell, the end of its points: the index in `points` after its last
+   * point */
+  double *ends;
+  double *points; /* owned; [point_count]; the points of all cells, as indices, one cell after the other */
   size_t count, point_count;
 } cells;
 
@@ -27,11 +29,11 @@ typedef enum value_place { AT_POINTS, AT_CELLS, VALUE_PLACES } value_place;
 typedef struct polydata {
   hl_context *context;
   const char *path; /* the file's name in errors */
-  double *points;   /* owned; [point_count][3]; world units */
+  double *points;   /* owned; [point_count][3]; positions of the points; world units */
   size_t point_count;
   cells cells[CELL_KINDS];
-  cell_values colors[VALUE_PLACES]; /* RGB, RGBA, or scalars */
-  cell_values normals, radii;       /* at points */
+  cell_values colors[VALUE_PLACES]; /* the colours at points and at cells: RGB, RGBA, or scalars */
+  cell_values normals, radii;       /* normals and radii at points */
   bool flat;                        /* whether cells have normals; if so, and if points have none, triangles
                                      * show their own normals */
 } polydata;
@@ -42,7 +44,7 @@ typedef struct polydata {
 cell_values *hl_polydata_claim(polydata *data, const char *name, const cell_values *shape, value_place place,
                                bool active);
 
-/* The number of points, or of cells. */
+/* The number of points (AT_POINTS) or of cells (AT_CELLS). */
 size_t hl_polydata_tuples(const polydata *data, value_place place);
 
 /* Checks that cells name existing points, and that arrays have a value for each point or cell. */
@@ -52,8 +54,8 @@ hl_status hl_polydata_check(const polydata *data, hl_error *error);
  * follow cells of the same kind. Pieces must have the same arrays of values. */
 hl_status hl_polydata_join(polydata *const *pieces, size_t count, polydata *whole, hl_error *error);
 
-/* Checks cells and arrays, and fills the empty parts. Polygons and strips become triangles, and vertices
- * become spheres. Lines stay lines, which become tubes later. */
+/* Converts PolyData to the parts of a mesh, which are empty before. Checks cells and arrays first. Polygons
+ * and strips become triangles, and vertices become spheres. Lines stay lines, which become tubes later. */
 hl_status hl_polydata_to_parts(const polydata *data, mesh_parts *parts, hl_error *error);
 
 void hl_polydata_release(polydata *data);

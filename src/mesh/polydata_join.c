@@ -8,15 +8,16 @@
 #include "core/memory.h"
 #include "mesh/polydata.h"
 
-/* The state of joining. */
+/* The state of joining the pieces of a file. */
 typedef struct joining {
-  polydata *const *pieces; /* [count] */
+  polydata *const *pieces; /* [count]; the pieces */
   size_t count;
   polydata *whole;
   hl_error *error;
 } joining;
 
-/* Allocates `count` numbers. Null if none are needed, or if memory is short; then *status says so. */
+/* Allocates `count` numbers. Returns null if `count` is 0, or if memory is short; in the second case *status
+ * says so. */
 static double *make_numbers(const joining *join, size_t count, hl_status *status) {
   if (count == 0) return NULL;
   double *made = hl_allocate(join->whole->context, count, sizeof *made);
@@ -65,7 +66,7 @@ static hl_status join_cells(const joining *join, int kind) {
   return HL_OK;
 }
 
-/* Finds an array of values in a polydata. */
+/* The type of a function that finds one of the arrays of values in a polydata. */
 typedef cell_values *find_values(polydata *data);
 static cell_values *point_colors(polydata *data) { return &data->colors[AT_POINTS]; }
 static cell_values *cell_colors(polydata *data) { return &data->colors[AT_CELLS]; }

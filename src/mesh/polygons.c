@@ -28,10 +28,10 @@ hl_status hl_mesh_note_polygon(mesh_parts *parts, size_t first, hl_error *error)
   return HL_OK;
 }
 
-/* The corners of a polygon in its plane. */
+/* The corners of a polygon, projected onto a plane. */
 typedef struct outline {
   uint32_t *vertex;        /* owned; [room]; index of the corner's vertex in the mesh */
-  double (*at)[2];         /* owned; [room] */
+  double (*at)[2];         /* owned; [room]; the place of each corner in the plane */
   uint32_t *next, *before; /* owned; [room]; indices of the next and the previous corner among the corners
                             * that are left */
   size_t count, room;
@@ -56,7 +56,7 @@ static hl_status make_room(hl_context *context, outline *o, size_t count, hl_err
   return hl_fail_memory(error, o->room * 32, "a polygon");
 }
 
-/* Twice the area of a triangle, positive if it is counter-clockwise. */
+/* Twice the area of a triangle. It is positive if the corners run counter-clockwise. */
 static double area(const double a[2], const double b[2], const double c[2]) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
@@ -78,7 +78,7 @@ static vec3 normal_of(const mesh_parts *parts, const outline *o) {
 }
 
 /* Projects the corners onto the coordinate plane in which the polygon has the greatest area, so that they run
- * counter-clockwise. False if the polygon has no area. */
+ * counter-clockwise. Returns false if the polygon has no area. */
 static bool flatten(const mesh_parts *parts, outline *o) {
   vec3 normal = normal_of(parts, o);
   const double size[3] = {normal.x, normal.y, normal.z};
@@ -143,7 +143,8 @@ static void clip(outline *o, uint32_t (*triangles)[3]) {
   }
 }
 
-/* Reads the corners of a fan. False if a corner names no vertex, which the mesh's check reports later. */
+/* Reads the corners of a fan of triangles. Returns false if a corner names no vertex, which the mesh's check
+ * reports later. */
 static bool take_corners(const mesh_parts *parts, const mesh_polygon *polygon, outline *o) {
   uint32_t(*fan)[3] = parts->triangles + polygon->first;
   o->count = polygon->count + 2;

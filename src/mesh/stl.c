@@ -21,20 +21,21 @@ static float float_at(const unsigned char *bytes) {
 /* ---- corners that are equal become one vertex ---- */
 
 typedef struct corner_table {
-  uint32_t *slots; /* owned; [size]; index of a vertex plus 1; 0 for a free slot */
-  size_t size;     /* a power of two */
+  /* owned; [size]; for each slot of the hash table, the index of a vertex plus 1; 0 for a free slot */
+  uint32_t *slots;
+  size_t size; /* number of slots, a power of two */
 } corner_table;
 
 static uint32_t hash_of(const float at[3]) {
-  uint32_t bits[3], hash = 2166136261u; /* FNV-1a over words, mixed once more at the end */
+  uint32_t bits[3], hash = 2166136261u; /* the hash function FNV-1a over words, mixed once more at the end */
   memcpy(bits, at, sizeof bits);
   for (int i = 0; i < 3; i++) hash = (hash ^ bits[i]) * 16777619u;
   hash ^= hash >> 15;
   return hash * 2246822519u ^ hash >> 13;
 }
 
-/* The index of the vertex at a corner's position. The vertex is added if there is none. The table must have
- * room for it. */
+/* Returns the index of the vertex at a corner's position. If there is no such vertex, it is added. The table
+ * must have room for it. */
 static uint32_t vertex_at(mesh_parts *parts, corner_table *table, const float at[3]) {
   size_t slot = hash_of(at) & (table->size - 1);
   for (; table->slots[slot] != 0; slot = (slot + 1) & (table->size - 1))
@@ -62,7 +63,7 @@ static hl_status add_facet(mesh_parts *parts, corner_table *table, const float c
   uint32_t vertex[3];
   for (int i = 0; i < 3; i++) {
     float at[3];
-    for (int axis = 0; axis < 3; axis++) at[axis] = corner[i][axis] + 0.0f; /* -0 becomes 0 */
+    for (int axis = 0; axis < 3; axis++) at[axis] = corner[i][axis] + 0.0f; /* adding 0 turns -0 into 0 */
     vertex[i] = vertex_at(parts, table, at);
   }
   return hl_mesh_add_triangle(parts, vertex[0], vertex[1], vertex[2], error);
@@ -93,7 +94,7 @@ static hl_status read_binary(mesh_text text, size_t count, mesh_parts *parts, co
 
 /* ---- ASCII ---- */
 
-/* Takes the next word of the text. False at the text's end. */
+/* Takes the next word of the text. Returns false at the text's end. */
 static bool next_word(const char **at, const char *end, const char **word, size_t *length) {
   while (*at < end && hl_is_space(**at)) (*at)++;
   *word = *at;
@@ -102,7 +103,7 @@ static bool next_word(const char **at, const char *end, const char **word, size_
   return *length > 0;
 }
 
-/* Whether a word is the wanted one; upper and lower case count as the same. */
+/* Whether a word is a wanted word; upper and lower case count as the same. */
 static bool is_word(const char *word, size_t length, const char *wanted) {
   if (length != strlen(wanted)) return false;
   for (size_t n = 0; n < length; n++)

@@ -15,14 +15,14 @@ enum { SIDES = 12 };
 static const double SHARP = 0.5;
 
 /* The axes of a piece of a tube, which goes from one of its line's points to the next: the direction along
- * the piece, and two directions across it. They are right-handed. */
+ * the piece, and two directions across it. The three directions form a right-handed system. */
 typedef struct piece {
   vec3 along, u, v;
 } piece;
 
 typedef struct tube {
   mesh_parts *parts;
-  float color[4]; /* the colour of the vertices that are added */
+  float color[4]; /* the colour of the vertices that are added next */
 } tube;
 
 static void add_vertex(tube *tube, vec3 at, vec3 normal) {
@@ -33,7 +33,7 @@ static void add_vertex(tube *tube, vec3 at, vec3 normal) {
   for (int c = 0; c < 4 && parts->colors != NULL; c++) parts->colors[n][c] = tube->color[c];
 }
 
-/* Adds a ring around a centre. middle: the normal of the ring's plane. */
+/* Adds a ring of vertices around a centre. middle: the normal of the ring's plane. */
 static void add_ring(tube *tube, vec3 centre, const piece *piece, vec3 middle, double radius) {
   double across = vec3_dot(piece->along, middle);
   for (int k = 0; k < SIDES; k++) {
@@ -54,7 +54,7 @@ static void add_face(tube *tube, size_t a, size_t b, size_t c) {
   parts->triangle_count++;
 }
 
-/* Adds the faces between two rings; ring `to` lies ahead of ring `from`. */
+/* Adds the faces between two rings of vertices; ring `to` lies ahead of ring `from`. */
 static void add_band(tube *tube, size_t from, size_t to) {
   for (size_t k = 0; k < SIDES; k++) {
     size_t next = (k + 1) % SIDES;
@@ -63,7 +63,7 @@ static void add_band(tube *tube, size_t from, size_t to) {
   }
 }
 
-/* Adds a round end beyond the ring `last`. way: 1 at the tube's end, -1 at its beginning. */
+/* Adds a round end to a tube, beyond the ring `last`. way: 1 at the tube's end, -1 at its beginning. */
 static void add_end(tube *tube, vec3 centre, const piece *piece, double radius, int way, size_t last) {
   double half = sqrt(0.5) * radius;
   vec3 out = vec3_scale(piece->along, way);
@@ -83,7 +83,7 @@ static vec3 point_of(const float point[4]) { return (vec3){point[0], point[1], p
 
 /* Makes the piece of a tube that follows the piece `before` and runs in the direction `along`. before: null
  * for a tube's first piece. middle: the normal of the plane in which the two pieces meet. Derived: mirroring
- * in this plane turns the directions across the first piece into those across the second piece. */
+ * in this plane turns the directions across the first piece into the directions across the second piece. */
 static piece follow(const piece *before, vec3 along, vec3 middle) {
   piece made = {.along = along};
   if (before != NULL) made.u = vec3_subtract(before->u, vec3_scale(middle, 2 * vec3_dot(before->u, middle)));
@@ -110,7 +110,7 @@ static void add_tube(tube *tube, size_t first, size_t count) {
     double radius = points[n][3];
     if (n + 1 < count) along = vec3_normalise(vec3_subtract(point_of(points[n + 1]), at));
     middle = n > 0 ? vec3_normalise(vec3_add(before, along)) : along;
-    if (!(vec3_length(middle) > 0.5)) middle = along; /* the line turns back */
+    if (!(vec3_length(middle) > 0.5)) middle = along; /* the line turns back on itself */
     if (n == 0) now = follow(NULL, along, middle);
     set_color(tube, first + n);
     size_t ring = tube->parts->vertex_count;
@@ -151,14 +151,14 @@ static void keep_lines(mesh_parts *parts) {
   parts->line_count = lines;
 }
 
-/* Makes room in the arrays for the tubes. Gives colours to all vertices if any line has colours. */
+/* Makes room in the arrays of a mesh for its tubes. Gives colours to all vertices if any line has colours. */
 static bool make_room(mesh_parts *parts) {
   size_t rings = parts->line_point_count, ends = 2 * parts->line_count;
   size_t vertices = parts->vertex_count + rings * SIDES + ends * (SIDES + 1),
          triangles = parts->triangle_count + (rings + ends / 2) * 2 * SIDES + ends * SIDES;
   hl_error ignored;
   bool colored = parts->colors != NULL || parts->line_colors != NULL, fresh = parts->colors == NULL;
-  if (colored && fresh) parts->vertex_room = 0; /* all arrays then have the same capacity */
+  if (colored && fresh) parts->vertex_room = 0; /* all arrays then get the same capacity */
   if (vertices > UINT32_MAX || triangles > HL_LIMIT_TRIANGLES ||
       hl_mesh_reserve_vertices(parts, vertices, parts->normals != NULL, colored, &ignored) != HL_OK ||
       hl_mesh_reserve_triangles(parts, triangles, &ignored) != HL_OK)

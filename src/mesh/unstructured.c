@@ -10,12 +10,12 @@
 
 enum { FACES_MOST = 6, FACE_CORNERS = 4, TYPES = 43 };
 
-/* The properties of a type of cell. faces: the faces of a cell with a volume, counter-clockwise as seen from
- * outside; -1 stands for no corner. */
+/* The properties of a type of cell of an unstructured grid. faces: the faces of a cell with a volume,
+ * counter-clockwise as seen from outside; -1 stands for no corner. */
 typedef struct cell_type {
   signed char kind;    /* a kind of PolyData's cells; VOLUME: the type encloses a volume; NONE: the type is
                         * not shown */
-  signed char corners; /* number of corners; 0: cells of the type differ in it */
+  signed char corners; /* number of corners; 0: the number differs between cells of the type */
   signed char faces[FACES_MOST][FACE_CORNERS];
 } cell_type;
 
@@ -85,19 +85,19 @@ static const cell_type *type_of(double number) {
 
 /* ---- faces that one cell alone has ---- */
 
-/* A face of a cell with a volume. */
+/* A face of a cell that encloses a volume. */
 typedef struct grid_face {
-  double corner[FACE_CORNERS]; /* -1 for no corner */
+  double corner[FACE_CORNERS]; /* the corners of the face, sorted; -1 stands for no corner */
   uint32_t cell;
   uint32_t seen; /* number of cells that have the face; 0 marks a free place of the table */
 } grid_face;
 
 typedef struct face_table {
-  grid_face *faces; /* owned; [size] */
-  size_t size;      /* a power of two */
+  grid_face *faces; /* owned; [size]; the places of the hash table */
+  size_t size;      /* number of places, a power of two */
 } face_table;
 
-/* Sorts the corners in rising order. */
+/* Copies the corners of a face in rising order. */
 static void sort_corners(const double from[FACE_CORNERS], double to[FACE_CORNERS]) {
   memcpy(to, from, FACE_CORNERS * sizeof *to);
   for (int n = 1; n < FACE_CORNERS; n++)
@@ -159,7 +159,7 @@ static hl_status count_faces(hl_context *context, const unstructured_cells *grid
 
 /* ---- cells of PolyData ---- */
 
-/* The cells of one kind while they are filled. Without arrays (null), cells are only counted. */
+/* The cells of one kind while they are filled. If the arrays are null, cells are only counted. */
 typedef struct cell_writer {
   cells *cells;
   size_t *sources; /* for each of these cells, the index of the grid's cell from which it was made */
@@ -203,7 +203,8 @@ static void add_kind(const unstructured_cells *grid, const face_table *table, in
   }
 }
 
-/* Checks that the ends of cells are possible, and that cells have as many corners as their types need. */
+/* Checks that the ends of the cells' points are possible, and that cells have as many corners as their types
+ * need. */
 static hl_status check(const unstructured_cells *grid, const polydata *data, hl_error *error) {
   double before = 0;
   size_t passed = 0;

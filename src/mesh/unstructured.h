@@ -7,10 +7,13 @@
 
 #include "mesh/polydata.h"
 
-/* The cells of a grid. */
+/* The cells of an unstructured grid. */
 typedef struct unstructured_cells {
-  double *ends, *types; /* owned; [count]; the end of each cell's points, and each cell's type */
-  double *points;       /* owned; [point_count] */
+  /* owned; [count]; ends: for each cell, the index in `points` after its last point; types: the type of each
+   * cell */
+  double *ends, *types;
+  double *points; /* owned; [point_count]; the points of all cells, as indices, one cell after the
+                   * other */
   size_t count, point_count;
 } unstructured_cells;
 

@@ -37,10 +37,10 @@ typedef struct vtp_array {
   bool active;
 } vtp_array;
 
-/* A piece that has points. */
+/* A piece of a file that has points. */
 typedef struct vtp_piece {
   polydata data;
-  unstructured_cells grid; /* the cells of a piece of an unstructured grid */
+  unstructured_cells grid; /* the cells of the piece, if the file is an unstructured grid */
   size_t *sources;         /* owned; for each cell, the index of the grid's cell from which it was made; null
                             * for PolyData */
   size_t first_array, array_count;
@@ -53,8 +53,8 @@ typedef struct vtp_file {
   section section;
   /* The names of the arrays that the current section's tag declares active. */
   char active_scalars[HL_VTK_NAME_BYTES], active_normals[HL_VTK_NAME_BYTES];
-  vtp_piece *pieces; /* owned; [piece_count] */
-  vtp_array *arrays; /* owned; [array_count]; piece after piece */
+  vtp_piece *pieces; /* owned; [piece_count]; the pieces of the file */
+  vtp_array *arrays; /* owned; [array_count]; the arrays of the file, one piece after the other */
   size_t piece_count, piece_room, array_count, array_room;
   bool is_grid;  /* whether the file is an unstructured grid */
   bool in_piece; /* whether the tag of a piece is open, so that arrays belong to the last piece */
@@ -132,7 +132,7 @@ static hl_status read_tag(void *data, const hl_xml_tag *tag, hl_error *error) {
   return HL_OK;
 }
 
-/* Reads `count` numbers of an array; *numbers is owned by the caller. */
+/* Reads `count` numbers of an array. *numbers is owned by the caller. */
 static hl_status read_numbers(vtp_file *file, const vtp_array *array, size_t count, double **numbers,
                               hl_error *error) {
   hl_number_code code = {.text = array->array.encoding == HL_VTK_ASCII, .big_endian = file->xml.big_endian};
@@ -154,7 +154,7 @@ static hl_status read_numbers(vtp_file *file, const vtp_array *array, size_t cou
   return status;
 }
 
-/* The first array with this name in a piece's section; null if there is none. */
+/* The first array with a given name in one section of a piece; null if there is none. */
 static const vtp_array *find_array(const vtp_file *file, const vtp_piece *piece, section section,
                                    const char *name) {
   for (size_t n = 0; n < piece->array_count; n++) {
