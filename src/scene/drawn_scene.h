@@ -16,14 +16,14 @@
 #include "scene/order.h"
 
 typedef struct drawn_scene {
-  pthread_mutex_t lock; /* held while the rest is made */
+  pthread_mutex_t lock; /* held while the other members are made */
   bool made;
-  hl_scene_description description; /* the placed description, in which volumes of occupancy take the place of
-                                     * label maps, and lattices (label/mask.h) that of the masks' label
-                                     * maps */
-  drawn_labels labels;              /* the volumes of occupancy and the lattices */
-  scene_order order;                /* the order in which frames use the lights, volumes and meshes of the
-                                     * description */
+  /* the placed description of the scene; in it, volumes of occupancy take the place of label maps, and
+   * lattices (label/mask.h) take the place of the masks' label maps */
+  hl_scene_description description;
+  drawn_labels labels; /* owns the volumes of occupancy and the lattices */
+  scene_order order;   /* the order in which frames use the lights, volumes and meshes of the
+                        * description */
   /* Owned; [volume_count]. For a transfer function of two numbers: a number that identifies its content, as a
    * part of keys of kept results. For other functions: 0. */
   uint64_t *plane_marks;
@@ -32,12 +32,12 @@ typedef struct drawn_scene {
 /* Makes an empty drawn scene, which hl_drawn_scene_make() fills; owned by the caller
  * (hl_drawn_scene_destroy); null if memory is short. */
 drawn_scene *hl_drawn_scene_create(hl_context *context);
-void hl_drawn_scene_destroy(hl_context *context, drawn_scene *drawn); /* null is allowed */
+void hl_drawn_scene_destroy(hl_context *context, drawn_scene *drawn); /* `drawn` may be null */
 
-/* Makes the form of a scene that frames draw, unless it was made before. given: the description as it was
- * given; placed: the same description, with lights converted to the world and the scene's cuts in its
- * volumes. Any number of threads may call this function: one makes the form, and the others wait. After a
- * failure the next call tries again. */
+/* Makes the form of a scene that frames draw, unless it was made before. given: the description of the scene
+ * as the program gave it; placed: the same description, with lights converted to the world and the scene's
+ * cuts in its volumes. Any number of threads may call this function: one makes the form, and the others wait.
+ * After a failure the next call tries again. */
 hl_status hl_drawn_scene_make(hl_context *context, const hl_scene_description *given,
                               const hl_scene_description *placed, drawn_scene *drawn, hl_error *error);
 

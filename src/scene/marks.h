@@ -8,24 +8,24 @@
 
 enum {
   HL_LIMIT_MARKS = 1000,
-  HL_LIMIT_MARK_POINTS = 500, /* points of a line */
-  HL_LIMIT_MARK_TEXT = 2000   /* bytes of a text */
+  HL_LIMIT_MARK_POINTS = 500, /* greatest number of points of a line */
+  HL_LIMIT_MARK_TEXT = 2000   /* greatest number of bytes of a text */
 };
 
-/* A kind's name in scene files, and how many points it has. */
+/* The rule of a kind of mark: its name in scene files, and how many points it has. */
 typedef struct hl_mark_rule {
   const char *name;
-  size_t least, most; /* number of points */
+  size_t least, most; /* the least and the greatest number of points */
 } hl_mark_rule;
 
-/* The rule of a kind; null: there is no such kind. */
+/* The rule of a kind of mark; null: there is no such kind. */
 const hl_mark_rule *hl_mark_rule_of(int kind);
 
 /* Checks the marks of a description. Errors name the field ("/marks/0/points"). */
 hl_status hl_marks_check(const hl_mark *marks, size_t count, hl_error *error);
 
-/* Copies marks with their texts and points. *copy is owned by the caller (hl_marks_release); null for no
- * marks. */
+/* Copies marks with their texts and points. *copy is owned by the caller (hl_marks_release); it is null if
+ * there are no marks. */
 hl_status hl_marks_copy(hl_context *context, const hl_mark *marks, size_t count, hl_mark **copy,
                         hl_error *error);
 /* Releases an array of marks with their points and texts. marks: may be null. */

@@ -23,9 +23,9 @@ static void add_pixels(hl_key *key, const float *pixels, int width, int height) 
     hl_key_add_whole(key, (int64_t)hl_key_mark(pixels, 3 * (size_t)width * (size_t)height * sizeof *pixels));
 }
 
-/* A key begins with the light's type and place, so that the order stays while colours and intensities change.
- * Among lights of one type, those that shine from above come first, because sheets suit the first light best,
- * and the main light of a scene mostly stands above. */
+/* Writes the key by which a light is ordered. The key begins with the light's type and place, so that the
+ * order stays while colours and intensities change. Among lights of one type, lights that shine from above
+ * come first, because sheets suit the first light best, and the main light of a scene mostly stands above. */
 static void write_light(const void *data, hl_key *key) {
   const hl_light *light = data;
   hl_key_add_whole(key, light->type);
@@ -45,7 +45,7 @@ static void write_light(const void *data, hl_key *key) {
 
 /* ---- volumes ---- */
 
-/* Adds the facts about the voxels that are known without reading them. */
+/* Adds those properties of a volume's voxels to its key that are known without reading the voxels. */
 static void add_voxels(hl_key *key, const hl_volume *volume) {
   for (int axis = 0; axis < 3; axis++) hl_key_add_whole(key, (int64_t)volume->dimension[axis]);
   hl_key_add_whole(key, volume->storage);
@@ -76,7 +76,8 @@ static void add_mask(hl_key *key, const hl_mask *mask) {
   add_voxels(key, mask->volume);
 }
 
-/* A key begins with the volume's place and voxels, so that the order stays while its look is changed. */
+/* Writes the key by which a volume is ordered. The key begins with the volume's place and voxels, so that the
+ * order stays while the volume's look is changed. */
 static void write_volume(const void *data, hl_key *key) {
   const hl_scene_volume *volume = data;
   affine3 place = hl_scene_volume_index_to_world(volume);
@@ -146,7 +147,7 @@ typedef struct sort_kind {
   const void *items;
   size_t count, size;
   hl_key_write *write;
-  /* Compares things whose keys are equal; null: keys contain everything that matters. */
+  /* compares things whose keys are equal; null: the keys contain everything that matters */
   int (*compare)(const void *a, const void *b);
 } sort_kind;
 
@@ -160,7 +161,7 @@ static int compare(const sort_kind *kind, const hl_key *keys, int a, int b) {
   return kind->compare(items + (size_t)a * kind->size, items + (size_t)b * kind->size);
 }
 
-/* Sorts the first `kind->count` numbers of an order. */
+/* Sorts the first `kind->count` numbers of an order by the keys of the things that they name. */
 static hl_status sort(hl_context *context, const sort_kind *kind, int *order, hl_error *error) {
   if (kind->count < 2) return HL_OK;
   hl_key *keys = hl_allocate_zeroed(context, kind->count, sizeof *keys);

@@ -14,15 +14,16 @@
 /* The order of a scene's lights, volumes and meshes. Each array lists, in the order of frames, the indices
  * that they have in the placed description. */
 typedef struct scene_order {
-  int *lights;  /* owned; [light_count]; the suns of the sky come last, as in the placed description */
-  int *volumes; /* owned; [volume_count] */
-  int *meshes;  /* owned; [mesh_count] */
+  /* owned; [light_count]; indices of lights; the suns of the sky come last, as in the placed description */
+  int *lights;
+  int *volumes; /* owned; [volume_count]; indices of volumes */
+  int *meshes;  /* owned; [mesh_count]; indices of meshes */
 } scene_order;
 
 /* Finds the order of a scene's lights, volumes and meshes. given: the description as it was given. Its lights
  * may be in the camera's axes, so that their order does not depend on the camera. placed: the description
- * that is rendered; its first lights are the lights of `given`. Objects between which no picture can
- * distinguish may have any order. Release the order after an error, too. */
+ * that is rendered; its first lights are the lights of `given`. Objects that no picture can tell apart may
+ * have any order. Release the order after an error, too. */
 hl_status hl_scene_order_find(hl_context *context, const hl_scene_description *given,
                               const hl_scene_description *placed, scene_order *order, hl_error *error);
 void hl_scene_order_release(hl_context *context, scene_order *order);

@@ -16,16 +16,17 @@
 
 enum { MOST_LEVELS = 3, LEAST_VOXELS = 64 * 64 * 64 };
 
-/* A volume, and copies of it from fine to coarse. There are none where the volume can have none of this
- * kind. */
+/* A volume, and copies of it from fine to coarse. There are no copies if the volume can have no copies of
+ * this kind. */
 typedef struct levels {
-  hl_volume *volume;               /* retained */
-  hl_coarser_kind kind;            /* what the copies are made of */
-  hl_volume *coarser[MOST_LEVELS]; /* retained; [count] */
+  hl_volume *volume;               /* the volume; retained */
+  hl_coarser_kind kind;            /* the use for which the copies are made: as labels or as values */
+  hl_volume *coarser[MOST_LEVELS]; /* retained; [count]; the copies */
   size_t count;
 } levels;
 
-/* A scene has a volume and its mask; each may be used as values and as labels. */
+/* Two numbers of which the product is the number of lists of copies that a scene's volume may have. MAPS: the
+ * volume and its mask. KINDS: each may be used as values and as labels. */
 enum { MAPS = 2, KINDS = 2 };
 
 struct hl_preview {
@@ -92,8 +93,8 @@ static hl_status add_levels(hl_preview *preview, hl_volume *volume, hl_coarser_k
   return status;
 }
 
-/* Makes the copies of all volumes and masks of a scene for their use there. known: only of volumes and masks
- * of which there are copies for another use. */
+/* Makes the copies of all volumes and masks of a scene for their use in this scene. known: if set, copies are
+ * made only of volumes and masks that have copies for another use. */
 static hl_status add_scene(hl_preview *preview, const hl_scene_description *d, bool known, hl_error *error) {
   hl_status status = HL_OK;
   for (size_t v = 0; v < d->volume_count && status == HL_OK; v++) {
@@ -149,7 +150,7 @@ static hl_volume *copy_for(const hl_preview *preview, const hl_scene_volume *vol
   return NULL;
 }
 
-/* Replaces a volume and its mask by their copies. False: both stay as they are. */
+/* Replaces a volume and its mask by their coarser copies. Returns false if both stay as they are. */
 static bool replace(const hl_preview *preview, hl_scene_volume *volume, double apart) {
   hl_volume *copy = copy_for(preview, volume, volume->volume, kind_of(volume), apart);
   hl_volume *mask = copy_for(preview, volume, volume->mask.volume, HL_COARSER_LABELS, apart);
@@ -158,7 +159,7 @@ static bool replace(const hl_preview *preview, hl_scene_volume *volume, double a
   return copy != NULL || mask != NULL;
 }
 
-/* Makes the copies that a scene needs and that are missing. Where memory is short, there are fewer copies. */
+/* Makes the copies that a scene needs and that are missing. Where memory is short, fewer copies are made. */
 static hl_status add_missing(hl_preview *preview, const hl_scene_description *d, hl_error *error) {
   hl_error short_of = {0};
   hl_status status = add_scene(preview, d, true, &short_of);

@@ -119,7 +119,7 @@ static void destroy(hl_scene *scene) {
   hl_release(context, scene);
 }
 
-/* Copies an array into memory that the caller owns; null if there are no items. */
+/* Copies an array into memory that the caller owns. The copy is null if there are no items. */
 static hl_status copy_array(hl_context *context, const void *items, size_t count, size_t size,
                             const char *what, void **copy, hl_error *error) {
   *copy = NULL;
@@ -268,11 +268,11 @@ void hl_light_images_release(hl_context *context, hl_light *light) {
   forget_images(light);
 }
 
-/* A light's texture or emission, or a sky's image. */
+/* The image of a light's texture or emission, or of a sky. */
 typedef struct light_picture {
-  const float *pixels; /* [height][width][3]; null: none */
+  const float *pixels; /* [height][width][3]; linear RGB; null: there is no image */
   int width, height;
-  const char *file; /* name of the file; null: none */
+  const char *file; /* name of the image's file; null: there is none */
 } light_picture;
 
 static hl_status copy_picture(hl_context *context, light_picture from, const float **pixels,
@@ -338,7 +338,7 @@ static bool has_suns(const hl_scene_description *d) {
          d->render.slicing == HL_SLICING_HALF_VECTOR && d->render.compositing == HL_COMPOSITING_LIGHT;
 }
 
-/* Gives the camera another up vector if its own lies along the line of sight. */
+/* Gives the camera another up vector if its own up vector lies along the line of sight. */
 static void mend_up(hl_camera *camera) {
   vec3 right, up, forward;
   if (hl_camera_basis(camera, &right, &up, &forward)) return;

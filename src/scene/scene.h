@@ -17,10 +17,11 @@
 struct hl_scene {
   hl_context *context;
   atomic_int references;
-  hl_scene_description description; /* its arrays and texts are owned by the scene */
-  hl_scene_description placed;      /* the description with all lights in the world, and with the scene's cuts
-                                     * in its volumes. The suns of the sky follow the lights, and the sky's
-                                     * image lacks them. Owns its array of lights */
+  hl_scene_description description; /* the description as it was given; its arrays and texts are owned by
+                                     * the scene */
+  /* the description with all lights in the world, and with the scene's cuts in its volumes. The suns of the
+   * sky follow the lights, and the sky's image lacks them. The array of lights is owned */
+  hl_scene_description placed;
   sky_suns suns;      /* the suns of the sky; if placed.sky.suns is set, they are lights of `placed` */
   placed_cuts cut;    /* the volumes of `placed`, if the scene has cuts of its own */
   drawn_scene *drawn; /* owned; the form of the scene that frames draw; null until a frame asks for it */
@@ -43,7 +44,7 @@ hl_status hl_field_errors_write(hl_context *context, const hl_scene_description 
 /* Frees the pixels and file names of a light's texture and emission, where they are owned. */
 void hl_light_images_release(hl_context *context, hl_light *light);
 
-/* Copies labels with their names into one block (hl_release); null for none. */
+/* Copies labels with their names into one block (hl_release). The copy is null if there are no labels. */
 hl_status hl_labels_copy(hl_context *context, const hl_label *labels, size_t count, const hl_label **copy,
                          hl_error *error);
 

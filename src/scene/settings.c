@@ -33,7 +33,7 @@ bool hl_setting_is_for(const hl_setting *setting, int type) {
   return setting->only_for == 0 || (setting->only_for >> type & 1) != 0;
 }
 
-/* The number of doubles in the field; 0: the field is an int. */
+/* The number of doubles in a setting's field; 0: the field is an int. */
 static size_t doubles_of(const hl_setting *setting) {
   switch (setting->type) {
     case HL_SETTING_NUMBER: return 1;
@@ -104,7 +104,7 @@ void hl_setting_mend(const hl_setting *setting, char *text, size_t size) {
   }
 }
 
-/* key: the key of the number in errors ("position/2"). */
+/* Checks that a number is in a setting's range. key: the key of the number in errors ("position/2"). */
 static hl_status check_number(const hl_setting *setting, double value, const char *place, const char *key,
                               hl_error *error) {
   if (value <= setting->high && (setting->open_low ? value > setting->low : value >= setting->low))

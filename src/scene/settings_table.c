@@ -12,7 +12,7 @@
 #include "scene/settings.h"
 #include "scene/soft_methods.h"
 
-/* A row takes a few lines. */
+/* A row of the tables takes a few lines. */
 /* clang-format off */
 
 static const hl_setting_choice camera_types[] = {
@@ -65,11 +65,11 @@ static const hl_setting_choice automatic_resolution[] = {{"auto", 0}, {NULL, 0}}
 
 #define ONE(type) (1u << (type))
 #define SHINING   (ONE(HL_SKY_UNIFORM) | ONE(HL_SKY_GRADIENT) | ONE(HL_SKY_IMAGE))
-/* The types of light that have a setting (light_kinds.h). */
+/* Bits for the types of light that have a setting (light_kinds.h). */
 #define ONE_IF(with, value, name, settings) | ((settings) & (with) ? ONE(value) : 0)
 #define LIGHTS_WITH(setting)                (0u HL_LIGHT_KINDS(ONE_IF, setting))
 
-/* Parts that many rows have in common. */
+/* Parts that many rows of the tables have in common. */
 #define FIELD(structure, name) .field = #name, .offset = offsetof(structure, name)
 #define A_POINT                                                                                      \
   .type = HL_SETTING_POINT, .unit = "world units", .low = -HL_LIMIT_LENGTH, .high = HL_LIMIT_LENGTH, \

@@ -1,4 +1,4 @@
-/* scene/check/check.c - is a description possible?
+/* scene/check/check.c - checks whether a description of a scene is possible.
  *
  * In: a description that was not checked yet. Out: HL_OK, or the first fault as one line: the JSON pointer of
  * the field, the bad value, and how to mend it. hl_scene_create() checks before it copies anything, so that
@@ -84,7 +84,8 @@ static hl_status check_scales(const hl_scene_description *d, hl_error *error) {
   return status;
 }
 
-/* Checks that the scene has what a transfer function of two numbers needs. */
+/* Checks that a scene can use a volume's transfer function of two numbers: the picture is no maximum
+ * projection, and the other volume exists and is not drawn by its labels. */
 static hl_status check_second(const hl_scene_description *d, size_t v, hl_error *error) {
   const hl_function_plane *plane = &d->volumes[v].transfer_function.plane;
   if (plane->second == HL_SECOND_NONE || d->volumes[v].label_count > 0) return HL_OK;

@@ -1,4 +1,4 @@
-/* scene/check/check.h - is a description possible? */
+/* scene/check/check.h - checks whether a description of a scene is possible. */
 #ifndef HL_SCENE_CHECK_CHECK_H
 #define HL_SCENE_CHECK_CHECK_H
 
@@ -7,11 +7,11 @@
 
 #include "scene/check/checker.h"
 
-/* Checks every field of a description; reports the first fault as "JSON pointer: what is wrong: how to mend
- * it". */
+/* Checks every field of a scene's description; reports the first fault as "JSON pointer: what is wrong: how
+ * to mend it". */
 hl_status hl_description_check(const hl_scene_description *description, hl_error *error);
 
-/* Checks light number `index` of a scene by itself. */
+/* Checks light number `index` of a scene by itself, without the rest of the scene. */
 hl_status hl_light_check(const hl_light *light, size_t index, hl_error *error);
 
 /* Checks one volume of a description, before a camera frames it. */
@@ -27,7 +27,7 @@ hl_status hl_scene_mesh_check(const hl_scene_mesh *mesh, size_t index, hl_error 
 hl_status hl_transfer_function_check(const hl_transfer_function *function, const char *place,
                                      hl_error *error);
 
-/* Checks the layers that are wanted of a frame of this scene; null: none. */
+/* Checks the layers that are wanted of a frame of a scene. layers: null if no layers are wanted. */
 hl_status hl_layers_check(const hl_layers *layers, const hl_scene_description *scene, hl_error *error);
 
 #endif

@@ -20,7 +20,8 @@ hl_status hl_check_settings(const hl_checker *check, hl_setting_kind kind, const
 
 hl_status hl_check_range(const hl_checker *check, const char *key, double value, double low, double high,
                          const char *mend) {
-  if (value >= low && value <= high) return HL_OK; /* a NaN fails */
+  /* the comparison is false for a NaN, which is therefore refused */
+  if (value >= low && value <= high) return HL_OK;
   const char *problem = isnan(value)            ? "is not a number"
                         : value < 0 && low == 0 ? "is negative"
                                                 : "is out of range";

@@ -7,26 +7,27 @@
 #include "scene/check/limits.h"
 #include "scene/settings.h"
 
-/* The object that is checked: "/lights/3". */
+/* The object whose values are checked, and where errors are stored. place: the JSON pointer of the object,
+ * such as "/lights/3". */
 typedef struct hl_checker {
   hl_error *error;
   char place[80];
 } hl_checker;
 
-/* Fails with "PLACE/KEY: PROBLEM". */
+/* Reports a bad value: fails with the line "PLACE/KEY: PROBLEM". */
 hl_status hl_check_refuse(const hl_checker *check, const char *key, const char *problem);
 
-/* hl_check_key() checks one setting. hl_check_settings() checks all settings that an object of this type has;
- * for kinds of objects without types, type is 0. */
+/* Two checks by the tables of settings. hl_check_key() checks one setting. hl_check_settings() checks all
+ * settings that an object of a type has; for kinds of objects without types, `type` is 0. */
 hl_status hl_check_key(const hl_checker *check, hl_setting_kind kind, const char *key, const void *object);
 hl_status hl_check_settings(const hl_checker *check, hl_setting_kind kind, const void *object, int type);
 
-/* Checks a number that is in no table of settings: from low to high. */
+/* Checks that a number that is in no table of settings lies between `low` and `high`. */
 hl_status hl_check_range(const hl_checker *check, const char *key, double value, double low, double high,
                          const char *mend);
 
-/* hl_check_point() checks that coordinates are within HL_LIMIT_LENGTH, and hl_check_direction() that a
- * direction is not zero. */
+/* Two checks of vectors. hl_check_point() checks that coordinates are within HL_LIMIT_LENGTH, and
+ * hl_check_direction() that a direction is not zero. */
 hl_status hl_check_point(const hl_checker *check, const char *key, const double v[3]);
 hl_status hl_check_direction(const hl_checker *check, const char *key, const double v[3]);
 

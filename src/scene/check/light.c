@@ -6,7 +6,7 @@
 #include "scene/check/check.h"
 #include "scene/light/light_kind.h"
 
-/* Checks the texture; the light's rays must cross its screen. */
+/* Checks the texture of a light. The light's rays must cross the texture's screen. */
 static hl_status check_texture(const hl_checker *parent, const hl_light *light) {
   const hl_light_texture *texture = &light->texture;
   hl_checker check = {parent->error, ""};
@@ -31,7 +31,7 @@ static hl_status check_texture(const hl_checker *parent, const hl_light *light) 
   return HL_OK;
 }
 
-/* Checks the emission image; the light must have a surface that it can be on. */
+/* Checks the emission image of a light. The light must have a surface that can carry the image. */
 static hl_status check_emission(const hl_checker *parent, const hl_light *light) {
   const hl_light_emission *emission = &light->emission;
   hl_checker check = {parent->error, ""};

@@ -3,17 +3,17 @@
 #ifndef HL_SCENE_CHECK_LIMITS_H
 #define HL_SCENE_CHECK_LIMITS_H
 
-#define HL_LIMIT_PIXELS         32768 /* image width and height */
+#define HL_LIMIT_PIXELS         32768 /* greatest width and height of a picture, in pixels */
 #define HL_LIMIT_LIGHTS         256
 #define HL_LIMIT_VOLUMES        256
 #define HL_LIMIT_MESHES         256
-#define HL_LIMIT_ISO            64    /* isosurfaces of one volume */
-#define HL_LIMIT_CUTS           64    /* number of cuts of one volume, and of a scene */
-#define HL_LIMIT_VERTICES       1024  /* number of vertices of one polygon */
-#define HL_LIMIT_TEXTURE_SIDE   32768 /* pixels of a light's texture */
+#define HL_LIMIT_ISO            64    /* greatest number of isosurfaces of one volume */
+#define HL_LIMIT_CUTS           64    /* greatest number of cuts of one volume, and of a scene */
+#define HL_LIMIT_VERTICES       1024  /* greatest number of vertices of one polygon */
+#define HL_LIMIT_TEXTURE_SIDE   32768 /* greatest number of pixels along a side of a light's texture */
 #define HL_LIMIT_TEXTURE_PIXELS (1 << 26)
-#define HL_LIMIT_POINTS         65536 /* number of points of one transfer function */
-/* Greatest number of boxes, or of polygons, of a transfer function of two numbers. */
+#define HL_LIMIT_POINTS         65536 /* greatest number of points of one transfer function */
+/* The greatest number of boxes, or of polygons, of a transfer function of two numbers. */
 #define HL_LIMIT_SHAPES 256
 /* greatest number of pixels along a side of the image of a transfer function of two numbers */
 #define HL_LIMIT_PLANE_SIDE 4096
@@ -27,16 +27,16 @@
 /* The greatest brightness of a light at a distance of one voxel edge. Sums and products of such numbers still
  * fit floats. */
 #define HL_LIMIT_BRIGHTNESS    1e20
-#define HL_LIMIT_REACH         1e12 /* greatest distance or length, in smallest voxel edges */
+#define HL_LIMIT_REACH         1e12 /* greatest distance or length, in edges of the smallest voxel */
 #define HL_LIMIT_TEXTURE_VALUE 1e6
 #define HL_LIMIT_RADIANCE      1e6 /* greatest radiance of a sky's colours, and greatest strength of a sky */
-/* Greatest value of a voxel; differences and sums of such values still fit floats. */
+/* The greatest value of a voxel. Differences and sums of such values still fit floats. */
 #define HL_LIMIT_VOXEL_VALUE   1e36
 #define HL_LIMIT_LIGHT_SAMPLES 64
 #define HL_LIMIT_THREADS       1024
 #define HL_LIMIT_SLABS_AT_ONCE 64
 #define HL_LIMIT_SHININESS     10000
 #define HL_LIMIT_EMISSION      1e6
-#define HL_LIMIT_EXPOSURE      32 /* stops, either way */
+#define HL_LIMIT_EXPOSURE      32 /* greatest exposure, in stops, either way */
 
 #endif

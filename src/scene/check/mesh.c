@@ -6,7 +6,7 @@
 #include "scene/check/check.h"
 #include "scene/geometry/placement.h"
 
-/* Checks that the placed mesh lies within the world that floats can hold. */
+/* Checks that the placed mesh lies within the part of the world whose coordinates floats can hold. */
 static hl_status check_corners(const hl_checker *check, const hl_scene_mesh *mesh) {
   const hl_mesh *triangles = mesh->mesh;
   affine3 placement = hl_scene_mesh_to_world(mesh);

@@ -77,8 +77,8 @@ hl_status hl_transfer_function_check(const hl_transfer_function *function, const
   return status == HL_OK ? hl_plane_check(&function->plane, place, error) : status;
 }
 
-/* Checks the three scale factors. Each is the product of `scale` and one of axis_scale; errors tell the
- * product. */
+/* Checks the three scale factors. Each factor is the product of `scale` and one number of axis_scale; errors
+ * tell the product. */
 static hl_status check_axis_scales(const hl_checker *check, const hl_scene_volume *volume) {
   const double *axis = volume->axis_scale;
   if (axis[0] == 1 && axis[1] == 1 && axis[2] == 1) return HL_OK;
@@ -225,7 +225,7 @@ static hl_status check_iso(const hl_checker *check, const hl_scene_volume *volum
   return status;
 }
 
-/* key: of the list. */
+/* Checks a list of labels. list: the key of the list in the scene. */
 static hl_status check_labels(const hl_checker *check, const char *list, const hl_label *labels,
                               size_t count) {
   hl_status status = hl_check_count(check, list, labels, count, HL_MOST_LABELS);

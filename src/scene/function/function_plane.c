@@ -28,7 +28,7 @@ static double gaussian_up_to(double middle, double deviation, double x) {
   return deviation * sqrt(HL_PI / 2) * erf((x - middle) / (deviation * sqrt(2)));
 }
 
-/* The mean of a box's Gaussian along one axis, over from..to. */
+/* The mean of a box's Gaussian along one axis, over the part from `from` to `to`. */
 static double gaussian_along(const hl_function_box *box, int axis, double from, double to) {
   double low = box->low[axis], high = box->high[axis], middle = (low + high) / 2,
          deviation = box->sigma * (high - low), begin = fmax(from, low), end = fmin(to, high);
@@ -37,7 +37,7 @@ static double gaussian_along(const hl_function_box *box, int axis, double from, 
   return (gaussian_up_to(middle, deviation, end) - gaussian_up_to(middle, deviation, begin)) / (to - from);
 }
 
-/* The mean weight of a box along an axis, over from..to. */
+/* The mean weight of a box along one axis, over the part from `from` to `to`. */
 static double weight_along(const hl_function_box *box, int axis, double from, double to) {
   if (box->sigma > 0) return gaussian_along(box, axis, from, to);
   double low = box->low[axis], high = box->high[axis], edge = fmin(box->edge[axis], (high - low) / 2);
@@ -98,7 +98,8 @@ static void add_polygons(const hl_transfer_function *function, const double at[2
   }
 }
 
-/* The image's pixel at a point, bilinear. */
+/* Finds the colour and opacity of the image at a point of the plane, interpolated bilinearly between
+ * pixels. */
 static void sample_image(const hl_function_image *image, const double at[2], double pixel[4]) {
   const int size[2] = {image->width, image->height};
   int first[2], next[2];
@@ -134,7 +135,7 @@ static void add_image(const hl_transfer_function *function, const double at[2], 
   add(sum, share * extinction_of(pixel[3], function->unit_distance), color);
 }
 
-enum { SAMPLES = 3 /* along each side of a part */ };
+enum { SAMPLES = 3 /* number of samples along each side of a part of the plane */ };
 
 plane_sum hl_plane_mean(const hl_transfer_function *function, const plane_box *part) {
   plane_sum sum = {0, {0, 0, 0}};
@@ -224,8 +225,8 @@ static column column_between(const hl_function_plane *plane, double from, double
   return found;
 }
 
-/* If shapes go on beyond `low` or `high`, the outline keeps its opacity there; otherwise its opacity falls to
- * 0. */
+/* Replaces a function of two numbers by its outline. If shapes go on beyond the values `low` or `high`, the
+ * outline keeps its opacity there; otherwise its opacity falls to 0. */
 hl_status hl_plane_outline(hl_context *context, double low, double high, hl_transfer_function *function,
                            hl_error *error) {
   plane_box bounds;

@@ -11,7 +11,7 @@ static inline bool hl_has_plane(const hl_transfer_function *function) {
   return function->plane.second != HL_SECOND_NONE;
 }
 
-/* The factor by which the second number is multiplied before the function uses it. */
+/* The factor by which the second number is multiplied before a transfer function of two numbers uses it. */
 static inline double hl_plane_second_scale(const hl_function_plane *plane) {
   return plane->second_scale == 0 ? 1 : plane->second_scale;
 }
@@ -19,23 +19,22 @@ static inline double hl_plane_second_scale(const hl_function_plane *plane) {
 /* The keys under which a scene file has the ranges of the two axes: "value" and "second". */
 extern const char *const hl_plane_range_keys[2];
 
-/* A part of the plane, from low to high: [value, second number]. */
+/* A rectangle of the plane of two numbers, from low to high: [value, second number]. */
 typedef struct plane_box {
   double low[2], high[2];
 } plane_box;
 
-/* The box around all shapes; false where there are none. */
+/* Finds the box around all shapes of a function of two numbers. Returns false where there are no shapes. */
 bool hl_plane_bounds(const hl_function_plane *plane, plane_box *bounds);
 
-/* Sums over all shapes of a function. Each shape adds its mean over the part of the plane that is asked
- * for. */
+/* Sums over all shapes of a function of two numbers. Each shape adds its mean over a part of the plane. */
 typedef struct plane_sum {
-  double extinction; /* per world unit */
-  double color[3];   /* linear RGB, times extinction */
+  double extinction; /* extinction per world unit */
+  double color[3];   /* linear RGB, multiplied by extinction */
 } plane_sum;
 
-/* The function's mean over a part of the plane. If low and high are the same, it is the function at this
- * point. */
+/* The mean of a function of two numbers over a part of the plane. If low and high are the same, it is the
+ * function at this point. */
 plane_sum hl_plane_mean(const hl_transfer_function *function, const plane_box *part);
 
 /* Replaces the function's opacity and colour by the outline of the plane: a function of the value alone, over
@@ -45,15 +44,16 @@ plane_sum hl_plane_mean(const hl_transfer_function *function, const plane_box *p
 hl_status hl_plane_outline(hl_context *context, double low, double high, hl_transfer_function *function,
                            hl_error *error);
 
-/* Copies the plane. *to owns its arrays and texts, also after a failure (hl_plane_release). */
+/* Copies the plane of a function of two numbers. *to owns its arrays and texts, also after a failure
+ * (hl_plane_release). */
 hl_status hl_plane_copy(hl_context *context, const hl_function_plane *from, hl_function_plane *to,
                         hl_error *error);
 void hl_plane_release(hl_context *context, hl_function_plane *plane);
 
-/* A hash of the plane's content, which identifies it. */
+/* A hash of the content of a function's plane, which identifies this content. */
 uint64_t hl_plane_mark(const hl_function_plane *plane);
 
-/* Checks the plane of a transfer function. place: the function's name in errors. */
+/* Checks the plane of a transfer function. place: the JSON pointer of the function, for errors. */
 hl_status hl_plane_check(const hl_function_plane *plane, const char *place, hl_error *error);
 
 #endif

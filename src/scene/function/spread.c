@@ -30,7 +30,7 @@ hl_status hl_transfer_function_visible_range(const hl_volume *volume, const hl_t
   size_t count = function->opacity_count, first = 0, last = count;
   while (first < count && points[first].opacity <= 0) first++;
   while (last > first && points[last - 1].opacity <= 0) last--;
-  if (first == last) return HL_OK; /* nothing is visible */
+  if (first == last) return HL_OK; /* nothing is visible in an empty range */
   double low = first > 0 ? points[first - 1].value : range[0];
   double high = last < count ? points[last].value : range[1];
   if (low > range[0] && low < range[1]) range[0] = low;
@@ -50,13 +50,14 @@ hl_status hl_transfer_function_graded_range(const hl_volume *volume, const hl_tr
 
 /* Points of opacity or colour, as rows of `width` numbers that begin with the value. */
 typedef struct rows {
-  const double *from; /* [count][width] */
+  const double *from; /* [count][width]; the given points */
   size_t count, width;
-  double *to; /* [made][width] */
+  double *to; /* [made][width]; the new points */
   size_t made;
 } rows;
 
-/* Appends the row a + f (b - a). The row begins with t, a place in the old range, in place of a value. */
+/* Appends the row a + f (b - a), which lies between the rows a and b. In place of a value, the new row begins
+ * with t, a place in the old range. */
 static void add_row(rows *r, const double *a, const double *b, double f, double t) {
   double *row = r->to + r->made++ * r->width;
   row[0] = t;
@@ -70,8 +71,8 @@ static double place_of(const double *row, const double old[2]) {
   return fabs(t * PIECES - whole) < 1e-9 ? whole / PIECES : t;
 }
 
-/* Appends points of the line from row a to the next row, as far as t is from 0 to 1. The line's last point is
- * left out, because the next line begins with it. */
+/* Appends points of the line from row a to the next row, as far as their places t in the old range lie
+ * between 0 and 1. The line's last point is left out, because the next line begins with it. */
 static void add_line(rows *r, size_t a, const double old[2]) {
   const double *row = r->from + a * r->width, *next = row + r->width;
   double start = place_of(row, old), end = place_of(next, old);
@@ -82,7 +83,8 @@ static void add_line(rows *r, size_t a, const double old[2]) {
   }
 }
 
-/* Appends all lines, divided into pieces, as far as t is from 0 to 1. At least one row is appended. */
+/* Appends all lines between points, divided into pieces, as far as their places t in the old range lie
+ * between 0 and 1. At least one row is appended. */
 static void divide_rows(rows *r, const double old[2]) {
   const double *first = r->from, *last = r->from + (r->count - 1) * r->width;
   double start = place_of(first, old), end = place_of(last, old);
@@ -92,7 +94,8 @@ static void divide_rows(rows *r, const double old[2]) {
   if (end < 0) add_row(r, last, last, 0, 0);
 }
 
-/* Spreads rows. *to: the new rows (hl_release); *made: their number. */
+/* Moves points to the new range of values. *to: receives the new rows (hl_release); *made: receives their
+ * number. */
 static hl_status spread_rows(hl_context *context, rows *r, const double old[2], const double range[2],
                              hl_range_scale scale, hl_error *error) {
   if (r->count == 0) return HL_OK;

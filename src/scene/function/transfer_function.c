@@ -10,8 +10,8 @@
 #include "scene/function/function_plane.h"
 #include "text/edit_distance.h"
 
-/* The number of points whose value is at most `value`. Points begin with their value, and are `stride` bytes
- * apart. */
+/* The number of a function's points whose value is at most `value`. Points begin with their value, and are
+ * `stride` bytes apart. */
 static size_t count_not_above(const void *points, size_t count, size_t stride, double value) {
   size_t low = 0, high = count;
   while (low < high) {
@@ -67,17 +67,17 @@ int hl_transfer_function_visible(const hl_transfer_function *function, double lo
   if (!(low <= high)) return 0;
   if (hl_transfer_function_opacity(function, low) > 0 || hl_transfer_function_opacity(function, high) > 0)
     return 1;
-  /* Both ends are transparent, and the function is linear between points. So it can be above 0 only at a
-   * point between the ends; at a step, both points count. */
+  /* Both ends of the range are transparent, and the function is linear between points. So the opacity can be
+   * above 0 only at a point between the ends; at a step, both points count. */
   for (size_t p = count_not_above(points, function->opacity_count, sizeof *points, low);
        p < function->opacity_count && points[p].value <= high; p++)
     if (points[p].opacity > 0) return 1;
   return 0;
 }
 
-/* Transparent values form intervals between points of the function. If a step rises at the end of an
- * interval, the end itself is not transparent. So the candidates are the target, the range's ends, the
- * points, and the values just below the points. */
+/* Finds the nearest transparent value among a few candidates. Transparent values form intervals between
+ * points of the function. If a step rises at the end of an interval, the end itself is not transparent. So
+ * the candidates are the target, the range's ends, the points, and the values just below the points. */
 bool hl_transfer_function_transparent(const hl_transfer_function *function, double low, double high,
                                       double target, double *nearest) {
   double candidates[3] = {target, low, high}, best = INFINITY;

@@ -7,13 +7,14 @@
 #include "core/door.h"
 #include "volume/volume.h"
 
-/* Degrees. At a steeper elevation, the view's up is too close to the line of sight to be the camera's up. */
+/* In degrees. At a steeper elevation, the direction that is up in a view is too close to the line of sight to
+ * be the camera's up. */
 #define STEEP 89.5
 #define LEVEL 1e-6 /* a horizon counts as level if the sine of its angle is at most this */
 /* Angles that follow from a camera's rounded coordinates are rounded to multiples of a degree divided by this
  * number. */
 #define ANGLE_STEPS 1e9
-/* An axis cannot be the front if the cosine of its angle to `up` is greater than this. */
+/* The greatest cosine of the angle between `up` and an axis that may be the front of a view. */
 #define OBLIQUE 0.9
 
 bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forward) {
@@ -56,7 +57,8 @@ void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elev
   memcpy(direction, &way, sizeof way);
 }
 
-/* The first volume that tells its anatomical space and is not rotated in the scene; null: there is none. */
+/* The first volume that tells its anatomical space and is not rotated in the scene; null: there is no such
+ * volume. */
 static const hl_volume *first_in_space(const hl_scene_description *description) {
   for (size_t v = 0; v < description->volume_count; v++)
     if (description->volumes[v].volume->space != HL_SPACE_UNKNOWN &&
@@ -92,13 +94,13 @@ void hl_view_about(const hl_scene_description *description, vec3 given_up, hl_vi
                     .elevation_deg = HL_VIEW_ELEVATION};
 }
 
-/* The direction to the right of an eye that is in front of the volumes (azimuth 0). */
+/* The direction to the right for an eye that is in front of the volumes (azimuth 0). */
 static vec3 right_of_front(const hl_view *view) {
   return vec3_cross(vec3_of(view->up), vec3_of(view->front));
 }
 
-/* At elevation 90 the picture's up is the horizontal direction in which the camera looked at elevation 0, so
- * that up never jumps. */
+/* Finds the axes of a view. At elevation 90 the picture's up is the horizontal direction in which the camera
+ * looked at elevation 0, so that up never jumps. */
 void hl_view_axes(const hl_view *view, vec3 *right, vec3 *up, vec3 *forward) {
   double azimuth = view->azimuth_deg * HL_PI / 180, elevation = view->elevation_deg * HL_PI / 180,
          roll = view->roll_deg * HL_PI / 180;
@@ -142,8 +144,8 @@ hl_status hl_camera_turn(const hl_view *view, hl_camera *camera) {
 }
 
 /* The direction that is up for a camera. It is the camera's up vector, unless this vector is perpendicular to
- * the line of sight and the picture is level for an axis of the world. Then it is this axis: the first of z,
- * y, x and their opposites. */
+ * the line of sight and the picture is level for an axis of the world. Then the direction is this axis: the
+ * first one of z, y, x and their opposites. */
 static vec3 upright_of(const hl_camera *camera) {
   static const vec3 axes[] = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0, 0, -1}, {0, -1, 0}, {-1, 0, 0}};
   vec3 right, up, forward, given = vec3_normalise(vec3_of(camera->up));
@@ -186,9 +188,9 @@ static void widen(borders *all, borders one) {
 
 static bool are_equal(borders a, borders b) { return a.low == b.low && a.high == b.high; }
 
-/* Derived: at a depth z a picture reaches t (z - f) to both sides of the eye, whose depth is f, where t is
- * the tangent of half the angle of view. At depth 0 that is half = -t f, which may be negative. In parallel
- * projection half is the same at all depths. */
+/* Finds the two borders of a picture along one axis. Derived: at a depth z a picture reaches t (z - f) to
+ * both sides of the eye, whose depth is f, where t is the tangent of half the angle of view. At depth 0 that
+ * is half = -t f, which may be negative. In parallel projection half is the same at all depths. */
 static borders borders_of(double eye, double half) { return (borders){eye - half, eye + half}; }
 
 static bool look_alike(const hl_camera *a, const hl_camera *b) {

@@ -8,21 +8,21 @@
 #include "core/vector.h"
 
 /* Finds the camera's unit axes: forward points from position to target; up is perpendicular to forward, and
- * as close to the camera's up as possible. False if the camera's up lies along the line of sight. Then z
- * takes the place of the camera's up, or y if the line of sight is along z. */
+ * as close to the camera's up as possible. Returns false if the camera's up lies along the line of sight.
+ * Then z takes the place of the camera's up, or y if the line of sight is along z. */
 bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forward);
 
 #define HL_VIEW_AZIMUTH   30 /* azimuth of the three-quarter view, degrees */
 #define HL_VIEW_ELEVATION 20
 
-/* The picture's axes; unit. */
+/* Finds the axes of a view's picture; unit vectors. */
 void hl_view_axes(const hl_view *view, vec3 *right, vec3 *up, vec3 *forward);
 
-/* Whether a view is possible. It is not if up and front are not unit vectors at a right angle, or if an angle
- * is not finite. */
+/* Whether a view is possible: its up and front are unit vectors at a right angle, and its angles are
+ * finite. */
 bool hl_view_is_possible(const hl_view *view);
 
-/* Places the camera at this distance from the target, in the view's direction. */
+/* Places a camera at a distance from the target, in the direction from which a view looks. */
 void hl_camera_place(const hl_view *view, vec3 target, double distance, hl_camera *camera);
 
 /* The three-quarter view in which a direction (of any length) is up. If a volume tells the anatomy, the front

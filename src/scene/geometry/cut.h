@@ -8,13 +8,13 @@
 #include "core/key.h"
 #include "core/vector.h"
 
-/* A shape is given by the map to a space of its own, in which it is simple. There, the inside of a plane has
- * x above 0, that of a box has x, y and z from -1 to 1, and that of a sphere is nearer than 1 to the origin.
- * For a plane, the map makes y and z 0. */
+/* The shape of a cut, given by the map to a space of the shape's own, in which the shape is simple. There,
+ * the inside of a plane has x above 0, the inside of a box has x, y and z from -1 to 1, and the inside of a
+ * sphere is nearer than 1 to the origin. For a plane, the map makes y and z 0. */
 typedef struct cut_shape {
   hl_cut_type type;
   bool keep_inside;
-  affine3 to_shape; /* index space to the shape's own */
+  affine3 to_shape; /* maps index space, or a mesh's world, to the shape's own space */
 } cut_shape;
 
 /* The shape of a cut, in the world in which the cut's own numbers are given. */
@@ -39,25 +39,27 @@ typedef struct placed_cuts {
   hl_cut *cuts;             /* owned; the cuts of all volumes */
 } placed_cuts;
 
-/* If the scene has cuts, replaces the volumes of a placed description by copies, which `made` owns. Call
+/* If a scene has cuts, replaces the volumes of a placed description by copies, which `made` owns. Call
  * hl_placed_cuts_release() even after a failure. */
 hl_status hl_cuts_place(hl_context *context, hl_scene_description *placed, placed_cuts *made,
                         hl_error *error);
 void hl_placed_cuts_release(hl_context *context, placed_cuts *made);
 
-/* Adds the shapes. */
+/* Adds the shapes of cuts to a key. */
 void hl_cuts_key_add(hl_key *key, const cut_shape *cuts, size_t count);
 
 /* Whether two shapes are the same. */
 bool hl_cut_same(const cut_shape *a, const cut_shape *b);
 
-/* Whether a point of the space on which the shapes' maps act is left by all cuts. */
+/* Whether all cuts leave a point of the space on which the shapes' maps act. */
 bool hl_cuts_leave(const cut_shape *cuts, size_t count, vec3 point);
 
-/* Whether a box along the axes of this space is surely cut away, because one cut removes all of it. */
+/* Whether a box along the axes of the space on which the shapes' maps act is surely cut away, because one cut
+ * removes all of it. */
 bool hl_cuts_remove_box(const cut_shape *cuts, size_t count, const double low[3], const double high[3]);
 
-/* Whether a box along the axes of this space is surely left, because no cut removes any part of it. */
+/* Whether a box along the axes of the space on which the shapes' maps act is surely left, because no cut
+ * removes any part of it. */
 bool hl_cuts_leave_box(const cut_shape *cuts, size_t count, const double low[3], const double high[3]);
 
 #endif

@@ -48,7 +48,8 @@ affine3 hl_scene_mask_index_to_world(const hl_scene_volume *volume) {
   return affine3_multiply(hl_scene_volume_file_to_world(volume), volume->mask.volume->index_to_world);
 }
 
-/* Bounds in index space of the clip box, whose corners are in the file's own world. */
+/* Finds the bounds, in index space, of a volume's clip box, whose corners are in the world of the volume's
+ * file. */
 static void clip_bounds(const hl_scene_volume *volume, affine3 world_to_index, double low[3],
                         double high[3]) {
   for (int a = 0; a < 3; a++) low[a] = INFINITY, high[a] = -INFINITY;
@@ -121,7 +122,7 @@ static void grow_box(vec3 *low, vec3 *high, vec3 p) {
   *high = (vec3){fmax(high->x, p.x), fmax(high->y, p.y), fmax(high->z, p.z)};
 }
 
-/* The box of all meshes. */
+/* Finds the box around all meshes of a scene. */
 static void box_of_meshes(const hl_scene_description *scene, vec3 *low, vec3 *high) {
   *low = (vec3){INFINITY, INFINITY, INFINITY}, *high = vec3_scale(*low, -1);
   for (size_t i = 0; i < scene->mesh_count; i++) {

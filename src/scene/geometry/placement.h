@@ -35,7 +35,7 @@ void hl_scene_volume_box(const hl_scene_volume *volume, double low[3], double hi
 double hl_scene_smallest_edge(const hl_scene_description *scene);
 
 /* Finds the box, in the world, around all volumes of a scene, cut down to their clip boxes. In a scene
- * without volumes it is the box around all meshes. */
+ * without volumes, finds the box around all meshes. */
 void hl_scene_content_box(const hl_scene_description *scene, vec3 *low, vec3 *high);
 
 /* Frame space, in which a scene is rendered: p -> (p - centre) / unit. centre is the middle of the box around
@@ -49,7 +49,7 @@ typedef struct hl_frame_space {
 /* The distance, in frame units, below which a light with falloff gets no brighter. */
 #define HL_LEAST_LIGHT_DISTANCE 1e-3
 
-/* Finds frame space. The description must have at least one volume or mesh. */
+/* Finds the frame space of a scene. The description must have at least one volume or mesh. */
 hl_frame_space hl_scene_frame_space(const hl_scene_description *scene);
 
 /* The empty value: the value of the volume's surroundings, and of voxels that are not finite. It is the most
@@ -57,7 +57,7 @@ hl_frame_space hl_scene_frame_space(const hl_scene_description *scene);
  * then treated as transparent. */
 double hl_scene_volume_empty_value(const hl_scene_volume *volume);
 
-/* The direction in which a directional or spot light travels, in the world. */
+/* The direction, in the world, in which the light of a directional or spot light travels. */
 vec3 hl_light_way(const hl_camera *camera, const hl_light *light);
 
 /* Copies a description. All lights of the copy are in the world, and are followed by the suns of its sky.
@@ -67,7 +67,7 @@ hl_status hl_lights_place(hl_context *context, const hl_scene_description *from,
                           hl_scene_description *to, hl_error *error);
 void hl_placed_lights_release(hl_context *context, hl_scene_description *placed);
 
-/* The first volume with this name; null: none. */
+/* The first volume of a scene that has a given name; null if there is none. */
 const hl_scene_volume *hl_scene_volume_named(const hl_scene_description *scene, const char *name);
 
 #endif

@@ -36,7 +36,7 @@ hl_status hl_labels_function(hl_context *context, const hl_scene_volume *volume,
   for (size_t n = 0; n < labels; n++) {
     const hl_label *label = &volume->labels[n];
     const double value = (double)label->value;
-    /* Voxels are floats, which round large labels. They differ from the label by less than this. */
+    /* a voxel is a float, which rounds large labels: it differs from its label by less than this */
     const double around = fmax(0.5, fabs(value) * 0x1p-24);
     double begin = fmax(value - around, end), shown = label->visible ? label->opacity : 0;
     if (begin > end && last > 0) opacity[opacity_count++] = (hl_opacity_point){end, last};
@@ -70,15 +70,15 @@ static const double SOLID_FROM = 0.48, SOLID_TO = 0.51, SOLID_OPACITY = 0.9999;
  * one voxel thick has a skin on both sides. */
 static const double SKIN_FROM = 0.5, SKIN_TO = 0.7;
 
-/* The points of one drawn volume. */
+/* The points of the transfer function of one drawn volume. */
 typedef struct drawn_points {
   hl_opacity_point opacity[POINTS];
   hl_color_point color;
 } drawn_points;
 
-/* Gives an occupancy its transfer function. A skin takes the fraction `opacity` of light that crosses it at a
- * right angle: a homogeneous layer whose opacity is o per unit distance u has the opacity o if it is u
- * thick. */
+/* Gives a volume of occupancy its transfer function. A skin absorbs the fraction `opacity` of light that
+ * crosses it at a right angle: a homogeneous layer whose opacity is o per unit distance u has the opacity o
+ * if it is u thick. */
 static void set_function(const hl_label *label, hl_scene_volume *drawn, drawn_points *points) {
   mat3 placed = hl_scene_volume_index_to_world(drawn).linear;
   hl_transfer_function *function = &drawn->transfer_function;
@@ -104,8 +104,8 @@ static bool is_drawn(const hl_label *label) { return label->visible && label->op
 static bool is_solid(const hl_label *label) { return label->visible && label->opacity >= 1; }
 static bool is_skin(const hl_label *label) { return is_drawn(label) && !is_solid(label); }
 
-/* The number of volumes that draw a label map. All solid labels are drawn as one volume, and each other label
- * by a volume of its own. */
+/* The number of volumes that draw a label map. One volume draws all solid labels, and each other label has a
+ * volume of its own. */
 static size_t count_drawn(const hl_scene_volume *volume) {
   if (volume->label_count == 0) return 1;
   size_t skins = 0, solids = 0;
@@ -199,7 +199,8 @@ static hl_status draw_masked(hl_context *context, hl_scene_description *placed, 
 
 hl_status hl_labels_draw(hl_context *context, hl_scene_description *placed, drawn_labels *drawn,
                          hl_error *error) {
-  const hl_scene_volume *volumes = placed->volumes; /* some of them are label maps */
+  /* the volumes before drawing; some of them are label maps */
+  const hl_scene_volume *volumes = placed->volumes;
   const size_t volume_count = placed->volume_count;
   size_t count = 0, maps = 0;
   for (size_t v = 0; v < volume_count; v++) {

@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "volume/volume.h"
 
-/* The kernel for a volume, if the scene has the kernel of_scene. The voxels of an occupancy, and the bricks
+/* The kernel for a volume, in a scene whose kernel is `of_scene`. The voxels of an occupancy, and the bricks
  * of a field, are coefficients of the B-spline already. So the interpolating kernel, which would make
  * coefficients of them, is replaced by the B-spline. */
 static inline hl_kernel hl_kernel_of_volume(const hl_scene_volume *volume, hl_kernel of_scene) {
@@ -23,9 +23,9 @@ typedef struct drawn_labels {
   void *points;             /* owned; the points of the volumes' transfer functions */
 } drawn_labels;
 
-/* Makes a transfer function over the values of a label map: each visible label shows in its colour, from half
- * a number below it to half a number above it. Framing, exposure and legends use this function. The caller
- * owns the function's points (hl_transfer_function_release). */
+/* Makes a transfer function over the values of a label map: each visible label shows in its colour, for
+ * values from half a number below the label to half a number above it. Framing, exposure and legends use this
+ * function. The caller owns the function's points (hl_transfer_function_release). */
 hl_status hl_labels_function(hl_context *context, const hl_scene_volume *volume,
                              hl_transfer_function *function, hl_error *error);
 

@@ -13,13 +13,13 @@
 #include "scene/scene.h"
 #include "volume/store/gathered.h"
 
-/* Labels that were found, rising. */
+/* The labels that were found in a map so far, rising. */
 typedef struct found_labels {
-  int64_t *values; /* owned; [HL_MOST_LABELS] */
+  int64_t *values; /* owned; [HL_MOST_LABELS]; the numbers of the labels */
   size_t count;
 } found_labels;
 
-/* Adds a label if it is new; false if there are too many. */
+/* Adds a label to a list if the list does not have it yet. Returns false if there are too many labels. */
 static bool add_value(found_labels *found, int64_t value) {
   size_t low = 0, high = found->count;
   while (low < high) {
@@ -41,8 +41,8 @@ static hl_status fail_value(double value, hl_error *error) {
                  value);
 }
 
-/* Collects the values of a map's voxels. Neighbours in a row mostly have the same label, so that a value is
- * looked up only if it differs from that of the voxel before it. */
+/* Collects the values of a map's voxels. Neighbours in a row mostly have the same label, so a value is looked
+ * up only if it differs from the value of the voxel before it. */
 static hl_status find_values(const hl_volume *map, found_labels *found, hl_error *error) {
   for (size_t k = 0; k < map->dimension[2]; k++)
     for (size_t j = 0; j < map->dimension[1]; j++) {
@@ -74,7 +74,8 @@ static const hl_label *row_of(const hl_label_list *table, int64_t value) {
   return NULL;
 }
 
-/* Gives one label a name and a colour: from the table first, then from the file. */
+/* Gives one label a name and a colour: those of the table if it has the label, else those of the map's
+ * file. */
 static void describe(const hl_volume *map, const hl_label_list *table, int64_t value, hl_label *label) {
   *label = (hl_label){.value = value, .opacity = 1, .visible = 1};
   hl_label_distinct_color(value, label->color);

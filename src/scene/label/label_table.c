@@ -12,9 +12,9 @@
 
 enum { MOST_BYTES = 4 << 20, MOST_WORDS = 12 };
 
-/* A word of a line: a number or a text. */
+/* A word of a line of a table: a number or a text. */
 typedef struct word {
-  char *text; /* in the list's names; ends with 0 */
+  char *text; /* the text of the word, in the block of the list's names; ends with 0 */
   double number;
   int64_t whole;
   bool is_number, is_whole, has_point;
@@ -94,7 +94,7 @@ static bool read_header(const char *line, columns *found) {
   return found->value >= 0 && found->name >= 0;
 }
 
-/* The colour that begins at a word: three numbers. */
+/* Reads a colour that begins at a word: three numbers. */
 static bool read_color(const word *words, double color[3]) {
   bool fractions = true, point = false;
   for (int c = 0; c < 3; c++) {
@@ -106,14 +106,14 @@ static bool read_color(const word *words, double color[3]) {
   return true;
 }
 
-/* Reads a label from one line. False: the line has no form that is known. */
+/* Reads a label from one line. Returns false if the line has none of the known forms. */
 static bool read_label(const word *words, int count, hl_label *label) {
   *label = (hl_label){.value = words[0].whole, .opacity = 1, .visible = 1};
   if (count >= 5 && !words[1].is_number) {
     label->name = words[1].text;
     return read_color(words + 2, label->color);
   }
-  if (count >= 8 && !words[count - 1].is_number) { /* ITK-SNAP */
+  if (count >= 8 && !words[count - 1].is_number) { /* a line of ITK-SNAP's label descriptions */
     label->name = words[count - 1].text;
     label->visible = words[5].number != 0;
     return read_color(words + 1, label->color);
@@ -126,7 +126,7 @@ static bool read_label(const word *words, int count, hl_label *label) {
   return false;
 }
 
-/* "#rrggbb". */
+/* Reads a colour that is written as "#rrggbb". */
 static bool read_web_color(const char *text, double color[3]) {
   char *end;
   if (text[0] != '#' || strspn(text + 1, "0123456789abcdefABCDEF") != 6 || text[7] != 0) return false;
@@ -149,7 +149,8 @@ static bool read_row(const word *words, int count, const columns *at, hl_label *
 static int by_value(const void *a, const void *b) {
   const hl_label *x = a, *y = b;
   if (x->value != y->value) return x->value < y->value ? -1 : 1;
-  return x->name < y->name ? -1 : x->name > y->name; /* the later name stands in the later line */
+  /* of two names of one label, the later name stands in the later line */
+  return x->name < y->name ? -1 : x->name > y->name;
 }
 
 static hl_status fail_line(const char *name, size_t line, const char *what, hl_error *error) {
@@ -180,7 +181,7 @@ static hl_status add_line(const char *name, size_t number, char *line, columns *
   return HL_OK;
 }
 
-/* Sorts labels by value. Of several lines for one label the last one counts. */
+/* Sorts the labels of a list by value. Of several lines for one label the last one counts. */
 static void sort(hl_label_list *list) {
   size_t kept = 0;
   qsort(list->labels, list->count, sizeof *list->labels, by_value);
@@ -194,7 +195,8 @@ static void sort(hl_label_list *list) {
 /* Skips the mark of UTF-8 text, if there is one. */
 static char *skip_mark(char *text) { return strncmp(text, "\xef\xbb\xbf", 3) == 0 ? text + 3 : text; }
 
-/* Ends a line at its line feed, its carriage return or both. Returns the next line; null: there is none. */
+/* Ends a line at its line feed, its carriage return or both. Returns the next line, or null if there is
+ * none. */
 static char *end_line(char *line) {
   char *end = line + strcspn(line, "\r\n");
   if (*end == 0) return NULL;
@@ -245,9 +247,9 @@ void hl_label_list_release(hl_context *context, hl_label_list *list) {
   *list = (hl_label_list){0};
 }
 
-/* The fractional part of the golden ratio, times 2^64. If hues follow each other at this distance, each is as
- * far as possible from all earlier ones. The product with a label, modulo 2^64, is the hue as a fraction of a
- * full turn; it is exact for numbers of any size. */
+/* The fractional part of the golden ratio, times 2^64. If hues follow each other at this distance, each hue
+ * is as far as possible from all earlier hues. The product with a label, modulo 2^64, is the hue as a
+ * fraction of a full turn; it is exact for numbers of any size. */
 static const uint64_t GOLDEN = 0x9e3779b97f4a7c15u;
 
 void hl_label_distinct_color(int64_t value, double linear[3]) {
@@ -255,7 +257,7 @@ void hl_label_distinct_color(int64_t value, double linear[3]) {
   double hue = 6 * (double)((uint64_t)value * GOLDEN >> 11) * 0x1p-53;
   double strength = strengths[(value < 0 ? 0 - (uint64_t)value : (uint64_t)value) % 3];
   for (int c = 0; c < 3; c++) {
-    /* The distance of the hue from the one opposite to this channel's hue. It is 3 for this channel's hue. */
+    /* the distance of the hue from the opposite of this channel's hue; it is 3 at this channel's own hue */
     double away = fabs(fmod(hue + 6 - 2 * c, 6) - 3);
     double pure = fmin(fmax(away - 1, 0), 1);
     linear[c] = hl_srgb_decode(0.92 * (1 - strength * (1 - pure)));

@@ -11,22 +11,23 @@ enum { HL_MOST_LABELS = 16384 };
 
 /* Labels with their names in one block; owned (hl_label_list_release). */
 typedef struct hl_label_list {
-  hl_label *labels; /* [count]; rising by value */
+  hl_label *labels; /* [count]; the labels, rising by value */
   size_t count;
-  char *names; /* memory that the labels' names point into */
+  char *names; /* the block of memory in which the labels' names lie */
 } hl_label_list;
 
-/* Reads a table. Lines are "number name R G B [A]", "number R G B A visible mesh \"name\"", or one of these
- * with commas. Colours are sRGB, from 0 to 255; if no number is above 1 and one has a decimal point, from 0
- * to 1. Lines that begin with #, and a first line without a number, are skipped. */
+/* Reads a table of labels from a file. Lines are "number name R G B [A]", "number R G B A visible mesh
+ * \"name\"", or one of these with commas. Colours are sRGB, with numbers from 0 to 255. If no number of a
+ * colour is above 1 and one has a decimal point, the numbers go from 0 to 1. Lines that begin with #, and a
+ * first line without a number, are skipped. */
 hl_status hl_label_table_load(hl_context *context, const char *path, hl_label_list *list, hl_error *error);
-/* Reads a table from memory. name: the text's name in errors. */
+/* Reads a table of labels from memory. name: the text's name in errors. */
 hl_status hl_label_table_parse(hl_context *context, const char *text, size_t length, const char *name,
                                hl_label_list *list, hl_error *error);
 void hl_label_list_release(hl_context *context, hl_label_list *list);
 
-/* A colour for each label, by which it differs from other labels. Hues of consecutive labels are a golden
- * angle apart. */
+/* Makes a colour from a label's number, so that different labels have different colours. Hues of consecutive
+ * labels are a golden angle apart. */
 void hl_label_distinct_color(int64_t value, double linear[3]);
 
 #endif

@@ -17,34 +17,38 @@
 
 struct light_kind {
   /* ---- what it is ---- */
-  bool parallel;      /* the light is infinitely far away, and has a direction instead of a position */
-  bool sphere;        /* the light looks like a disk that faces the observer */
-  bool cone;          /* the light shines only within a cone around `direction` */
-  bool outline;       /* `vertices` give the light's shape and its place */
-  bool parallelogram; /* points are taken from a unit square, and edge1 and edge2 are the sides of this square
-                       * on the light */
-  double deviations;  /* the light's extent is this many times the standard deviation of its points */
+  bool parallel; /* whether the light is infinitely far away, and has a direction instead of a
+                  * position */
+  bool sphere;   /* whether the light looks like a disk that faces the observer */
+  bool cone;     /* whether the light shines only within a cone around `direction` */
+  bool outline;  /* whether `vertices` give the light's shape and its place */
+  /* whether points of the light are taken from a unit square, and edge1 and edge2 are the sides of this
+   * square on the light */
+  bool parallelogram;
+  double deviations; /* the light's extent is this many times the standard deviation of its points */
 
   /* ---- checks; settings are in their ranges already ---- */
   hl_status (*check)(const hl_checker *check,
-                     const hl_light *light); /* null: there is nothing more to check */
+                     const hl_light *light); /* checks a light's settings beyond their ranges; null: there
+                                              * is nothing more to check */
   /* Checks that floats hold the light's places and lengths beside the scene's voxels. */
   hl_status (*check_reach)(const hl_checker *check, const hl_light *light, const hl_frame_space *space);
 
   /* ---- its shape ---- */
   /* Makes the light's shape from its settings. hl_light_shape() sets `kind` and `image_up` afterwards. */
   light_shape (*shape)(const hl_light *light);
-  /* The mean of x x' over all points of the light, where x is a point's offset: a rect has (e1 e1' + e2 e2')
-   * / 12, a disk r^2/4 (1 - n n'). A sphere, and the directions of parallel light, count as a disk
+  /* The mean of the matrix x x' over all points of the light, where x is a point's offset: a rect has (e1 e1'
+   * + e2 e2') / 12, a disk r^2/4 (1 - n n'). A sphere, and the directions of parallel light, count as a disk
    * perpendicular to `facing`. */
   mat3 (*spread)(const light_shape *shape, vec3 facing);
-  /* The offset of the light's point for the point (a, b) of the unit square. Equal areas of the square become
-   * equal areas of the light. */
+  /* The offset, from the light's centre, of the point of the light that belongs to the point (a, b) of the
+   * unit square. Equal areas of the square become equal areas of the light. */
   vec3 (*point)(const light_shape *shape, vec3 facing, double a, double b);
   /* The plane of the emission image on the light's surface. */
   emission_plane (*plane)(const light_shape *shape, vec3 facing);
   /* The lengths that the two sides of the unit square on the light seem to have when seen along a unit
-   * vector, in units of length. Infinite: a length is not known. The function is null for parallel types. */
+   * vector, in units of length. A length that is not known is infinite. The function is null for parallel
+   * types. */
   void (*apparent_lengths)(const light_shape *shape, vec3 along, double length[2]);
 };
 
@@ -59,13 +63,13 @@ light_shape hl_light_shape(const hl_light *light);
 hl_status hl_check_round_reach(const hl_checker *check, const hl_light *light, const hl_frame_space *space);
 light_shape hl_round_shape(const hl_light *light);
 void hl_apparent_diameter(const light_shape *shape, vec3 along, double length[2]);
-/* The spread, a point and the image's plane of a disk with the shape's radius and the normal `facing`. A
- * sphere counts as the disk that faces the viewer. */
+/* Three functions of light_kind for round lights: the spread, a point and the image's plane of a disk with
+ * the shape's radius and the normal `facing`. A sphere counts as the disk that faces the viewer. */
 mat3 hl_round_spread(const light_shape *shape, vec3 facing);
 vec3 hl_round_point(const light_shape *shape, vec3 facing, double a, double b);
 emission_plane hl_round_plane(const light_shape *shape, vec3 facing);
 
-/* The tables, one a file. */
+/* The tables of the types of light; each table is in a file of its own. */
 #define HL_DECLARE(with, value, name, settings) extern const light_kind hl_light_kind_##name;
 HL_LIGHT_KINDS(HL_DECLARE, 0)
 #undef HL_DECLARE

@@ -4,7 +4,7 @@
 #ifndef HL_SCENE_LIGHT_LIGHT_KINDS_H
 #define HL_SCENE_LIGHT_LIGHT_KINDS_H
 
-/* Settings that some types have (settings_table.c). */
+/* Groups of settings that only some types of light have (settings_table.c). */
 enum light_settings {
   LIGHT_POSITION = 1,
   LIGHT_DIRECTION = 2,

@@ -2,7 +2,7 @@
  * points. */
 #include "scene/light/light_shape.h"
 
-/* a b' */
+/* the outer product a b' of two vectors, a matrix */
 mat3 hl_outer(vec3 a, vec3 b) { return (mat3){{vec3_scale(b, a.x), vec3_scale(b, a.y), vec3_scale(b, a.z)}}; }
 
 mat3 hl_add_scaled(mat3 a, mat3 b, double scale) {
@@ -23,10 +23,10 @@ static double greatest_side(const double (*vertices)[3], size_t count) {
   return side;
 }
 
-/* The polygon is treated as a fan of triangles around the first vertex, with signed areas, so that parts
- * outside the polygon cancel. Over a triangle a, b, c the mean of x is s / 3, and the mean of x x' is (a a' +
- * b b' + c c' + s s') / 12, s = a + b + c, because the mean of the square of a barycentric coordinate is 1/6,
- * and that of the product of two of them 1/12 (derived). */
+/* Finds the moments of a polygon. The polygon is treated as a fan of triangles around the first vertex, with
+ * signed areas, so that parts outside the polygon cancel. Over a triangle a, b, c the mean of x is s / 3, and
+ * the mean of x x' is (a a' + b b' + c c' + s s') / 12, s = a + b + c, because the mean of the square of a
+ * barycentric coordinate is 1/6, and the mean of the product of two of them is 1/12 (derived). */
 polygon_shape hl_polygon_shape(const double (*vertices)[3], size_t count) {
   polygon_shape shape = {.diameter = greatest_side(vertices, count)};
   vec3 first = vec3_of(vertices[0]), twice_area = {0, 0, 0}, sum = {0, 0, 0};
@@ -105,7 +105,8 @@ vec3 hl_disk_point(vec3 normal, double radius, double a, double b) {
   return vec3_add(vec3_scale(u, radius * x), vec3_scale(v, radius * y));
 }
 
-/* The mean of x x' over a disk. Derived: the mean of x^2 over a disk of radius r is r^2/4. */
+/* The mean of the matrix x x' over the points x of a disk, relative to its centre. Derived: the mean of x^2
+ * over a disk of radius r is r^2/4. */
 mat3 hl_disk_spread(vec3 normal, double radius) {
   mat3 spread = {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}}, unit = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   return hl_add_scaled(spread, hl_add_scaled(unit, hl_outer(normal, normal), -1), radius * radius / 4);
@@ -129,8 +130,8 @@ void hl_upright(vec3 normal, vec3 wanted_up, vec3 *right, vec3 *up) {
   *up = vec3_cross(normal, *right);
 }
 
-/* Solves offset = middle + s right + t up for s and t, also if right and up are not perpendicular (derived,
- * by cross products). */
+/* Finds the image coordinates of a point on a light: solves offset = middle + s right + t up for s and t,
+ * also if right and up are not perpendicular (derived, by cross products). */
 void hl_emission_place(const emission_plane *plane, vec3 offset, double *s, double *t) {
   vec3 on_plane = vec3_subtract(offset, plane->middle), normal = vec3_cross(plane->right, plane->up);
   double area = vec3_dot(normal, normal);

@@ -5,8 +5,8 @@
 
 /* ---- checks ---- */
 
-/* As fractions of the polygon's diameter: the greatest distance of its vertices from its plane, and its least
- * width. */
+/* Limits of a polygon's shape, as fractions of its diameter. FLAT: the greatest distance of its vertices from
+ * its plane. THIN: its least width. */
 static const double FLAT = 1e-3, THIN = 1e-6;
 
 static hl_status check_outline(const hl_checker *check, const hl_light *light) {
@@ -43,7 +43,7 @@ static hl_status reaches(const hl_checker *check, const hl_light *light, const h
 
 /* ---- points ---- */
 
-/* A polygon in its plane: x along its longest edge. */
+/* A polygon in its own plane, with the x axis along its longest edge. */
 typedef struct flat_polygon {
   const light_shape *shape;
   vec3 centre, u, v;
@@ -111,8 +111,9 @@ static double height_of_part(const flat_polygon *polygon, double x, double b) {
   return count > 0 ? crossing[count - 1] : 0;
 }
 
-/* The point for (a, b) of the unit square. The fraction a of the polygon's area lies left of the point's x.
- * On the vertical line at x, the fraction b of the line's length in the polygon lies below the point's y. */
+/* The point of the polygon that belongs to the point (a, b) of the unit square. The fraction a of the
+ * polygon's area lies left of the point's x. On the vertical line at x, the fraction b of the line's length
+ * in the polygon lies below the point's y. */
 static vec3 point(const light_shape *shape, vec3 facing, double a, double b) {
   (void)facing;
   flat_polygon polygon = flatten(shape);
@@ -148,7 +149,7 @@ static mat3 spread(const light_shape *shape, vec3 facing) {
   return hl_polygon_shape(shape->vertices, shape->vertex_count).spread;
 }
 
-/* The rectangle around the vertices. */
+/* The plane of an emission image that fills the rectangle around the vertices of a polygon. */
 static emission_plane plane(const light_shape *shape, vec3 facing) {
   (void)facing;
   vec3 normal = hl_polygon_shape(shape->vertices, shape->vertex_count).normal;
@@ -171,7 +172,8 @@ static void apparent_lengths(const light_shape *shape, vec3 along, double length
   length[0] = length[1] = INFINITY;
 }
 
-/* A polygon counts as a box, which is sqrt(12) standard deviations wide. */
+/* The table of polygons. For its extent, a polygon counts as a box, which is sqrt(12) standard deviations
+ * wide. */
 const light_kind hl_light_kind_polygon = {.outline = true,
                                           .deviations = 3.4641016151377544,
                                           .check = check_outline,

@@ -22,7 +22,8 @@ static light_shape shape_of(const hl_light *light) {
                        .has_surface = vec3_length(vec3_cross(edge1, edge2)) > THIN * length1 * length2};
 }
 
-/* The mean of x x' over a parallelogram. Derived: the mean of t^2 over t in [-1/2, 1/2] is 1/12. */
+/* The mean of the matrix x x' over the points x of a parallelogram, relative to its centre. Derived: the mean
+ * of t^2 over t in [-1/2, 1/2] is 1/12. */
 static mat3 spread(const light_shape *shape, vec3 facing) {
   (void)facing;
   mat3 none = {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
@@ -46,7 +47,7 @@ static void apparent_lengths(const light_shape *shape, vec3 along, double length
   length[1] = vec3_length(vec3_cross(shape->edge2, along));
 }
 
-/* A box is sqrt(12) standard deviations wide. */
+/* The table of parallelograms. The extent of a box is sqrt(12) standard deviations. */
 const light_kind hl_light_kind_rect = {.parallelogram = true,
                                        .deviations = 3.4641016151377544,
                                        .check_reach = reaches,

@@ -19,7 +19,7 @@ typedef struct eye {
   double across, down;
 } eye;
 
-/* An orthographic camera sees the whole sky from one direction. */
+/* Makes the eye of a scene's camera. An orthographic camera sees the whole sky from one direction. */
 static eye eye_of(const hl_scene_description *scene) {
   eye e = {.across = 0, .down = 0};
   hl_camera_basis(&scene->camera, &e.right, &e.up, &e.forward);

@@ -26,8 +26,9 @@ sky_axes hl_sky_axes(const hl_sky *sky) {
                     .up = up};
 }
 
-/* The two pixels around a position along one axis, and the fraction of the way from the first to the second.
- * around: the first pixel follows the last one; false: positions beyond the ends count as the ends. */
+/* Finds the two pixels of the sky's image around a position along one axis, and returns the fraction of the
+ * way from the first to the second. around: whether the first pixel follows the last one; if not, positions
+ * beyond the ends count as the ends. */
 static double neighbours(double position, int count, bool around, size_t pixel[2]) {
   double at = position - 0.5;
   if (around && at < 0) at += count;

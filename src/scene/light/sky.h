@@ -10,7 +10,8 @@
 
 /* The sky's own axes: unit vectors in the world, at right angles to each other. */
 typedef struct sky_axes {
-  vec3 right, middle, up; /* middle: points to the image's middle column; right: points to its right */
+  vec3 right, middle, up; /* middle: points to the image's middle column; right: points to the right of the
+                           * image */
 } sky_axes;
 
 sky_axes hl_sky_axes(const hl_sky *sky);
@@ -19,8 +20,8 @@ sky_axes hl_sky_axes(const hl_sky *sky);
  * the horizon of a hemisphere, and if there is no sky. */
 void hl_sky_radiance(const hl_sky *sky, const sky_axes *axes, vec3 direction, double radiance[3]);
 
-/* Adds everything on which the radiance depends to a key. mark: the number that identifies the image's pixels
- * (hl_scene.sky_mark). */
+/* Adds everything on which a sky's radiance depends to a key. mark: the number that identifies the image's
+ * pixels (hl_scene.sky_mark). */
 void hl_sky_key_add(hl_key *key, const hl_sky *sky, uint64_t mark);
 
 hl_status hl_sky_check(const hl_sky *sky, hl_error *error);

@@ -19,37 +19,40 @@
 /* WIDEST: the greatest half angle of a sun. FARTHEST: the greatest angle from a sun's middle at which light
  * may still belong to the sun. */
 static const double WIDEST = 12 * HL_PI / 180, FARTHEST = 20 * HL_PI / 180;
-/* The radii that are tried: from FARTHEST to less than a pixel, each is the one before times this factor. */
+/* The factor between the radii of caps that are tried. The first radius is FARTHEST, each further radius is
+ * the radius before times this factor, and the last one is less than a pixel. */
 static const double LADDER = 0.70710678118654752;
 /* The radius of the ring around a cap is RING times the cap's radius, plus RING_ROWS rows of the image. */
 static const double RING = 1.2, RING_ROWS = 1.5;
-/* A sun's brightest pixel is at least this many times as bright as the mean of the image. */
+/* The least brightness of a sun's brightest pixel, as a multiple of the mean brightness of the image. */
 static const double FAR_ABOVE = 8;
-/* A sun sends at least this fraction of the image's light. */
+/* The least fraction of the image's light that a sun sends. */
 static const double LEAST_SHARE = 0.05;
-/* The surroundings of a sun have at most this fraction of the brightness of the sun's brightest pixel. */
+/* The greatest brightness of a sun's surroundings, as a fraction of the brightness of the sun's brightest
+ * pixel. */
 static const double MOST_AROUND = 0.5;
 
 enum { TRIES = 64 /* spots that are looked at */, STEPS = 16 /* steps towards the middle of a spot */ };
 
 /* ---- integrals over a pixel's tent ---- */
 
-/* Integrals of a pixel's tent over the angle a between its row and up: of the tent times sin a, times sin^2 a
- * and times sin a cos a. They give the tent's solid angle, and the components of its directions across and
- * along up. */
+/* Integrals of a pixel's tent over the angle a to the sky's up, along the pixel's column: of the tent times
+ * sin a, times sin^2 a and times sin a cos a. They give the tent's solid angle, and the components of its
+ * directions across and along up. */
 typedef struct row_integrals {
   double area, across, along;
 } row_integrals;
 
-/* The nodes and weights of Gauss and Legendre's rule with five points. The pieces that it integrates are at
- * most half a turn long, and rarely more than a degree. */
+/* The nodes and weights of Gauss and Legendre's rule of integration with five points. The pieces that it
+ * integrates are at most half a turn long, and rarely more than a degree. */
 static const double NODES[5] = {-0.906179845938664, -0.538469310105683, 0, 0.538469310105683,
                                 0.906179845938664},
                     WEIGHTS[5] = {0.236926885056189, 0.478628670499366, 0.568888888888889, 0.478628670499366,
                                   0.236926885056189};
 
-/* Adds to the integrals a piece of a tent, from the angle `from` to `to`, but only up to `last`. On this
- * piece, the tent is linear, with 0 at `foot` and 1 at `top`; if these are the same, it is 1 everywhere. */
+/* Adds a piece of a tent to the integrals of a row, from the angle `from` to `to`, but only up to `last`. On
+ * this piece, the tent is linear, with 0 at `foot` and 1 at `top`; if `foot` and `top` are the same, the tent
+ * is 1 everywhere. */
 static void add_piece(double from, double to, double last, double foot, double top, row_integrals *sum) {
   to = fmin(to, last);
   for (int i = 0; i < 5 && to > from; i++) {
@@ -78,21 +81,22 @@ typedef struct cap {
 } cap;
 
 typedef struct brightest {
-  float brightness; /* sum of the channels; 0: none */
+  float brightness; /* the sum of the pixel's channels; 0: there is no pixel */
   int column;
 } brightest;
 
 typedef struct search {
   const hl_sky *sky;
   const float *pixels;  /* [height][width][3]; the image without the suns that were found so far */
-  row_integrals *rows;  /* [height] */
+  row_integrals *rows;  /* [height]; the integrals of the tents of each row's pixels */
   double (*columns)[2]; /* [width]: sine and cosine of the angle to the middle column */
   brightest *peaks;     /* [height]; the brightest pixel of each row, without the pixels in `left_out` */
   double wide, bend;    /* two integrals over the tent of a column: of the tent, and of the tent times the
                          * cosine of the angle from the column's middle */
   cap left_out[TRIES];  /* caps in which no sun begins any more */
   int left_out_count;
-  double mean, total; /* brightness of the whole image: its mean, and its integral over all directions */
+  double mean, total; /* brightness of the whole image. mean: its mean; total: its integral over all
+                       * directions */
 } search;
 
 static float brightness_of(const float *pixel) { return pixel[0] + pixel[1] + pixel[2]; }
@@ -136,7 +140,7 @@ static void find_row_peak(search *all, int row) {
   }
 }
 
-/* Rows that a cap may touch. */
+/* Finds the rows of the image that a cap may touch. */
 static void rows_of_cap(const search *all, const cap *of, int *first, int *end) {
   double angle = acos(fmin(fmax(of->middle.z, -1), 1)), rows = all->sky->height / HL_PI;
   *first = (int)fmax(floor((angle - of->radius) * rows - 1), 0);
@@ -209,13 +213,13 @@ static vec3 find_middle(const search *all, int row, int column, double radius) {
   return around.middle;
 }
 
-/* A spot: a cap, and the light in the cap that exceeds its surroundings. */
+/* A bright spot of the image: a cap, and the light in the cap that exceeds the cap's surroundings. */
 typedef struct spot {
   cap cap;
   float around[3];      /* R, G, B: the greatest values in the ring around the cap */
-  double irradiance[3]; /* irradiance of the light that exceeds these values */
+  double irradiance[3]; /* irradiance of the light in the cap that exceeds these values */
   double brightness;    /* the sum of the irradiance's channels */
-  vec3 moment;          /* integral of brightness times unit vectors */
+  vec3 moment;          /* the integral, over the cap, of brightness times the unit vector of the direction */
 } spot;
 
 static void raise_around(const search *all, int row, int column, void *data) {
@@ -239,7 +243,7 @@ static void add_beyond(const search *all, int row, int column, void *data) {
 /* A spot that is taken out of the image. */
 typedef struct taking {
   const spot *spot;
-  float *rest; /* the image */
+  float *rest; /* the image out of which the spot's light is taken */
 } taking;
 
 static void take_beyond(const search *all, int row, int column, void *data) {
@@ -262,11 +266,11 @@ static spot spot_of_radius(const search *all, int row, int column, double radius
   return measure_spot(all, find_middle(all, row, column, radius), radius);
 }
 
-/* Finds the spot around a pixel. Its radius is the one for which the light in the cap, divided by the power
- * 3/4 of the radius, is greatest. For a uniform disk this is the least radius that holds all of the disk, for
- * a Gaussian spot a radius that holds nine tenths of its light. With this power, a small sun counts more than
- * a glow around it that sends as much light, and two suns side by side stay two. If the next wider radius
- * holds more light, it is taken instead, because a disk may cover a part of the pixels at the rim. */
+/* Finds the spot around a pixel. The spot's radius is the radius for which the light in the cap, divided by
+ * the power 3/4 of the radius, is greatest. For a uniform disk this is the least radius that holds all of the
+ * disk, for a Gaussian spot a radius that holds nine tenths of its light. With this power, a small sun counts
+ * more than a glow around it that sends as much light, and two suns side by side stay two. If the next wider
+ * radius holds more light, it is taken instead, because a disk may cover a part of the pixels at the rim. */
 static spot find_spot(const search *all, int row, int column) {
   spot best = {.cap = {direction_of(all, row, column), FARTHEST}}, wider = best;
   double score = 0, least = 0.5 * HL_PI / all->sky->height;
@@ -347,7 +351,8 @@ static void set_up(search *all) {
   const hl_sky *sky = all->sky;
   double turn = 2 * HL_PI / sky->width, solid_angle = 0;
   all->wide = turn;
-  all->bend = 2 * (1 - cos(turn)) / turn; /* derived: the integral of (1 - |t| / turn) cos t over t */
+  /* the integral of (1 - |t| / turn) cos t over t from -turn to turn (derived) */
+  all->bend = 2 * (1 - cos(turn)) / turn;
   for (int column = 0; column < sky->width; column++) {
     double angle = (column + 0.5 - 0.5 * sky->width) * turn;
     all->columns[column][0] = sin(angle);
