@@ -54,7 +54,7 @@ static void rgb_to_hsv(const double rgb[3], double hsv[3]) {
 }
 
 static void hsv_to_rgb(const double hsv[3], double rgb[3]) {
-  for (int c = 0; c < 3; c++) { /* each channel is a trapezium over the hue */
+  for (int c = 0; c < 3; c++) { /* each of the channels R, G and B is a trapezium over the hue */
     double hue = 6 * (hsv[0] + (c == 0 ? 0 : c == 1 ? 2.0 / 3 : 1.0 / 3));
     hue -= 6 * floor(hue / 6);
     rgb[c] = hsv[2] * (1 - hsv[1] + hsv[1] * fmin(fmax(fabs(hue - 3) - 1, 0), 1));
@@ -71,8 +71,8 @@ static void mix_hsv(const double a[3], const double b[3], double t, bool by_arc,
   hsv_to_rgb(between, mixed);
 }
 
-/* Msh: magnitude, saturation angle and hue of a CIELAB colour (Moreland 2009, "Diverging color maps for
- * scientific visualization", whose constants these are). */
+/* A colour in the space Msh: magnitude m, saturation angle s and hue h of a CIELAB colour (Moreland 2009,
+ * "Diverging color maps for scientific visualization", whose constants these are). */
 typedef struct msh {
   double m, s, h;
 } msh;
@@ -85,7 +85,7 @@ static msh msh_of(const double srgb[3]) {
   return (msh){m, s, s > 0.001 ? atan2(lab[2], lab[1]) : 0};
 }
 
-/* The hue that an unsaturated colour of magnitude m gets when it is mixed with a saturated one. With this
+/* The hue that an unsaturated colour of magnitude m gets when it is mixed with a saturated colour. With this
  * hue, colours change evenly from one to the other. */
 static double spun_hue(msh saturated, double m) {
   if (saturated.m >= m - 0.1) return saturated.h;

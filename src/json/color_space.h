@@ -12,7 +12,8 @@ typedef enum hl_color_space {
   HL_SPACE_HSV_ARC = 5    /* hues are mixed along the shorter arc of the colour circle */
 } hl_color_space;
 
-/* Sets *mixed to the colour at t, which is a at 0 and b at 1. All colours are sRGB from 0 to 1. */
+/* Sets *mixed to the mixture of the colours a and b at t: it is a where t is 0, and b where t is 1. All
+ * colours are sRGB from 0 to 1. */
 void hl_color_mix(hl_color_space space, const double a[3], const double b[3], double t, double mixed[3]);
 
 #endif

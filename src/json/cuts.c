@@ -3,7 +3,7 @@
 #include "json/parts.h"
 #include "json/settings.h"
 
-/* The keys that each type needs; null ends a list. */
+/* The keys that each type of cut needs; null ends each list. */
 static const char *const needed[][3] = {[HL_CUT_PLANE] = {"point", "normal", NULL},
                                         [HL_CUT_BOX] = {"min", "max", NULL},
                                         [HL_CUT_SPHERE] = {"center", "radius", NULL}};

@@ -5,8 +5,8 @@
 #include <limits.h>
 #include <stdbool.h>
 
-/* Finds a folder's absolute path without links, ending in '/'. "" is the current folder. False if there is no
- * such folder. */
+/* Finds a folder's absolute path without links, ending in '/'. "" is the current folder. Returns false if
+ * there is no such folder. */
 bool hl_json_find_folder(const char *folder, char found[PATH_MAX]);
 
 /* Finds the name of a file relative to a folder, which hl_json_find_folder() gave. The name is written to

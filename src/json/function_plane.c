@@ -29,7 +29,7 @@ static hl_status read_second(hl_json_reader *reader, const json_t *value, hl_fun
   return plane->volume != NULL ? HL_OK : hl_fail_memory(reader->error, strlen(name) + 1, "a name");
 }
 
-/* Reads a key that must be present. */
+/* Reads a pair of numbers from a key that must be present. */
 static hl_status read_pair(hl_json_reader *reader, const json_t *value, const char *key, double pair[2]) {
   if (json_object_get(value, key) == NULL)
     return hl_json_fail(reader, HL_ERROR_INPUT, key, "is missing: give two numbers, [from, to]");

@@ -9,7 +9,7 @@
 
 /* An image that the scene `like` has loaded already. pixels is null if `like` does not have the image. */
 typedef struct known_image {
-  const float *pixels; /* [height][width][channels] */
+  const float *pixels; /* [height][width][channels]; null: `like` does not have the image */
   int width, height;
 } known_image;
 
@@ -26,8 +26,8 @@ static known_image find_function_image(const hl_scene_description *like, const c
   return (known_image){NULL, 0, 0};
 }
 
-/* Finds an image that `like` has loaded from this file. With 4 channels, only images of transfer functions
- * count, as others have lost alpha. */
+/* Finds an image that `like` has loaded from this file. Where 4 channels are needed, only images of transfer
+ * functions count, because other images were loaded without alpha. */
 static known_image find_known(const hl_scene_description *like, const char *path, int channels) {
   if (channels == 4) return find_function_image(like, path);
   const hl_sky *sky = &like->sky;

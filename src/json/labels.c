@@ -22,9 +22,9 @@ static const char *const label_keys[] = {"value", "name", "color", "opacity", "v
 typedef struct known_labels {
   hl_json_reader *reader;
   const hl_volume *map;
-  char *table; /* owned path; null if there is no table */
+  char *table; /* owned; the path of the label table; null if there is no table */
   bool found;
-  hl_label *labels; /* owned */
+  hl_label *labels; /* owned; [count]; the labels that the file or the table describes */
   size_t count;
 } known_labels;
 
@@ -89,7 +89,7 @@ static hl_status read_label(known_labels *known, const json_t *object, hl_label 
   if (status == HL_OK) status = take_known(known, object, name, label);
   if (status == HL_OK && name != NULL) label->name = name;
   if (status == HL_OK) status = hl_json_numbers(reader, object, "color", 3, label->color);
-  /* In a mask, a label tints by default if the scene gives it a colour. */
+  /* in a mask, a label tints by default if the scene gives the label a colour */
   if (json_object_get(object, "color") != NULL) label->tint = 1;
   if (status == HL_OK) status = hl_json_number(reader, object, "tint", &label->tint);
   if (status == HL_OK) status = hl_json_number(reader, object, "opacity", &label->opacity);

@@ -8,14 +8,15 @@
 const char *const hl_json_mesh_keys[] = {"vertices", "triangles",     "normals", "colors",      "face_colors",
                                          "spheres",  "sphere_colors", "lines",   "line_colors", NULL};
 
-/* What is allowed in an array of rows of numbers, and how it is completed. */
+/* The rule for an array of rows of numbers: how many numbers a row may have, and how missing numbers are
+ * filled in. */
 typedef struct row_kind {
-  size_t least, most; /* a row may have from `least` to `most` numbers */
-  double rest;        /* value of numbers that a row lacks */
+  size_t least, most; /* the least and the greatest number of numbers in a row */
+  double rest;        /* the value of numbers that a row lacks */
   const char *wanted; /* for errors: the value that the scene should give instead */
 } row_kind;
 
-/* Reads one row of a member `key` into `to`, which has kind->most places. */
+/* Reads one row of an array of numbers into `to`, which has kind->most places. */
 static hl_status read_row(hl_json_reader *reader, const json_t *row, const row_kind *kind, float *to) {
   double numbers[4];
   size_t count = json_array_size(row);

@@ -6,7 +6,8 @@
 #include "json/parts.h"
 #include "json/settings.h"
 
-/* A mesh has one source: a file, "floor", or arrays of its own. */
+/* The keys of a mesh that are not in the table of settings. A mesh has one source: a file, "floor", or arrays
+ * of its own. */
 static const char *const other_keys[] = {
     "name",   "file",        "floor",   "transform",     "material", "vertices",    "triangles", "normals",
     "colors", "face_colors", "spheres", "sphere_colors", "lines",    "line_colors", "radius",    NULL};
@@ -15,8 +16,8 @@ static bool same_text(const char *a, const char *b) {
   return a == NULL || b == NULL ? a == b : strcmp(a, b) == 0;
 }
 
-/* Finds a mesh that was already loaded from this path, for this scene or for the scene `like`. Null if there
- * is none. */
+/* Finds a mesh that was already loaded from this path, for this scene or for the scene `like`. Returns null
+ * if there is no such mesh. */
 static hl_mesh *known_mesh(const hl_json_reader *reader, const hl_mesh_shelf *shelf, const char *path) {
   for (size_t m = 0; m < shelf->count; m++)
     if (same_text(shelf->meshes[m].file, path)) return shelf->meshes[m].mesh;
@@ -77,7 +78,7 @@ static hl_status read_look(hl_json_reader *reader, const json_t *value, hl_scene
   return status == HL_OK ? hl_json_settings(reader, value, HL_SETTINGS_MESH, 0, mesh) : status;
 }
 
-/* Reads one mesh that is no floor, and appends it to the shelf, the list of the scene's meshes. */
+/* Reads one mesh that is no floor, and appends it to the shelf (the list of the scene's meshes). */
 static hl_status read_mesh(hl_json_reader *reader, const json_t *value, hl_mesh_shelf *shelf) {
   hl_scene_mesh *mesh = &shelf->meshes[shelf->count];
   const char *file = NULL;
@@ -95,8 +96,8 @@ static hl_status read_mesh(hl_json_reader *reader, const json_t *value, hl_mesh_
   return status;
 }
 
-/* Reads the properties of a floor, which is made later. `place` is its index in the list, after all other
- * meshes. */
+/* Reads the properties of a floor. The floor is made later. `place` is the floor's index in the list, after
+ * all other meshes. */
 static hl_status read_floor(hl_json_reader *reader, const json_t *value, hl_mesh_shelf *shelf, size_t place) {
   double *size = &shelf->floor_sizes[shelf->floor_count++];
   *size = json_is_true(json_object_get(value, "floor")) ? HL_FLOOR_SIZE : 0;

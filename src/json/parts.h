@@ -8,10 +8,10 @@
 #include "json/text_writer.h"
 #include "scene/check/limits.h"
 
-/* The members of a struct that an image is loaded into. */
+/* The members of a struct into which an image is loaded. */
 typedef struct hl_json_image {
   const char **file;
-  const float **pixels; /* [height][width][channels] */
+  const float **pixels; /* [height][width][channels]; receives the pixels */
   int *width, *height;
   int channels; /* number of channels: 3 for colours over black, 4 for premultiplied colours and alpha */
 } hl_json_image;
@@ -20,38 +20,42 @@ typedef struct hl_json_image {
  * and pixels are owned by the caller, also after a failure. */
 hl_status hl_json_load_image(hl_json_reader *reader, const json_t *value, const hl_json_image *to);
 
-/* Reads the object "sky"; null if absent. Its image is released by hl_json_release_sky(), also after a
- * failure. */
+/* Reads the object "sky" of a scene. value: null if the scene has no sky. The sky's image is released by
+ * hl_json_release_sky(), also after a failure. */
 hl_status hl_json_read_sky(hl_json_reader *reader, const json_t *value, hl_sky *sky);
 void hl_json_release_sky(hl_context *context, hl_sky *sky);
 
-/* Reads the image that a light projects; null if absent. Its pixels and file name are owned by *texture. */
+/* Reads the image that a light projects. value: null if the light has no such image. The image's pixels and
+ * file name are owned by *texture. */
 hl_status hl_json_read_texture(hl_json_reader *reader, const json_t *value, hl_light_texture *texture);
 
-/* Reads the image on a light's own surface; null if absent. Its pixels and file name are owned by
- * *emission. */
+/* Reads the image on a light's own surface. value: null if the light has no such image. The image's pixels
+ * and file name are owned by *emission. */
 hl_status hl_json_read_emission(hl_json_reader *reader, const json_t *value, bool has_edges,
                                 hl_light_emission *emission);
 
 /* Reads one light. Its vertices (hl_release) and images (hl_light_images_release) are owned by *light. */
 hl_status hl_json_read_light(hl_json_reader *reader, const json_t *value, hl_light *light);
 
-/* A volume that was read for the scene, kept so that a volume that is named twice is read once. */
+/* A volume that was read for the scene. It is kept so that a volume that the scene names twice is read
+ * once. */
 typedef struct hl_loaded_volume {
   char *source;      /* owned; the file's path, or the text of its shapes */
-  const char *array; /* the options for loading the file; texts owned by the JSON tree */
+  const char *array; /* the options with which the file was loaded; texts are owned by the JSON tree */
   int component, time, channel, level;
   const char *series;
   double spacing[3];
   double smooth;     /* the standard deviation by which the voxels were smoothed */
-  hl_volume *volume; /* owned */
+  hl_volume *volume; /* owned; the volume that was read */
 } hl_loaded_volume;
 
 /* Data that the volumes of one scene share. */
 typedef struct hl_volume_shelf {
-  hl_loaded_volume *loaded; /* owned; [count]; has room for one more element whenever a volume is read */
+  /* owned; [count]; the volumes that were read so far. There is room for one more volume whenever a volume is
+   * read */
+  hl_loaded_volume *loaded;
   size_t count;
-  const json_t *groups; /* the groups of shapes; may be null */
+  const json_t *groups; /* the groups of shapes in the scene; may be null */
   json_t *stood_in;     /* owned; the volumes whose file was absent, as copies of their JSON with the keys of
                          * their stand-ins; null if there are none */
   hl_space space;       /* the scene's space, which is the space of the first volume that states one; later
@@ -79,23 +83,25 @@ hl_status hl_json_shelve_known(hl_json_reader *reader, hl_volume_shelf *shelf);
  * folder. Owned by the caller (hl_release); null if memory is short. */
 char *hl_json_path(const hl_json_reader *reader, const char *file);
 
-/* Reads the object "transform" of a volume or a mesh; null if absent. kind: the table of the object's
- * keys. */
+/* Reads the object "transform" of a volume or a mesh. value: null if there is no such object. kind: the table
+ * of the object's keys. */
 hl_status hl_json_read_transform(hl_json_reader *reader, const json_t *value, hl_setting_kind kind,
                                  void *target);
 
 /* The meshes of one scene. Floors are the last ones in the list. The names are borrowed from the JSON
  * tree. */
 typedef struct hl_mesh_shelf {
-  hl_scene_mesh *meshes; /* owned, with their files and triangles; [count + floor_count] */
-  double *floor_sizes;   /* owned; [floor_count] */
-  size_t count;          /* number of meshes that are made */
-  size_t floor_count;    /* number of floors that are still to be made, after the camera is known, on which
-                          * their place depends; they follow the other meshes */
+  /* owned, with their file names and triangles; [count + floor_count]; the meshes, and after them places for
+   * the floors */
+  hl_scene_mesh *meshes;
+  double *floor_sizes; /* owned; [floor_count]; the sizes of the floors */
+  size_t count;        /* number of meshes that are made */
+  size_t floor_count;  /* number of floors that are still to be made, after the camera is known, on which
+                        * their place depends; they follow the other meshes */
 } hl_mesh_shelf;
 
-/* Reads the array "meshes"; null if absent. Of floors, only their properties are read. The shelf is released
- * by hl_json_release_meshes(), also after a failure. */
+/* Reads the array "meshes" of a scene. value: null if there is no such array. Of floors, only the properties
+ * are read. The shelf is released by hl_json_release_meshes(), also after a failure. */
 hl_status hl_json_read_meshes(hl_json_reader *reader, const json_t *value, hl_mesh_shelf *shelf);
 
 /* Makes the floors of a scene. They lie below its volumes and below its other meshes. shelf: the scene's
@@ -110,19 +116,20 @@ hl_status hl_json_read_mesh_arrays(hl_json_reader *reader, const json_t *value, 
 extern const char *const hl_json_mesh_keys[];
 void hl_json_release_meshes(hl_context *context, hl_mesh_shelf *shelf);
 
-/* Reads the array "cuts" of a volume or a scene; null if absent. *cuts is owned by the caller (hl_release),
- * also after a failure. */
+/* Reads the array "cuts" of a volume or a scene. value: null if there is no such array. *cuts is owned by the
+ * caller (hl_release), also after a failure. */
 hl_status hl_json_read_cuts(hl_json_reader *reader, const json_t *value, const hl_cut **cuts, size_t *count);
 
-/* Reads the array "marks" of a scene; null if absent. *marks is owned by the caller (hl_marks_release), also
- * after a failure. */
+/* Reads the array "marks" of a scene. value: null if there is no such array. *marks is owned by the caller
+ * (hl_marks_release), also after a failure. */
 hl_status hl_json_read_marks(hl_json_reader *reader, const json_t *value, const hl_mark **marks,
                              size_t *count);
 
-/* Writes the member "marks", if there are any. */
+/* Writes the member "marks" of a scene, if the scene has marks. */
 void hl_json_write_marks(hl_json_writer *w, const hl_mark *marks, size_t count);
 
-/* Reads the array "iso" of a volume; null if absent. The surfaces are owned by *volume. */
+/* Reads the array "iso" of a volume. value: null if there is no such array. The surfaces are owned by
+ * *volume. */
 hl_status hl_json_read_iso(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume);
 
 /* Makes a transfer function that shows nothing. Its points are owned by *function. */
@@ -141,12 +148,14 @@ typedef struct hl_json_range {
 hl_status hl_json_read_range(hl_json_reader *reader, const json_t *value, const hl_volume *volume,
                              hl_json_range *range);
 
-/* What the default of a transfer function depends on: the volume, and how it is shown. */
+/* The facts on which the default of a transfer function depends: the volume, and how it is shown. */
 typedef struct hl_function_subject {
-  const hl_volume *volume; /* null for a file that holds only a function; functions that depend on the voxels
-                            * are then refused */
-  bool is_solid;           /* the volume is made of shapes; the default is an opaque solid */
-  bool projected;          /* the picture is a maximum projection; the default is a ramp of greys */
+  /* the volume; null for a file that holds only a function; functions that depend on the voxels are then
+   * refused */
+  const hl_volume *volume;
+  bool is_solid;  /* whether the volume is made of shapes; the default is then an opaque solid */
+  bool projected; /* whether the picture is a maximum projection; the default is then a ramp of
+                   * greys */
 } hl_function_subject;
 
 /* Reads a transfer function. If value is null, the result is the subject's default: an opaque solid, a ramp

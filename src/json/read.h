@@ -19,17 +19,17 @@
 typedef struct hl_json_reader {
   hl_context *context;
   const char *name;   /* the text's name in errors */
-  const char *folder; /* folder of relative paths; may be null */
+  const char *folder; /* the folder to which relative paths refer; may be null */
   hl_error *error;
   const hl_scene_description
-      *like;       /* if not null, no file is opened: volumes and images are taken from this scene */
-  char place[400]; /* JSON pointer of the value being read */
+      *like;       /* if it is not null, no file is opened: volumes and images are taken from this scene */
+  char place[400]; /* JSON pointer of the value that is being read */
 } hl_json_reader;
 
 /* Parses a text. *root is owned by the caller (json_decref); a syntax error gives NAME:LINE:COLUMN. */
 hl_status hl_json_parse(const char *text, size_t length, const char *name, json_t **root, hl_error *error);
 
-/* A copy of an object that shares all members with the original. Null if memory is short. */
+/* A copy of a JSON object. The copy shares all members with the original. Null if memory is short. */
 json_t *hl_json_copy(const json_t *value);
 
 /* Fails with "NAME: PLACE/KEY: ...". If key is null, the line is "NAME: PLACE: ...". */
@@ -42,15 +42,15 @@ hl_status hl_json_prefix(hl_json_reader *reader, const char *place);
 /* The name of a value's type with its article: "an object", "a string" and so on. */
 const char *hl_json_type_name(const json_t *value);
 
-/* Enters a member or an element: appends its key or number to the reader's place. Returns the mark that
- * hl_json_leave() takes. */
+/* Two functions that enter a member of an object or an element of an array. Each of them appends the key or
+ * the number to the reader's place. Returns the mark that hl_json_leave() takes. */
 size_t hl_json_enter(hl_json_reader *reader, const char *key);
 size_t hl_json_enter_index(hl_json_reader *reader, size_t index);
 void hl_json_leave(hl_json_reader *reader, size_t mark);
 
-/* Checks that the value is an object whose keys are all in the null-terminated list. */
+/* Checks that a value is an object whose keys are all in a list, which null ends. */
 hl_status hl_json_object(hl_json_reader *reader, const json_t *value, const char *const *keys);
-/* Checks that the value is an array of least to most elements. */
+/* Checks that a value is an array with at least `least` and at most `most` elements. */
 hl_status hl_json_array(hl_json_reader *reader, const json_t *value, size_t least, size_t most);
 
 hl_status hl_json_number(hl_json_reader *reader, const json_t *object, const char *key, double *number);
@@ -61,10 +61,10 @@ hl_status hl_json_text(hl_json_reader *reader, const json_t *object, const char 
  * in this list, plus `first`. */
 hl_status hl_json_choice(hl_json_reader *reader, const json_t *object, const char *key,
                          const char *const *names, int first, int *choice);
-/* Reads an array of exactly count numbers. key: the value's name in errors. */
+/* Reads a value that must be an array of exactly `count` numbers. key: the value's name in errors. */
 hl_status hl_json_row(hl_json_reader *reader, const json_t *value, const char *key, size_t count,
                       double *numbers);
-/* Reads a member that is an array of exactly count numbers, if it is present. */
+/* Reads a member that is an array of exactly `count` numbers. If the member is absent, nothing is read. */
 hl_status hl_json_numbers(hl_json_reader *reader, const json_t *object, const char *key, size_t count,
                           double *numbers);
 

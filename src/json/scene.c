@@ -17,11 +17,12 @@
 #include "scene/scene.h"
 #include "scene/settings.h"
 
-/* Everything that reading allocates. It is released at the end, also after a failure. */
+/* Everything that is allocated while a scene is read. It is released at the end, also after a failure. */
 typedef struct gathered {
   hl_scene_description description;
-  hl_light *lights;         /* owned; [light_count] */
-  hl_scene_volume *volumes; /* owned, with their transfer functions' points; [volume_count] */
+  hl_light *lights;         /* owned; [light_count]; the scene's lights */
+  hl_scene_volume *volumes; /* owned, with their transfer functions' points; [volume_count]; the scene's
+                             * volumes */
   hl_volume_shelf shelf;
   hl_mesh_shelf meshes;
   hl_light key_light;
@@ -80,7 +81,7 @@ static hl_status refuse_key(hl_json_reader *reader, const json_t *object, const 
   return has(object, key) ? hl_json_fail(reader, HL_ERROR_INPUT, key, "%s", mend) : HL_OK;
 }
 
-/* Places a camera so that it frames the volumes. Its type and field of view must be set. */
+/* Places a camera so that it frames the volumes. The camera's type and field of view must have been set. */
 static hl_status frame(hl_json_reader *reader, const hl_scene_description *d, hl_camera *camera) {
   hl_status status = camera->type == HL_CAMERA_PERSPECTIVE
                          ? hl_settings_check_key(HL_SETTINGS_CAMERA, "fovy_deg", camera, "/camera",
@@ -116,8 +117,8 @@ static hl_status read_camera_members(hl_json_reader *reader, const json_t *value
                          : status;
 }
 
-/* Reads the camera when the image's size and the volumes are known. value: null if the camera is absent. A
- * camera without a position frames the volumes. */
+/* Reads the camera when the image's size and the volumes are known. value: the camera's JSON; null if the
+ * scene has no camera. A camera without a position frames the volumes. */
 static hl_status read_camera(hl_json_reader *reader, const json_t *value, hl_scene_description *d) {
   size_t mark = hl_json_enter(reader, "camera");
   hl_status status = value != NULL ? read_camera_members(reader, value, d) : frame(reader, d, &d->camera);
@@ -184,7 +185,7 @@ static hl_status read_lights(hl_json_reader *reader, const json_t *root, gathere
   return HL_OK;
 }
 
-/* Checks the volumes before the camera is read, because it may have to frame them. */
+/* Checks the volumes before the camera is read, because the camera may have to frame them. */
 static hl_status check_volumes(hl_json_reader *reader, const hl_scene_description *d) {
   for (size_t v = 0; v < d->volume_count; v++) {
     hl_status status = hl_scene_volume_check(&d->volumes[v], v, reader->error);

@@ -36,7 +36,7 @@ static hl_status read_choice(hl_json_reader *reader, const json_t *object, const
   return status;
 }
 
-/* Reads a whole number in the row's range, or one of the row's words. */
+/* Reads a setting that is a whole number in the setting's range, or one of the setting's words. */
 static hl_status read_whole_or_word(hl_json_reader *reader, const json_t *object, const char *key,
                                     const hl_setting *setting, int *value) {
   const json_t *member = json_object_get(object, key);

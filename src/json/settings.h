@@ -6,8 +6,9 @@
 
 #include "json/read.h"
 
-/* Checks that the value is an object whose keys are all in the table or in the null-terminated list `others`.
- * type: the type of the light or camera, whose keys alone are allowed; -1 to allow the keys of every type. */
+/* Checks that a value is an object whose keys are all in the table or in the null-terminated list `others`.
+ * type: the type of the light or camera; only the keys of this type are allowed. -1: the keys of every type
+ * are allowed. */
 hl_status hl_json_settings_object(hl_json_reader *reader, const json_t *value, hl_setting_kind kind, int type,
                                   const char *const *others);
 
@@ -21,7 +22,7 @@ hl_status hl_json_settings_member(hl_json_reader *reader, const json_t *value, c
  * "transform". */
 hl_status hl_json_setting(hl_json_reader *reader, const json_t *object, hl_setting_kind kind, const char *key,
                           void *target);
-/* Reads all keys of a table that have no "/" and belong to this type of light or camera. */
+/* Reads all keys of a table that have no "/" and belong to a type of light or camera. */
 hl_status hl_json_settings(hl_json_reader *reader, const json_t *object, hl_setting_kind kind, int type,
                            void *target);
 

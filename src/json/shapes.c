@@ -44,7 +44,7 @@ typedef struct reading {
   const char *open[HL_SHAPES_DEEPEST]; /* [depth]; the names of the groups that contain the list; null for a
                                         * group without a name */
   size_t depth;
-  int seed; /* added to every hypertexture's seed */
+  int seed; /* a number that is added to the seed of every hypertexture */
 } reading;
 
 static hl_status check_between(hl_json_reader *reader, const char *key, double value, double low, double high,
@@ -236,7 +236,7 @@ static hl_status read_form(hl_json_reader *reader, const json_t *value, hl_shape
 
 static hl_status read_list(reading *r, const json_t *value);
 
-/* Reads the shapes of a named group. Errors point to "groups". */
+/* Reads the shapes of a named group. The places in errors begin with "groups". */
 static hl_status read_named_group(reading *r, const char *name) {
   hl_json_reader *reader = r->reader;
   const json_t *members = json_object_get(r->groups, name);
@@ -347,7 +347,7 @@ static hl_status read_shape(reading *r, const json_t *value, bool first) {
   if (status == HL_OK) status = read_texture(r, json_object_get(value, "hypertexture"), &shape->texture);
   if (status == HL_OK) status = read_form(reader, value, shape);
   bool group = status == HL_OK && shape->type == HL_SHAPE_GROUP;
-  if (group) status = read_members(r, value); /* reading members may move the list */
+  if (group) status = read_members(r, value); /* reading members may move the list in memory */
   if (status == HL_OK) r->list->shapes[index].end = r->list->count;
   return status;
 }
@@ -380,8 +380,9 @@ hl_status hl_json_check_groups(hl_json_reader *reader, const json_t *groups) {
   return HL_OK;
 }
 
-/* Chooses the edge of voxels. size: the wanted number of voxels along the longest side. If it is 0, the edge
- * is the key "voxel_size"; if this key is absent, DEFAULT_SIZE is the wanted number. */
+/* Chooses the edge of voxels. size: the wanted number of voxels along the longest side. If `size` is 0, the
+ * edge is the value of the key "voxel_size"; if this key is absent, too, DEFAULT_SIZE is the wanted
+ * number. */
 static hl_status choose_voxel_size(hl_json_reader *reader, const json_t *object, const hl_shape_list *list,
                                    int size, double *voxel_size) {
   double extent = hl_shapes_extent(list), margin = HL_SHAPE_EDGE + 2 * HL_SHAPE_MARGIN;

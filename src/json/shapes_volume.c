@@ -63,7 +63,7 @@ hl_status hl_volume_from_shapes(hl_context *context, const char *text, size_t le
 /* ---- expanding groups ---- */
 
 /* Replaces named groups in a list by their shapes. left: the number of shapes that may still be added to the
- * whole. */
+ * whole list. */
 static json_t *expand_list(const json_t *shapes, const json_t *groups, int depth, int *left) {
   json_t *expanded = json_array();
   for (size_t n = 0; n < json_array_size(shapes); n++) {
@@ -91,8 +91,8 @@ json_t *hl_json_expand_shapes(const json_t *shapes, const json_t *groups) {
   return expand_list(shapes, groups, 0, &left);
 }
 
-/* Whether a text contains the whole tree. If memory is short, jansson leaves keys out of the text, and still
- * reports success. */
+/* Whether a JSON text contains the whole tree `root`. If memory is short, jansson leaves keys out of the
+ * text, and still reports success. */
 static bool says(const char *text, const json_t *root) {
   json_t *again = text != NULL ? hl_plain_json_load_text(text) : NULL;
   bool same = json_equal(root, again);
@@ -101,7 +101,7 @@ static bool says(const char *text, const json_t *root) {
 }
 
 /* Returns an integer in place of a real number without a fraction; null for any other value. A page that
- * reads a scene and writes it again turns 5.0 into 5, and both must become the same text. */
+ * reads a scene and writes it again turns 5.0 into 5, and both must become the same text here. */
 static json_t *whole_of(const json_t *value) {
   const double most = 9007199254740992.0; /* 2^53 */
   double number = json_real_value(value);

@@ -62,7 +62,7 @@ _Static_assert(sizeof(hl_color_point) == 4 * sizeof(double), "colour points are 
 enum { SOLID_POINTS = 2 };
 static const double solid_begins = 0.375, solid_is_full = 0.625, solid_opacity = 0.95;
 
-/* Makes the outside of a solid fully transparent, and gives the inside this opacity. */
+/* Makes the outside of a solid fully transparent, and gives the inside a given opacity. */
 static hl_status set_solid_opacity(hl_json_reader *reader, double opacity, hl_transfer_function *function) {
   hl_opacity_point *points = hl_allocate(reader->context, SOLID_POINTS, sizeof *points);
   if (points == NULL)
@@ -75,7 +75,7 @@ static hl_status set_solid_opacity(hl_json_reader *reader, double opacity, hl_tr
   return HL_OK;
 }
 
-/* Reads a colour that all values get. */
+/* Reads a colour that the function gives to all values. */
 static hl_status read_plain_color(hl_json_reader *reader, const json_t *value,
                                   hl_transfer_function *function) {
   hl_color_point *point = hl_allocate_zeroed(reader->context, 1, sizeof *point);
@@ -195,7 +195,7 @@ static hl_status take_automatic_opacity(hl_json_reader *reader, const hl_volume 
 }
 
 /* Reads the function that `value` starts from: a preset, a file or the automatic function. Points, colormap
- * and unit_distance change it later. */
+ * and unit_distance change this function later. */
 static hl_status read_start(hl_json_reader *reader, const json_t *value, hl_function_subject subject,
                             hl_transfer_function *function) {
   const hl_volume *volume = subject.volume;
@@ -278,7 +278,7 @@ hl_status hl_json_read_transfer_function(hl_json_reader *reader, const json_t *v
     if (status != HL_OK) hl_json_prefix(reader, reader->place);
     return status;
   }
-  /* In a file of its own, a function is the whole JSON text: errors then name no key around it. */
+  /* in a file of its own, a function is the whole JSON text, so that errors name no key around it */
   size_t mark = subject.volume != NULL ? hl_json_enter(reader, "transfer_function") : 0;
   hl_status status = read_members(reader, value, subject, function);
   if (status == HL_OK) hl_json_leave(reader, mark);

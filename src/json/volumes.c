@@ -47,7 +47,7 @@ static const char *const volume_keys[] = {"name",
 
 #define GIVE_COMPONENT "give a number from 0 on, \"magnitude\", \"color\" or \"luminance\""
 
-/* The keys that say how a file is read. */
+/* The keys of a volume that say how its file is read. */
 static const char *const of_file[] = {"array", "component", "time",    "channel",
                                       "level", "series",    "spacing", "smooth"};
 
@@ -120,8 +120,9 @@ static bool same_text(const char *a, const char *b) {
   return a == NULL || b == NULL ? a == b : strcmp(a, b) == 0;
 }
 
-/* Finds a volume that was already made from this source; null if there is none. options: must be the same for
- * files, as must the smoothing; null if the source is a text of shapes. */
+/* Finds a volume that was already made from this source; null if there is none. options: the options for
+ * loading; for a file, they and the smoothing must be the same. options is null if the source is a text of
+ * shapes. */
 static const hl_loaded_volume *find_loaded(const hl_volume_shelf *shelf, const char *source,
                                            const hl_volume_load_options *options, double smooth) {
   for (size_t v = 0; v < shelf->count; v++) {
@@ -186,7 +187,7 @@ hl_status hl_json_shelve_known(hl_json_reader *reader, hl_volume_shelf *shelf) {
   return HL_OK;
 }
 
-/* Reads an index or a word. */
+/* Reads the key "component": an index, or a word such as "magnitude". */
 static hl_status read_component(hl_json_reader *reader, const json_t *value, int *component) {
   const json_t *given = json_object_get(value, "component");
   if (given == NULL) return HL_OK;
@@ -209,7 +210,7 @@ static hl_status read_index(hl_json_reader *reader, const json_t *value, const c
              : status;
 }
 
-/* Reads the options for loading the file. */
+/* Reads the options for loading a volume's file. */
 static hl_status read_load_options(hl_json_reader *reader, const json_t *value,
                                    hl_volume_load_options *options) {
   hl_volume_load_options_defaults(options);
@@ -256,7 +257,7 @@ static hl_status smooth_loaded(hl_json_reader *reader, double smooth, hl_volume 
   return status;
 }
 
-/* Loads the volume's file, or takes it from the shelf. */
+/* Loads a volume's file, or takes the volume from the shelf if it was loaded before. */
 static hl_status load(hl_json_reader *reader, const char *file, const hl_volume_load_options *options,
                       double smooth, hl_volume_shelf *shelf, hl_scene_volume *volume) {
   if (is_data(file) && reader->context->options.data_folder == NULL)
@@ -380,7 +381,8 @@ static hl_status read_mask(hl_json_reader *reader, const json_t *value, hl_volum
   return status;
 }
 
-/* True for volumes of shapes, except for orbitals, whose values are signed floats. */
+/* Whether a volume is made of shapes and is a solid. Orbitals are no solids, because their values are signed
+ * floats. */
 static bool is_solid(const hl_scene_volume *volume) {
   return volume->shapes != NULL && volume->volume->storage != HL_STORAGE_F32;
 }
@@ -404,7 +406,7 @@ static hl_status choose_shading(hl_json_reader *reader, const json_t *value, hl_
 static bool is_there(const hl_json_reader *reader, const char *file) {
   if (is_data(file) && reader->context->options.data_folder == NULL) return false;
   char *path = hl_json_path(reader, file);
-  /* Without memory for the path, the result is true: loading the file then reports the error. */
+  /* if there is no memory for the path, the result is true: loading the file then reports the error */
   bool there = path == NULL;
   for (size_t v = 0; !there && reader->like != NULL && v < reader->like->volume_count; v++)
     there = reader->like->volumes[v].file != NULL && strcmp(reader->like->volumes[v].file, path) == 0;
@@ -421,7 +423,7 @@ static hl_status choose_stand_in(hl_json_reader *reader, const json_t **value, h
   const char *file = NULL;
   if (stand_in == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "stand_in");
-  /* A stand-in may have all keys of a volume except its name and a stand-in. */
+  /* a stand-in may have all keys of a volume except its name and a stand-in */
   hl_status status = hl_json_object(reader, stand_in, volume_keys + 2);
   if (status != HL_OK) return status;
   hl_json_leave(reader, mark);

@@ -54,7 +54,8 @@ static size_t numbers_of(const hl_mesh *mesh) {
 }
 
 static hl_status check_mesh(const hl_scene_mesh *mesh, size_t index, hl_error *error) {
-  enum { MOST_NUMBERS = 300000 }; /* more numbers would take several megabytes in a scene's text */
+  /* the greatest number of numbers; more numbers would take several megabytes in a scene's text */
+  enum { MOST_NUMBERS = 300000 };
   if (mesh->file == NULL && numbers_of(mesh->mesh) > MOST_NUMBERS)
     return hl_fail(
         error, HL_ERROR_ARGUMENT,
@@ -66,7 +67,8 @@ static hl_status check_mesh(const hl_scene_mesh *mesh, size_t index, hl_error *e
                  "/meshes/%zu: name or file is not UTF-8, as JSON texts must be: rename it", index);
 }
 
-/* Checks that an image has a file. place: the object that names the image, such as "/lights/0/texture". */
+/* Checks that an image has a file. place: the JSON pointer of the object that names the image, such as
+ * "/lights/0/texture". */
 static hl_status check_image(const float *pixels, const char *file, const char *place, hl_error *error) {
   if (pixels == NULL) return HL_OK;
   if (file == NULL)

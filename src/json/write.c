@@ -263,7 +263,7 @@ static void write_shapes(hl_json_writer *w, const char *text) {
   json_decref(root);
 }
 
-/* Writes the volume's file, and those options of loading that are not the default. */
+/* Writes the name of a volume's file, and those options of loading that do not have their defaults. */
 static void write_source(hl_json_writer *w, const hl_scene_volume *volume) {
   write_file(w, volume->file);
   if (volume->series != NULL) hl_json_write_name(w, "series", volume->series);
@@ -377,7 +377,7 @@ static void put_float(hl_json_writer *w, float number) {
   hl_json_put_text(w, text);
 }
 
-/* Writes rows of floats on one line. If the rows are null, nothing is written. */
+/* Writes rows of floats on one line. If `rows` is null, nothing is written. */
 static void write_floats(hl_json_writer *w, const char *key, const float *rows, size_t count, size_t width) {
   if (rows == NULL || count == 0) return;
   hl_json_begin_item(w, key);
@@ -408,8 +408,8 @@ static void write_lines(hl_json_writer *w, const hl_mesh_description *d) {
   hl_json_close(w, "]");
 }
 
-/* Writes the arrays from which the mesh was made. The triangles of tubes are left out, because they follow
- * from the lines. */
+/* Writes the arrays from which a mesh was made. The triangles of tubes are left out, because they follow from
+ * the lines. */
 static void write_arrays(hl_json_writer *w, const hl_mesh *mesh) {
   const hl_mesh_description *d = &mesh->description;
   if (mesh->given_triangles > 0) {

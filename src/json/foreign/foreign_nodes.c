@@ -11,8 +11,8 @@
 
 #define PIECES 16 /* number of straight pieces that a curved segment becomes */
 
-/* The fraction, from 0 to 1, of the way from this node's number to the next node's that the function has gone
- * at the fraction t of the distance between the nodes (vtkPiecewiseFunction). */
+/* How far a function has gone from this node's number to the next node's number, as a fraction from 0 to 1.
+ * The place is the fraction t of the distance between the nodes (vtkPiecewiseFunction). */
 static double ease(double t, const hl_foreign_node *n) {
   if (n->midpoint == 0.5 && n->sharpness < 0.01) return t;
   t = t < n->midpoint ? 0.5 * t / n->midpoint : 0.5 + 0.5 * (t - n->midpoint) / (1 - n->midpoint);
@@ -20,7 +20,8 @@ static double ease(double t, const hl_foreign_node *n) {
   if (n->sharpness < 0.01) return t;
   double power = 1 + 10 * n->sharpness;
   t = t < 0.5 ? 0.5 * pow(2 * t, power) : 1 - 0.5 * pow(2 * (1 - t), power);
-  double slope = 1 - n->sharpness, t2 = t * t, t3 = t2 * t; /* slope of a Hermite curve at both of its ends */
+  /* slope of the Hermite curve at both of its ends */
+  double slope = 1 - n->sharpness, t2 = t * t, t3 = t2 * t;
   return (3 * t2 - 2 * t3) + slope * (2 * t3 - 3 * t2 + t);
 }
 

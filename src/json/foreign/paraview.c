@@ -4,8 +4,8 @@
 #include "core/memory.h"
 #include "json/foreign/foreign_nodes.h"
 
-/* Reads one of ParaView's flat arrays of four numbers per point: value, red, green, blue (ordinates 3), or
- * value, opacity, midpoint, sharpness (ordinates 1). */
+/* Reads one of ParaView's flat arrays, which have four numbers per point. If `ordinates` is 3, these are
+ * value, red, green and blue; if it is 1, they are value, opacity, midpoint and sharpness. */
 static hl_status read_flat(hl_json_reader *reader, const json_t *map, const char *key, size_t ordinates,
                            hl_foreign_node **nodes, size_t *count) {
   const json_t *value = json_object_get(map, key);

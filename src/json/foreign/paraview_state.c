@@ -41,11 +41,11 @@ typedef struct shown_volume {
   char colors[ID_BYTES], opacities[ID_BYTES]; /* ids of the lookup table and of the opacity function */
 } shown_volume;
 
-/* The content of a state that is read. */
+/* What has been read of a state so far. */
 typedef struct state {
   double boxes[MOST_BOXES * BOX_NUMBERS], range[4];
   size_t box_numbers, range_numbers;
-  size_t functions;       /* number of TransferFunction2D with boxes in the state */
+  size_t functions;       /* number of proxies TransferFunction2D with boxes in the state */
   size_t planes, volumes; /* number of volumes that are shown by a function of two numbers, and by a function
                            * of one number */
   shown_volume shown;     /* the last representation that shows a volume */
@@ -53,18 +53,20 @@ typedef struct state {
                            * that has an array of numbers for each property */
 } state;
 
-/* The content of the proxy that the current tags are in. */
+/* What has been read of the proxy that the current tags are in. */
 typedef struct proxy {
-  bool is_function;                 /* the proxy is a function of two numbers */
-  bool is_representation, is_other; /* is_other: the proxy is a representation of another kind, which shows no
-                                     * volume */
+  bool is_function; /* whether the proxy is a function of two numbers */
+  /* is_representation: whether the proxy shows a volume; is_other: whether the proxy is a representation of
+   * another kind, which shows no volume */
+  bool is_representation, is_other;
   bool is_named_volume, is_visible;
   shown_volume shown;
   json_t *kept; /* borrowed from the state; collects the proxy's properties; null if they are not needed */
   double range[4];
   size_t box_numbers, range_numbers;
   char property[32];
-  bool in_domain; /* the current tags list the values that the property may have, not the value that it has */
+  /* whether the current tags list the values that a property may have, and not the value that it has */
+  bool in_domain;
 } proxy;
 
 static hl_status refuse(hl_error *error, const char *path, const char *what) {
@@ -76,7 +78,7 @@ static bool is_one_of(const char *name, const char *const names[]) {
   return *names != NULL;
 }
 
-/* Stores a number of the current property, if the property belongs to those that colour maps have. */
+/* Stores a number of the current property, if colour maps have this property. */
 static hl_status keep(proxy *in, double value, hl_error *error) {
   static const char *const names[] = {
       "RGBPoints",   "Points",        "ColorSpace",         "HSVWrap",
@@ -191,7 +193,7 @@ static hl_status read_tags(hl_stream *stream, hl_xml_tag *tag, state *made, hl_e
 
 /* ---- colours and opacities ---- */
 
-/* The first number of a property among the kept ones; 0 if the property has no number. */
+/* The first number of a property among the kept properties of a proxy; 0 if the property has no number. */
 static double number_of(const json_t *kept, const char *property) {
   return json_number_value(json_array_get(json_object_get(kept, property), 0));
 }
@@ -236,7 +238,7 @@ static hl_status make_map(hl_context *context, const char *path, const state *ma
 
 /* ---- boxes ---- */
 
-/* Linear maps from ParaView's Range to data values and to lengths of gradients. */
+/* Two linear maps from ParaView's Range: to data values, and to lengths of gradients. */
 typedef struct fit {
   double from[2], factor[2], to[2];
 } fit;
@@ -254,7 +256,8 @@ static fit fit_to(const state *made, const hl_volume *volume) {
   return f;
 }
 
-/* Writes Halflight's boxes that together stand for one box of ParaView's. Returns their number. */
+/* Writes Halflight's boxes that together stand for one box of ParaView's. Returns the number of Halflight's
+ * boxes. */
 static size_t write_terms(const double numbers[BOX_NUMBERS], const fit *f, hl_function_box *to) {
   double alpha = fmin(fmax(numbers[7], 0), most_alpha), left = -log1p(-alpha), power = 1;
   size_t made = 0;
@@ -297,7 +300,8 @@ static hl_status make_plane(hl_context *context, const char *path, const state *
   return HL_OK;
 }
 
-/* Makes the function of the volume that is shown. Fails unless it is the only one. */
+/* Makes the transfer function of the volume that the state shows. Fails unless the state shows exactly one
+ * volume. */
 static hl_status make_function(hl_context *context, const char *path, const state *made,
                                const hl_volume *volume, hl_transfer_function *function, hl_error *error) {
   if (made->planes + made->volumes == 0 && made->functions > 0)

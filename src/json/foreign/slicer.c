@@ -14,8 +14,8 @@
 
 enum { MOST_COMPONENTS = 4 }; /* the value of VTK_MAX_VRCOMP */
 
-/* Reads points as Slicer writes them: [{"x": value, "y": opacity or "color": [r, g, b], "midpoint": .5,
- * "sharpness": 0}, ...] */
+/* Reads the points of a function as Slicer writes them: [{"x": value, "y": opacity or "color": [r, g, b],
+ * "midpoint": .5, "sharpness": 0}, ...] */
 static hl_status read_points(hl_json_reader *reader, const json_t *component, const char *key, bool colors,
                              hl_foreign_node **nodes, size_t *count) {
   const json_t *function = json_object_get(component, key), *points = json_object_get(function, "points");
@@ -81,8 +81,8 @@ void hl_slicer_fit_gradient(const hl_volume *volume, hl_transfer_function *funct
   function->gradient_opacity_count = kept;
 }
 
-/* Reads opacity by gradient, if the preset has and uses it. Opacity that is 1 for all gradients is left
- * out. */
+/* Reads opacity by gradient, if the preset has such a function and uses it. Opacity that is 1 for all
+ * gradients is left out. */
 static hl_status read_gradient(hl_json_reader *reader, const json_t *component,
                                hl_transfer_function *function) {
   if (json_is_true(json_object_get(component, "disableGradientOpacity")) ||
@@ -101,8 +101,9 @@ static hl_status refuse_nearest(hl_json_reader *reader, const json_t *properties
                       "interpolationType %s is not supported: set it to linear", text);
 }
 
-/* The number of components that each voxel has in the volume's file. *read: set to the component that was
- * read; negative if several were. Channels count as components; the time steps of a series do not. */
+/* The number of components that each voxel has in the volume's file. *read: receives the number of the
+ * component that was read; it is negative if several components were read. Channels count as components; the
+ * time steps of a series do not. */
 static size_t components_of(const hl_volume *volume, int *read) {
   const hl_selection *of = &volume->selection;
   bool series = of->times > 1 || of->channels > 1;
@@ -112,9 +113,9 @@ static size_t components_of(const hl_volume *volume, int *read) {
                                    : 1;
 }
 
-/* Finds which of the preset's components has the functions for a volume: the component that was read from the
- * volume's file. If this file has one component, the preset's first one is chosen, as in Slicer. volume: may
- * be null if the preset has a single component. */
+/* Finds the component of the preset whose functions are used for a volume: the component that was read from
+ * the volume's file. If this file has one component, the preset's first one is chosen, as in Slicer. volume:
+ * may be null if the preset has a single component. */
 static hl_status choose_component(hl_json_reader *reader, size_t count, const hl_volume *volume,
                                   size_t *chosen) {
   int read = 0;
@@ -138,7 +139,8 @@ static hl_status choose_component(hl_json_reader *reader, size_t count, const hl
   return HL_OK;
 }
 
-/* Refuses presets that mix components or weight them, as each component has its full opacity here. */
+/* Refuses presets that mix components or weight them, because Halflight gives each component its full
+ * opacity. */
 static hl_status refuse_mixing(hl_json_reader *reader, const json_t *properties, const json_t *components) {
   if (json_array_size(components) < 2) return HL_OK;
   if (json_is_false(json_object_get(properties, "independentComponents")))

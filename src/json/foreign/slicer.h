@@ -6,7 +6,8 @@
 #include "json/parts.h"
 
 /* Reads an object with "volumeProperties". volume: the volume for which the function is read; null if it is
- * not known. If the object has functions for several components, those of the volume's component are read. */
+ * not known. If the object has functions for several components, the functions of the volume's component are
+ * read. */
 hl_status hl_json_read_slicer(hl_json_reader *reader, const json_t *root, const hl_volume *volume,
                               hl_transfer_function *function);
 
@@ -14,7 +15,7 @@ hl_status hl_json_read_slicer(hl_json_reader *reader, const json_t *root, const 
  * NAME.xml:PRESET. */
 bool hl_slicer_is_text(const char *path);
 
-/* Reads a file of Slicer's text formats. Errors name path. */
+/* Reads a transfer function from a file of Slicer's text formats. Errors name `path`. */
 hl_status hl_slicer_read_text(hl_context *context, const char *path, hl_transfer_function *function,
                               hl_error *error);
 

@@ -18,15 +18,15 @@
 
 enum { MOST_PRESETS = 256, NAME_BYTES = 64 };
 
-/* The three functions of a property, and its interpolation. Texts are borrowed. */
+/* The texts of a volume property: its three functions, and its interpolation. Texts are borrowed. */
 typedef struct property {
   const char *interpolation, *opacity, *gradient, *color;
 } property;
 
 /* ---- the functions ---- */
 
-/* Reads the points of a function. Each point has `ordinates` numbers beside x. *nodes is owned by the
- * caller. */
+/* Reads the points of a function. Each point has the number x and `ordinates` further numbers. *nodes is
+ * owned by the caller. */
 static hl_status read_nodes(hl_json_reader *reader, const char *key, const char *text, size_t ordinates,
                             hl_foreign_node **nodes, size_t *count) {
   size_t width = 1 + ordinates, most = HL_FOREIGN_NODES * width + 1;
@@ -104,7 +104,7 @@ bool hl_slicer_is_text(const char *path) {
 /* The names of a file's presets, for errors. */
 typedef struct preset_list {
   char names[MOST_PRESETS][NAME_BYTES];
-  const char *known[MOST_PRESETS + 1]; /* names, null-terminated */
+  const char *known[MOST_PRESETS + 1]; /* [count + 1]; pointers to the names; null ends the list */
   size_t count;
 } preset_list;
 
@@ -127,7 +127,8 @@ static void remember(preset_list *list, const char *name) {
   list->known[list->count++] = kept;
 }
 
-/* Finds the property with the wanted name, or a file's only one if wanted is null. */
+/* Finds the volume property with the wanted name. If `wanted` is null, takes the only property of the
+ * file. */
 static hl_status find_preset(hl_json_reader *reader, hl_stream *stream, const char *wanted, hl_xml_tag *tag,
                              preset_list *list, hl_transfer_function *function) {
   bool found = false, ended = false;
