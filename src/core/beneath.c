@@ -13,8 +13,8 @@
 #include <linux/openat2.h>
 #endif
 
-/* Reads the next component of a path, without slashes, and moves *name past it. False if the component is too
- * long. */
+/* Reads the next component of a path, without slashes, and moves *name behind the component. Returns false if
+ * the component is too long. */
 static int next_component(const char **name, char component[NAME_MAX + 1]) {
   const char *begin = *name + strspn(*name, "/");
   size_t length = strcspn(begin, "/");
@@ -56,7 +56,8 @@ int hl_beneath_open(int folder, const char *name, int flags) {
   for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
     long opened = syscall(SYS_openat2, folder, name[0] != 0 ? name : ".", &how, sizeof how);
     if (opened >= 0) return (int)opened;
-    if (errno == ENOSYS || errno == EPERM) break; /* an older system, or one that forbids unknown calls */
+    /* an older system does not have openat2(), and some systems forbid unknown calls */
+    if (errno == ENOSYS || errno == EPERM) break;
     if (errno != EAGAIN && errno != EINTR) return -1;
   }
 #endif

@@ -3,13 +3,14 @@
 #ifndef HL_CORE_BENEATH_H
 #define HL_CORE_BENEATH_H
 
-/* Opens `name` relative to a folder's descriptor, with the flags of open(); returns the descriptor, or -1 and
- * sets errno. "" is the folder itself. Absolute names are refused, and so are names and links that lead out
- * of the folder, whether or not a file is there. The descriptor is closed on exec. */
+/* Opens the file `name` relative to a folder's descriptor, with the flags of open(). Returns the file's
+ * descriptor, or -1 and sets errno. The name "" stands for the folder itself. Absolute names are refused, and
+ * so are names and links that lead out of the folder, whether or not a file is there. The descriptor is
+ * closed on exec. */
 int hl_beneath_open(int folder, const char *name, int flags);
 
-/* Opens a file like hl_beneath_open(), for systems without openat2(). It follows no links at all, and refuses
- * "..". */
+/* Opens a file like hl_beneath_open(), on systems without openat2(). The function follows no links at all,
+ * and refuses "..". */
 int hl_beneath_open_by_components(int folder, const char *name, int flags);
 
 #endif

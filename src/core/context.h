@@ -8,8 +8,8 @@
 #include <halflight/context.h>
 
 struct hl_context {
-  hl_context_options options;       /* `allocate` and `release` are never null; `instruction_set` is never
-                                     * AUTO */
+  hl_context_options options;       /* the options; `allocate` and `release` are never null, and
+                                     * `instruction_set` is never AUTO */
   atomic_uint_least64_t held, peak; /* bytes of the context's blocks of memory: those that are held now, and
                                      * the most that were held at one time */
   char *scratch_folder;             /* owned; the folder given to hl_context_limit_memory(); may be null */

@@ -15,8 +15,8 @@ static const unsigned int VECTOR_CONTROL = 0xffc0, VECTOR_DEFAULT = 0x1f80;
 static const unsigned short SCALAR_CONTROL = 0x0f3f, SCALAR_DEFAULT = 0x033f;
 
 static bool is_default(unsigned int vector) {
-  unsigned short scalar = 0; /* set to 0 because the memory sanitizer does not see that the instruction writes
-                              * this variable */
+  /* 0, because the memory sanitizer does not see that the instruction below writes this variable */
+  unsigned short scalar = 0;
   __asm__ volatile("fnstcw %0" : "=m"(scalar));
   return (vector & VECTOR_CONTROL) == VECTOR_DEFAULT && (scalar & SCALAR_CONTROL) == SCALAR_DEFAULT;
 }

@@ -14,16 +14,16 @@
 #include <stdbool.h>
 
 typedef struct hl_door {
-  fenv_t host;         /* saved completely where `changed` is set */
-  unsigned int vector; /* x86: the value of MXCSR, the control and status register for vectors, that the host
-                        * had set */
+  fenv_t host;         /* the host's floating-point environment, saved completely where `changed` is set */
+  unsigned int vector; /* on x86: the host's value of MXCSR, the control and status register for vectors */
   bool changed;
 } hl_door;
 
 hl_door hl_door_enter(void);
 void hl_door_leave(hl_door *door);
 
-/* The first statement of a function that computes. */
+/* The first statement of a public function that computes: it enters the default floating-point
+ * environment. */
 #define HL_DOOR hl_door hl_own_door __attribute__((cleanup(hl_door_leave), unused)) = hl_door_enter()
 
 #endif

@@ -4,19 +4,20 @@
 
 #include <halflight/context.h>
 
-/* Fills *error (may be null) with the formatted line and returns code. */
+/* Fills *error (which may be null) with a formatted line, and returns `code`. */
 __attribute__((format(printf, 3, 4))) hl_status hl_fail(hl_error *error, hl_status code, const char *format,
                                                         ...);
 
-/* Fails like hl_fail(), with a line and a column in the input, counted from 1 (0: unknown). */
+/* Fails like hl_fail(), and tells a line and a column of the input. Both are counted from 1; 0 means
+ * unknown. */
 __attribute__((format(printf, 5, 6))) hl_status hl_fail_at(hl_error *error, hl_status code, int line,
                                                            int column, const char *format, ...);
 
-/* Fails like hl_fail(), with a byte offset in the input. */
+/* Fails like hl_fail(), and tells a byte offset in the input. */
 __attribute__((format(printf, 4, 5))) hl_status hl_fail_offset(hl_error *error, hl_status code,
                                                                int64_t offset, const char *format, ...);
 
-/* Fails with "out of memory: NAME needs N bytes ...". */
+/* Fails with the line "out of memory: NAME needs N bytes ...". */
 hl_status hl_fail_memory(hl_error *error, size_t bytes, const char *what);
 
 /* Replaces control characters by '?'. Names in foreign files may hold control characters, but a message must

@@ -23,8 +23,8 @@ static hl_status fail_system(hl_error *error, const char *path, const char *verb
   return hl_fail(error, HL_ERROR_IO, "%s: cannot %s: %s", path, verb, strerror(errno));
 }
 
-/* Opens a file if the context may open it. Returns -1, with errno set, if the context may not, or if the file
- * cannot be opened. */
+/* Opens a file if the context may open this file. Returns -1, with errno set, if the context may not open it,
+ * or if the system cannot. */
 static int open_allowed(const hl_context *context, const char *path, int flags) {
   flags |= O_CLOEXEC;
   /* with these flags, open() waits neither for the writer of a pipe nor for a device */
@@ -95,9 +95,9 @@ typedef struct file_reading {
   hl_context *context;
   const char *path;
   int descriptor;
-  hl_file_judge judge;  /* null if `limit` is final */
-  size_t limit;         /* greatest length accepted for the file, bytes */
-  unsigned char *bytes; /* owned; [capacity] */
+  hl_file_judge judge;  /* judges the file's length by its first bytes; null if `limit` is final */
+  size_t limit;         /* the greatest length, in bytes, that is accepted for the file */
+  unsigned char *bytes; /* owned; [capacity]; the bytes that have been read */
   size_t length, capacity;
 } file_reading;
 
@@ -116,7 +116,8 @@ static hl_status make_room(file_reading *file, hl_error *error) {
 }
 
 static hl_status read_all(file_reading *file, hl_error *error) {
-  enum { FIRST_PIECE = 1 << 16, GREATEST_PIECE = 1 << 23 }; /* bytes between two checks for cancellation */
+  /* the least and the greatest number of bytes between two checks for cancellation */
+  enum { FIRST_PIECE = 1 << 16, GREATEST_PIECE = 1 << 23 };
   file->capacity = FIRST_PIECE;
   file->bytes = hl_allocate(file->context, file->capacity, 1);
   if (file->bytes == NULL) return hl_fail_memory(error, file->capacity, file->path);
@@ -168,8 +169,8 @@ hl_status hl_file_read_judged(hl_context *context, const char *path, hl_file_jud
 
 /* ---- outputs ---- */
 
-/* Makes "folder/name.XXXXXX" from "folder/name". If the result would be longer than the system allows, the
- * name is cut between two characters. */
+/* Makes a temporary name, "folder/name.XXXXXX", from "folder/name". If the result would be longer than the
+ * system allows, the name is cut between two characters. */
 static char *temporary_path(hl_context *context, const char *path) {
   static const char suffix[] = ".XXXXXX";
   const char *slash = strrchr(path, '/'), *name = slash != NULL ? slash + 1 : path;
@@ -189,7 +190,8 @@ static char *temporary_path(hl_context *context, const char *path) {
  * process's umask leaves. mkstemp() is not used: it would make the file private, and its mode could not be
  * corrected afterwards, because the umask cannot be read without changing it. */
 static int create_temporary(char *path) {
-  static const char letters[] = "abcdefghijklmnopqrstuvwxyz234567"; /* 32 letters */
+  /* 32 letters, so that five random bits choose a letter */
+  static const char letters[] = "abcdefghijklmnopqrstuvwxyz234567";
   enum { LETTERS = 6, TRIES = 1000 };
   for (int n = 0; n < TRIES; n++) {
     unsigned char random[LETTERS];
@@ -258,7 +260,7 @@ void hl_output_abort(hl_output *output) {
 
 /* ---- outputs in memory ---- */
 
-/* Makes room for `end` bytes. New bytes are zero. */
+/* Makes room for `end` bytes in an output in memory. New bytes are zero. */
 static bool reserve(hl_output_memory *memory, size_t end) {
   if (end <= memory->capacity) return true;
   size_t capacity = memory->capacity > 0 ? memory->capacity : 65536;

@@ -11,8 +11,9 @@
 /* Opens a file for reading and calls the context's `reads` callback. Does not block on a pipe that has no
  * writer. */
 hl_status hl_file_open(hl_context *context, const char *path, int *descriptor, hl_error *error);
-/* Opens a file like hl_file_open(), but does not call `reads`. Threads other than the caller's use it,
- * because they may not call `reads`; it also serves for files that were reported to `reads` before. */
+/* Opens a file like hl_file_open(), but does not call `reads`. Threads other than the caller's use this
+ * function, because they may not call `reads`. It also serves for files that were reported to `reads`
+ * before. */
 hl_status hl_file_open_again(hl_context *context, const char *path, int *descriptor, hl_error *error);
 /* Opens a folder, for hl_beneath_open() and fdopendir(). "" is the current folder, or the folder of a
  * confined context. */
@@ -20,19 +21,19 @@ hl_status hl_folder_open(hl_context *context, const char *path, int *descriptor,
 /* The kind of the file with this name: 'f' for a file that can be read, 'd' for a folder, and 0 for anything
  * else. Files that the context may not open have the kind 0, too. */
 char hl_file_kind(const hl_context *context, const char *path);
-/* Reads up to capacity bytes; *count is 0 at the end of the file. While a pipe is empty, waits and polls the
- * cancel callback. */
+/* Reads at most `capacity` bytes of an open file; *count is 0 at the end of the file. While a pipe is empty,
+ * waits and polls the cancel callback. */
 hl_status hl_file_pull(hl_context *context, int descriptor, const char *path, void *bytes, size_t capacity,
                        size_t *count, hl_error *error);
 
-/* Reads a whole file of at most limit bytes. *bytes is owned by the caller (hl_release) and is
- * followed by one zero byte. */
+/* Reads a whole file of at most `limit` bytes. *bytes is owned by the caller (hl_release) and is followed by
+ * one zero byte. */
 hl_status hl_file_read(hl_context *context, const char *path, size_t limit, unsigned char **bytes,
                        size_t *length, hl_error *error);
 
 /* Judges a file by its first `length` bytes: sets *limit to the greatest length, in bytes, that the complete
- * file may have, or refuses the file. Called after 64 KiB and again each time the number of bytes read has
- * doubled; never called for files shorter than 64 KiB. */
+ * file may have, or refuses the file. The function is called after 64 KiB, and again each time the number of
+ * bytes that were read has doubled. It is never called for files shorter than 64 KiB. */
 typedef hl_status (*hl_file_judge)(const char *path, const unsigned char *bytes, size_t length, size_t *limit,
                                    hl_error *error);
 
@@ -45,40 +46,42 @@ hl_status hl_file_read_judged(hl_context *context, const char *path, hl_file_jud
 typedef struct hl_output {
   hl_context *context;
   char *path;           /* owned; the final name */
-  char *temporary_path; /* owned */
-  FILE *file;           /* null for outputs that another library opens by temporary_path */
+  char *temporary_path; /* owned; the name under which the file is written */
+  /* the stream that writes to the file; null for outputs that another library opens by temporary_path */
+  FILE *file;
 } hl_output;
 
-/* Creates the temporary file and opens it for writing. */
+/* Creates the temporary file of an output and opens it for writing. */
 hl_status hl_output_begin(hl_context *context, const char *path, hl_output *output, hl_error *error);
-/* Flushes, closes and renames the file. On failure, removes the temporary file and leaves an older file of
- * the final name as it was. */
+/* Flushes, closes and renames the temporary file of an output. On failure, removes the temporary file and
+ * leaves an older file of the final name as it was. */
 hl_status hl_output_commit(hl_output *output, hl_error *error);
-/* Closes and removes the temporary file. After a commit it does nothing. */
+/* Closes and removes the temporary file of an output. After a commit the function does nothing. */
 void hl_output_abort(hl_output *output);
 
 /* An output in growing memory, for encoders that write to a FILE. */
 typedef struct hl_output_memory {
   hl_output output;     /* path: a name for messages; file: a stream that writes to this memory */
-  unsigned char *bytes; /* owned; [capacity]; the first `length` are written */
+  unsigned char *bytes; /* owned; [capacity]; the first `length` bytes are written */
   size_t length, capacity, place;
-  bool full;             /* an allocation failed */
+  bool full;             /* whether an allocation failed */
   hl_byte_stream stream; /* the stream that writes to this memory */
 } hl_output_memory;
 
-/* `memory` must stay at its address until the commit or abort. */
+/* Begins an output in memory. `memory` must stay at its address until the commit or abort. */
 hl_status hl_output_memory_begin(hl_context *context, const char *name, hl_output_memory *memory,
                                  hl_error *error);
 /* Gives the written bytes to the caller, who owns *bytes (hl_release). *bytes is untouched on failure. */
 hl_status hl_output_memory_commit(hl_output_memory *memory, unsigned char **bytes, size_t *length,
                                   hl_error *error);
-/* Releases everything. After a commit it does nothing. */
+/* Releases an output in memory. After a commit the function does nothing. */
 void hl_output_memory_abort(hl_output_memory *memory);
 
 /* Joins folder + "/" + path. The result is `path` itself if it is absolute or a URL, or if `folder` is null
- * or empty. Owned by the caller; null if memory is short. */
+ * or empty. The result is owned by the caller; it is null if memory is short. */
 char *hl_path_join(hl_context *context, const char *folder, const char *path);
-/* The folder part of a path ("" if none), owned by the caller; null without memory. */
+/* The folder part of a path; "" if the path has none. The result is owned by the caller; it is null if memory
+ * is short. */
 char *hl_path_folder(hl_context *context, const char *path);
 
 #endif

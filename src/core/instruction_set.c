@@ -16,10 +16,12 @@
  * switches threads. Intel 64 and IA-32 Architectures Software Developer's Manual, volume 2A, CPUID; volume 1,
  * 13.3. __builtin_cpu_supports() is not used, because it relies on the compiler's runtime library, and
  * ziglang's library for Windows recognises no processor. */
-enum { FMA = 1 << 12, OSXSAVE = 1 << 27 };                                         /* leaf 1, ecx */
-enum { AVX2 = 1 << 5, AVX512F = 1 << 16, AVX512DQ = 1 << 17, AVX512BW = 1 << 30 }; /* leaf 7, ebx */
+/* bits of CPUID's leaf 1, register ecx */
+enum { FMA = 1 << 12, OSXSAVE = 1 << 27 };
+/* bits of CPUID's leaf 7, register ebx */
+enum { AVX2 = 1 << 5, AVX512F = 1 << 16, AVX512DQ = 1 << 17, AVX512BW = 1 << 30 };
 static const unsigned AVX512VL = 1u << 31;
-enum { VBMI = 1 << 1, VBMI2 = 1 << 6, VNNI = 1 << 11 }; /* leaf 7, ecx */
+enum { VBMI = 1 << 1, VBMI2 = 1 << 6, VNNI = 1 << 11 }; /* bits of CPUID's leaf 7, register ecx */
 enum { YMM_KEPT = 0x6, ZMM_KEPT = 0xe6 };
 
 static int has_all(unsigned bits, unsigned wanted) { return (bits & wanted) == wanted; }

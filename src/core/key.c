@@ -25,7 +25,7 @@ void hl_key_add_numbers(hl_key *key, const double *numbers, size_t count) {
 }
 
 /* Computes a hash of the bytes: Fowler, Noll and Vo's FNV-1a, over words of 64 bits. Four sums are computed
- * side by side, so that the steps of one need not wait for those of another. */
+ * side by side, so that the steps of one sum need not wait for the steps of another. */
 uint64_t hl_key_mark(const void *bytes, size_t count) {
   enum { WORD = sizeof(uint64_t), SUMS = 4 };
   const uint64_t prime = 0x100000001b3u;

@@ -10,14 +10,14 @@
 #include "core/vector.h"
 
 typedef struct hl_key {
-  unsigned char *bytes; /* owned; null: the bytes are only counted */
+  unsigned char *bytes; /* owned; the bytes of the key; null: the bytes are only counted */
   size_t count;
 } hl_key;
 
 void hl_key_add(hl_key *key, const void *bytes, size_t count);
 
-/* Adds numbers so that memcmp() of two keys sorts them as the numbers: -2, -1, 0, 1, 2. Multiplying all
- * numbers by one positive factor does not change this order. */
+/* Adds numbers to a key in such a form that memcmp() sorts keys as the numbers are sorted: -2, -1, 0, 1, 2.
+ * Multiplying all numbers by one positive factor does not change this order. */
 void hl_key_add_numbers(hl_key *key, const double *numbers, size_t count);
 
 static inline void hl_key_add_whole(hl_key *key, int64_t number) { hl_key_add(key, &number, sizeof number); }
@@ -31,8 +31,8 @@ static inline void hl_key_add_affine(hl_key *key, const affine3 *map) {
  * one in 2^64. */
 uint64_t hl_key_mark(const void *bytes, size_t count);
 
-/* Adds everything that a result depends on to a key. Must add the same bytes each time it is called for the
- * same data. */
+/* The type of a function that adds to a key everything on which a result depends. It must add the same bytes
+ * each time it is called for the same data. */
 typedef void hl_key_write(const void *data, hl_key *key);
 
 /* Tells whether the kept key is the key of the data, so that the kept result can be used. If not, the data's

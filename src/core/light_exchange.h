@@ -7,10 +7,11 @@
 /* A post: the bytes that a part sends to all other parts, and the bytes that it receives from them, while the
  * messages are under way. */
 typedef struct light_post {
-  const void *from; /* [bytes]; nobody may change these bytes before they have arrived */
-  size_t bytes;     /* at most `most` */
-  void *to;         /* [parts][most]; row n gets the bytes of part n; nobody may read them before they have
-                     * arrived */
+  const void *from; /* [bytes]; the bytes of this part; nobody may change them before they have arrived */
+  size_t bytes;     /* number of bytes of this part; at most `most` */
+  /* [parts][most]; receives the bytes of all parts; row n gets the bytes of part n; nobody may read them
+   * before they have arrived */
+  void *to;
   size_t most;
   void *memory; /* memory for the exchange itself; [the exchange's post_bytes] */
 } light_post;
@@ -18,11 +19,11 @@ typedef struct light_post {
 /* The exchange among the renderers that each make a part of one picture. All parts call these functions
  * equally often and in the same order. */
 typedef struct light_exchange {
-  int part, parts; /* number of this renderer's part; number of parts */
+  int part, parts; /* part: number of this renderer's part; parts: number of parts */
   /* Sends this part's bytes to all parts, and receives the bytes of all parts. Returns when everything has
    * arrived. All parts send the same number of bytes. from: [bytes]; to: [parts][bytes]. */
   void (*gather)(void *data, const void *from, size_t bytes, void *to);
-  void *data; /* borrowed */
+  void *data; /* the first argument of the functions; borrowed */
   /* Exchanges bytes while a part goes on with its work. Parts may send different numbers of bytes, but all
    * have the same `most`. `send` begins an exchange and returns at once. `look` lets the exchange make
    * progress, and may be called at any time. `receive` waits until everything has arrived. All three may be
@@ -30,9 +31,9 @@ typedef struct light_exchange {
   void (*send)(void *data, const light_post *post);
   void (*look)(void *data, const light_post *post);
   void (*receive)(void *data, const light_post *post);
-  size_t post_bytes;  /* size of a post's memory */
-  size_t most_posted; /* how many bytes a post should receive from all parts together, approximately; 0: some
-                       * megabytes */
+  size_t post_bytes; /* number of bytes of a post's `memory` */
+  /* the approximate number of bytes that a post should receive from all parts together; 0: some megabytes */
+  size_t most_posted;
 } light_exchange;
 
 static inline void hl_light_send(const light_exchange *exchange, const light_post *post) {

@@ -8,7 +8,7 @@
 
 /* Each block starts with its size; 64 bytes keep the payload aligned for vectors. */
 typedef struct block_header {
-  size_t size; /* payload bytes */
+  size_t size; /* number of bytes that the block's user asked for */
 } block_header;
 
 enum { HEADER_BYTES = 64 };

@@ -9,8 +9,8 @@
 
 #include "core/error.h"
 
-/* Allocates count * size bytes, uninitialised. Returns null on overflow, at the limit, or when the
- * allocator has no more. A request for 0 bytes gives a valid block. */
+/* Allocates count * size uninitialised bytes. Returns null on overflow, at the limit, or when the allocator
+ * has no more. A request for 0 bytes gives a valid block. */
 void *hl_allocate(hl_context *context, size_t count, size_t size);
 
 /* Allocates like hl_allocate(), with all bytes zero. */
@@ -20,12 +20,13 @@ void *hl_allocate_zeroed(hl_context *context, size_t count, size_t size);
  * null and leaves the old block as it was. old may be null. */
 void *hl_reallocate(hl_context *context, void *old, size_t count, size_t size);
 
-void hl_release(hl_context *context, void *memory); /* does nothing if either pointer is null */
+/* releases a block; does nothing if either pointer is null */
+void hl_release(hl_context *context, void *memory);
 
 /* A copy of a null-terminated text; null for null, or when there is no memory. */
 char *hl_copy_text(hl_context *context, const char *text);
 
-/* *product = a * b; false on overflow. */
+/* Sets *product to a * b. Returns false on overflow. */
 bool hl_multiply(size_t a, size_t b, size_t *product);
 
 /* ---- blocks kept from frame to frame ----
@@ -37,30 +38,30 @@ bool hl_multiply(size_t a, size_t b, size_t *product);
 enum { RESERVE_BLOCKS = 32 };
 
 typedef struct reserve_block {
-  void *memory; /* owned; null if there is no block */
+  void *memory; /* owned; the block; null if there is no block */
   size_t bytes;
 } reserve_block;
 
 typedef struct hl_reserve {
   hl_context *context;
-  bool keeps;                          /* false: every block is allocated anew, and released when it is
-                                        * returned */
-  int taken;                           /* blocks requested in this frame so far */
-  reserve_block block[RESERVE_BLOCKS]; /* block[n] is the n-th block that each frame takes; 0 bytes: there is
-                                        * no block */
+  /* whether blocks are kept; if not, every block is allocated anew, and released when it is returned */
+  bool keeps;
+  int taken;                           /* number of blocks that were requested in this frame so far */
+  reserve_block block[RESERVE_BLOCKS]; /* block[n] is the n-th block that each frame takes; if its bytes
+                                        * are 0, there is no block */
 } hl_reserve;
 
-/* Takes a block of count * size uninitialised bytes from the reserve, or else from hl_allocate(); null when
- * hl_allocate() fails. */
+/* Takes a block of count * size uninitialised bytes from the reserve, or else from hl_allocate(); The result
+ * is null when hl_allocate() fails. */
 void *hl_reserve_take(hl_reserve *reserve, size_t count, size_t size);
-/* Returns a block of hl_reserve_take(); null is allowed. */
+/* Returns a block that hl_reserve_take() gave. The block may be null. */
 void hl_reserve_return(hl_reserve *reserve, void *memory);
 
-/* Releases the blocks that this frame has not taken yet. */
+/* Releases the blocks of a reserve that the current frame has not taken yet. */
 void hl_reserve_drop_idle(hl_reserve *reserve);
 /* Ends a frame, after all blocks were returned: releases the blocks that this frame did not take. */
 void hl_reserve_end_frame(hl_reserve *reserve);
-/* Releases all blocks, which must all have been returned. */
+/* Releases all blocks of a reserve. All of them must have been returned. */
 void hl_reserve_release(hl_reserve *reserve);
 
 /* ---- Memory that is planned once ----
@@ -78,25 +79,28 @@ void hl_reserve_release(hl_reserve *reserve);
  * are allocated are given back (hl_layout_give_back): `most` is then the peak. */
 
 typedef struct hl_layout {
-  unsigned char *base; /* aligned to 64 bytes; null: counts only */
-  size_t bytes;        /* bytes taken at present; SIZE_MAX: overflow */
-  size_t most;         /* the most bytes that were taken at one time */
-  size_t counted;      /* the bytes that the first pass counted, which are the block's size; used by
-                        * hl_layout_pass() alone */
-  int passes;          /* of hl_layout_pass() */
+  unsigned char *base; /* the block from which arrays are taken, aligned to 64 bytes; null: bytes are only
+                        * counted */
+  size_t bytes;        /* number of bytes that are taken at present; SIZE_MAX: overflow */
+  size_t most;         /* the greatest number of bytes that were taken at one time */
+  /* the number of bytes that the first pass counted, which is the block's size; only hl_layout_pass() uses
+   * it */
+  size_t counted;
+  int passes; /* number of passes that hl_layout_pass() has begun */
 } hl_layout;
 
-/* Begins the next pass over a layout. The first pass counts bytes, and the second takes arrays from a block
- * of the counted size. Returns true before each of the two passes, and false after them. In the end `base` is
- * null if the block could not be allocated. It is also null if the second pass took another number of bytes
- * than the first, because arrays might then lie beyond the block. The caller owns the block. */
+/* Begins the next pass over a layout. The first pass counts bytes, and the second pass takes arrays from a
+ * block of the counted size. Returns true before each of the two passes, and false after them. In the end
+ * `base` is null if the block could not be allocated. It is also null if the second pass took another number
+ * of bytes than the first, because arrays might then lie beyond the block. The caller owns the block. */
 bool hl_layout_pass(hl_layout *layout, hl_context *context);
 
-/* Takes count * size bytes, aligned to 64; returns null while counting. */
+/* Takes count * size bytes from a layout, aligned to 64 bytes. Returns null while bytes are only counted. */
 static inline void *hl_layout_take(hl_layout *layout, size_t count, size_t size) {
   size_t bytes;
   if (!hl_multiply(count, size, &bytes) || bytes > SIZE_MAX / 2 || layout->bytes > SIZE_MAX / 2) {
-    layout->bytes = layout->most = SIZE_MAX; /* allocating SIZE_MAX bytes always fails */
+    /* SIZE_MAX marks an overflow; allocating SIZE_MAX bytes always fails */
+    layout->bytes = layout->most = SIZE_MAX;
     return NULL;
   }
   void *taken = layout->base == NULL ? NULL : layout->base + layout->bytes;

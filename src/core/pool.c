@@ -33,8 +33,8 @@
 
 enum { MAXIMUM_THREADS = 256, SPINS = 4000 };
 
-/* Time between two calls of the cancel callback while a job runs. It is much less than a person notices, and
- * much more than a call takes. */
+/* The time between two calls of the cancel callback while a job runs. It is much less than a person notices,
+ * and much more than a call takes. */
 static const int64_t NANOSECONDS_BETWEEN_QUESTIONS = 2000000;
 /* The clock is read again after MOST_UNREAD calls at most. It is read earlier if so many calls could take
  * longer than NANOSECONDS_BETWEEN_READINGS. */
@@ -43,7 +43,7 @@ enum { MOST_UNREAD = 15 };
 
 typedef struct worker {
   hl_pool *pool;
-  int number; /* 1 .. threads-1 */
+  int number; /* number of the worker, from 1 to threads - 1; the caller is worker 0 */
   pthread_t thread;
 } worker;
 
@@ -60,11 +60,13 @@ enum {
 static const uint64_t INDEX_MASK = ((uint64_t)1 << INDEX_BITS) - 1, ONE_OF_END = (uint64_t)1 << INDEX_BITS;
 
 typedef struct share {
-  _Alignas(64) atomic_uint_least64_t range; /* generation << 40 | end << 20 | next index */
+  /* three numbers in one word: generation << 40 | end << 20 | next index */
+  _Alignas(64) atomic_uint_least64_t range;
 } share;
 
 typedef struct offer {
-  share *shares; /* [share_count]; behind the pool's own */
+  share *shares; /* [share_count]; the shares of the offer, which lie behind the pool's own shares in
+                  * memory */
   size_t count;  /* the number of indices of the offered job; 0 if no job is offered */
   job job;
 } offer;
@@ -73,27 +75,30 @@ struct hl_pool {
   hl_context *context;
   int threads;
   int spins;
-  worker *workers; /* owned; [threads]; entry 0 (the caller) unused */
-  int started;     /* threads running, the caller included */
-  pid_t process;   /* the process that started the threads */
-  share *shares;   /* owned; [share_count] of the jobs, then [share_count] of the offer */
-  int share_count; /* requested number of threads, and number of shares; some of the threads may not have
-                    * started */
+  worker *workers; /* owned; [threads]; entry 0, which stands for the caller, is unused */
+  int started;     /* number of running threads, including the caller */
+  pid_t process;   /* id of the process that started the threads */
+  share *shares;   /* owned; [2][share_count]; first the shares of the jobs, then the shares of the offer */
+  /* requested number of threads, which is also the number of shares; some of the threads may not have
+   * started */
+  int share_count;
   job jobs[2];
   offer offer;
   atomic_uint_least64_t generation; /* number of the last job whose shares are filled */
   atomic_bool stop;
-  atomic_bool cancelled; /* if set, remaining indices are skipped */
+  atomic_bool cancelled; /* whether the remaining indices are skipped, because the cancel callback asked to
+                          * stop */
   atomic_int sleepers;
   pthread_mutex_t mutex;
   pthread_cond_t wake; /* signalled when `generation` or `stop` has changed */
-  /* Used by the calling thread only. */
+  /* The members below are used by the calling thread only. */
   _Alignas(64) int64_t asked,
       read;       /* when the cancel callback was last called and the clock was last read, in nanoseconds */
   uint64_t waits; /* how often the caller waited for other threads, at the end of an offer or of a run; a run
                    * with more indices than a share can hold counts several times */
-  int readings, unread; /* number of calls between two readings of the clock, and number of calls until the
-                         * next reading */
+  /* readings: number of calls between two readings of the clock; unread: number of calls until the next
+   * reading */
+  int readings, unread;
 };
 
 static inline void relax(void) {
@@ -151,7 +156,7 @@ typedef struct claim {
   uint64_t generation, index;
 } claim;
 
-/* Claims the first or the last index of a share. */
+/* Claims the first or the last index that is left in a share. */
 static bool claim_of_share(share *share, bool first, claim *claimed) {
   uint64_t range = atomic_load(&share->range);
   while (next_of(range) < end_of(range)) {
@@ -191,7 +196,7 @@ static bool is_idle(hl_pool *pool, uint64_t generation) {
   return atomic_load(&pool->generation) == generation && !atomic_load(&pool->stop);
 }
 
-/* Claims and runs indices of the offer until a new job begins or no index is left. */
+/* Claims and runs indices of the offer until a new job begins or the offer has no index left. */
 static void work_on_offer(hl_pool *pool, int number, uint64_t generation) {
   job *job = &pool->offer.job;
   size_t done = 0;
@@ -287,8 +292,8 @@ void hl_pool_offer(hl_pool *pool, size_t count, void (*function)(void *, size_t,
   job->function = function;
   job->data = data;
   pool->offer.count = count;
-  /* The generation of an offer is 2 above that of the last job. So the parity is the same, and the last job's
-   * shares are empty. */
+  /* The generation of an offer is 2 above the generation of the last job. So its parity is the same, and the
+   * last job's shares are empty. */
   begin_job(pool, job, pool->offer.shares, atomic_load(&pool->generation) + 2, count);
 }
 

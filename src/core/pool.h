@@ -15,11 +15,11 @@
 
 typedef struct hl_pool hl_pool;
 
-/* Makes a team. threads: at least 1, the caller included; 0 for one per processor. If the system refuses to
- * start some of the threads, the team is smaller and a warning says so. The threads block all signals, so
- * that signals reach the program's own threads. */
+/* Makes a team of threads. threads: the number of threads, including the caller; 0: one for each processor.
+ * If the system refuses to start some of the threads, the team is smaller and a warning says so. The threads
+ * block all signals, so that signals reach the program's own threads. */
 hl_status hl_pool_create(hl_context *context, int threads, hl_pool **pool, hl_error *error);
-void hl_pool_destroy(hl_pool *pool); /* null is allowed */
+void hl_pool_destroy(hl_pool *pool); /* `pool` may be null */
 
 /* Whether the pool belongs to this process. In a child process made by fork() the result is false: the child
  * has no threads of the pool, and can only destroy it. */
@@ -29,8 +29,8 @@ int hl_pool_threads(const hl_pool *pool);
  * several threads, and of each offer. */
 uint64_t hl_pool_waits(const hl_pool *pool);
 
-/* Calls function(data, index, worker) for each index in [0, count), worker in [0, threads). Returns when
- * all calls are done. It must not be called from inside such a function. */
+/* Calls function(data, index, worker) for each index in [0, count), worker in [0, threads). Returns when all
+ * calls are done. hl_pool_run() must not be called from inside such a function. */
 void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *data, size_t index, int worker),
                  void *data);
 
@@ -40,23 +40,25 @@ void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *data, size_
  * Before it returns, the memory that the calls read must not be written, and nothing else may be offered. */
 void hl_pool_offer(hl_pool *pool, size_t count, void (*function)(void *data, size_t index, int worker),
                    void *data);
-void hl_pool_finish_offer(hl_pool *pool); /* returns at once if nothing is offered */
+/* waits for the offered calls; returns at once if nothing is offered */
+void hl_pool_finish_offer(hl_pool *pool);
 
-/* Sets floats[0 .. count) to value, on all threads. */
+/* Sets the floats from index 0 to count - 1 to a value, on all threads. */
 void hl_pool_fill(hl_pool *pool, float *floats, size_t count, float value);
-/* Sets all bytes to value, or to zero, on all threads. */
+/* Sets all bytes of a block of memory to a value, or to zero, on all threads. */
 void hl_pool_set(hl_pool *pool, void *memory, size_t bytes, int value);
 void hl_pool_clear(hl_pool *pool, void *memory, size_t bytes);
 
-/* Whether work must stop; polls the cancel callback. It is for the calling thread, between runs. */
+/* Whether work must stop. The function polls the cancel callback. Only the calling thread may call it,
+ * between runs. */
 bool hl_pool_cancelled(hl_pool *pool);
 
 /* Returns HL_ERROR_CANCELLED, with the line "cancelled while DOING", if hl_pool_cancelled() is true; else
  * HL_OK. */
 hl_status hl_pool_check(hl_pool *pool, const char *doing, hl_error *error);
 
-/* Whether work must stop. Functions call it that take long for a single index. The call is cheap: only worker
- * 0 polls the cancel callback. */
+/* Whether work must stop. Functions that take long for a single index call hl_pool_stops() while they work.
+ * The call is cheap: only worker 0 polls the cancel callback. */
 bool hl_pool_stops(hl_pool *pool, int worker);
 
 /* Clears the pool's stop state, so that the pool runs indices again. */

@@ -8,8 +8,8 @@
 
 /* ---- the grid ---- */
 
-/* The distance, in voxels, outside of its box up to which a grid has values. Slabs that cross the box's faces
- * need them. */
+/* A grid has values outside of its box, up to this distance in voxels. Slabs that cross the box's faces need
+ * them. */
 #define GRID_MARGIN 4
 
 /* The distance behind a face, in voxels, beyond which the face does not affect how matter is lit. Matter
@@ -40,7 +40,7 @@
 #define CLASSIFIER_LEAST_BENDING (1.0f / 256)
 
 /* The colour of a slab comes from differences of the integral T at two coordinates, T(f2) - T(f1). This is
- * the least difference that is used, as a part of T. A smaller difference of two floats has too few exact
+ * the least difference that is used, as a fraction of T. A smaller difference of two floats has too few exact
  * digits. */
 #define LEAST_PART_OF_SHOWN (1.0f / 4096)
 
@@ -64,8 +64,8 @@
 #define DARK_AT_START (1.0f / 256)
 
 /* OUTWARDS_POWER sets how soon a surface has ended for light that leaves it again (shadow/attenuate.h). Where
- * the depth h has fallen by a tenth, .19 of the absorbed light still lights the surface. Where h has fallen
- * by a third, .0015 of it does. */
+ * the depth h has fallen by a tenth, the fraction .19 of the absorbed light still lights the surface. Where h
+ * has fallen by a third, the fraction .0015 of it does. */
 #define OUTWARDS_POWER 16
 
 /* The number of voxels of even matter over which the kept light k falls by the factor e. Matter that is even
@@ -73,8 +73,8 @@
  * matter again. For the faces of cuts, behind which matter is often even, skin is used in addition. */
 #define EVEN_VOXELS 1
 
-/* The part of a slab in the box is taken to reach the slab's end if it ends by less than this fraction of the
- * slab before it. Such a difference is only rounding. */
+/* If the part of a slab that lies in the box ends before the slab's end by less than this fraction of the
+ * slab, the part is taken to reach the slab's end. Such a difference is only rounding. */
 #define ROUNDING_OF_SPAN 1e-3f
 
 /* Light may come from the matter of one surface into another surface, which begins at the value `foot`. In a
@@ -124,10 +124,10 @@
 /* The greatest magnitude of a number that a cell of the sky's field stores. Such a number has 16 bits. */
 #define SKY_MOST 32767
 
-/* A cell is SKY_CELL numbers of 16 bits. lanes_unpack_shorts() joins the numbers of two cells, and changes
- * their order. SKY_PLACE() gives the index at which a harmonic must be stored so that it becomes number
- * `harmonic` of the sums. The indices SKY_PASSING and SKY_PASSING + 1 hold no harmonic, but the
- * transmittances of the cell and of the next cell along x; SKY_MOST stands for 1. */
+/* A cell of the sky's field is SKY_CELL numbers of 16 bits. lanes_unpack_shorts() joins the numbers of two
+ * cells, and changes their order. SKY_PLACE() gives the index at which a harmonic must be stored so that it
+ * becomes number `harmonic` of the sums. The indices SKY_PASSING and SKY_PASSING + 1 hold no harmonic, but
+ * the transmittances of the cell and of the next cell along x; SKY_MOST stands for 1. */
 #define SKY_CELL            32
 #define SKY_PASSING         28
 #define SKY_PLACE(harmonic) ((harmonic) % 16 / 4 * 8 + (harmonic) % 4 + ((harmonic) < 16 ? 0 : 4))
@@ -140,17 +140,17 @@
 /* The number of spherical harmonics, up to the second degree, and their factors. The harmonics have unit norm
  * over the sphere. */
 #define FIELD_HARMONICS 9
-#define HARMONIC_0      0.28209479177387814 /* 1 / sqrt(4 pi) */
-#define HARMONIC_1      0.48860251190291992 /* sqrt(3 / (4 pi)) x, y, z */
-#define HARMONIC_2      1.09254843059207907 /* sqrt(15 / (4 pi)) x y, y z, z x */
-#define HARMONIC_20     0.31539156525252000 /* sqrt(5 / (16 pi)) (3 z^2 - 1) */
-#define HARMONIC_22     0.54627421529603953 /* sqrt(15 / (16 pi)) (x^2 - y^2) */
+#define HARMONIC_0      0.28209479177387814 /* harmonic of degree 0: 1 / sqrt(4 pi) */
+#define HARMONIC_1      0.48860251190291992 /* harmonics of degree 1: sqrt(3 / (4 pi)) times x, y and z */
+#define HARMONIC_2      1.09254843059207907 /* harmonics of degree 2: sqrt(15 / (4 pi)) x y, y z and z x */
+#define HARMONIC_20     0.31539156525252000 /* harmonic of degree 2: sqrt(5 / (16 pi)) (3 z^2 - 1) */
+#define HARMONIC_22     0.54627421529603953 /* harmonic of degree 2: sqrt(15 / (16 pi)) (x^2 - y^2) */
 
-/* The least factor by which a cell's trilinear weight is multiplied. It is also the least weight of the cell
- * that no surface separates from the position. */
+/* The least factor by which the trilinear weight of a cell of the sky's field is multiplied. It is also the
+ * least weight of the cell that no surface separates from the position. */
 #define LEAST_COUNTED (1.0f / 1024)
 
-/* The field holds the light that reaches a cell, before the cell itself absorbs light. On its way to a
+/* The sky's field holds the light that reaches a cell, before the cell itself absorbs light. On its way to a
  * medium's sample, light crosses half of the cell. For a direction with the slopes u and v
  * (field/sky_lanes.h), this is half of sqrt(1 + u^2 + v^2) edges of a cell. The mean of this length over all
  * directions is 3 / (4 pi) times the integral of 1 / (1 + u^2 + v^2) over -1 < u, v < 1 (derived). */

@@ -11,12 +11,12 @@ typedef struct vec3 {
   double x, y, z;
 } vec3;
 
-/* A matrix of three rows: m * v = (dot(row0, v), dot(row1, v), dot(row2, v)). */
+/* A matrix of three rows. The product with a vector is m * v = (dot(row0, v), dot(row1, v), dot(row2, v)). */
 typedef struct mat3 {
   vec3 row[3];
 } mat3;
 
-/* p -> linear * p + offset */
+/* A map of points p: p -> linear * p + offset. */
 typedef struct affine3 {
   mat3 linear;
   vec3 offset;
@@ -109,7 +109,7 @@ static inline void vec3_bound_ball(vec3 middle, double radius, double low[3], do
 static inline affine3 affine3_identity(void) {
   return (affine3){{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {0, 0, 0}};
 }
-/* Stores the rows of a map, [linear | offset], as floats. */
+/* Stores the three rows of a map, [linear | offset], as floats. */
 static inline void affine3_store(float rows[3][4], const affine3 *map) {
   const double offset[3] = {map->offset.x, map->offset.y, map->offset.z};
   for (int r = 0; r < 3; r++) {
@@ -118,7 +118,7 @@ static inline void affine3_store(float rows[3][4], const affine3 *map) {
   }
 }
 static inline vec3 affine3_apply(affine3 a, vec3 p) { return vec3_add(mat3_apply(a.linear, p), a.offset); }
-/* (a after b)(p) = a(b(p)) */
+/* The map p -> a(b(p)): first b, then a. */
 static inline affine3 affine3_multiply(affine3 a, affine3 b) {
   return (affine3){mat3_multiply(a.linear, b.linear), affine3_apply(a, b.offset)};
 }
