@@ -32,7 +32,7 @@ static float dither_offset(int x, int y) {
   return (float)(2 * order - 63) / 128.0f;
 }
 
-/* The nearest code of alpha, which is linear from 0 to 1; NaN gives 0. */
+/* The nearest code of an alpha, which is linear from 0 to 1. The code of a NaN is 0. */
 static int quantise(float value, int maximum, float offset) {
   if (!(value > 0)) return 0;
   if (value >= 1) return maximum;
@@ -53,17 +53,17 @@ static bool is_empty(const float pixel[4]) {
 
 #define SHOULDER 0.6f /* light up to SHOULDER is left unchanged; the sRGB code of SHOULDER is 203 of 255 */
 
-/* Maps light x from the value s on. Derived: the hyperbola that continues the line f(x) = x at s with slope
- * 1, and approaches 1 for ever brighter light, is f(x) = 1 - d^2 / (x - s + d), d = 1 - s: f(s) = s, f'(x) =
- * d^2 / (x - s + d)^2. Light twice as bright as white (1) is mapped to 0.911, and four times as bright to
- * 0.958. */
+/* Maps light x that is brighter than the value s (SHOULDER). Derived: the hyperbola that continues the line
+ * f(x) = x at s with slope 1, and approaches 1 for ever brighter light, is f(x) = 1 - d^2 / (x - s + d), d =
+ * 1 - s: f(s) = s, f'(x) = d^2 / (x - s + d)^2. Light twice as bright as white (1) is mapped to 0.911, and
+ * four times as bright to 0.958. */
 static float shoulder(float x) {
   const float rest = 1 - SHOULDER;
   return x > SHOULDER ? 1 - rest * rest / (x - SHOULDER + rest) : x;
 }
 
-/* The factor on a light's red, green and blue. It is the same for all three, so that the hue stays. light:
- * linear, after the exposure. */
+/* The factor by which tone mapping multiplies a light's red, green and blue. It is the same for all three, so
+ * that the hue stays. light: linear, after the exposure. */
 static float tone_factor(hl_tone tone, const float light[3]) {
   if (tone != HL_TONE_FILMIC) return 1;
   float brightest = light[0] > light[1] ? light[0] : light[1];
@@ -73,7 +73,8 @@ static float tone_factor(hl_tone tone, const float light[3]) {
   return shoulder(brightest) / brightest;
 }
 
-/* The factor on a pixel's light: the exposure, times the tone factor at the pixel's brightness. */
+/* The factor by which a pixel's light is multiplied: the exposure, times the tone factor at the pixel's
+ * brightness. */
 static float factor_of(const hl_codes *codes, const float pixel[4]) {
   const float light[3] = {pixel[0] * codes->exposure, pixel[1] * codes->exposure, pixel[2] * codes->exposure};
   return codes->exposure * tone_factor(codes->tone, light);
@@ -81,7 +82,8 @@ static float factor_of(const hl_codes *codes, const float pixel[4]) {
 
 /* ---- codes ---- */
 
-/* The linear value, before encoding, of channel c of a pixel. factor: the factor on the pixel's light. */
+/* The linear value, before encoding, of channel c of a pixel. factor: the factor by which the pixel's light
+ * is multiplied. */
 static float stored_value(const hl_codes *codes, const float pixel[4], float factor, int c) {
   if (!codes->transparent) return pixel[c] * factor + (1 - pixel[3]) * codes->background[c];
   /* Unassociated colour is light divided by alpha, at most 1. Emission may give more light than alpha: the

@@ -9,12 +9,13 @@
 
 typedef struct hl_codes {
   hl_srgb_encoder encoder;
-  int depth;           /* bits of a code: 8 or 16 */
-  bool transparent;    /* a pixel has four codes, of which the last one is alpha; false: three codes */
-  bool opaque_alpha;   /* a pixel has four codes, but alpha is always opaque */
-  float background[3]; /* linear */
-  float exposure;      /* factor on the picture's light */
-  hl_tone tone;        /* after the exposure */
+  int depth;           /* number of bits of a code: 8 or 16 */
+  bool transparent;    /* whether a pixel has four codes, of which the last one is alpha; if not, it has
+                        * three codes */
+  bool opaque_alpha;   /* whether a pixel has four codes, but alpha is always opaque */
+  float background[3]; /* colour behind the picture, linear RGB */
+  float exposure;      /* the factor by which the picture's light is multiplied */
+  hl_tone tone;        /* the tone mapping, which is applied after the exposure */
 } hl_codes;
 
 hl_status hl_codes_begin(hl_context *context, const hl_image_write_options *options, int depth,

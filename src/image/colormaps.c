@@ -16,7 +16,7 @@
 
 #define EQUAL_STEPS 33
 
-/* sRGB, 0xRRGGBB. */
+/* the entries of a colormap: sRGB, 0xRRGGBB */
 static const struct {
   const char *name;
   unsigned int color[EQUAL_STEPS];
@@ -47,7 +47,7 @@ static const struct {
                   0xe57058, 0xde604d, 0xd55042, 0xcb3e38, 0xc0282f, 0xb40426}},
 };
 
-/* A point, in sRGB, between which a piecewise linear map is interpolated. */
+/* A point of a piecewise linear colormap: its position, and its colour in sRGB. */
 typedef struct corner {
   double at, color[3];
 } corner;

@@ -11,8 +11,8 @@
 #include "core/memory.h"
 #include "image/image.h"
 
-/* Returns b - a. Equal values differ by 0, even if they are infinite. A NaN in either picture counts as an
- * infinite difference, so that no limit accepts it. */
+/* Returns the difference b - a of two values. Equal values differ by 0, even if they are infinite. A NaN in
+ * either picture counts as an infinite difference, so that no limit accepts it. */
 static double channel_difference(float a, float b) {
   if (a == b) return 0;
   double difference = (double)b - (double)a;
@@ -32,9 +32,9 @@ static uint32_t difference_bits(const float a[4], const float b[4]) {
   return bits;
 }
 
-/* Finds 16 bits of the difference number *rank in rising order. If `high` is negative, finds the upper 16
- * bits among all pixels; otherwise finds the lower 16 bits among the pixels whose upper 16 bits are `high`.
- * *rank becomes the difference's rank among the pixels that have the found bits. */
+/* Finds 16 bits of a difference: the difference number *rank in rising order. If `high` is negative, finds
+ * the upper 16 bits among all pixels; otherwise finds the lower 16 bits among the pixels whose upper 16 bits
+ * are `high`. *rank becomes the difference's rank among the pixels that have the found bits. */
 static uint32_t select_half(const hl_image *a, const hl_image *b, int64_t high, uint64_t *rank,
                             uint64_t *counts) {
   size_t pixels = (size_t)a->width * (size_t)a->height;
@@ -49,7 +49,8 @@ static uint32_t select_half(const hl_image *a, const hl_image *b, int64_t high, 
   return half;
 }
 
-/* The percentile by nearest rank: the least difference that at least 99.9 % of the pixels do not exceed. */
+/* The percentile of the differences by nearest rank: the least difference that at least 99.9 % of the pixels
+ * do not exceed. */
 static double percentile_99_9(const hl_image *a, const hl_image *b, uint64_t *counts) {
   uint64_t pixels = (uint64_t)a->width * (uint64_t)a->height;
   uint64_t rank = (pixels * 999 + 999) / 1000 - 1;

@@ -32,13 +32,13 @@ static const uint64_t chunk_bytes_max = (uint64_t)1 << 28;
 typedef struct exr_reading {
   hl_context *context;
   const char *name;
-  const unsigned char *bytes; /* borrowed; [length] */
+  const unsigned char *bytes; /* borrowed; [length]; the bytes of the file */
   size_t length;
   hl_error *error;
   exr_context_t file;
   unsigned present;        /* bit i is set if the file has channel number i (channel_index) */
   uint64_t pixel_bytes;    /* bytes of all channels of one pixel */
-  exr_attr_box2i_t window; /* the data window */
+  exr_attr_box2i_t window; /* the data window of the file's first part */
   hl_image *image;
   char message[200]; /* the first message of OpenEXRCore about a fault */
 } exr_reading;
@@ -133,7 +133,7 @@ static hl_status make_image(exr_reading *reading) {
   if (result != EXR_ERR_SUCCESS) return fail_exr(reading, result);
   int64_t width = (int64_t)reading->window.max.x - reading->window.min.x + 1;
   int64_t height = (int64_t)reading->window.max.y - reading->window.min.y + 1;
-  if (width < 1 || height < 1) width = height = 0; /* make_image() refuses this size */
+  if (width < 1 || height < 1) width = height = 0; /* make_image() refuses a size of 0 later */
   if (width <= HL_IMAGE_SIDE_MAX && height <= HL_IMAGE_SIDE_MAX &&
       ((uint64_t)(width * height) * reading->pixel_bytes / EXPANSION_MAX > reading->length ||
        chunk_bytes > chunk_bytes_max))
@@ -214,7 +214,8 @@ static exr_result_t start_read(exr_reading *reading) {
   return exr_start_read(&reading->file, reading->name, &options);
 }
 
-/* The width, height and uncompressed bytes of one part; the bytes are 0 if its header does not state them. */
+/* The width, height and uncompressed bytes of one part; the bytes are 0 if the part's header does not state
+ * them. */
 static hl_image_claim claim_of_part(exr_const_context_t file, int part) {
   const exr_attr_chlist_t *list = NULL;
   exr_attr_box2i_t window;
@@ -273,7 +274,7 @@ static hl_status decode(hl_context *context, const char *name, const unsigned ch
 
 typedef struct exr_writing {
   int width, height;
-  const hl_exr_channel *channels; /* borrowed; [channel_count] */
+  const hl_exr_channel *channels; /* borrowed; [channel_count]; the channels that are written */
   size_t channel_count;
   hl_output *output;
   uint64_t at;      /* write position in bytes */
@@ -394,7 +395,7 @@ hl_status hl_exr_encode_channels(int width, int height, const hl_exr_channel *ch
 
 typedef struct layer_channel_name {
   char text[HL_IMAGE_LAYER_NAME + 3];
-} layer_channel_name; /* "layer.C" */
+} layer_channel_name; /* the name of a layer's channel in a file: "layer.C" */
 
 /* Lists R, G, B, A and the layers' channels. names: room for the layers' channel names. */
 static void list_channels(const hl_image *image, layer_channel_name *names, hl_exr_channel *channels) {
@@ -412,7 +413,7 @@ static void list_channels(const hl_image *image, layer_channel_name *names, hl_e
 
 static hl_status encode(const hl_image *image, const hl_image_write_options *options, hl_output *output,
                         hl_error *error) {
-  (void)options; /* depth and background concern PNG only */
+  (void)options; /* these options, depth and background, concern PNG only */
   size_t count = 4;
   for (size_t i = 0; i < image->layer_count; i++) count += strlen(image->layers[i].channels);
   layer_channel_name *names = hl_allocate(output->context, count, sizeof *names);

@@ -17,7 +17,8 @@ static hl_status decode(hl_context *context, const char *name, const unsigned ch
 
 static hl_image_claim claim(const unsigned char *bytes, size_t length) {
   (void)bytes;
-  return (hl_image_claim){.known = true, .width = 1, .height = 1, .bytes = length}; /* decode() refuses it */
+  /* any size will do, because decode() refuses the file */
+  return (hl_image_claim){.known = true, .width = 1, .height = 1, .bytes = length};
 }
 
 const hl_image_format hl_exr_format = {.extension = ".exr",

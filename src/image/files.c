@@ -14,14 +14,14 @@
 #include "core/memory.h"
 #include "text/plain.h"
 
-/* The registry of formats. */
+/* The list of all picture formats. */
 static const hl_image_format *const formats[] = {&hl_png_format, &hl_exr_format, &hl_npy_format,
                                                  &hl_hdr_format, &hl_tif_format, &hl_tiff_format};
 
 enum { FORMAT_COUNT = sizeof formats / sizeof formats[0] };
 
-/* The first format, from number n on, whose title differs from that of the format before it. Formats with one
- * title are one format for the user. */
+/* The number of the first format, from number n on, whose title differs from the title of the format before
+ * it. Formats with one title are one format for the user. */
 static size_t next_title(size_t n) {
   while (n > 0 && n < FORMAT_COUNT && strcmp(formats[n]->title, formats[n - 1]->title) == 0) n++;
   return n;
@@ -46,8 +46,8 @@ hl_status hl_image_get_format(size_t index, hl_file_format *format) {
   return HL_OK;
 }
 
-/* The greatest accepted numbers of bytes: of everything in a file beside its pixels (texts, profiles,
- * thumbnails), and of a file's header. */
+/* Two limits, in bytes: of everything in a file beside its pixels (texts, profiles, thumbnails), and of a
+ * file's header. */
 static const size_t extra_bytes_max = (size_t)64 << 20, header_bytes_max = (size_t)16 << 20;
 
 static const hl_image_format *format_by_name(const char *path) {
@@ -182,8 +182,8 @@ static hl_status fail_unknown(const char *path, hl_error *error) {
       "%s: byte 0: unknown picture format: expected a PNG, OpenEXR, Radiance HDR or NPY file", path);
 }
 
-/* Limits the length of a file by the size in its header. Compressed pixels never take more than one and a
- * half times the bytes of plain pixels. */
+/* Limits the length of a file by the size in its header. The limit allows for compressed pixels one and a
+ * half times the bytes of plain pixels, because they never take more. */
 static hl_status judge(const char *path, const unsigned char *bytes, size_t length, size_t *limit,
                        hl_error *error) {
   const hl_image_format *format = format_by_content(bytes, length);

@@ -12,16 +12,17 @@
 
 /* The size that a picture's file claims in its first bytes. */
 typedef struct hl_image_claim {
-  bool known; /* whether the size was found; false: more of the file's bytes are needed */
+  bool known; /* whether the size was found; if not, more of the file's bytes are needed */
   uint64_t width, height;
-  uint64_t bytes;     /* bytes of the pixels, uncompressed */
+  uint64_t bytes;     /* number of bytes of the pixels, uncompressed */
   int channels, bits; /* see hl_image_about */
 } hl_image_claim;
 
 typedef struct hl_image_format {
   const char *extension, *title;
-  const char *missing;   /* the library that the format needs and this build lacks; null if there is none */
-  unsigned char mark[8]; /* first bytes of every file of the format */
+  /* the name of the library that the format needs and this build lacks; null if no library is missing */
+  const char *missing;
+  unsigned char mark[8]; /* the first bytes of every file of the format */
   size_t mark_length;
 
   /* Writes the whole picture to output->file. Null if the format can only be read. The caller commits or
@@ -34,13 +35,13 @@ typedef struct hl_image_format {
   hl_status (*decode)(hl_context *context, const char *name, const unsigned char *bytes, size_t length,
                       hl_image **image, hl_error *error);
 
-  /* Reads the size from the header. Leaves size->known false for a broken header; decode() then reports the
-   * error. */
+  /* Reads the size of a picture from the header of its file. Leaves `known` false for a broken header;
+   * decode() then reports the error. */
   hl_image_claim (*claim)(const unsigned char *bytes, size_t length);
 
-  bool holds_layers; /* encode writes the layers too */
+  bool holds_layers; /* whether `encode` also writes the layers of a picture */
 
-  /* Writes one layer as a file of its own. Null if the format cannot. */
+  /* Writes one layer of a picture as a file of its own. Null if the format cannot do this. */
   hl_status (*encode_layer)(const hl_image *image, const hl_image_layer *layer, hl_output *output,
                             hl_error *error);
 } hl_image_format;
@@ -51,14 +52,14 @@ extern const hl_image_format hl_png_format, hl_exr_format, hl_npy_format, hl_hdr
 /* Whether a picture's file, which may be anything, has the text chunk of a scene. */
 bool hl_png_has_scene(const unsigned char *bytes, size_t length);
 
-/* Refuses impossible options. caller: the public function's name, for errors. */
+/* Refuses impossible options for writing a picture. caller: the public function's name, for errors. */
 hl_status hl_image_check_options(const hl_image_write_options *options, const char *caller, hl_error *error);
 
 /* Reports progress; encoders call it before each row. Fails with HL_ERROR_CANCELLED once the call is
  * cancelled. */
 hl_status hl_encode_step(hl_context *context, int row, int height, hl_error *error);
 
-/* Reports a failed write to output->file, from errno. */
+/* Reports, from errno, that writing to output->file has failed. */
 hl_status hl_fail_write(hl_error *error, const hl_output *output, int system_error);
 
 #endif

@@ -19,10 +19,10 @@
 
 enum { LINE_MAX_BYTES = 2048, RUN_WIDTH_MIN = 8, RUN_WIDTH_MAX = 32767, RUN_MAX = 127, EXPONENTS = 256 };
 
-/* A position in the file; errors name its byte. */
+/* A position in a file that is read; errors name its byte. */
 typedef struct hdr_cursor {
   const char *name;
-  const unsigned char *bytes; /* borrowed; [length] */
+  const unsigned char *bytes; /* borrowed; [length]; the bytes of the file */
   size_t at, length;
   hl_error *error;
 } hdr_cursor;
@@ -44,8 +44,8 @@ static hl_status fail_end(const hdr_cursor *cursor) {
 
 /* ---- the header ---- */
 
-/* Copies the next line without its end. False where the file ends before the line does, or the line is too
- * long. */
+/* Copies the next line of the header without its end. Returns false where the file ends before the line does,
+ * or the line is too long. */
 static bool take_line(hdr_cursor *cursor, char line[LINE_MAX_BYTES]) {
   size_t most = cursor->length - cursor->at;
   const unsigned char *from = cursor->bytes + cursor->at, *end = memchr(from, '\n', most);
@@ -73,7 +73,7 @@ static hl_status skip_header(hdr_cursor *cursor) {
   }
 }
 
-/* Reads "-Y 512" or "+X 1024", and moves *text past it. */
+/* Reads a size with its axis, such as "-Y 512" or "+X 1024", and moves *text behind it. */
 static bool take_extent(const char **text, char axis, char *sign, uint64_t *count) {
   const char *at = *text;
   *sign = *at;
@@ -110,7 +110,7 @@ static hl_status read_header(hdr_cursor *cursor, hdr_header *header) {
 
 /* A row of RGBE pixels: four rows of bytes for red, green, blue and the exponents. */
 typedef struct hdr_row {
-  unsigned char *bytes; /* [4][width] */
+  unsigned char *bytes; /* [4][width]; the bytes of red, green, blue and the exponents */
   size_t width;
 } hdr_row;
 
@@ -172,7 +172,8 @@ static hl_status take_row(hdr_cursor *cursor, const hdr_row *row) {
   return status;
 }
 
-/* Converts a row. A mantissa m with the exponent e is m 2^(e - 136); an exponent of 0 is black. */
+/* Converts a row of RGBE pixels to floats. A mantissa m with the exponent e is m 2^(e - 136); an exponent of
+ * 0 is black. */
 static void convert_row(const hdr_row *row, const float scale[EXPONENTS], bool from_right, float *to) {
   for (size_t x = 0; x < row->width; x++) {
     float *pixel = to + 4 * (from_right ? row->width - 1 - x : x);

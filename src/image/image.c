@@ -14,8 +14,9 @@
 
 enum { ROWS_BETWEEN_QUESTIONS = 64 };
 
-/* Clears the pixels row by row; false if cancelled. Large pictures take long, because the system provides
- * memory only when it is first written, a gigabyte or two a second. So the cancel callback is asked. */
+/* Clears the pixels row by row. Returns false if the call was cancelled. Large pictures take long, because
+ * the system provides memory only when it is first written, a gigabyte or two a second. So the cancel
+ * callback is asked. */
 static bool clear_rows(hl_context *context, float *rows, size_t row_floats, size_t count) {
   for (size_t y = 0; y < count; y++) {
     if (y % ROWS_BETWEEN_QUESTIONS == ROWS_BETWEEN_QUESTIONS - 1 && hl_cancelled(context)) return false;

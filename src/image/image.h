@@ -15,15 +15,15 @@ enum { HL_IMAGE_LAYER_NAME = 28, HL_IMAGE_LAYER_CHANNELS = 4 };
 
 typedef struct hl_image_layer {
   char name[HL_IMAGE_LAYER_NAME + 1];
-  char channels[HL_IMAGE_LAYER_CHANNELS + 1]; /* one letter for each channel */
-  float *values;                              /* owned; [height][width][channels] */
+  char channels[HL_IMAGE_LAYER_CHANNELS + 1]; /* the names of the layer's channels, one letter for each */
+  float *values;                              /* owned; [height][width][channels]; the layer's values */
 } hl_image_layer;
 
 struct hl_image {
   hl_context *context;
   int width, height;
   float *pixels;          /* owned; [height][width][4]; linear premultiplied R, G, B, A; top row first */
-  hl_image_layer *layers; /* owned; [layer_count] */
+  hl_image_layer *layers; /* owned; [layer_count]; the picture's layers */
   size_t layer_count;
 };
 

@@ -19,9 +19,9 @@
 enum { PREAMBLE_BYTES = 10, HEADER_BYTES = 128, HEADER_BYTES_MAX = 65536 };
 
 typedef struct npy_header {
-  char type[8]; /* "<f4" */
+  char type[8]; /* the type of the elements, such as "<f4" */
   bool fortran_order;
-  uint64_t shape[3]; /* height, width, channels */
+  uint64_t shape[3]; /* the array's shape: height, width, channels */
   int dimensions;
   bool has_type, has_order, has_shape;
 } npy_header;
@@ -29,8 +29,8 @@ typedef struct npy_header {
 /* A read position in the header's text; errors name the byte in the file. */
 typedef struct npy_cursor {
   const char *name;
-  const unsigned char *bytes; /* borrowed; the file's first bytes */
-  size_t at, end;             /* the header's text */
+  const unsigned char *bytes; /* borrowed; the first bytes of the file */
+  size_t at, end;             /* the read position, and the end of the header's text */
   hl_error *error;
 } npy_cursor;
 
@@ -46,7 +46,7 @@ static void put_float(unsigned char *to, float value) {
 typedef struct npy_array {
   int height, width;
   size_t channels;
-  const float *values; /* borrowed */
+  const float *values; /* borrowed; the values that are written */
 } npy_array;
 
 static void make_header(const npy_array *array, unsigned char header[HEADER_BYTES + 1]) {
@@ -83,7 +83,7 @@ static hl_status encode_array(const npy_array *array, hl_output *output, hl_erro
 
 static hl_status encode(const hl_image *image, const hl_image_write_options *options, hl_output *output,
                         hl_error *error) {
-  (void)options; /* depth and background concern PNG only */
+  (void)options; /* these options, depth and background, concern PNG only */
   const npy_array array = {image->height, image->width, 4, image->pixels};
   return encode_array(&array, output, error);
 }
@@ -105,7 +105,7 @@ static void skip_spaces(npy_cursor *cursor) {
   while (cursor->at < cursor->end && memchr(" \t\r\n", cursor->bytes[cursor->at], 4) != NULL) cursor->at++;
 }
 
-/* Reads the literal text if it comes next. */
+/* Reads a given text of the header if this text comes next. */
 static bool take(npy_cursor *cursor, const char *text) {
   skip_spaces(cursor);
   size_t length = strlen(text);
@@ -115,7 +115,7 @@ static bool take(npy_cursor *cursor, const char *text) {
   return true;
 }
 
-/* Reads a quoted string without escapes, cut to the size of `text`. */
+/* Reads a quoted string without escapes from the header. A string that is too long for `text` is cut off. */
 static bool take_string(npy_cursor *cursor, char *text, size_t size) {
   const char *quote = take(cursor, "'") ? "'" : take(cursor, "\"") ? "\"" : NULL;
   if (quote == NULL) return false;
@@ -134,7 +134,7 @@ static bool take_count(npy_cursor *cursor, uint64_t *count) {
   size_t start = cursor->at;
   *count = 0;
   while (cursor->at < cursor->end && cursor->bytes[cursor->at] >= '0' && cursor->bytes[cursor->at] <= '9') {
-    if (cursor->at - start == 18) return false; /* no file has that many bytes */
+    if (cursor->at - start == 18) return false; /* no file has a number of bytes with so many digits */
     *count = *count * 10 + (uint64_t)(cursor->bytes[cursor->at++] - '0');
   }
   return cursor->at > start;
@@ -272,7 +272,7 @@ static hl_status decode(hl_context *context, const char *name, const unsigned ch
   size_t value_bytes = header.type[2] == '8' ? 8 : 4, data = cursor.end;
   uint64_t rest = length - data, row = header.shape[1] * header.shape[2] * value_bytes;
   bool right_size = header.shape[0] <= HL_IMAGE_SIDE_MAX && header.shape[1] <= HL_IMAGE_SIDE_MAX;
-  right_size = !right_size || header.shape[0] * row == rest; /* too great sizes are refused below */
+  right_size = !right_size || header.shape[0] * row == rest; /* sizes that are too great are refused below */
   if (!right_size)
     return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)data,
                           "%s: byte %zu: %" PRIu64 " bytes of data, expected %" PRIu64 " for %" PRIu64

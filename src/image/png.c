@@ -44,7 +44,7 @@ enum { INFLATE_RATIO_MAX = 1032 };
 typedef struct png_reading {
   hl_context *context;
   const char *name;
-  const unsigned char *bytes; /* borrowed; [length] */
+  const unsigned char *bytes; /* borrowed; [length]; the bytes of the file */
   size_t length, at;
   hl_error *error;
   hl_status status;
@@ -110,7 +110,8 @@ static void read_header(png_reading *reading) {
   png_set_add_alpha(reading->png, 0xffff, PNG_FILLER_AFTER);
 }
 
-/* Reads the code of one sample. from: big-endian, depth bits. Returns the position after the sample. */
+/* Reads the code of one sample. from: the sample, which has `depth` bits and begins with the byte of greater
+ * weight. Returns the position after the sample. */
 static const unsigned char *take_code(const unsigned char *from, int depth, int *code) {
   *code = depth == 16 ? from[0] << 8 | from[1] : from[0];
   return from + depth / 8;
@@ -171,7 +172,8 @@ static void read_png(png_reading *reading) {
 /* Reads the size from IHDR (PNG specification, section 11.2.2), which follows the mark. IHDR has width,
  * height, bit depth and colour type. */
 static hl_image_claim claim(const unsigned char *bytes, size_t length) {
-  static const unsigned char channels[7] = {1, 0, 3, 1, 2, 0, 4}; /* number of channels of each colour type */
+  /* the number of channels of each colour type of PNG */
+  static const unsigned char channels[7] = {1, 0, 3, 1, 2, 0, 4};
   enum { IHDR = 12, WIDTH = 16, HEIGHT = 20, DEPTH = 24, TYPE = 25 };
   hl_image_claim claimed = {0};
   if (length <= TYPE || memcmp(bytes + IHDR, "IHDR", 4) != 0 || bytes[TYPE] > 6 || bytes[DEPTH] > 16)
@@ -380,7 +382,8 @@ static hl_status inflate_text(hl_context *context, const char *name, const unsig
   return hl_fail(error, HL_ERROR_INPUT, "%s: the scene in it is damaged: zlib data expected", name);
 }
 
-/* Reads the text of a chunk with the right keyword; body: the bytes after the keyword's zero byte. */
+/* Reads the text of a chunk that has the wanted keyword. body: the chunk's bytes after the keyword's zero
+ * byte. */
 static hl_status take_text(hl_context *context, const char *name, const char *type, const unsigned char *body,
                            size_t length, char **text, hl_error *error) {
   if (memcmp(type, "tEXt", 4) == 0) return copy_text(context, name, body, length, text, error);

@@ -36,7 +36,8 @@ double hl_exposure_factor(double stops) {
   return ldexp(factor, (int)whole);
 }
 
-/* IEC 61966-2-1: c/12.92 up to 0.04045, ((c + 0.055)/1.055)^2.4 above. u^2.4 = u^2 (u^2)^(1/5). */
+/* The sRGB curve of IEC 61966-2-1: a code c becomes c/12.92 up to 0.04045, and ((c + 0.055)/1.055)^2.4 above.
+ * The power is u^2.4 = u^2 (u^2)^(1/5). */
 double hl_srgb_decode(double encoded) {
   if (encoded < 0) return -hl_srgb_decode(-encoded);
   if (encoded <= 0.04045) return encoded / 12.92;
@@ -48,7 +49,7 @@ double hl_srgb_encode_number(double linear) {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
 }
 
-/* The least float that is not below value. */
+/* The least float that is not below a double. */
 static float float_at_least(double value) {
   float rounded = (float)value;
   return rounded < value ? nextafterf(rounded, INFINITY) : rounded;
@@ -63,7 +64,7 @@ static float float_from_bits(uint32_t bits) {
 enum {
   KEY_SHIFT = 15,
   KEY_OF_ONE = 127 << 8
-}; /* the key of x is (the float bits of x >> KEY_SHIFT) - (KEY_OF_ONE - HL_SRGB_KEYS) */
+}; /* the key of a float x is (the bits of x >> KEY_SHIFT) - (KEY_OF_ONE - HL_SRGB_KEYS) */
 
 hl_status hl_srgb_encoder_create(hl_context *context, int maximum, hl_srgb_encoder *encoder,
                                  hl_error *error) {
@@ -75,7 +76,7 @@ hl_status hl_srgb_encoder_create(hl_context *context, int maximum, hl_srgb_encod
     hl_srgb_encoder_destroy(encoder);
     return hl_fail_memory(error, thresholds * sizeof *encoder->threshold, "the sRGB curve");
   }
-  /* Derived: round(maximum * encode(x)) >= k exactly where x >= decode((k - 0.5) / maximum). */
+  /* derived: round(maximum * encode(x)) >= k holds exactly where x >= decode((k - 0.5) / maximum) */
   for (size_t k = 0; k < thresholds; k++)
     encoder->threshold[k] = float_at_least(hl_srgb_decode(((double)k - 0.5) / maximum));
   int code = 0;
@@ -95,7 +96,8 @@ void hl_srgb_encoder_destroy(hl_srgb_encoder *encoder) {
 }
 
 int hl_srgb_encode(const hl_srgb_encoder *encoder, float linear) {
-  if (!(linear >= encoder->threshold[1])) return 0; /* NaN fails the comparison, too */
+  /* the comparison is false for a NaN, too, which becomes 0 */
+  if (!(linear >= encoder->threshold[1])) return 0;
   if (linear >= 1) return encoder->maximum;
   uint32_t bits;
   memcpy(&bits, &linear, sizeof bits);

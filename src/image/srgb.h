@@ -9,16 +9,16 @@
 /* Returns 2^stops, for |stops| up to 32, the same on every machine. */
 double hl_exposure_factor(double stops);
 
-/* The linear value of an encoded value, for |encoded| up to a little above 1. The function is odd: f(-c) =
- * -f(c). */
+/* The linear value of a value encoded by the sRGB curve, for |encoded| up to a little above 1. The function
+ * is odd: f(-c) = -f(c). */
 double hl_srgb_decode(double encoded);
-double hl_srgb_encode_number(double linear); /* its inverse for values of at least 0 */
+double hl_srgb_encode_number(double linear); /* the inverse of hl_srgb_decode(), for values of at least 0 */
 
 /* Converts linear values to codes 0..maximum by a search among the values at which the code changes. Nothing
  * is approximated: each float gets the code that its exact encoded value rounds to. */
 typedef struct hl_srgb_encoder {
   hl_context *context;
-  int maximum;      /* 255 or 65535 */
+  int maximum;      /* the greatest code: 255 or 65535 */
   float *threshold; /* owned; [maximum + 2]; element k is the least linear value whose code is k or more */
   uint16_t *first;  /* owned; [HL_SRGB_KEYS + 1]; the code at the lower end of each interval of float bits */
 } hl_srgb_encoder;
@@ -30,10 +30,12 @@ enum { HL_SRGB_KEYS = 21 * 256 };
 hl_status hl_srgb_encoder_create(hl_context *context, int maximum, hl_srgb_encoder *encoder, hl_error *error);
 void hl_srgb_encoder_destroy(hl_srgb_encoder *encoder);
 
-/* The nearest code of a linear value. Values below 0 and NaN give 0; values above 1 give maximum. */
+/* The nearest sRGB code of a linear value. Values below 0 and NaN give the code 0; values above 1 give the
+ * code `maximum`. */
 int hl_srgb_encode(const hl_srgb_encoder *encoder, float linear);
 
-/* The nearest code after an offset was added to the encoded value (in codes, -0.5 < offset < 0.5). */
+/* The nearest sRGB code of a linear value whose encoded value is first changed by an offset. offset: in
+ * codes, between -0.5 and 0.5. */
 int hl_srgb_encode_offset(const hl_srgb_encoder *encoder, float linear, float offset);
 
 #endif

@@ -32,7 +32,7 @@ static toff_t on_size(thandle_t file) {
   return fseeko(file, here, SEEK_SET) == 0 ? (toff_t)size : 0;
 }
 
-/* Drops libtiff's messages. The caller reports the failure, in the same words as for all outputs. */
+/* Ignores libtiff's messages. The caller reports the failure, in the same words as for all outputs. */
 static int on_message(TIFF *tiff, void *data, const char *module, const char *format, va_list arguments) {
   (void)tiff, (void)data, (void)module, (void)format, (void)arguments;
   return 1;
@@ -67,7 +67,8 @@ static void set_fields(TIFF *tiff, const hl_image *image, const hl_image_write_o
   TIFFSetField(tiff, TIFFTAG_YRESOLUTION, options->pixels_per_inch);
 }
 
-/* TIFF's samples of 16 bits are in the machine's byte order, but codes have the greater byte first. */
+/* Brings the bytes of a row into the machine's byte order, in which TIFF has samples of 16 bits. Codes have
+ * the greater byte first. */
 static void order_bytes(unsigned char *row, size_t samples) {
   for (size_t i = 0; i < samples; i++) {
     uint16_t code = (uint16_t)(row[2 * i] << 8 | row[2 * i + 1]);
