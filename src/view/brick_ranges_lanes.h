@@ -7,7 +7,7 @@
 #include "simd/lanes.h"
 #include "view/occupancy.h"
 
-/* Boxes: centres and half edges. */
+/* Sixteen boxes: their centres and half of their edges. */
 typedef struct lanes_boxes {
   lanes centre[3], half[3];
 } lanes_boxes;
@@ -40,8 +40,8 @@ LANES_INLINE lanes_range range_of_row(const lanes_boxes *boxes, const float row[
   return (lanes_range){centre - reach, centre + reach};
 }
 
-/* Stores the first and the last integer between `first` and `last`, limited to the view. If there is no such
- * integer, the stored first one is greater than the last one. */
+/* Stores a range of tiles or sheets: the first and the last integer between `first` and `last`, limited to
+ * the view. If there is no such integer, the stored first one is greater than the last one. */
 LANES_INLINE void store_range(const brick_view *view, lanes first, lanes last, int axis,
                               brick_ranges *ranges) {
   float least = (float)view->first[axis], greatest = (float)view->last[axis];
@@ -57,7 +57,8 @@ static void brick_ranges_in_view(const brick_view *view, const grid *grid,
   lanes_range w = range_of_row(&boxes, view->view[0], view->slack[0]);
   lanes_range height = range_of_row(&boxes, view->height, view->slack[3]);
   lanes_int ahead = w.high > 0.0f;
-  lanes_int anywhere = w.low <= w.high * 1e-6f; /* the box reaches behind the eye */
+  /* the lanes whose box reaches behind the eye, so that it may touch any tile */
+  lanes_int anywhere = w.low <= w.high * 1e-6f;
   lanes nearest = 1.0f / lanes_select(anywhere, lanes_set(1.0f), w.low),
         farthest = 1.0f / lanes_select(ahead, w.high, lanes_set(1.0f));
   for (int axis = 0; axis < 2; axis++) {

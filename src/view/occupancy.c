@@ -51,7 +51,7 @@ static bool in_rectangle(const tile_rectangle *r, int x, int y) {
   return x >= r->x && y >= r->y && x < r->x + r->width && y < r->y + r->height;
 }
 
-/* Numbers the patches, tile after tile. */
+/* Numbers the patches of an occupancy, tile after tile. */
 static void number_patches(occupancy *o, int grid_count) {
   uint32_t patch = 0;
   for (int y = 0; y < o->tiles_y; y++)
@@ -67,8 +67,9 @@ static void number_patches(occupancy *o, int grid_count) {
   o->first_patch[(size_t)o->tiles_x * (size_t)o->tiles_y] = patch;
 }
 
-/* Rounds an affine function to floats. Returns a bound of the rounding error: a sum, times a small multiple
- * of 2^-24. The sum is the greatest sum, within the grid, of the magnitudes of the function's terms. */
+/* Rounds the row of an affine function of points to floats. Returns a bound of the rounding error: a sum,
+ * times a small multiple of 2^-24. The sum is the greatest sum, within the grid, of the magnitudes of the
+ * function's terms. */
 static float set_row(const double row[4], const double middle[3], const double half[3], double scale,
                      float rounded[4]) {
   double offset = row[3], greatest = 0;
@@ -102,7 +103,8 @@ static void set_view(const footprint_map *map, const grid *grid, const sheet_sta
   memcpy(view->last, last, sizeof last);
 }
 
-/* Sets the bits from `first` to `last`. Words whose bits are set already are not written. */
+/* Sets the bits from `first` to `last` in an array of words. Words whose bits are set already are not
+ * written. */
 static void mark_bits(uint64_t *words, int first, int last) {
   for (int word = first / 64; word <= last / 64; word++) {
     int low = word == first / 64 ? first % 64 : 0, high = word == last / 64 ? last % 64 : 63;
@@ -157,8 +159,8 @@ static void mark_bricks(void *data, size_t index, int worker) {
   }
 }
 
-/* Transposes the bits, 64 tiles x 64 sheets at a time. index: number of the word in each sheet's row of
- * by_sheet. */
+/* Turns the bits of patches, which are ordered by sheets, into bits of sheets, which are ordered by tiles: 64
+ * tiles x 64 sheets at a time. index: number of the word in each sheet's row of by_sheet. */
 static void transpose_tiles(void *data, size_t index, int worker) {
   (void)worker;
   occupancy *o = data;
@@ -175,7 +177,7 @@ static void transpose_tiles(void *data, size_t index, int worker) {
     }
 }
 
-/* Finds the sheets that a grid touches. */
+/* Finds the range of the sheets that a grid touches in any tile. */
 static void find_range(const occupancy *o, int grid) {
   const tile_rectangle *r = &o->rectangle[grid];
   sheet_range *range = &o->sheets_of[grid];
@@ -220,7 +222,7 @@ static footprint_map map_of_grid(const occupancy_source *source, int g) {
   return map;
 }
 
-/* Counts the patches. If the rectangles have memory, also sets them. */
+/* Counts the patches of all grids. If the rectangles have memory, also sets the rectangles. */
 static void place_rectangles(const occupancy_source *source, occupancy *o) {
   o->patch_count = 0;
   for (int g = 0; g < source->grid_count; g++) {
@@ -235,7 +237,7 @@ static void place_rectangles(const occupancy_source *source, occupancy *o) {
 /* Lays out the arrays of an occupancy whose sizes are set. */
 static void lay_out(occupancy *o, int grid_count, hl_layout *layout) {
   size_t tiles = (size_t)o->tiles_x * (size_t)o->tiles_y, words = (size_t)o->words;
-  /* `rectangle` owns the block */
+  /* the array `rectangle` is the first one in the block of memory, and so owns the block */
   o->rectangle = hl_layout_take(layout, (size_t)grid_count, sizeof *o->rectangle);
   o->patch_of = hl_layout_take(layout, o->patch_count, sizeof *o->patch_of);
   o->patch_grid = hl_layout_take(layout, o->patch_count, sizeof *o->patch_grid);

@@ -12,13 +12,13 @@
 /* The rectangle of those tiles of a view that one grid can touch. For this grid, other tiles take neither
  * memory nor time. */
 typedef struct tile_rectangle {
-  int x, y, width, height; /* tiles */
+  int x, y, width, height; /* position and size of the rectangle, in tiles */
   size_t first;            /* index in patch_of of the rectangle's first tile; the other tiles follow row by
                             * row */
 } tile_rectangle;
 
 typedef struct sheet_range {
-  int32_t first, last; /* empty if first > last */
+  int32_t first, last; /* numbers of the first and the last sheet; there are none if first > last */
 } sheet_range;
 
 /* Patches: a patch is one grid in one tile. The patches of a tile follow each other, in the order of the
@@ -31,10 +31,12 @@ typedef struct occupancy {
                               * too */
   tile_rectangle *rectangle; /* [grids]; owns the block that also holds the arrays below */
   size_t patch_count;
-  uint32_t *patch_of;     /* [patches]; the number of the patch of each tile in each grid's rectangle */
-  uint32_t *first_patch;  /* [tiles + 1]; the number of each tile's first patch */
-  uint32_t *patch_grid;   /* [patches]; the patch's grid */
-  uint64_t *by_patch;     /* [patches][words]; bit = sheet */
+  uint32_t *patch_of;    /* [patches]; the number of the patch of each tile in each grid's rectangle */
+  uint32_t *first_patch; /* [tiles + 1]; the number of each tile's first patch */
+  uint32_t *patch_grid;  /* [patches]; the patch's grid */
+  /* [patches][words]; for each patch, one bit for each sheet: whether the grid touches the sheet in this
+   * tile */
+  uint64_t *by_patch;
   sheet_range *sheets_of; /* [grids]; the range of the sheets that a grid touches in any tile */
   uint64_t *by_sheet;     /* [words * 64][tile_words]; for each sheet, one bit for each tile: whether some
                            * grid touches it */
@@ -50,9 +52,9 @@ enum range_axis { RANGE_X, RANGE_Y, RANGE_SHEETS };
 typedef struct brick_view {
   float view[3][4]; /* the functions' rows: for w, for w times the tile across, and for w times the tile
                      * down */
-  float height[4];  /* row for the height, in sheets */
+  float height[4];  /* the row of the function for the height, in distances of sheets */
   float slack[4];   /* for each of the four functions, a bound of its rounding error */
-  float middle[3];  /* a point of index space */
+  float middle[3];  /* the point of index space from which coordinates are counted */
   float spare;      /* margin around each brick's projection, in tiles, that counts as touched, too */
   int32_t first[RANGE_AXES], last[RANGE_AXES]; /* limits of the ranges: the first and last tile across and
                                                 * down of the grid's rectangle, and the first and last sheet
@@ -65,7 +67,8 @@ typedef struct brick_ranges {
   int32_t first[RANGE_AXES][BRICKS_AT_ONCE], last[RANGE_AXES][BRICKS_AT_ONCE];
 } brick_ranges;
 
-/* Finds the ranges that bricks touch. brick: the coordinates of the bricks along each axis. */
+/* The type of the function that finds the ranges of tiles and sheets that sixteen bricks touch. brick: the
+ * coordinates of the bricks along each axis. */
 typedef void brick_ranges_function(const brick_view *view, const grid *grid,
                                    const int32_t brick[3][BRICKS_AT_ONCE], brick_ranges *ranges);
 
@@ -81,24 +84,24 @@ enum { PIXEL_TO_SPARE = 1 };
 
 /* The input of hl_occupancy_build(): the grids and the view. */
 typedef struct occupancy_source {
-  const grid *grids; /* [grid_count] */
+  const grid *grids; /* [grid_count]; the grids that the view may see */
   int grid_count;
   const view *view;
   const sheet_stack *sheets;
   double spare; /* the occupancy's `spare`, in pixels; at least PIXEL_TO_SPARE */
 } occupancy_source;
 
-/* Fills an empty occupancy. Call hl_occupancy_release() even after a failure. */
+/* Fills an empty occupancy from its source. Call hl_occupancy_release() even after a failure. */
 hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, brick_ranges_function *ranges,
                              const occupancy_source *source, occupancy *occupancy, hl_error *error);
 void hl_occupancy_release(hl_context *context, occupancy *occupancy);
 
-/* Counts the memory that hl_occupancy_build() takes. occupancy: must be zeros; its number of patches is set,
- * but its pointers are not. */
+/* Counts the memory that hl_occupancy_build() takes. occupancy: must be all zeros; receives the number of
+ * patches, but no pointers. */
 void hl_occupancy_count(const occupancy_source *source, occupancy *occupancy, hl_layout *layout);
 
-/* The first slab that touches a patch, from slab `slab` on. A slab touches a patch if its own sheet does, or
- * the sheet before it. INT32_MAX: there is no such slab. */
+/* The first slab that touches a patch, from slab `slab` on. A slab touches a patch if the sheet at its end or
+ * the sheet at its beginning touches the patch. Returns INT32_MAX if there is no such slab. */
 int32_t hl_occupancy_next_slab(const occupancy *occupancy, size_t patch, int slab);
 
 static inline int hl_occupancy_has(const occupancy *occupancy, size_t patch, int sheet) {
@@ -106,7 +109,8 @@ static inline int hl_occupancy_has(const occupancy *occupancy, size_t patch, int
   return (int)(bits[sheet / 64] >> (sheet % 64) & 1);
 }
 
-/* Whether a slab may touch a tile: by its own sheet, or by the sheet before it. */
+/* Whether a slab may touch a tile: whether the sheet at its end or the sheet at its beginning touches the
+ * tile. */
 static inline bool hl_occupancy_touches(const occupancy *occupancy, size_t tile, int sheet) {
   const uint64_t *after = occupancy->by_sheet + (size_t)sheet * (size_t)occupancy->tile_words;
   const uint64_t *before = after - occupancy->tile_words;

@@ -16,12 +16,13 @@ LANES_INLINE lanes3 add3(lanes3 a, lanes3 b) { return (lanes3){a.x + b.x, a.y + 
 LANES_INLINE lanes3 set3(const float v[3]) {
   return (lanes3){lanes_set(v[0]), lanes_set(v[1]), lanes_set(v[2])};
 }
-/* Returns a + b s. */
+/* Returns the vector a + b s. */
 LANES_INLINE lanes3 add_scaled3(lanes3 a, lanes3 b, lanes s) {
   return (lanes3){lanes_fma(b.x, s, a.x), lanes_fma(b.y, s, a.y), lanes_fma(b.z, s, a.z)};
 }
 
-/* Apply a row of an affine map: row_of_vector() to vectors, row_of_point() to points. */
+/* Two functions that apply a row of an affine map: row_of_vector() applies it to vectors, row_of_point() to
+ * points. */
 LANES_INLINE lanes row_of_vector(const float row[4], lanes3 v) {
   return lanes_add_scaled(lanes_add_scaled(v.z * row[2], v.y, row[1]), v.x, row[0]);
 }
@@ -34,11 +35,11 @@ static const float block_column[LANES]
 static const float block_row[LANES]
     __attribute__((unused)) = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
 
-/* Pixel coordinates of the block whose first pixel is (x, y). */
+/* The pixel coordinates of the sixteen pixels of the block whose first pixel is (x, y). */
 LANES_INLINE lanes block_u(int x) { return lanes_load(block_column) + (float)x; }
 LANES_INLINE lanes block_v(int y) { return lanes_load(block_row) + (float)y; }
 
-/* Evaluates a function that is linear in pixel coordinates. */
+/* Evaluates a function that is linear in pixel coordinates, at sixteen pixels. */
 LANES_INLINE lanes linear_in_view(float at, float by_u, float by_v, lanes u, lanes v) {
   return lanes_add_scaled(lanes_line(v, by_v, at), u, by_u);
 }
@@ -49,12 +50,12 @@ LANES_INLINE lanes3 rays_linear(const float at[3], const float by_u[3], const fl
                   linear_in_view(at[2], by_u[2], by_v[2], u, v)};
 }
 
-/* H = h.W: how much a perspective view's rays rise along the sheets' normal. */
+/* The climb H = h.W: how much a perspective view's rays rise along the sheets' normal h. */
 LANES_INLINE lanes rays_climb(const sheet_rays *rays, lanes u, lanes v) {
   return linear_in_view(rays->h0, rays->hu, rays->hv, u, v);
 }
 
-/* W: the direction vectors of a perspective view's rays; they are not normalised. */
+/* The vectors W: the directions of a perspective view's rays, which are not normalised. */
 LANES_INLINE lanes3 rays_directions(const sheet_rays *rays, lanes u, lanes v) {
   return rays_linear(rays->w0, rays->wu, rays->wv, u, v);
 }
@@ -93,7 +94,7 @@ LANES_INLINE ray_section section_in_box(const box_rays *rays, lanes u, lanes v) 
 }
 
 /* The sections of rays within the unit sphere: the roots s of |start + s direction| = 1. With q = start and d
- * = direction, roots exist where (q.d)^2 >= d.d (q.q - 1). */
+ * = direction, such roots exist where (q.d)^2 >= d.d (q.q - 1). */
 LANES_INLINE ray_section roots_of_sphere(lanes3 start, lanes3 direction) {
   lanes squared = dot3(direction, direction), along = dot3(start, direction);
   lanes rest = lanes_fma(along, along, squared * (1.0f - dot3(start, start)));

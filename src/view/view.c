@@ -40,15 +40,15 @@ void hl_view_homogeneous(const view *view, affine3 to_frame, double rows[3][4]) 
   }
 }
 
-/* The point where a ray meets the sheet: start + ((height - h.start) / (h.direction)) direction. It is a
- * linear function of the pixel. */
+/* The point where a ray meets a sheet at a given height: start + ((height - h.start) / (h.direction))
+ * direction. It is a linear function of the pixel. */
 static vec3 on_sheet(vec3 start, vec3 direction, vec3 normal, double height) {
   return vec3_add(start,
                   vec3_scale(direction, (height - vec3_dot(normal, start)) / vec3_dot(normal, direction)));
 }
 
 /* The least sine of the angle between a view's middle ray and the sheets for which `base` is the point where
- * this ray meets the sheet. A flatter ray meets the sheet too far away. Then `base` is the eye. */
+ * this ray meets the sheet. A flatter middle ray meets the sheet too far away, and `base` is then the eye. */
 static const double FLATTEST_MIDDLE = 0.01;
 
 static void perspective_rays(const view *view, vec3 normal, double height, affine3 from_frame,

@@ -18,7 +18,7 @@
  * sixteen lanes. */
 enum { TILE = 16, BLOCK = 4, TILE_BLOCKS = 16, BLOCK_PIXELS = 16, TILE_PIXELS = 256, ALL_BLOCKS = 0xffff };
 
-/* The functions convert a pixel's column and row in its tile to the pixel's number, and back. Pixels are
+/* Functions that convert a pixel's column and row in its tile to the pixel's number, and back. Pixels are
  * numbered block by block. */
 static inline int hl_pixel_number(int column, int row) {
   return (row / BLOCK * 4 + column / BLOCK) * BLOCK_PIXELS + row % BLOCK * BLOCK + column % BLOCK;
@@ -52,13 +52,15 @@ static inline uint64_t hl_pixels_of_blocks(uint32_t blocks) {
 
 typedef struct view {
   bool perspective;
-  int width, height;   /* pixels */
-  vec3 origin;         /* perspective: the eye, from which the rays come; frame space */
-  vec3 corner, du, dv; /* perspective: corner + u du + v dv is the direction of the ray of continuous pixel
-                        * (u, v); parallel: it is the start of this ray */
-  vec3 direction;      /* parallel: unit direction of every ray */
-  mat3 inverse;        /* (w, w u, w v) = inverse * (X - origin) for perspective,
-                          (distance, u, v) = inverse * (X - corner) for parallel */
+  int width, height; /* size of the view in pixels */
+  vec3 origin;       /* for a perspective view: the eye, from which the rays come; frame space */
+  /* for a perspective view: corner + u du + v dv is the direction of the ray of the continuous pixel (u, v);
+   * for a parallel view it is the start of this ray */
+  vec3 corner, du, dv;
+  vec3 direction; /* for a parallel view: the unit direction of all rays */
+  /* the map from a point X to pixels: (w, w u, w v) = inverse * (X - origin) for a perspective view,
+   * (distance, u, v) = inverse * (X - corner) for a parallel view */
+  mat3 inverse;
 } view;
 
 /* The number of tiles that cover a view. */
@@ -66,14 +68,15 @@ static inline size_t hl_view_tiles(const view *view) {
   return (size_t)hl_tiles(view->width) * (size_t)hl_tiles(view->height);
 }
 
-/* Sets `inverse` from the other members. Returns false if the view is degenerate. */
+/* Sets the member `inverse` of a view from the other members. Returns false if the view is degenerate. */
 bool hl_view_finish(view *view);
 
-/* Finds the continuous pixel coordinates of a point. Returns false if the point lies behind a perspective
- * view's eye. */
+/* Finds the continuous pixel at which a view sees a point. Returns false if the point lies behind a
+ * perspective view's eye. */
 bool hl_view_project(const view *view, vec3 point, double uv[2]);
 
-/* Finds the ray through continuous pixel (u, v): its start and its direction, which is not normalised. */
+/* Finds the ray of a view through the continuous pixel (u, v): its start and its direction, which is not
+ * normalised. */
 void hl_view_ray(const view *view, double u, double v, vec3 *start, vec3 *direction);
 
 /* Finds (w, w u, w v) as affine functions of a point of another space. to_frame: maps this space to frame
@@ -91,18 +94,18 @@ void hl_view_homogeneous(const view *view, affine3 to_frame, double rows[3][4]);
 typedef struct sheet_rays {
   int perspective;
   float base[3], p0[3], pu[3], pv[3];
-  float w0[3], wu[3], wv[3]; /* perspective views only */
+  float w0[3], wu[3], wv[3]; /* the direction W; set for perspective views only */
   float h0, hu, hv;
-  float step; /* z - h.E */
+  float step; /* the height of the sheet above the eye: z - h.E */
 } sheet_rays;
 
-/* Finds the rays of a view at a sheet. normal: unit normal of the sheets; height: the sheet's h.X;
- * from_frame: frame space to the space of the result. */
+/* Finds the rays of a view at a sheet. normal: unit normal of the sheets; height: the sheet's height h.X.
+ * from_frame: maps frame space to the space of the result. */
 void hl_view_sheet_rays(const view *view, vec3 normal, double height, affine3 from_frame, sheet_rays *rays);
 
 /* The sheets of a sweep: sheet k lies at height first + k * spacing along the unit normal. */
 typedef struct sheet_stack {
-  vec3 normal; /* h; frame space */
+  vec3 normal; /* the unit normal h of the sheets; frame space */
   double first, spacing;
   int count;
 } sheet_stack;
@@ -130,8 +133,8 @@ typedef struct box_rays {
   int sphere;            /* if set, a sphere of radius 1 around the origin is used in place of the box */
 } box_rays;
 
-/* Finds where the rays of one tile enter and leave the box. enter, leave: [256], block after block; heights
- * above the first sheet. A ray that misses the box has enter > leave. */
+/* The type of the function that finds where the rays of one tile enter and leave a box. enter, leave: [256],
+ * block after block; heights above the first sheet. A ray that misses the box has enter > leave. */
 typedef void coverage_tile_function(const box_rays *rays, int tile_x, int tile_y, float *enter, float *leave);
 
 /* Sets up the rays of a view for one box. low, high: the box, in index space. */
@@ -142,19 +145,19 @@ void hl_box_rays(const view *view, vec3 normal, double first_height, affine3 fra
 
 /* Bounds of a box of index space: in a view's picture, and along the sheets' normal. */
 typedef struct footprint_bounds {
-  double low[2], high[2];         /* continuous pixels */
-  double low_height, high_height; /* heights along the normal */
+  double low[2], high[2];         /* bounds in the picture, in continuous pixels */
+  double low_height, high_height; /* bounds of the heights along the normal of the sheets */
 } footprint_bounds;
 
 /* Maps from a grid's index space to a view's picture, and to heights along the sheets' normal. */
 typedef struct footprint_map {
-  double view[3][4]; /* rows for (w, w u, w v) */
+  double view[3][4]; /* the rows of the map to (w, w u, w v) */
   double height[4];
 } footprint_map;
 
 void hl_footprint_map(const view *view, vec3 normal, affine3 index_to_frame, footprint_map *map);
-/* Finds the bounds of a box, which is given by its centre and half of its edges. Returns false if the whole
- * box lies behind the view. */
+/* Finds the bounds of a box in a view; the box is given by its centre and half of its edges. Returns false if
+ * the whole box lies behind the view. */
 bool hl_footprint_bounds(const footprint_map *map, const double centre[3], const double half[3],
                          footprint_bounds *bounds);
 
