@@ -13,7 +13,7 @@
 
 static const struct {
   const char *name;
-  unsigned rgb; /* 0xrrggbb, sRGB */
+  unsigned rgb; /* the colour as sRGB, 0xrrggbb */
 } css_colors[] = {
     {"aliceblue", 0xf0f8ff},
     {"antiquewhite", 0xfaebd7},
@@ -175,7 +175,7 @@ static bool decode(unsigned rgb, double color[3]) {
   return true;
 }
 
-/* "#rgb" or "#rrggbb" */
+/* Reads a colour that is written as "#rgb" or "#rrggbb". */
 static bool parse_hexadecimal(const char *digits, double color[3]) {
   size_t length = strlen(digits);
   if ((length != 3 && length != 6) || strspn(digits, "0123456789abcdefABCDEF") != length) return false;
@@ -184,7 +184,7 @@ static bool parse_hexadecimal(const char *digits, double color[3]) {
   return decode(rgb, color);
 }
 
-/* "r,g,b", or one number for all three. */
+/* Reads a colour that is written as "r,g,b", or as one number for all three. */
 static bool parse_linear(const char *text, double low, double high, double color[3]) {
   int count = 0;
   for (const char *at = text; count < 3; at++) {

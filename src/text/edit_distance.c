@@ -1,5 +1,5 @@
 /* text/edit_distance.c - optimal string alignment distance (Damerau 1964, each part edited once). */
-#define _GNU_SOURCE /* strnlen */
+#define _GNU_SOURCE /* for strnlen() */
 #include "text/edit_distance.h"
 
 #include <stdbool.h>
@@ -15,7 +15,8 @@ static bool differ(char a, char b) {
 
 static int least(int a, int b) { return a < b ? a : b; }
 
-/* Three rows of the dynamic programme's table are kept at a time. */
+/* The least number of edits between two names, by dynamic programming. Three rows of the table are kept at a
+ * time. */
 int hl_edit_distance(const char *a, const char *b) {
   int rows[3][HL_EDIT_LONGEST + 1];
   int length_a = (int)strnlen(a, HL_EDIT_LONGEST), length_b = (int)strnlen(b, HL_EDIT_LONGEST);

@@ -5,10 +5,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The hash of no bytes. Another number gives a second hash, which does not depend on the first. */
+/* The hash of an empty sequence of bytes, with which a hash begins. Beginning with another number gives a
+ * second hash, which does not depend on the first. */
 #define HL_HASH_BEGIN ((uint64_t)0xcbf29ce484222325u)
 
-/* The hash of the bytes so far, followed by more bytes. */
+/* Returns the hash of some bytes followed by more bytes. hash: the hash of the bytes so far. */
 static inline uint64_t hl_hash_bytes(uint64_t hash, const void *bytes, size_t count) {
   const unsigned char *at = bytes;
   for (size_t n = 0; n < count; n++) hash = (hash ^ at[n]) * 0x100000001b3u;

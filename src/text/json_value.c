@@ -17,13 +17,14 @@ void hl_json_number_text(double number, char text[HL_JSON_NUMBER_BYTES]) {
 
 size_t hl_utf8_length(const unsigned char *c) {
   static const unsigned char least_second[4] = {0x80, 0x80, 0xa0,
-                                                0x90}; /* after 0xe0 and 0xf0: refuses overlong sequences */
+                                                0x90}; /* the least second byte of a sequence that begins
+                                                        * with 0xe0 or 0xf0: it refuses overlong sequences */
   size_t length = c[0] < 0x80 ? 1 : c[0] < 0xc2 ? 0 : c[0] < 0xe0 ? 2 : c[0] < 0xf0 ? 3 : c[0] < 0xf5 ? 4 : 0;
   for (size_t i = 1; i < length; i++)
     if ((c[i] & 0xc0) != 0x80) return 0;
   if ((c[0] == 0xe0 || c[0] == 0xf0) && c[1] < least_second[length - 1]) return 0;
   if ((c[0] == 0xed && c[1] > 0x9f) || (c[0] == 0xf4 && c[1] > 0x8f))
-    return 0; /* after 0xed and 0xf4: refuses surrogates and codes beyond Unicode */
+    return 0; /* a greater second byte stands for a surrogate (0xed) or for a code beyond Unicode (0xf4) */
   return length;
 }
 

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The C library has one permanent object for this locale, so that the call allocates nothing and cannot
- * fail. */
+/* Returns the locale "C". The C library has one permanent object for this locale, so that the call allocates
+ * nothing and cannot fail. */
 static locale_t plain_locale(void) { return newlocale(LC_ALL_MASK, "C", (locale_t)0); }
 
 hl_plain_section hl_plain_begin(void) { return (hl_plain_section){uselocale(plain_locale())}; }

@@ -7,14 +7,14 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* The functions strtod(), vsnprintf() and snprintf(), in the locale "C". */
+/* Three functions that do the work of strtod(), vsnprintf() and snprintf() in the locale "C". */
 double hl_plain_number(const char *text, char **end);
 int hl_plain_vprint(char *text, size_t size, const char *format, va_list arguments);
 __attribute__((format(printf, 3, 4))) int hl_plain_print(char *text, size_t size, const char *format, ...);
 
 /* Whether two texts are equal if the case of the letters A to Z is ignored. */
 bool hl_plain_equal(const char *a, const char *b);
-/* The same of the first `length` bytes of two texts. */
+/* Whether the first `length` bytes of two texts are equal if the case of the letters A to Z is ignored. */
 bool hl_plain_equal_bytes(const char *a, const char *b, size_t length);
 
 /* Whether a text is a URL of a web server, "http://..." or "https://...". */

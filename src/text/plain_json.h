@@ -6,7 +6,8 @@
 #include <jansson.h>
 #include <stddef.h>
 
-/* The functions json_loadb(), json_loads() (without flags and error) and json_dumps(), in the locale "C". */
+/* Functions that do the work of json_loadb(), json_loads() (without flags and error) and json_dumps() in the
+ * locale "C". */
 json_t *hl_plain_json_load(const char *text, size_t length, size_t flags, json_error_t *error);
 json_t *hl_plain_json_load_text(const char *text);
 char *hl_plain_json_dump(const json_t *json, size_t flags);

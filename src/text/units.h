@@ -5,17 +5,17 @@
 #include <stddef.h>
 
 typedef struct hl_unit {
-  const char *symbol;   /* as figures write the unit */
-  const char *names[3]; /* as people and files write the unit; null after the last */
+  const char *symbol;   /* the unit's symbol in figures */
+  const char *names[3]; /* the unit's names in files and in options; null after the last name */
   double metres;
-  int chosen; /* non-zero: hl_unit_for() may return this unit */
+  int chosen; /* whether hl_unit_for() may choose this unit */
 } hl_unit;
 
-/* The unit with this name; null: no known unit has it. */
+/* The unit of length that has a given name; null: no known unit has this name. */
 const hl_unit *hl_unit_find(const char *name);
 
-/* The unit for a length: the one in which its number is from 1 to 1000. If there is no such unit, it is the
- * one whose number comes closest to that range. */
+/* Chooses the unit for a length: the unit in which the length is a number from 1 to 1000. If there is no such
+ * unit, it is the unit in which the number comes closest to that range. */
 const hl_unit *hl_unit_for(double metres);
 
 /* The greatest number of the form 1, 2 or 5 times a power of ten that is at most `most`. */
