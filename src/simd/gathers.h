@@ -7,7 +7,7 @@
 
 #include "simd/lanes.h"
 
-/* Four bytes from any address, in the processor's byte order. */
+/* Loads four bytes from any address as a whole number, in the processor's byte order. */
 LANES_INLINE int32_t lanes_word(const unsigned char *p) {
   int32_t word;
   memcpy(&word, p, sizeof word);
@@ -22,7 +22,8 @@ typedef struct lanes_offsets {
 
 LANES_INLINE void lanes_store_offsets(lanes_offsets *offsets, lanes_int value) {
   memcpy(offsets->at, &value, sizeof offsets->at);
-  __asm__ volatile("" : : "r"(offsets) : "memory"); /* keeps the compiler from using the register instead */
+  /* keeps the compiler from holding the offsets in a register */
+  __asm__ volatile("" : : "r"(offsets) : "memory");
 }
 
 /* Sixteen 4-byte loads at base + offset (bytes). These are plain loads, because gather instructions were four
@@ -43,7 +44,7 @@ LANES_INLINE lanes_int lanes_gather_bytes(const unsigned char *base, lanes_int o
   return lanes_load_words(base, &offsets);
 }
 
-/* words[index] for every lane. */
+/* Returns words[index] for every lane. */
 LANES_CALL lanes_int lanes_look_up(lanes_int words, lanes_int index) {
 #if defined(__AVX512F__)
   return (lanes_int)_mm512_permutexvar_epi32((__m512i)index, (__m512i)words);
@@ -66,7 +67,7 @@ LANES_CALL lanes_int lanes_look_up(lanes_int words, lanes_int index) {
 #endif
 }
 
-/* table[index] of floats. */
+/* Returns table[index] for every lane, for a table of floats. */
 LANES_INLINE lanes lanes_gather(const float *table, lanes_int index) {
   return (lanes)lanes_gather_bytes((const unsigned char *)table, index * 4);
 }
@@ -171,8 +172,8 @@ LANES_CALL void lanes_gather_quad_pairs(const float *table, lanes_int index, lan
 }
 
 #if defined(__AVX2__)
-/* Two pairs of floats from any addresses. They are loaded by memcpy(), because loading a double would require
- * alignment to eight bytes. */
+/* Loads two pairs of floats from any addresses. The pairs are loaded by memcpy(), because loading a double
+ * would require alignment to eight bytes. */
 LANES_INLINE __m128 two_pairs(const float *table, int32_t first, int32_t second) {
   double pair[2];
   memcpy(&pair[0], table + first, sizeof(double));
@@ -232,8 +233,8 @@ typedef struct lanes_squares {
 } lanes_squares;
 
 #if defined(__AVX512BW__)
-/* The least column and the least row of the active lanes, in 16 bits each. Every lane of the result holds
- * both. Columns and rows must be below 65535. */
+/* Finds the least column and the least row of the squares of the active lanes, in 16 bits each. Every lane of
+ * the result holds both numbers. Columns and rows must be below 65535. */
 LANES_INLINE __m512i least_corner(__m512i corners, __mmask16 active) {
   __m512i held = _mm512_mask_mov_epi32(_mm512_set1_epi32(-1), active, corners);
   __m256i of_eight = _mm256_min_epu16(_mm512_castsi512_si256(held), _mm512_extracti64x4_epi64(held, 1));
@@ -242,7 +243,7 @@ LANES_INLINE __m512i least_corner(__m512i corners, __mmask16 active) {
   return _mm512_broadcastd_epi32(_mm_min_epu16(least, _mm_shuffle_epi32(least, 0xb1)));
 }
 
-/* Four rows of eight numbers. */
+/* Loads four rows of eight numbers of 16 bits. */
 LANES_INLINE __m512i four_rows(const uint16_t *from, size_t stride) {
   __m512i rows = _mm512_castsi128_si512(_mm_loadu_si128((const __m128i *)(const void *)from));
   rows = _mm512_inserti32x4(rows, _mm_loadu_si128((const __m128i *)(const void *)(from + stride)), 1);

@@ -48,7 +48,7 @@ LANES_INLINE lanes lanes_load(const float *p) {
 }
 LANES_INLINE void lanes_store(float *p, lanes v) { memcpy(p, &v, sizeof v); }
 
-/* Sixteen 16-bit numbers. */
+/* sixteen 16-bit numbers */
 typedef uint16_t lanes_short __attribute__((vector_size(32)));
 LANES_INLINE lanes_int lanes_load_short_int(const uint16_t *p) {
   lanes_short v;
@@ -76,8 +76,8 @@ LANES_INLINE void lanes_store_block(float *p, size_t stride, lanes v) {
   memcpy(p + 3 * stride, (char *)&v + 48, 16);
 }
 
-/* Chooses a or b in each lane. mask: as comparisons give it: all bits of a lane are set (choose a), or all
- * bits are clear (choose b). */
+/* Chooses a or b in each lane. mask: the result of a comparison: all bits of a lane are set (choose a), or
+ * all bits are clear (choose b). */
 LANES_INLINE lanes lanes_select(lanes_int mask, lanes a, lanes b) {
   return (lanes)(((lanes_int)a & mask) | ((lanes_int)b & ~mask));
 }
@@ -86,7 +86,7 @@ LANES_INLINE lanes_int lanes_select_int(lanes_int mask, lanes_int a, lanes_int b
   return (a & mask) | (b & ~mask);
 }
 
-/* One bit a lane, lane 0 lowest. */
+/* Turns a mask into one bit for each lane; lane 0 has the lowest bit. */
 LANES_CALL uint32_t lanes_bits(lanes_int mask) {
 #if defined(__AVX512F__)
   return (uint32_t)_mm512_movepi32_mask((__m512i)mask);
@@ -105,8 +105,8 @@ LANES_CALL lanes_int lanes_from_bits(uint32_t bits) {
   return (lanes_set_int((int32_t)bits) & one_bit) != 0;
 }
 
-/* The lesser number, a < b ? a : b, and the greater number, a > b ? a : b. Where either number is NaN, the
- * result is b, as with the processor's instructions. */
+/* Two functions: the lesser number, a < b ? a : b, and the greater number, a > b ? a : b. Where either number
+ * is NaN, the result is b, as with the processor's instructions. */
 LANES_CALL lanes lanes_min(lanes a, lanes b) {
 #if defined(__AVX512F__)
   return (lanes)_mm512_min_ps((__m512)a, (__m512)b);
@@ -157,12 +157,12 @@ LANES_INLINE lanes_int lower_words(lanes_double x) {
   return __builtin_shufflevector(words, words, 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
 }
 
-/* a b + c, rounded once, computed in doubles. In doubles, the product of two floats is exact, but the sum may
- * be rounded. Rounding the sum to a float is wrong only where the sum is not exact and lies in the middle
- * between two floats; among subnormal floats it may be wrong wherever the sum is not exact. In these cases
- * the sum is first rounded to odd: of the two doubles around the exact sum, the double with an odd last bit
- * is taken, which then rounds to the right float (Boldo and Melquiond, "Emulation of a FMA and correctly
- * rounded sums", 2008). */
+/* Computes a b + c in doubles, so that the result is rounded only once. In doubles, the product of two floats
+ * is exact, but the sum may be rounded. Rounding the sum to a float is wrong only where the sum is not exact
+ * and lies in the middle between two floats; among subnormal floats it may be wrong wherever the sum is not
+ * exact. In these cases the sum is first rounded to odd: of the two doubles around the exact sum, the double
+ * with an odd last bit is taken, which then rounds to the right float (Boldo and Melquiond, "Emulation of a
+ * FMA and correctly rounded sums", 2008). */
 LANES_CALL lanes fma_in_doubles(lanes a, lanes b, lanes c) {
   lanes_double product = __builtin_convertvector(a, lanes_double) * __builtin_convertvector(b, lanes_double);
   lanes_double addend = __builtin_convertvector(c, lanes_double), sum = product + addend;
@@ -172,13 +172,13 @@ LANES_CALL lanes fma_in_doubles(lanes a, lanes b, lanes c) {
   if (!any_lane(middle | subnormal)) return rounded;
   lanes_double back = sum - product, lost = (product - (sum - back)) + (addend - back);
   lanes_long even = ((lanes_long)sum & 1) - 1, inexact = (lost < 0.0) | (lost > 0.0);
-  lanes_long outwards = (lost > 0.0) ^ (sum < 0.0); /* all bits, or none */
+  lanes_long outwards = (lost > 0.0) ^ (sum < 0.0); /* a mask: all bits are set, or no bits */
   return __builtin_convertvector((lanes_double)((lanes_long)sum + (inexact & even & (-2 * outwards - 1))),
                                  lanes);
 }
 #endif
 
-/* a b + c, rounded once, as the C library's fmaf(). */
+/* Computes a b + c, rounded only once, like the C library's fmaf(). */
 LANES_INLINE lanes lanes_fma(lanes a, lanes b, lanes c) {
 #if defined(__AVX512F__)
   return (lanes)_mm512_fmadd_ps((__m512)a, (__m512)b, (__m512)c);
@@ -203,7 +203,8 @@ LANES_INLINE lanes lanes_fma(lanes a, lanes b, lanes c) {
   memcpy(x, &a, sizeof x);
   memcpy(y, &b, sizeof y);
   memcpy(z, &c, sizeof z);
-  for (int i = 0; i < 4; i++) z[i] = wasm_f32x4_relaxed_madd(x[i], y[i], z[i]); /* once: relaxed_fma.wat */
+  /* the result is rounded only once (relaxed_fma.wat) */
+  for (int i = 0; i < 4; i++) z[i] = wasm_f32x4_relaxed_madd(x[i], y[i], z[i]);
   memcpy(&c, z, sizeof c);
   return c;
 #elif defined(__FP_FAST_FMAF)
@@ -213,11 +214,11 @@ LANES_INLINE lanes lanes_fma(lanes a, lanes b, lanes c) {
   return fma_in_doubles(a, b, c);
 #endif
 }
-/* x slope + offset, rounded once. */
+/* Computes x slope + offset, rounded only once. */
 LANES_INLINE lanes lanes_line(lanes x, float slope, float offset) {
   return lanes_fma(x, lanes_set(slope), lanes_set(offset));
 }
-/* sum + x factor, rounded once. */
+/* Computes sum + x factor, rounded only once. */
 LANES_INLINE lanes lanes_add_scaled(lanes sum, lanes x, float factor) {
   return lanes_fma(x, lanes_set(factor), sum);
 }
@@ -309,16 +310,16 @@ LANES_CALL lanes lanes_sqrt(lanes x) {
 
 LANES_INLINE lanes lanes_from_int(lanes_int x) { return __builtin_convertvector(x, lanes); }
 LANES_INLINE lanes_int lanes_truncate(lanes x) { return __builtin_convertvector(x, lanes_int); }
-/* v: from 0 to 65535. */
+/* Stores whole numbers from 0 to 65535 as numbers of 16 bits. */
 LANES_INLINE void lanes_store_short_int(uint16_t *p, lanes_int v) {
   lanes_short narrow = __builtin_convertvector(v, lanes_short);
   memcpy(p, &narrow, sizeof narrow);
 }
-/* Rounds to whole numbers of 16 bits, at most 65535. v: not negative. */
+/* Stores floats as whole numbers of 16 bits, rounded and at most 65535. v: not negative. */
 LANES_INLINE void lanes_store_short(uint16_t *p, lanes v) {
   lanes_store_short_int(p, lanes_truncate(lanes_min(v, lanes_set(65535.0f)) + 0.5f));
 }
-/* The greatest integer not above x; |x| must be below 2^31. */
+/* The greatest whole number that is not above x, in each lane. The magnitude of x must be below 2^31. */
 LANES_CALL lanes_int lanes_floor(lanes x) {
 #if defined(__AVX512F__)
   return (lanes_int)_mm512_cvt_roundps_epi32((__m512)x, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
@@ -334,9 +335,9 @@ LANES_CALL lanes_int lanes_floor(lanes x) {
 #endif
 }
 
-/* 2^x for |x| < 126, with a relative error below 2e-7. x is divided into n + f, with f in [-1/2, 1/2]. 2^n is
- * made by the exponent bits. 2^f is a polynomial of degree 5 with the value 1 at 0; of these, it has the
- * least greatest relative error (derived: 9.2e-8 by Remez' exchange, 1.7e-7 in floats). */
+/* Computes 2^x for |x| < 126, with a relative error below 2e-7. x is divided into n + f, with f in [-1/2,
+ * 1/2]. 2^n is made by the exponent bits. 2^f is a polynomial of degree 5 with the value 1 at 0; of these, it
+ * has the least greatest relative error (derived: 9.2e-8 by Remez' exchange, 1.7e-7 in floats). */
 LANES_CALL lanes lanes_exp2(lanes x) {
   lanes_int n = lanes_floor(x + 0.5f);
   lanes f = x - lanes_from_int(n);
@@ -347,12 +348,12 @@ LANES_CALL lanes lanes_exp2(lanes x) {
   p = lanes_fma(p, f, lanes_set(1.0f));
   return p * (lanes)((n + 127) << 23);
 }
-/* exp(-x) for x >= 0, at least 1e-37. */
+/* Computes exp(-x) for x >= 0. The result is at least 1e-37. */
 LANES_CALL lanes lanes_exp_negative(lanes x) {
   return lanes_exp2(lanes_max(x * -1.44269504089f, lanes_set(-123.0f)));
 }
-/* log2(x) for normal x > 0, with an absolute error below 1e-6. x is 2^n m, with m in [sqrt(1/2), sqrt(2)). ln
- * m = 2 atanh((m-1)/(m+1)) is computed by its odd series to degree 9 (derived). */
+/* Computes log2(x) for normal numbers x > 0, with an absolute error below 1e-6. x is 2^n m, with m in
+ * [sqrt(1/2), sqrt(2)). ln m = 2 atanh((m-1)/(m+1)) is computed by its odd series to degree 9 (derived). */
 LANES_CALL lanes lanes_log2(lanes x) {
   lanes_int bits = (lanes_int)x - 0x3f3504f3;
   lanes_int n = bits >> 23;
@@ -364,13 +365,13 @@ LANES_CALL lanes lanes_log2(lanes x) {
   series = lanes_fma(series, t2, lanes_set(1.0f));
   return lanes_add_scaled(lanes_from_int(n), t * series, 2.88539008178f);
 }
-/* base^exponent for base in [0, 1] and exponent >= 0. A base below 1e-6 counts as 1e-6. */
+/* Computes base^exponent for a base in [0, 1] and an exponent >= 0. A base below 1e-6 counts as 1e-6. */
 LANES_CALL lanes lanes_power_of_part(lanes base, lanes exponent) {
   return lanes_exp2(lanes_max(lanes_log2(lanes_max(base, lanes_set(1e-6f))) * exponent, lanes_set(-100.0f)));
 }
 
 #if defined(__AVX2__) && !defined(__AVX512F__)
-/* The least lane of each of four vectors. */
+/* Finds the least of the sixteen lanes of each of four vectors. */
 LANES_INLINE __m128i lanes_least_of_each(const lanes_int x[4]) {
   __m128i of_four[4];
   for (int i = 0; i < 4; i++) {

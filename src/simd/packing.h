@@ -7,7 +7,7 @@
 #if !defined(__AVX512F__)
 static const uint64_t NIBBLE_ONES = 0x1111111111111111u, NIBBLE_NUMBERS = 0xfedcba9876543210u;
 
-/* Sixteen numbers of four bits. */
+/* Turns a word of sixteen numbers of four bits into sixteen lanes. */
 LANES_INLINE lanes_int lanes_from_nibbles(uint64_t nibbles) {
   typedef uint32_t words __attribute__((vector_size(64)));
   uint32_t low = (uint32_t)nibbles, high = (uint32_t)(nibbles >> 32);
@@ -16,7 +16,7 @@ LANES_INLINE lanes_int lanes_from_nibbles(uint64_t nibbles) {
   return (lanes_int)(both >> shifts & 15);
 }
 
-/* Spreads sixteen bits: each gets a nibble of its own. */
+/* Spreads sixteen bits over a word of 64 bits: each bit gets a nibble (four bits) of its own. */
 LANES_INLINE uint64_t spread_bits(uint64_t bits) {
   bits = (bits | bits << 24) & 0x000000ff000000ffu;
   bits = (bits | bits << 12) & 0x000f000f000f000fu;
@@ -24,10 +24,10 @@ LANES_INLINE uint64_t spread_bits(uint64_t bits) {
   return (bits | bits << 3) & NIBBLE_ONES;
 }
 
-/* The numbers of the chosen nibbles, in consecutive nibbles. Each number moves down by as many nibbles as
- * there are nibbles below it that are not chosen, in steps of one, two, four and eight nibbles (Warren,
- * "Hacker's Delight", compress). chosen: 1 in each chosen nibble. before: for each nibble, the number of
- * chosen nibbles below it. */
+/* Moves the numbers of the chosen nibbles of a word into consecutive nibbles. Each number moves down by as
+ * many nibbles as there are nibbles below it that are not chosen, in steps of one, two, four and eight
+ * nibbles (Warren, "Hacker's Delight", compress). chosen: 1 in each chosen nibble. before: for each nibble,
+ * the number of chosen nibbles below it. */
 LANES_INLINE uint64_t chosen_numbers(uint64_t chosen, uint64_t before) {
   uint64_t all = chosen * 15, numbers = NIBBLE_NUMBERS & all, ways = (NIBBLE_NUMBERS - before) & all;
   for (int step = 0; step < 4; step++) {
@@ -39,7 +39,7 @@ LANES_INLINE uint64_t chosen_numbers(uint64_t chosen, uint64_t before) {
 }
 #endif
 
-/* How the chosen ones of sixteen lanes are moved, in their order, to the lanes from `at` on. */
+/* How the chosen lanes of sixteen are moved, in their order, to the lanes from `at` on. */
 typedef struct lanes_packing {
 #if defined(__AVX512F__)
   __m512i from; /* for each packed lane, the lane from which it comes */
@@ -71,7 +71,7 @@ LANES_CALL lanes_packing lanes_packing_of(uint32_t bits, int at) {
   return packing;
 }
 
-/* Packs: returns `into`, in which lanes from `at` on have been replaced by the chosen lanes of x. */
+/* Packs lanes: returns `into`, in which the lanes from `at` on are replaced by the chosen lanes of x. */
 LANES_CALL lanes lanes_pack(const lanes_packing *packing, lanes into, lanes x) {
 #if defined(__AVX512F__)
   return (lanes)_mm512_mask_permutexvar_ps((__m512)into, packing->packed, packing->from, (__m512)x);
@@ -80,7 +80,7 @@ LANES_CALL lanes lanes_pack(const lanes_packing *packing, lanes into, lanes x) {
 #endif
 }
 
-/* Unpacks: moves packed lanes back to the lanes from which they came; all other lanes are 0. */
+/* Unpacks lanes: moves packed lanes back to the lanes from which they came. All other lanes are 0. */
 LANES_CALL lanes lanes_unpack(const lanes_packing *packing, lanes x) {
 #if defined(__AVX512F__)
   return (lanes)_mm512_maskz_permutexvar_ps(packing->bits, packing->to, (__m512)x);
