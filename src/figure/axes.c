@@ -7,8 +7,8 @@
 #include "figure/overlay.h"
 #include "scene/geometry/camera.h"
 
-/* The names of the ends of the world's axes: [axis][end]; end 0 is the negative end, end 1 the positive
- * end. */
+/* The names of the two ends of each of the world's axes: [axis][end]; end 0 is the negative end, end 1 the
+ * positive end. */
 typedef const char *axis_names[3][2];
 
 static const axis_names *names_of(hl_space space) {
@@ -24,7 +24,7 @@ static const axis_names *names_of(hl_space space) {
   }
 }
 
-/* A world's axis as the picture shows it: its components to the right, up, and towards the eye. */
+/* An axis of the world as the picture shows it: its components to the right, up, and towards the eye. */
 static vec3 seen(const hl_map *map, int axis) {
   vec3 unit = {axis == 0, axis == 1, axis == 2};
   return (vec3){vec3_dot(unit, map->right), vec3_dot(unit, map->up), -vec3_dot(unit, map->forward)};

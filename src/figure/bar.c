@@ -16,7 +16,7 @@ enum { LABEL_BYTES = 96 };
 /* The unit of the scene's lengths. */
 typedef struct bar_unit {
   const char *name;    /* the unit's name in the files */
-  const hl_unit *unit; /* null: the name is not known */
+  const hl_unit *unit; /* the unit; null: its name is not known */
   double per_scene;    /* the length of one unit of the scene's world, in the files' unit */
 } bar_unit;
 
@@ -73,7 +73,7 @@ static hl_status find_scale(const hl_overlay_place *place, double *scale, hl_err
   return HL_OK;
 }
 
-/* Finds the length of the unit in which the bar's text is written, in the files' unit. */
+/* Finds the length of the unit in which the bar's text is written, measured in the files' unit. */
 static hl_status length_of(const hl_unit *written, const bar_unit *unit, double *length, hl_error *error) {
   if (written == unit->unit) *length = 1;
   else if (unit->unit != NULL) *length = written->metres / unit->unit->metres;
@@ -83,11 +83,12 @@ static hl_status length_of(const hl_unit *written, const bar_unit *unit, double 
   return HL_OK;
 }
 
-/* Chooses the bar's length, in the files' unit, and writes the bar's text. */
+/* Chooses the bar's length, measured in the files' unit, and writes the bar's text. */
 static hl_status choose_length(const hl_overlay *overlay, const bar_unit *unit, double longest,
                                double *length, char label[LABEL_BYTES], hl_error *error) {
   const hl_unit *written = unit->unit;
-  double in_files = 1; /* the length of the unit in which the bar's text is written, in the files' unit */
+  /* the length of the unit in which the bar's text is written, measured in the files' unit */
+  double in_files = 1;
   hl_status status = HL_OK;
   const char *name = overlay->scale_bar_unit;
   if (name != NULL) {
@@ -114,7 +115,7 @@ hl_status hl_overlay_bar(const hl_ink *ink, const hl_overlay_place *place, hl_er
   char label[LABEL_BYTES];
   hl_status status = find_unit(place, &unit, error);
   if (status == HL_OK) status = find_scale(place, &scale, error);
-  double file_unit = scale / unit.per_scene; /* length of the files' unit on the page, points */
+  double file_unit = scale / unit.per_scene; /* length on the page of one of the files' units, points */
   if (status == HL_OK)
     status = choose_length(place->overlay, &unit, place->picture.width / 4 / file_unit, &length, label,
                            error);

@@ -15,7 +15,8 @@ enum { MOST_BYTES = 2000 };
 static const double halo_width = 0.22, halo_alpha = 0.55;
 
 /* Returns a copy of a text (g_free()), in which U+FFFD stands for everything that is no plain text: control
- * characters but line breaks, Unicode's marks for the direction of writing, and bytes that are no UTF-8. */
+ * characters other than line breaks, Unicode's marks for the direction of writing, and bytes that are no
+ * UTF-8. */
 static char *clean(const char *text) {
   char *whole = g_utf8_make_valid(text, (gssize)strnlen(text, MOST_BYTES));
   GString *made = g_string_new(NULL);
@@ -101,7 +102,7 @@ void hl_ink_bar(const hl_ink *ink, hl_rectangle bar) {
   const double rim = ink->size * halo_width / 2;
   set_grey(ink->cairo, ink->halo, halo_alpha);
   cairo_rectangle(ink->cairo, bar.left - rim, bar.top - rim, bar.width + 2 * rim, bar.height + 2 * rim);
-  /* The bar's own rectangle runs in the opposite sense, so that it is left out of the halo. */
+  /* the bar's own rectangle runs in the opposite sense, so that it is left out of the halo */
   cairo_rectangle(ink->cairo, bar.left + bar.width, bar.top, -bar.width, bar.height);
   cairo_fill(ink->cairo);
   set_grey(ink->cairo, ink->color, 1);
@@ -120,7 +121,7 @@ void hl_ink_stroke(const hl_ink *ink, double width) {
   cairo_stroke(ink->cairo);
 }
 
-/* IEC 61966-2-1, the inverse of hl_srgb_decode(). */
+/* Encodes a linear value by the sRGB curve (IEC 61966-2-1); the inverse of hl_srgb_decode(). */
 static double encode(double linear) {
   if (!(linear > 0)) return 0;
   if (linear >= 1) return 1;

@@ -9,23 +9,24 @@
 #include "figure/map.h"
 
 typedef struct hl_ink {
-  cairo_t *cairo;     /* borrowed; its unit is the point */
-  double size;        /* of letters, points */
-  const char *font;   /* borrowed */
-  double color, halo; /* grey, sRGB: 0 black, 1 white */
+  cairo_t *cairo;     /* where things are drawn; borrowed; its unit is the point */
+  double size;        /* size of letters, points */
+  const char *font;   /* the name of the font; borrowed */
+  double color, halo; /* greys of the ink and of its halo, sRGB: 0 is black, 1 is white */
 } hl_ink;
 
 /* A text to draw. */
 typedef struct hl_line_of_text {
   const char *text;
-  double x, y;             /* points */
+  double x, y;             /* the text's position on the page, points */
   double align_x, align_y; /* the part of the text that lies at (x, y): 0: its left or top edge; 1: its right
                             * or bottom edge; a number between: a place between the edges */
-  double scale;            /* factor of the letters' size; 0 counts as 1 */
+  double scale;            /* a factor on the size of letters; 0 counts as 1 */
   bool bold;
-  bool paragraphs;  /* a line break begins a new line; false: a line break is drawn as a character */
-  double wide_most; /* the greatest width of a line, points; a longer line is cut and ends in "..."; 0: any
-                     * width */
+  bool paragraphs; /* whether a line break begins a new line; if not, a line break is drawn as a character */
+  /* the greatest width of a line, points; a longer line is cut and ends in "..."; 0: lines may have any
+   * width */
+  double wide_most;
 } hl_line_of_text;
 
 void hl_ink_text(const hl_ink *ink, const hl_line_of_text *line);

@@ -16,16 +16,16 @@
 
 enum { STEPS_BETWEEN_POINTS = 8, CURVE_STEPS = 256, TICKS_MOST = 6, NUMBER_BYTES = 40 };
 
-/* Lengths, in units of the letters' size. */
+/* lengths in the legend, in units of the letters' size */
 static const double row = 1.35, strip_width = 1.1, curve_width = 1.6, gap = 0.45, swatch = 0.9;
 
 /* The legend while it is drawn, from its top downwards. */
 typedef struct legend {
   const hl_ink *ink;
   const hl_overlay_place *place;
-  double right, bottom; /* points */
-  double y;             /* top of the next part, points */
-  double strip_height;  /* points */
+  double right, bottom; /* the legend's right and lower edge, points */
+  double y;             /* where the top of the next volume's part lies, points */
+  double strip_height;  /* height of a strip of colours, points */
 } legend;
 
 /* ---- what a volume has ---- */
@@ -60,7 +60,7 @@ static const char *title_of(const hl_overlay_place *place, const hl_scene_volume
 
 /* ---- rows: a colour and a name ---- */
 
-/* The width of a row's text, points. */
+/* The width of the text of one row of the legend, points. */
 static double widest_row(const legend *made, const char *text) {
   double width, height;
   hl_ink_measure(made->ink, &(hl_line_of_text){.text = text}, &width, &height);
@@ -85,7 +85,8 @@ static void draw_row(legend *made, double left, const double color[3], const cha
   made->y += row * size;
 }
 
-/* Finds the colour and the name that the n-th row of a volume shows. False: the volume has fewer rows. */
+/* Finds the colour and the name that the n-th row of a volume shows. Returns false if the volume has fewer
+ * rows. */
 static bool row_of(const hl_scene_volume *volume, size_t n, const double **color,
                    char text[NUMBER_BYTES * 4]) {
   const size_t counts[2] = {volume->label_count, volume->mask.label_count};
@@ -137,8 +138,8 @@ static void add_stop(cairo_pattern_t *pattern, const double range[2], double val
   cairo_pattern_add_color_stop_rgb(pattern, (value - range[0]) / (range[1] - range[0]), r, g, b);
 }
 
-/* Adds the function's colours between two neighbouring points to the gradient. The colours are linear in
- * light, and so need several stops in sRGB. */
+/* Adds the colours of a transfer function between two of its neighbouring points to the strip's gradient. The
+ * colours are linear in light, and so need several stops in sRGB. */
 static void add_stretch(cairo_pattern_t *pattern, const double range[2], const hl_color_point *from,
                         const hl_color_point *to, cairo_t *scratch) {
   const int steps = to->value > from->value ? STEPS_BETWEEN_POINTS : 1;
@@ -150,7 +151,7 @@ static void add_stretch(cairo_pattern_t *pattern, const double range[2], const h
   add_stop(pattern, range, to->value, to->color, scratch);
 }
 
-/* The strip's gradient. bottom, top: places of its ends on the page. */
+/* Makes the gradient of a strip. bottom, top: places of the strip's ends on the page. */
 static cairo_pattern_t *make_pattern(const hl_transfer_function *function, const double range[2],
                                      double bottom, double top, cairo_t *scratch) {
   cairo_pattern_t *pattern = cairo_pattern_create_linear(0, bottom, 0, top);
@@ -167,7 +168,7 @@ static cairo_pattern_t *make_pattern(const hl_transfer_function *function, const
   return pattern;
 }
 
-/* Draws the curve of opacity, to the left of x. */
+/* Draws the curve of opacity, to the left of the place x. */
 static void draw_curve(const legend *made, const hl_transfer_function *function, const double range[2],
                        double x, double bottom, double top) {
   cairo_t *cairo = made->ink->cairo;
@@ -206,8 +207,8 @@ static void write_number(double value, double step, const double range[2], char 
   else hl_plain_print(text, NUMBER_BYTES, "%.*f", decimals, value);
 }
 
-/* Returns the width of the numbers beside the strip, and draws them if `draws` is set. x: their right edge.
- */
+/* Returns the width of the numbers beside a strip, and draws the numbers if `draws` is set. x: their right
+ * edge. */
 static double draw_numbers(const legend *made, const double range[2], double x, double bottom, double top,
                            bool draws) {
   const double size = made->ink->size, ticks = fmin(TICKS_MOST, (bottom - top) / (1.6 * size));

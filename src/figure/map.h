@@ -15,7 +15,7 @@ typedef struct hl_rectangle {
 /* The camera's map from the world to the rectangle that the picture fills. */
 typedef struct hl_map {
   vec3 eye, right, up, forward;
-  double center_x, center_y; /* points */
+  double center_x, center_y; /* the picture's middle on the page, points */
   double scale; /* points on the page per unit of the world; with a perspective camera at a depth of 1 */
   bool perspective;
   double target_depth; /* distance from the eye to the camera's target along the line of sight */
@@ -23,11 +23,11 @@ typedef struct hl_map {
 
 hl_map hl_map_of(const hl_camera *camera, hl_rectangle picture);
 
-/* Points on the page per unit of the world. depth: the distance from the eye, which only perspective cameras
- * need. */
+/* The number of points on the page for one unit of the world. depth: the distance from the eye, which only
+ * perspective cameras need. */
 double hl_map_scale(const hl_map *map, double depth);
 
-/* Finds where a point of the world lies on the page. False: it lies behind the eye. */
+/* Finds where a point of the world lies on the page. Returns false if the point lies behind the eye. */
 bool hl_map_point(const hl_map *map, vec3 world, double *x, double *y);
 
 #endif

@@ -1,8 +1,8 @@
 /* figure/marks.c - the marks of a scene over its picture: lines, heads of arrows, texts and measures.
  *
  * Marks lie over the picture, also where matter stands before them, as in the viewer. A mark of which a point
- * lies behind the eye is left out. Lengths and angles are those of the first volume's file: the scene's
- * scale, rotation and translation of that volume are undone. The unit is the one of that file, or the one
+ * lies behind the eye is left out. Lengths and angles are measured in the first volume's file: the scene's
+ * scale, rotation and translation of that volume are undone. The unit is the unit of that file, or the unit
  * that the overlay names; where there is neither, lengths are written without a unit. */
 #include <stdio.h>
 #include <string.h>
@@ -16,7 +16,7 @@ enum { MEASURE_BYTES = 96 };
 
 /* ---- measures ---- */
 
-/* A difference of two points of the scene's world, in the world of the first volume's file. */
+/* Converts a difference of two points of the scene's world in the world of the first volume's file. */
 static vec3 in_file(const hl_scene_description *scene, vec3 difference) {
   affine3 to_file;
   if (scene->volume_count == 0 ||
@@ -25,7 +25,7 @@ static vec3 in_file(const hl_scene_description *scene, vec3 difference) {
   return mat3_apply(to_file.linear, difference);
 }
 
-/* The way from one point of a mark to another, in the world of the first volume's file. */
+/* The vector from one point of a mark to another, in the world of the first volume's file. */
 static vec3 way_of(const hl_scene_description *scene, const hl_mark *mark, size_t from, size_t to) {
   return in_file(scene, vec3_subtract(vec3_of(mark->points[to]), vec3_of(mark->points[from])));
 }
@@ -36,7 +36,7 @@ static double length_of(const hl_scene_description *scene, const hl_mark *mark) 
   return sum;
 }
 
-/* The angle at the second of three points, degrees. */
+/* The angle, in degrees, at the second of three points of a mark. */
 static double angle_of(const hl_scene_description *scene, const hl_mark *mark) {
   const vec3 u = way_of(scene, mark, 1, 0), v = way_of(scene, mark, 1, 2);
   const double size = vec3_length(u) * vec3_length(v);
@@ -68,12 +68,12 @@ static void write_length(double length, char text[MEASURE_BYTES]) {
     hl_plain_print(text, MEASURE_BYTES, "%.10g", hl_plain_number(text, NULL));
     return;
   }
-  /* The page writes exponents without leading zeros. */
+  /* the page writes exponents without leading zeros */
   char *digits = strpbrk(strchr(text, 'e'), "0123456789");
   while (digits[0] == '0' && digits[1] != '\0') memmove(digits, digits + 1, strlen(digits));
 }
 
-/* The unit of the marks' lengths; null: it is not known. */
+/* The unit in which the lengths of marks are written; null: it is not known. */
 static const char *unit_of(const hl_overlay_place *place) {
   const hl_scene_description *scene = place->scene;
   const char *name = place->overlay->world_unit;
@@ -82,7 +82,7 @@ static const char *unit_of(const hl_overlay_place *place) {
   return unit != NULL ? unit->symbol : name;
 }
 
-/* Writes what is measured; "": the kind measures nothing. */
+/* Writes the text of the length or the angle that a mark measures; "": this kind of mark measures nothing. */
 static void write_measure(const hl_overlay_place *place, const hl_mark *mark, char text[MEASURE_BYTES]) {
   text[0] = '\0';
   if (mark->kind == HL_MARK_ANGLE) {
@@ -99,10 +99,10 @@ static void write_measure(const hl_overlay_place *place, const hl_mark *mark, ch
 /* ---- drawing ---- */
 
 typedef struct point_on_page {
-  double x, y; /* points */
+  double x, y; /* the place on the page, in points */
 } point_on_page;
 
-/* Adds the head of an arrow to the path. */
+/* Adds the head of an arrow to the current path. */
 static void add_head(const hl_ink *ink, point_on_page from, point_on_page tip) {
   const double far = hypot(tip.x - from.x, tip.y - from.y), head = 0.8 * ink->size;
   if (!(far > 0)) return;
@@ -143,8 +143,8 @@ static void draw_caption(const hl_ink *ink, const hl_overlay_place *place, const
   g_free(caption);
 }
 
-/* Draws the path of a mark, and its dot where it is a text. False: a point lies behind the eye, and nothing
- * is drawn. */
+/* Draws the path of a mark; the path of a text is a dot. Returns false if a point lies behind the eye;
+ * nothing is drawn then. */
 static bool draw_path(const hl_ink *ink, const hl_map *map, const hl_mark *mark, point_on_page first[3],
                       point_on_page *last) {
   cairo_new_path(ink->cairo);
@@ -158,7 +158,8 @@ static bool draw_path(const hl_ink *ink, const hl_map *map, const hl_mark *mark,
     else cairo_line_to(ink->cairo, last->x, last->y);
   }
   if (mark->kind == HL_MARK_ARROW) add_head(ink, first[0], first[1]);
-  if (mark->kind == HL_MARK_TEXT) cairo_line_to(ink->cairo, last->x, last->y); /* a round dot */
+  /* a line of no length becomes a round dot */
+  if (mark->kind == HL_MARK_TEXT) cairo_line_to(ink->cairo, last->x, last->y);
   hl_ink_stroke(ink, (mark->kind == HL_MARK_TEXT ? 0.35 : 0.14) * ink->size);
   return true;
 }

@@ -9,13 +9,13 @@
 /* The picture over which an overlay is drawn, and its place on the page. */
 typedef struct hl_overlay_place {
   const hl_overlay *overlay;
-  const hl_scene_description *scene; /* null: none */
-  hl_rectangle picture;              /* points */
-  double margin;                     /* distance of the overlay from the picture's edges, points */
+  const hl_scene_description *scene; /* the scene that the picture shows; null: it is not known */
+  hl_rectangle picture;              /* the rectangle of the picture on the page, points */
+  double margin;                     /* the distance of the overlay from the picture's edges, points */
   hl_map map;                        /* where points of `scene` lie on the page */
 } hl_overlay_place;
 
-/* Draws the whole overlay. scene: may be null. image: what the picture shows; where it shows matter behind
+/* Draws the whole overlay over a picture. scene: may be null. image: what the picture shows; where it shows matter behind
  * the bar, the legend or the arrows, a ground lies between; null: there is no such ground. */
 hl_status hl_overlay_draw(const hl_ink *ink, const hl_overlay *overlay, const hl_scene *scene,
                           const hl_image *image, hl_rectangle picture, hl_error *error);
@@ -23,7 +23,7 @@ hl_status hl_overlay_draw(const hl_ink *ink, const hl_overlay *overlay, const hl
 /* The height, from the picture's lower margin, that the arrows of the axes take; points. */
 double hl_overlay_arrows_height(const hl_ink *ink);
 
-/* Each of these functions draws one part of the overlay, if the overlay has this part. */
+/* Functions that each draw one part of the overlay, if the overlay has this part. */
 hl_status hl_overlay_bar(const hl_ink *ink, const hl_overlay_place *place, hl_error *error);
 hl_status hl_overlay_legend(const hl_ink *ink, const hl_overlay_place *place, hl_error *error);
 hl_status hl_overlay_axes(const hl_ink *ink, const hl_overlay_place *place, hl_error *error);

@@ -78,7 +78,7 @@ static hl_rectangle rectangle_of(const hl_figure_panel *panel) {
                         panel->width * points_per_millimetre, panel->height * points_per_millimetre};
 }
 
-/* Moves a rectangle's edges to the device's pixels. */
+/* Moves a rectangle's edges to borders between the device's pixels. */
 static void snap(cairo_t *cairo, hl_rectangle *place) {
   double right = place->left + place->width, bottom = place->top + place->height;
   cairo_user_to_device(cairo, &place->left, &place->top);
@@ -105,7 +105,7 @@ static hl_status draw_picture(hl_context *context, cairo_t *cairo, const hl_figu
   cairo_translate(cairo, place.left, place.top);
   if (!exact) cairo_scale(cairo, place.width / width, place.height / height);
   cairo_set_source_surface(cairo, surface, 0, 0);
-  /* Beyond the picture's edges, the pixels at the edges repeat, so that the edges stay opaque. */
+  /* beyond the picture's edges, the pixels at the edges repeat, so that the edges stay opaque */
   if (pixels && !exact) cairo_pattern_set_extend(cairo_get_source(cairo), CAIRO_EXTEND_PAD);
   cairo_pattern_set_filter(cairo_get_source(cairo), exact ? CAIRO_FILTER_NEAREST : CAIRO_FILTER_GOOD);
   cairo_rectangle(cairo, 0, 0, width, height);
@@ -116,7 +116,7 @@ static hl_status draw_picture(hl_context *context, cairo_t *cairo, const hl_figu
   return HL_OK;
 }
 
-static double luma(const double linear[3]) { /* BT.709 */
+static double luma(const double linear[3]) { /* the luma of a colour by BT.709 */
   return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];
 }
 
@@ -228,7 +228,7 @@ hl_status hl_page_write(const hl_figure *figure, bool pdf, hl_output *output, hl
                                  : cairo_svg_surface_create_for_stream(on_write, output->file, width, height);
   if (pdf) {
     cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATOR, "Halflight");
-    /* The file has no time of creation, so that a figure has the same bytes whenever it is made. */
+    /* the file gets no time of creation, so that a figure has the same bytes whenever it is made */
     cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "");
   }
   cairo_t *cairo = cairo_create(surface);

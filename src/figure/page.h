@@ -10,14 +10,14 @@
 #define MILLIMETRES_PER_INCH 25.4
 #define POINTS_PER_INCH      72.0
 
-/* Draws the figure as pixels, width x height. *image is owned by the caller. */
+/* Draws a figure as width x height pixels. *image is owned by the caller. */
 hl_status hl_page_draw(hl_context *context, const hl_figure *figure, int width, int height, hl_image **image,
                        hl_error *error);
 
-/* Writes the figure as PDF, or as SVG, to output->file. */
+/* Writes a figure as PDF, or as SVG, to output->file. */
 hl_status hl_page_write(const hl_figure *figure, bool pdf, hl_output *output, hl_error *error);
 
-/* The name of the libraries for drawing that the build lacks: "cairo and pango"; null if it has them. */
+/* The names of the libraries for drawing that the build lacks, "cairo and pango"; null if it lacks none. */
 const char *hl_page_missing(void);
 
 #endif
