@@ -23,9 +23,9 @@ static const char *const turn_paths[TURN_COUNT] = {"camera.azimuth", "camera.ele
 
 struct film {
   hl_context *context;
-  const hl_scene *scene; /* borrowed */
-  json_t *text;          /* owned; the scene's text, parsed */
-  film_key *keys;        /* owned; [key_count] */
+  const hl_scene *scene; /* the scene of the film; borrowed */
+  json_t *text;          /* owned; the parsed text of the scene's file */
+  film_key *keys;        /* owned; [key_count]; the numbers that change */
   size_t key_count;
   int turntable, frames;
 };
@@ -42,8 +42,8 @@ static int turn_of(const char *path) {
   return -1;
 }
 
-/* Finds which light's angle a path names, as "lights.N.azimuth" or "lights.N.elevation". False if it names
- * none. */
+/* Finds the light whose angle a path names, as "lights.N.azimuth" or "lights.N.elevation". Returns false if
+ * the path names no such angle. */
 static bool is_light_turn(const char *path, size_t *light, bool *azimuth) {
   int used = 0;
   unsigned number;
@@ -61,7 +61,7 @@ static bool is_turn(const char *path) {
 
 /* ---- numbers in the scene's text ---- */
 
-/* The member of an object, or the element of an array, that has this name; null if there is none. */
+/* The member of an object, or the element of an array, that has a given name; null if there is none. */
 static json_t *step_into(json_t *at, const char *name) {
   if (json_is_object(at)) return json_object_get(at, name);
   size_t digits = strspn(name, "0123456789");
@@ -69,7 +69,8 @@ static json_t *step_into(json_t *at, const char *name) {
   return json_array_get(at, strtoul(name, NULL, 10));
 }
 
-/* Makes a JSON number of a value. If the scene's number is whole, the value is rounded to a whole number. */
+/* Makes a JSON number of a key's value. If the scene's own number is whole, the value is rounded to a whole
+ * number. */
 static json_t *number_like(const json_t *before, double value) {
   return json_is_integer(before) ? json_integer(llround(value)) : json_real(value);
 }
@@ -84,15 +85,16 @@ static bool is_color(const char *name) {
   return false;
 }
 
-/* The value of a key at a frame as JSON: a number like the scene's own, or the three numbers of a colour. */
+/* Makes the value of a key at a frame as JSON: a number like the scene's own, or the three numbers of a
+ * colour. */
 static json_t *value_at(const film_key *key, int frame, const json_t *before) {
   return key->components == 1 ? number_like(before, film_key_value(key, frame, 0))
                               : json_pack("[f, f, f]", film_key_value(key, frame, 0),
                                           film_key_value(key, frame, 1), film_key_value(key, frame, 2));
 }
 
-/* Writes a key's value at its path. A key that is absent from its object is added, as the scene has the key's
- * default there. The library refuses unknown keys. */
+/* Writes a key's value at its path. A key that is absent from its object is added, because the scene has the
+ * key's default there. The library refuses unknown keys. */
 static hl_status write_value(json_t *root, const film_key *key, int frame, hl_error *error) {
   char *names = strdup(key->path), *rest = names, *name;
   if (names == NULL) return no_memory(error);
@@ -164,7 +166,8 @@ static hl_status turn_camera(const film *f, int frame, hl_camera *camera,
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/* The direction of a light at these angles, in the frame of the light (world or camera). */
+/* The direction of a light that has given angles, in the axes of the light (of the world or of the
+ * camera). */
 static void direction_at(const hl_light *light, const hl_camera *camera, double azimuth, double elevation,
                          double direction[3]) {
   if (light->frame == HL_LIGHT_FRAME_CAMERA) hl_light_direction_beside(azimuth, elevation, direction);
@@ -278,8 +281,8 @@ static hl_status parse_scene(film *f, hl_error *error) {
   return f->text != NULL ? HL_OK : no_memory(error);
 }
 
-/* Makes the scene of a frame and releases it. It is called for the first and the last frame, so that a
- * mistake in a key is reported before any frame is rendered. */
+/* Makes the scene of a frame and releases it. The function is called for the first and the last frame, so
+ * that a mistake in a key is reported before any frame is rendered. */
 static hl_status try_frame(const film *f, int frame, hl_error *error) {
   hl_scene *scene = NULL;
   hl_status status = film_scene(f, frame, &scene, error);

@@ -19,14 +19,17 @@ enum { FILM_WHOLE_TURN = -1 };
 typedef struct film_options {
   hl_context *context;
   const hl_scene *scene;
-  const char *const *keys; /* [key_count]: "PATH=FRAME:VALUE,..." */
+  const char *const *keys; /* [key_count]; the texts of the keys: "PATH=FRAME:VALUE,..." */
   size_t key_count;
-  bool smooth;   /* true: between two keys, numbers change slowly at both ends; false: they change at an even
-                  * pace */
-  int turntable; /* the number of frames in which the camera turns once about the picture's vertical axis; 0:
-                  * no turn; FILM_WHOLE_TURN: all frames of the film */
-  int frames;    /* number of frames; 0: as many as the turntable takes, or without a turntable, up to the
-                  * last frame that has a key */
+  /* whether, between two given frames, numbers change slowly near both; if not, they change at an even
+   * pace */
+  bool smooth;
+  /* the number of frames in which the camera turns once about the picture's vertical axis; 0: the camera does
+   * not turn; FILM_WHOLE_TURN: all frames of the film */
+  int turntable;
+  /* number of frames of the film; 0: as many as the turntable takes, or without a turntable, up to the last
+   * frame that has a key */
+  int frames;
 } film_options;
 
 /* Makes a film. Fails where keys cannot be read or no number lies at their paths (HL_ERROR_ARGUMENT), or
@@ -37,8 +40,8 @@ void film_destroy(film *f);
 
 int film_frames(const film *f);
 
-/* Makes the scene of a frame, counted from 0. The scene has the volumes of the film's scene, and is owned by
- * the caller. */
+/* Makes the scene of a frame. frame: counted from 0. The scene has the volumes of the film's scene, and is
+ * owned by the caller. */
 hl_status film_scene(const film *f, int frame, hl_scene **scene, hl_error *error);
 
 #endif

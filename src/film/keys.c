@@ -19,8 +19,8 @@ __attribute__((format(printf, 2, 3))) static hl_status refuse(hl_error *error, c
   return HL_ERROR_ARGUMENT;
 }
 
-/* Reads a number, or a colour as #rrggbb or a CSS name. Returns how many components it has; 0: it is neither.
- */
+/* Reads a number, or a colour as #rrggbb or a CSS name. Returns the number of its components: 1 or 3; 0 if
+ * the text is neither. */
 static int read_value(const char *text, int length, double value[3]) {
   char *end, color[64];
   value[0] = hl_plain_number(text, &end);
@@ -30,7 +30,7 @@ static int read_value(const char *text, int length, double value[3]) {
   return hl_parse_color(color, 0, 1, value) ? 3 : 0;
 }
 
-/* Reads "FRAME:VALUE" at *at, and moves *at past it. The first point of a key sets its components. */
+/* Reads "FRAME:VALUE" at *at, and moves *at behind it. The first point of a key sets its components. */
 static hl_status read_point(const char **at, film_key *key, int *frame, double *values, hl_error *error) {
   char *end;
   int length = (int)strcspn(*at, ",");
@@ -90,15 +90,17 @@ void film_key_release(film_key *key) {
 }
 
 double film_key_value(const film_key *key, int frame, int component) {
-  const double *values = key->values + component; /* of the first point */
+  /* the values of the component, beginning with the first point */
+  const double *values = key->values + component;
   const int stride = key->components;
   if (frame <= key->frames[0]) return values[0];
   for (size_t p = 1; p < key->count; p++, values += stride) {
     if (frame > key->frames[p]) continue;
     double span = key->frames[p] - key->frames[p - 1], past = frame - key->frames[p - 1];
-    if (frame == key->frames[p]) return values[stride]; /* returns exactly the given value */
+    if (frame == key->frames[p]) return values[stride]; /* exactly the given value, without rounding */
     double part = past / span;
-    if (key->smooth) part = part * part * (3 - 2 * part); /* Hermite: no speed at both ends */
+    /* Hermite's curve, which has no speed at both ends */
+    if (key->smooth) part = part * part * (3 - 2 * part);
     return values[0] + (values[stride] - values[0]) * part;
   }
   return values[0];

@@ -10,11 +10,12 @@ enum { FILM_MOST_FRAMES = 1000000, FILM_MOST_POINTS = 1000 };
 /* A number or a colour that changes from frame to frame. Between two given frames it changes linearly, or
  * smoothly (slowly near both). It is constant before the first given frame and after the last. */
 typedef struct film_key {
-  char *path;     /* owned; path of a number: "camera.azimuth", or keys and numbers of elements as in
-                     "lights.0.intensity" */
+  /* owned; the path of the number that changes: "camera.azimuth", or keys and numbers of elements as in
+   * "lights.0.intensity" */
+  char *path;
   int *frames;    /* owned; [count]; frame numbers in rising order */
-  double *values; /* owned; [count][components] */
-  size_t count;   /* at least 1 */
+  double *values; /* owned; [count][components]; the values at these frames */
+  size_t count;   /* number of the given frames, at least 1 */
   int components; /* 1: a number; 3: a colour, linear RGB */
   bool smooth;
 } film_key;
@@ -24,7 +25,7 @@ typedef struct film_key {
 hl_status film_key_read(const char *text, film_key *key, hl_error *error);
 void film_key_release(film_key *key);
 
-/* The value at a frame; of a colour, its component 0, 1 or 2. */
+/* The value of a key at a frame. component: 0; for a colour, 0, 1 or 2. */
 double film_key_value(const film_key *key, int frame, int component);
 
 #endif

@@ -15,7 +15,7 @@
 enum { MOST_WORDS = 48, MOST_CODEC_WORDS = 12 };
 
 struct movie {
-  char *path, *unfinished; /* owned */
+  char *path, *unfinished; /* owned; the film's name, and the name of the file that is not finished */
   char *target; /* owned; "file:" and the name of the unfinished file. Without "file:", ffmpeg may take a part
                  * of the name for a protocol */
   int pipe;     /* a pipe into ffmpeg; -1 if closed */
@@ -57,7 +57,7 @@ static hl_status fail_io(hl_error *error, const char *path, const char *what) {
   return HL_ERROR_IO;
 }
 
-/* Sets the words of ffmpeg's command line. words: [MOST_WORDS]. */
+/* Sets the words of ffmpeg's command line. words: [MOST_WORDS]; receives the words. */
 static void command_line(const struct kind *kind, const char *rate, const char *file, const char **words) {
   const char *const first[] = {
       "ffmpeg",     "-hide_banner", "-nostdin",   "-loglevel", "error", "-y",     "-f",  "image2pipe",
@@ -114,7 +114,7 @@ hl_status movie_add(movie *m, const unsigned char *png, size_t length, hl_error 
   while (length > 0) {
     ssize_t taken = write(m->pipe, png, length);
     if (taken < 0 && errno == EINTR) continue;
-    if (taken < 0) { /* ffmpeg has ended early: its messages tell the reason */
+    if (taken < 0) { /* ffmpeg has ended early; its messages tell the reason */
       hl_status status = movie_end(m, error);
       return status == HL_OK ? HL_ERROR_IO : status;
     }
@@ -137,7 +137,7 @@ static void release(movie *m) {
   free(m);
 }
 
-/* Closes the pipe, at which ffmpeg ends. */
+/* Completes a film: closes the pipe, at which ffmpeg ends. */
 hl_status movie_end(movie *m, hl_error *error) {
   char said[400];
   hl_status status = HL_OK;

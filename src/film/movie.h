@@ -9,10 +9,10 @@
 
 typedef struct movie movie;
 
-/* The extensions of films that can be written, ".mp4" first; null after the last. */
+/* The extensions of films that can be written. The first one is ".mp4"; null follows the last one. */
 extern const char *const movie_extensions[];
 
-/* Whether ffmpeg is in the PATH. */
+/* Whether the program ffmpeg is in the PATH. */
 bool movie_available(void);
 
 /* Begins a film. `path` ends in one of the extensions; the file appears, complete, when movie_end() returns.
@@ -20,12 +20,12 @@ bool movie_available(void);
  * it fails. SIGPIPE must be ignored. */
 hl_status movie_begin(const char *path, double frames_per_second, movie **result, hl_error *error);
 
-/* Adds a picture, as the bytes of a PNG; all pictures of a film have the same size. After a failure m is
- * destroyed. */
+/* Adds a picture, as the bytes of a PNG; all pictures of a film have the same size. After a failure the film
+ * m is destroyed. */
 hl_status movie_add(movie *m, const unsigned char *png, size_t length, hl_error *error);
 
-/* movie_end() completes the film and destroys m. movie_abandon() destroys m and leaves no file behind; it
- * accepts null. */
+/* Two ends of a film m. movie_end() completes the film and destroys m. movie_abandon() destroys m and leaves
+ * no file behind; it accepts null. */
 hl_status movie_end(movie *m, hl_error *error);
 void movie_abandon(movie *m);
 
