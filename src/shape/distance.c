@@ -43,7 +43,8 @@ static double capsule_distance(const hl_shape *shape, axial q) {
   return length2(above(fabs(q.along) - q.half), q.away) - shape->radius;
 }
 
-/* The distance of a point from a cone: that from the nearest of the two flat ends and the slanted side. */
+/* The distance of a point from a cone: the least of its distances from the two flat ends and from the slanted
+ * side. */
 static double cone_distance(const hl_shape *shape, axial q) {
   double r1 = shape->radius, r2 = shape->end_radius;
   double end_x = q.away - fmin(q.away, q.along < 0 ? r1 : r2), end_y = fabs(q.along) - q.half;
@@ -72,8 +73,8 @@ static double solid_distance(const hl_shape *shape, vec3 p) {
   return INFINITY;
 }
 
-/* The smaller of two distances. It is rounded where the two differ by less than k (Quilez, "Smooth minimum",
- * quadratic). */
+/* The smaller of two distances. The result is rounded where the two differ by less than k (Quilez, "Smooth
+ * minimum", quadratic). */
 static double smooth_minimum(double a, double b, double k) {
   double h = k > 0 ? above(k - fabs(a - b)) / k : 0;
   return fmin(a, b) - h * h * k / 4;
@@ -91,8 +92,8 @@ static double join(const hl_shape *shape, double before, double distance) {
 
 static double shape_distance(const hl_shape_list *list, size_t index, const unsigned char *live, vec3 parent);
 
-/* The distance of all shapes in [first, end) of one list, which are joined one after the other. p: a point in
- * the list's frame. */
+/* The distance of a point from all shapes with the numbers in [first, end) of one list, which are joined one
+ * after the other. p: a point in the list's frame. */
 static double list_distance(const hl_shape_list *list, size_t first, size_t end, const unsigned char *live,
                             vec3 p) {
   double distance = INFINITY;
@@ -144,7 +145,8 @@ static void mark(size_t first, size_t end, unsigned char *live, unsigned char va
   for (size_t index = first; index < end; index++) live[index] = value;
 }
 
-/* Whether a shape with the distances `own` can change the distances `before` of the shapes before it. */
+/* Whether a shape whose distances lie within the bounds `own` can change the distances of the shapes before
+ * it, which lie within the bounds `before`. */
 static bool has_say(const hl_shape *shape, hl_interval before, hl_interval own) {
   switch (shape->operation) {
     case HL_SHAPE_ADD: return own.low < before.high + shape->blend;
@@ -169,7 +171,8 @@ static hl_interval list_bounds(const hl_shape_list *list, size_t first, size_t e
     }
     live[index] = 1;
     if (shape->operation == HL_SHAPE_ADD && all.low >= own.high + shape->blend)
-      mark(first, index, live, 0); /* the shapes before this one are all farther away */
+      mark(first, index, live, 0); /* the shapes before this one are all farther away, so that they do not
+                                    * count */
     bool turned = shape->operation == HL_SHAPE_SUBTRACT;
     all = (hl_interval){join(shape, all.low, turned ? own.high : own.low),
                         join(shape, all.high, turned ? own.low : own.high)};

@@ -10,7 +10,7 @@
 
 #define HL_LN2 0.69314718055994530942
 
-/* 2^k for -1022 <= k <= 1023. */
+/* Computes 2^k for whole numbers k from -1022 to 1023. */
 static inline double hl_power_of_two(int k) {
   uint64_t bits = (uint64_t)(k + 1023) << 52;
   double power;
@@ -18,7 +18,8 @@ static inline double hl_power_of_two(int k) {
   return power;
 }
 
-/* e^x for x <= 0: derived, x = k ln 2 + r with abs(r) <= ln 2 / 2, e^x = 2^k * (Taylor series of e^r). */
+/* Computes e^x for x <= 0. Derived: x = k ln 2 + r with abs(r) <= ln 2 / 2, so that e^x = 2^k * (Taylor
+ * series of e^r). */
 static inline double hl_exp_negative(double x) {
   if (!(x > -700)) return 0;
   int k = (int)(x / HL_LN2 - 0.5);
@@ -27,8 +28,8 @@ static inline double hl_exp_negative(double x) {
   return sum * hl_power_of_two(k);
 }
 
-/* ln x for normal x > 0: derived, x = 2^k m with sqrt(1/2) <= m < sqrt(2), ln m = 2 artanh((m - 1) / (m +
- * 1)). */
+/* Computes ln x for normal numbers x > 0. Derived: x = 2^k m with sqrt(1/2) <= m < sqrt(2), and ln m = 2
+ * artanh((m - 1) / (m + 1)). */
 static inline double hl_log(double x) {
   uint64_t bits;
   memcpy(&bits, &x, sizeof bits);
@@ -40,8 +41,9 @@ static inline double hl_log(double x) {
   return k * HL_LN2 + 2 * s * sum;
 }
 
-/* Sine and cosine of an angle in degrees; exact at multiples of 90. Derived: the angle is a multiple of 90
- * degrees plus a rest of at most 45 degrees, whose Taylor series are used. abs(angle_deg) <= 1e6. */
+/* Computes the sine and the cosine of an angle in degrees. They are exact at multiples of 90. Derived: the
+ * angle is a multiple of 90 degrees plus a rest of at most 45 degrees, whose Taylor series are used.
+ * angle_deg: its magnitude is at most 1e6. */
 static inline void hl_sine_cosine(double angle_deg, double *sine, double *cosine) {
   int64_t quarter = (int64_t)(angle_deg / 90 + (angle_deg < 0 ? -0.5 : 0.5));
   double x = (angle_deg - 90.0 * (double)quarter) * (3.14159265358979323846 / 180), square = x * x;

@@ -11,7 +11,7 @@
 
 /* ---- noise ---- */
 
-/* SplitMix64 (Steele, Lea and Flood 2014). */
+/* The next random number, by SplitMix64 (Steele, Lea and Flood 2014). */
 static uint64_t next_number(uint64_t *state) {
   uint64_t z = *state += 0x9e3779b97f4a7c15u;
   z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
@@ -22,7 +22,7 @@ static uint64_t next_number(uint64_t *state) {
 void hl_noise_begin(hl_noise *noise, uint64_t seed) {
   uint8_t *p = noise->permutation;
   for (int n = 0; n < 256; n++) p[n] = (uint8_t)n;
-  for (int n = 255; n > 0; n--) { /* Fisher and Yates */
+  for (int n = 255; n > 0; n--) { /* shuffles the numbers by the method of Fisher and Yates */
     int other = (int)(next_number(&seed) % (uint64_t)(n + 1));
     uint8_t swap = p[n];
     p[n] = p[other];
@@ -34,8 +34,8 @@ void hl_noise_begin(hl_noise *noise, uint64_t seed) {
 static double fade(double t) { return t * t * t * (t * (t * 6 - 15) + 10); }
 static double mix(double t, double a, double b) { return a + t * (b - a); }
 
-/* The dot product of an offset and the gradient that the hash chooses. Four of the sixteen codes repeat an
- * edge. */
+/* The dot product of an offset and the gradient that the hash chooses. The gradients point to the twelve
+ * edges of a cube, so four of the sixteen codes repeat an edge. */
 static double slope(int hash, double x, double y, double z) {
   static const double gradient[16][3] = {
       {1, 1, 0}, {-1, 1, 0}, {1, -1, 0}, {-1, -1, 0}, {1, 0, 1}, {-1, 0, 1}, {1, 0, -1}, {-1, 0, -1},
@@ -107,7 +107,7 @@ static double pattern_at(const hl_hypertexture *texture, vec3 p) {
   double value;
   if (texture->pattern == HL_PATTERN_TURBULENCE) {
     value = hl_turbulence(&texture->noise, q, texture->octaves);
-  } else { /* the weights sum to 2 - 2^(1 - octaves) */
+  } else { /* the weights of the octaves sum to 2 - 2^(1 - octaves) */
     double sum = hl_noise_sum(&texture->noise, q, texture->octaves);
     value = 0.5 + 0.5 * sum / (2 - 2.0 / (double)(1u << texture->octaves));
   }

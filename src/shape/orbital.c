@@ -6,8 +6,8 @@
 #include "shape/elementary.h"
 #include "shape/shape.h"
 
-/* The associated Laguerre polynomial L_k^alpha(x), by k L_k = (2 k - 1 + alpha - x) L_(k-1) - (k - 1 +
- * alpha) L_(k-2). */
+/* The associated Laguerre polynomial L_k^alpha(x) of the order k. It is computed by the recurrence k L_k = (2
+ * k - 1 + alpha - x) L_(k-1) - (k - 1 + alpha) L_(k-2). */
 static double laguerre(int order, int alpha, double x) {
   double before = 0, value = 1;
   for (int k = 1; k <= order; k++) {
@@ -18,8 +18,9 @@ static double laguerre(int order, int alpha, double x) {
   return value;
 }
 
-/* The associated Legendre function P_l^m(c) / s^m, by (l - m) P_l = (2 l - 1) c P_(l-1) - (l + m - 1)
- * P_(l-2), without the sign (-1)^m. */
+/* The associated Legendre function P_l^m(c) / s^m, where c is the cosine and s the sine of an angle. It is
+ * computed by the recurrence (l - m) P_l = (2 l - 1) c P_(l-1) - (l + m - 1) P_(l-2), without the sign
+ * (-1)^m. */
 static double legendre_over_sine(int l, int m, double c) {
   double before = 0, value = 1;
   for (int k = 1; k <= m; k++) value *= 2 * k - 1;
@@ -31,7 +32,7 @@ static double legendre_over_sine(int l, int m, double c) {
   return value;
 }
 
-/* The real (m >= 0) or the imaginary part of (x + i y)^abs(m). */
+/* The real part of (x + i y)^abs(m) where m >= 0, else the imaginary part. */
 static double around_axis(int m, double x, double y) {
   double real = 1, imaginary = 0;
   for (int k = 0; k < (m < 0 ? -m : m); k++) {

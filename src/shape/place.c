@@ -15,8 +15,8 @@ void hl_shape_defaults(hl_shape *shape) {
                       .texture = {.frequency = 1, .octaves = 1, .bias = 0.5, .gain = 0.5, .amplitude = 1}};
 }
 
-/* The rotation of a shape's frame. It is that of mat3_rotation(), but with a sine and a cosine that are the
- * same on every machine. */
+/* The rotation of a shape's frame. It is the rotation of mat3_rotation(), but with a sine and a cosine that
+ * are the same on every machine. */
 static mat3 rotation(const hl_shape *shape) {
   vec3 a = vec3_normalise(vec3_of(shape->rotate_axis));
   double s, c;
@@ -29,8 +29,8 @@ static mat3 rotation(const hl_shape *shape) {
 
 static mat3 transpose(mat3 m) { return mat3_from_columns(m.row[0], m.row[1], m.row[2]); }
 
-/* Finds the frames of the shapes [first, end). parent_scale: the length of a unit of the parent's frame, in
- * units of the volume. */
+/* Finds the frames of the shapes with the numbers in [first, end). parent_scale: the length of a unit of the
+ * parent's frame, in units of the volume. */
 static void place(hl_shape_list *list, size_t first, size_t end, double parent_scale, double voxel_size) {
   for (size_t index = first; index < end; index = list->shapes[index].end) {
     hl_shape *shape = &list->shapes[index];
@@ -45,7 +45,8 @@ static void place(hl_shape_list *list, size_t first, size_t end, double parent_s
 
 void hl_shapes_place(hl_shape_list *list, double voxel_size) { place(list, 0, list->count, 1, voxel_size); }
 
-/* How far a disk of this radius, perpendicular to the unit axis, reaches in the direction u. */
+/* How far a disk reaches in the direction u. The disk has a given radius, and is perpendicular to the unit
+ * vector `axis`. */
 static double disk_reach(double radius, vec3 axis, vec3 u) {
   double along = vec3_dot(axis, u), square = vec3_dot(u, u) - along * along;
   return radius * sqrt(square > 0 ? square : 0);
@@ -73,14 +74,15 @@ static double solid_reach(const hl_shape *shape, vec3 u) {
   return -INFINITY;
 }
 
-/* The support function of the shapes [first, end): the greatest u.x over all their points x. u: a direction
- * in the list's frame. */
+/* The support function of the shapes with the numbers in [first, end): the greatest u.x over all their points
+ * x. u: a direction in the list's frame. */
 static double reach(const hl_shape_list *list, size_t first, size_t end, vec3 u) {
   double farthest = -INFINITY;
   for (size_t index = first; index < end; index = list->shapes[index].end) {
     const hl_shape *shape = &list->shapes[index];
     if (shape->operation == HL_SHAPE_SUBTRACT) continue;
-    /* u.(scale R x + position) = (scale R^T u).x + u.position, and to_local holds R^T / scale */
+    /* the greatest u.x over the points x of the shape: u.(scale R x + position) = (scale R^T u).x +
+     * u.position, and to_local holds R^T / scale */
     vec3 local = vec3_scale(mat3_apply(shape->to_local.linear, u), shape->scale * shape->scale);
     double own = shape->type == HL_SHAPE_GROUP ? reach(list, index + 1, shape->end, local)
                                                : solid_reach(shape, local);
@@ -94,7 +96,7 @@ static double reach(const hl_shape_list *list, size_t first, size_t end, vec3 u)
   return farthest;
 }
 
-/* The box around everything: box[axis] = {low, high}. */
+/* The box around all shapes of a list: box[axis] = {low, high}. */
 static void bounding_box(const hl_shape_list *list, double box[3][2]) {
   for (int axis = 0; axis < 3; axis++) {
     vec3 u = {axis == 0, axis == 1, axis == 2};

@@ -15,14 +15,15 @@ enum { BLOCK = 8, DENSITY_STEPS = 65535 };
 typedef struct sampling {
   const hl_shape_list *list;
   const hl_shape_grid *grid;
-  unsigned char *live; /* owned; [threads][list->count] */
-  uint16_t *density;   /* solids' voxels; null for orbitals */
-  float *wave;         /* orbitals' voxels; null for solids */
+  unsigned char *live; /* owned; [threads][list->count]; for each shape, whether it can affect the distance
+                        * in a block */
+  uint16_t *density;   /* the voxels of solids; null for orbitals */
+  float *wave;         /* the voxels of orbitals; null for solids */
   size_t blocks[3];
-  size_t layer; /* current layer of blocks, along k */
+  size_t layer; /* the current layer of blocks, along k */
 } sampling;
 
-/* One block's voxels: [low, high) along each axis. */
+/* The voxels of one block: [low, high) along each axis. */
 typedef struct block {
   size_t low[3], high[3];
 } block;
@@ -72,7 +73,7 @@ static void sample_solids(void *data, size_t index, int worker) {
   }
   unsigned char *live = s->live + (size_t)worker * s->list->count;
   double radius = grid->voxel_size * sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]);
-  /* a little more than the block's radius, to make up for rounding */
+  /* the radius is a little greater than the block's, to make up for rounding */
   hl_interval bounds = hl_shapes_bounds(s->list, voxel_centre(grid, middle[0], middle[1], middle[2]),
                                         radius + 1e-3 * grid->voxel_size, live);
   if (bounds.low >= edge / 2 || bounds.high <= -edge / 2) {
@@ -113,7 +114,8 @@ static void scale_to_one(float *wave, size_t count) {
     for (size_t n = 0; n < count; n++) wave[n] /= greatest;
 }
 
-/* Samples layer by layer, so that it can report progress and be cancelled between layers. */
+/* Samples the blocks layer by layer, so that the function can report progress and be cancelled between
+ * layers. */
 static hl_status sample(hl_context *context, sampling *s, int threads, const char *subject, hl_error *error) {
   hl_pool *pool = NULL;
   hl_status status = hl_pool_create(context, threads, &pool, error);
@@ -145,7 +147,8 @@ static void describe(const hl_shape_grid *grid, bool orbitals, hl_volume_descrip
 
 hl_status hl_shapes_sample(hl_context *context, const hl_shape_list *list, const hl_shape_grid *grid,
                            int threads, const char *subject, hl_volume **volume, hl_error *error) {
-  bool orbitals = list->shapes[0].type == HL_SHAPE_ORBITAL; /* a list has orbitals alone or none */
+  /* either all shapes of a list are orbitals, or none is */
+  bool orbitals = list->shapes[0].type == HL_SHAPE_ORBITAL;
   const size_t *dimension = grid->dimension;
   size_t count = dimension[0] * dimension[1] * dimension[2],
          bytes = orbitals ? sizeof(float) : sizeof(uint16_t);

@@ -12,9 +12,9 @@
 #include "shape/noise.h"
 #include "volume/volume.h"
 
-#define HL_SHAPE_EDGE   4.0               /* voxels from density 1 to density 0 */
-#define HL_SHAPE_MARGIN 2                 /* empty voxels around the shapes on each side of the grid */
-#define HL_SHAPE_VOXELS ((size_t)1 << 30) /* most voxels of a grid */
+#define HL_SHAPE_EDGE   4.0 /* the number of voxels over which the density falls from 1 to 0 */
+#define HL_SHAPE_MARGIN 2   /* number of empty voxels around the shapes on each side of a grid */
+#define HL_SHAPE_VOXELS ((size_t)1 << 30) /* the greatest number of voxels of a grid */
 #define HL_SHAPE_COUNT \
   4096 /* greatest number of shapes in a list; the members of a group count each time the group is used */
 
@@ -47,7 +47,7 @@ typedef enum hl_shape_pattern {
  * shape's own frame. */
 typedef struct hl_hypertexture {
   hl_shape_pattern pattern;
-  double frequency; /* lattice cells per length */
+  double frequency; /* number of cells of the noise per unit of length */
   int octaves;
   double bias, gain; /* bias and gain of the pattern's value, 0 to 1 */
   double
@@ -66,14 +66,15 @@ typedef struct hl_shape {
   double rotate_axis[3];
   double rotate_angle_deg;
   double scale;
-  double size[3];        /* box: full edges; plane: x, y and thickness */
-  double from[3], to[3]; /* cylinder, capsule, cone: ends of the axis */
+  double size[3];        /* for a box: its full edges; for a plane: x, y and thickness */
+  double from[3], to[3]; /* for a cylinder, a capsule and a cone: the ends of the axis */
   double radius;         /* radius of a sphere; of a torus, to the tube's middle; of an orbital, where it is
                           * cut off; of a cone, at `from` */
-  double end_radius;     /* cone: radius at `to` */
-  double tube_radius;    /* torus */
-  double rounding;       /* box, plane, cylinder: radius of the rounded edges; the size stays as given */
-  int quantum[3];        /* orbital: quantum numbers n, l, m */
+  double end_radius;     /* for a cone: the radius at `to` */
+  double tube_radius;    /* for a torus: the radius of the tube */
+  double rounding;       /* for a box, a plane and a cylinder: the radius of the rounded edges; the size
+                          * stays as given */
+  int quantum[3];        /* for an orbital: the quantum numbers n, l and m */
   hl_hypertexture texture;
   size_t end;       /* index of the first shape after this one and its members */
   affine3 to_local; /* the map from the parent's frame to the shape's own frame; hl_shapes_place() sets it,
@@ -82,7 +83,7 @@ typedef struct hl_shape {
 } hl_shape;
 
 typedef struct hl_shape_list {
-  hl_shape *shapes; /* [count] in reading order: each group stands before its members */
+  hl_shape *shapes; /* owned; [count]; the shapes in reading order: each group stands before its members */
   size_t count, capacity;
 } hl_shape_list;
 
@@ -96,37 +97,39 @@ typedef struct hl_shape_grid {
   size_t dimension[3];
 } hl_shape_grid;
 
-/* Fills to_local and edge for this voxel size. */
+/* Fills the members to_local and edge of all shapes, for a size of voxels. */
 void hl_shapes_place(hl_shape_list *list, double voxel_size);
 
 /* The longest edge of the box around all shapes, without margin; 0 if the box is empty. */
 double hl_shapes_extent(const hl_shape_list *list);
 
-/* Finds the grid. Returns false if the grid would need more than HL_SHAPE_VOXELS voxels, or would lie more
- * than a trillion voxels from the origin. */
+/* Finds the grid that holds all shapes. Returns false if the grid would need more than HL_SHAPE_VOXELS
+ * voxels, or would lie more than a trillion voxels from the origin. */
 bool hl_shapes_grid(const hl_shape_list *list, double voxel_size, hl_shape_grid *grid);
 
-/* Bounds of a distance. */
+/* Bounds of a distance: the least and the greatest value that it may have. */
 typedef struct hl_interval {
   double low, high;
 } hl_interval;
 
-/* The signed distance from the surface at p, a point of the volume's frame: negative inside, clamped to half
- * of `edge` both ways. live: [count], from hl_shapes_bounds(); null: all shapes. */
+/* The signed distance of p, a point of the volume's frame, from the surface of all shapes: negative inside,
+ * clamped to half of `edge` both ways. live: [count], from hl_shapes_bounds(): the shapes that count; null:
+ * all shapes count. */
 double hl_shapes_distance(const hl_shape_list *list, const unsigned char *live, vec3 p);
 
-/* Finds bounds of hl_shapes_distance() for all points within `radius` of p. live: set to whether each shape
- * can affect the distance there. */
+/* Finds bounds of hl_shapes_distance() for all points within `radius` of p. live: [count]; receives whether
+ * each shape can affect the distance there. */
 hl_interval hl_shapes_bounds(const hl_shape_list *list, vec3 p, double radius, unsigned char *live);
 
 /* The distance from the surface of a shape with its texture. distance: the distance without the texture. p: a
  * point of the shape's own frame. foot: the point of the surface that is nearest to p. */
 double hl_hypertexture_distance(const hl_shape *shape, double distance, vec3 p, vec3 foot);
 hl_interval hl_hypertexture_bounds(const hl_shape *shape, hl_interval distance);
-/* Whether a texture can change the density at this distance from the surface of its shape. */
+/* Whether a texture can change the density at a point with a given distance from the surface of its shape. */
 bool hl_hypertexture_matters(const hl_shape *shape, double distance);
 
-/* The real hydrogen-like wave function, not normalised. p: a point of the shape's own frame. */
+/* The value of the real hydrogen-like wave function at a point; it is not normalised. p: a point of the
+ * shape's own frame. */
 double hl_orbital_at(const hl_shape *shape, vec3 p);
 
 /* Makes a volume of a list of shapes, which hl_shapes_place() has placed for the grid's voxels. Orbitals are
