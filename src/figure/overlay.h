@@ -15,8 +15,8 @@ typedef struct hl_overlay_place {
   hl_map map;                        /* where points of `scene` lie on the page */
 } hl_overlay_place;
 
-/* Draws the whole overlay over a picture. scene: may be null. image: what the picture shows; where it shows matter behind
- * the bar, the legend or the arrows, a ground lies between; null: there is no such ground. */
+/* Draws the whole overlay over a picture. scene: may be null. image: what the picture shows; where it shows
+ * matter behind the bar, the legend or the arrows, a ground lies between; null: there is no such ground. */
 hl_status hl_overlay_draw(const hl_ink *ink, const hl_overlay *overlay, const hl_scene *scene,
                           const hl_image *image, hl_rectangle picture, hl_error *error);
 
