@@ -92,7 +92,14 @@ void hl_ink_text(const hl_ink *ink, const hl_line_of_text *line) {
   cairo_stroke(ink->cairo);
   cairo_move_to(ink->cairo, 0, 0);
   set_grey(ink->cairo, ink->color, 1);
-  pango_cairo_show_layout(ink->cairo, layout);
+  /* On pixels cairo moves each glyph to a whole pixel, which tears words apart and leaves the halo behind.
+   * Filled outlines stay where they are. In a PDF letters stay letters. */
+  if (cairo_surface_get_type(cairo_get_target(ink->cairo)) == CAIRO_SURFACE_TYPE_IMAGE) {
+    pango_cairo_layout_path(ink->cairo, layout);
+    cairo_fill(ink->cairo);
+  } else {
+    pango_cairo_show_layout(ink->cairo, layout);
+  }
   cairo_new_path(ink->cairo);
   cairo_restore(ink->cairo);
   g_object_unref(layout);

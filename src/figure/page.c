@@ -120,12 +120,28 @@ static double luma(const double linear[3]) { /* the luma of a colour by BT.709 *
   return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];
 }
 
+/* The mean colour of a picture, linear, before black. */
+static void mean_of_picture(const hl_image *image, double mean[3]) {
+  const size_t count = (size_t)hl_image_width(image) * (size_t)hl_image_height(image);
+  const float *pixels = hl_image_pixels_const(image);
+  for (int c = 0; c < 3; c++) mean[c] = 0;
+  for (size_t n = 0; n < count; n++)
+    for (int c = 0; c < 3; c++)
+      mean[c] += fmin(fmax((double)pixels[4 * n + (size_t)c], 0), 1) / (double)count;
+}
+
 /* Chooses white ink on a dark ground, and black ink on a bright one. The limit is the middle of sRGB's scale,
- * which is 0.214 in linear light. */
+ * which is 0.214 in linear light. The ground of a picture without a scene is its mean colour. */
 static hl_ink ink_for(cairo_t *cairo, const hl_figure *figure, const hl_figure_panel *panel) {
   const double *ground = figure->background;
+  double mean[3];
   bool paper = figure->background_transparent != 0;
   const bool over_picture = panel->image != NULL || paper;
+  if (panel->image != NULL && panel->scene == NULL) {
+    mean_of_picture(panel->image, mean);
+    ground = mean;
+    paper = false;
+  }
   if (over_picture && panel->scene != NULL) {
     const hl_scene_description *scene = hl_scene_describe(panel->scene);
     paper = scene->background_transparent && paper;

@@ -417,12 +417,31 @@ def plain_pictures():
     drawn = np.asarray(Image.open("plain.png").convert("RGB"))
     check(drawn.shape == (30, 90, 3) and np.array_equal(drawn[:20, 30:60], codes), f"{drawn.shape}: the picture's own codes")
     check((drawn[20:, 30:] == 255).all() and np.ptp(drawn[:20, 60:]) > 20, "the third panel shows the rods")
+    for grey, ink in (20, "100%"), (235, "0%"):
+        Image.new("RGB", (30, 20), (grey,) * 3).save("even.png")
+        Path("plain.json").write_text(json.dumps(page | {"panels": [{"input": "even.png", "letter": "a"}]}))
+        subprocess.run([program, "figure", "plain.json", "-o", "plain.svg", "--quiet"], check=True)
+        check(f"fill:rgb({ink},{ink},{ink});fill-opacity:1" in Path("plain.svg").read_text().replace(" ", ""), f"ink on the grey {grey}")
     Path("plain.json").write_text(json.dumps(page | {"panels": page["panels"][1:], "share": ["light"]}))
     done = run()
     check(done.returncode == 3 and "'where.png', is a picture without a scene to share" in done.stderr, done.stderr)
     Path("plain.json").write_text(json.dumps(page | {"panels": [{"input": "where.png", "scale-bar": "auto"}]}))
     done = run()
     check(done.returncode != 0 and "need the picture's scene" in done.stderr, done.stderr)
+
+
+def letters_stay_in_place():
+    """Letters of pixels stand where the font puts them, not at whole pixels: equal letters are equally far apart."""
+    Image.new("RGB", (300, 40), (255, 255, 255)).save("even.png")
+    page = {"width": "60mm", "dpi": 127, "font-size": 8.3, "letters": False, "panels": [{"input": "even.png", "annotate": "llllllllllll@0.1,0.5"}]}
+    Path("even.json").write_text(json.dumps(page))
+    subprocess.run([program, "figure", "even.json", "-o", "drawn.png", "--quiet"], check=True)
+    ink = 255.0 - np.asarray(Image.open("drawn.png").convert("L")).mean(0)
+    starts = np.flatnonzero((ink[1:] > 0) & (ink[:-1] == 0)) + 1
+    ends = np.flatnonzero((ink[1:] == 0) & (ink[:-1] > 0)) + 1
+    middles = np.array([(ink[a:b] * np.arange(a, b)).sum() / ink[a:b].sum() for a, b in zip(starts, ends)])
+    gaps = np.diff(middles)
+    check(len(middles) == 12 and np.ptp(gaps) < 0.3 and abs(gaps.mean() - round(gaps.mean())) > 0.05, f"{len(middles)} letters, gaps {gaps}")
 
 
 def grounds(svg):
@@ -471,7 +490,7 @@ with tempfile.TemporaryDirectory() as folder:
     import os
     os.chdir(folder)
     for test in (bars, chosen_lengths, perspective, units_are_not_invented, physical_sizes, hostile_texts, legends, label_legends, letters,
-                 points_of_the_world, lengths_of_marks, places_of_marks, pages, plain_pictures, grounds_behind_parts, linear_files_are_refused):
+                 points_of_the_world, lengths_of_marks, places_of_marks, pages, plain_pictures, letters_stay_in_place, grounds_behind_parts, linear_files_are_refused):
         before = checks
         test()
         print(f"{test.__name__}: {checks - before} checks", flush=True)
