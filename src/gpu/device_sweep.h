@@ -12,6 +12,7 @@
 #define PLAN_SECTORS       6
 #define PLAN_CODES         256
 #define PLAN_HARMONICS     9
+#define PLAN_MASK_PARTS    4
 
 /* The rays of pixels at one sheet: the members of sheet_rays (view/view.h), and the sheet's height above the
  * first sheet. */
@@ -98,6 +99,27 @@ typedef struct plan_brick {
   float value;
 } plan_brick;
 
+/* A volume's mask: the members of mask_lattice (grid/mask_lattice.h). */
+typedef struct plan_mask {
+  int last[3];
+  float to_index[3][4], rest;
+  int faces;                       /* normals are turned to the faces that the mask makes */
+  int tints;                       /* the mask has colours */
+  float decode[PLAN_CODES];        /* the linear values of the colours' codes */
+  unsigned begin[PLAN_MASK_PARTS]; /* where each part begins on the device, in units of 16 bytes */
+} plan_mask;
+
+/* The parts of a mask on the device. */
+#define MASK_BRICKS  0
+#define MASK_FACTORS 1
+#define MASK_SLOPES  2
+#define MASK_COLORS  3
+
+/* As the constants of these names in label/mask.h. */
+#define MASK_BRICK_SHIFT 2
+#define MASK_EVEN        0x10000u
+#define MASK_EVEN_COLOR  0x20000u
+
 typedef struct plan_volume {
   int dimension[3], brick_count[3];
   /* The layout of the device's voxels, or of the coefficients of bricks: the bytes from row to row, and the
@@ -133,6 +155,7 @@ typedef struct plan_volume {
   float cast[3];   /* the extinction for lights divided by the extinction for the eye */
   float weight[3]; /* the extinction in shadow buffers divided by the extinction for the eye */
   float voxel;
+  plan_mask mask; /* set where the variant has a mask */
 } plan_volume;
 
 /* The field of the sky's light: the members of sky_light (field/sky_field.h), but for the cells. */
@@ -219,6 +242,7 @@ typedef struct plan_variant {
   int boxed;   /* the volume's box or a cut cuts visible matter */
   int cuts;    /* the volume has cuts */
   int steep;   /* the volume has gradient opacity */
+  int masked;  /* the volume has a mask */
   int colored; /* the voxels have colours of their own */
   int soft;    /* some lights are soft */
   int sky;     /* the sky's light is added in this sweep */

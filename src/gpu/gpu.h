@@ -31,6 +31,15 @@ void hl_gpu_close(hl_gpu *gpu); /* gpu may be null */
 const gpu_device *hl_gpu_device(const hl_gpu *gpu);
 const char *hl_gpu_problem(const hl_gpu *gpu);
 
+/* The parts of a volume's mask (MASK_BRICKS and so on), borrowed. */
+typedef struct gpu_mask {
+  const void *part[PLAN_MASK_PARTS]; /* null: there is no such part */
+  size_t bytes[PLAN_MASK_PARTS];
+} gpu_mask;
+
+/* Where a part of a mask begins on the device, in bytes from the first part; a multiple of 16. */
+size_t hl_gpu_mask_begin(const gpu_mask *mask, int part);
+
 /* A volume as the renderer has prepared it; borrowed. */
 typedef struct gpu_volume {
   uint64_t version, tables_version; /* version of the voxels, and version of everything that follows from the
@@ -53,6 +62,7 @@ typedef struct gpu_volume {
   const float *sums, *color, *shown;       /* [PLAN_TABLE_ROWS][4] */
   const float *outside, *bent, *steepness; /* [PLAN_TABLE_ROWS]; bent and steepness may be null: there is no
                                             * such table */
+  gpu_mask mask;                           /* it belongs to tables_version */
 } gpu_volume;
 
 /* The number of bytes of a row of the device's voxels. */

@@ -27,7 +27,7 @@ static const char *const kernel_names[KERNELS] = {"fill_floats",       "try_arit
                                                   "composite_samples", "pass_rows",      "pass_fields",
                                                   "pass_absorbed",     "pass_refill"};
 
-enum { VARIANT_DEFINES = 16, SAMPLE_COUNTERS = 256, TILE_SIDE = 16 };
+enum { VARIANT_DEFINES = 17, SAMPLE_COUNTERS = 256, TILE_SIDE = 16 };
 
 /* ---- memory ---- */
 
@@ -107,6 +107,19 @@ static bool upload_colors(hl_gpu *gpu, const gpu_volume *volume) {
   return reserve_and_upload(gpu, BUFFER_COLORS, volume->colors, volume->color_bytes);
 }
 
+size_t hl_gpu_mask_begin(const gpu_mask *mask, int part) {
+  size_t begin = 0;
+  for (int before = 0; before < part; before++) begin += (mask->bytes[before] + 15) / 16 * 16;
+  return begin;
+}
+
+static bool upload_mask(hl_gpu *gpu, const gpu_mask *mask) {
+  bool done = reserve(gpu, BUFFER_MASK, hl_gpu_mask_begin(mask, PLAN_MASK_PARTS));
+  for (int part = 0; part < PLAN_MASK_PARTS && done; part++)
+    done = upload(gpu, BUFFER_MASK, hl_gpu_mask_begin(mask, part), mask->part[part], mask->bytes[part]);
+  return done;
+}
+
 static bool upload_tables(hl_gpu *gpu, const gpu_volume *volume) {
   size_t bricks = (size_t)volume->brick_count[0] * (size_t)volume->brick_count[1] *
                   (size_t)volume->brick_count[2];
@@ -139,7 +152,7 @@ bool hl_gpu_prepare(hl_gpu *gpu, const gpu_volume *volume) {
   }
   if (gpu->tables_version != volume->tables_version) {
     gpu->tables_version = 0;
-    if (!upload_tables(gpu, volume)) return false;
+    if (!upload_tables(gpu, volume) || !upload_mask(gpu, &volume->mask)) return false;
     gpu->tables_version = volume->tables_version;
   }
   return true;
@@ -153,22 +166,13 @@ static void define_variant(const plan_variant *v, char defines[VARIANT_DEFINES][
   const struct {
     const char *name;
     int value;
-  } all[VARIANT_DEFINES] = {{"STORAGE", v->storage},
-                            {"BSPLINE", v->bspline},
-                            {"EYE_PERSPECTIVE", v->eye_perspective},
-                            {"PHONG", v->phong},
-                            {"LIT", v->lit},
-                            {"SHADOWED", v->shadowed},
-                            {"OUTSIDE", v->outside},
-                            {"BOXED", v->boxed},
-                            {"BACK_TO_FRONT", v->back_to_front},
-                            {"CHANNELS", v->channels},
-                            {"CUTS", v->cuts},
-                            {"BRICKS", v->bricks},
-                            {"STEEP", v->steep},
-                            {"COLORED", v->colored},
-                            {"SOFT", v->soft},
-                            {"SKY", v->sky}};
+  } all[VARIANT_DEFINES] = {
+      {"STORAGE", v->storage},   {"BSPLINE", v->bspline}, {"EYE_PERSPECTIVE", v->eye_perspective},
+      {"PHONG", v->phong},       {"LIT", v->lit},         {"SHADOWED", v->shadowed},
+      {"OUTSIDE", v->outside},   {"BOXED", v->boxed},     {"BACK_TO_FRONT", v->back_to_front},
+      {"CHANNELS", v->channels}, {"CUTS", v->cuts},       {"BRICKS", v->bricks},
+      {"STEEP", v->steep},       {"MASKED", v->masked},   {"COLORED", v->colored},
+      {"SOFT", v->soft},         {"SKY", v->sky}};
   for (int i = 0; i < VARIANT_DEFINES; i++)
     snprintf(defines[i], sizeof defines[i], "%s=%d", all[i].name, all[i].value);
 }
@@ -379,6 +383,7 @@ static bool launch_kernel(hl_gpu *gpu, const gpu_program *program, int kernel, s
                                     memory(gpu, BUFFER_SOFT),
                                     memory(gpu, BUFFER_TOUCHED),
                                     memory(gpu, BUFFER_SKY),
+                                    memory(gpu, BUFFER_MASK),
                                     number(run.first),
                                     number(run.end),
                                     number(run.number)};

@@ -18,6 +18,7 @@ enum buffer_use {
   BUFFER_TABLES,
   BUFFER_DIRECTORY,
   BUFFER_COLORS,
+  BUFFER_MASK,
   BUFFER_SKY,
   BUFFER_PIXELS, /* this one and the next ones change with the camera */
   BUFFER_PLANES,

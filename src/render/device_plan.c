@@ -15,6 +15,9 @@ _Static_assert(PLAN_LIGHTS >= MAXIMUM_SWEEP_LIGHTS && PLAN_SECTORS == LIGHT_SECT
                    PLAN_ENTRIES == CLASSIFIER_ENTRIES && PLAN_ENTRIES == STEEPNESS_ENTRIES &&
                    PLAN_KERNEL_POWERS == HL_KERNEL_DEGREE + 1,
                "plans hold what sweeps hold");
+_Static_assert(MASK_BRICK_SHIFT == HL_MASK_BRICK_SHIFT && MASK_EVEN == HL_MASK_EVEN &&
+                   MASK_EVEN_COLOR == HL_MASK_EVEN_COLOR,
+               "masks of plans are masks of labels");
 _Static_assert(PLAN_HARMONICS == FIELD_HARMONICS, "skies of plans are skies of fields");
 _Static_assert(sizeof(plan_brick) == sizeof(hl_brick_entry) &&
                    offsetof(plan_brick, level) == offsetof(hl_brick_entry, level) &&
@@ -43,6 +46,23 @@ static void load_row(const void *pages, size_t y, size_t z, void *row) {
   hl_pages_load_row(pages, y, z, row);
 }
 
+static gpu_mask mask_for_device(const mask_lattice *lattice) {
+  if (lattice->factors == NULL) return (gpu_mask){0};
+  size_t points = 1, bricks = 1;
+  for (int axis = 0; axis < 3; axis++) {
+    points *= (size_t)lattice->last[axis] + 1;
+    bricks *= (size_t)(lattice->last[axis] >> HL_MASK_BRICK_SHIFT) + 1;
+  }
+  return (gpu_mask){.part = {[MASK_BRICKS] = lattice->bricks,
+                             [MASK_FACTORS] = lattice->factors,
+                             [MASK_SLOPES] = lattice->slopes,
+                             [MASK_COLORS] = lattice->colors},
+                    .bytes = {[MASK_BRICKS] = bricks * sizeof *lattice->bricks,
+                              [MASK_FACTORS] = points * sizeof *lattice->factors,
+                              [MASK_SLOPES] = lattice->slopes == NULL ? 0 : points * HL_COLOR_BYTES,
+                              [MASK_COLORS] = lattice->colors == NULL ? 0 : points * HL_COLOR_BYTES}};
+}
+
 gpu_volume hl_volume_for_device(const frame_plan *plan) {
   const frame_volume *volume = &plan->volumes.list[0];
   const grid *grid = &plan->volumes.grids[0];
@@ -60,7 +80,8 @@ gpu_volume hl_volume_for_device(const frame_plan *plan) {
                      .shown = &classifier->shown[0][0],
                      .outside = classifier->outside,
                      .bent = classifier->bent,
-                     .steepness = classifier->steepness};
+                     .steepness = classifier->steepness,
+                     .mask = mask_for_device(&classifier->mask)};
   if (grid->pages != NULL) {
     made.pages = grid->pages;
     made.load_row = load_row;
@@ -78,6 +99,20 @@ gpu_volume hl_volume_for_device(const frame_plan *plan) {
     made.brick_width = ((size_t)1 << grid->bricks->shift) + BRICK_MARGIN;
   }
   return made;
+}
+
+static void plan_mask_of(const shade_volume *shade, plan_mask *planned) {
+  const mask_lattice *lattice = &shade->classifier->mask;
+  const gpu_mask mask = mask_for_device(lattice);
+  if (lattice->factors == NULL) return;
+  memcpy(planned->last, lattice->last, sizeof planned->last);
+  memcpy(planned->to_index, lattice->to_index, sizeof planned->to_index);
+  planned->rest = lattice->rest;
+  planned->faces = shade->mask_faces;
+  planned->tints = shade->tints.voxels != NULL;
+  if (planned->tints) memcpy(planned->decode, shade->tints.decode, sizeof planned->decode);
+  for (int part = 0; part < PLAN_MASK_PARTS; part++)
+    planned->begin[part] = (unsigned)(hl_gpu_mask_begin(&mask, part) / 16);
 }
 
 static void plan_matter(const shade_volume *shade, plan_volume *volume) {
@@ -439,6 +474,7 @@ static plan_variant variant_of(const sweep_task *task, const device_sweep *plan)
                         .sky = task->constants->shade.sky != NULL,
                         .colored = shade->colors.voxels != NULL,
                         .steep = shade->classifier->steepness != NULL,
+                        .masked = shade->classifier->mask.factors != NULL,
                         .back_to_front = task->plan->geometry->back_to_front,
                         .channels = task->frame_plan->channels};
 }
@@ -481,6 +517,7 @@ hl_status hl_plan_sweep(const sweep_means *means, const frame_plan *frame_plan, 
   plan->emission = job->emission;
   plan_matter(shade, &plan->volume);
   plan_colors(shade, &plan->volume);
+  plan_mask_of(shade, &plan->volume.mask);
   plan_material(shade, &frame_plan->volumes.list[0], &plan->volume);
   if (job->sky != NULL) plan_sky_light(job->sky, &plan->sky);
   const gpu_volume volume = hl_volume_for_device(frame_plan);

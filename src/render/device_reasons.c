@@ -25,7 +25,6 @@ static bool is_thin(const frame_plan *plan) {
   if (plan->volumes.grids[0].bricks != NULL) return false;
   return dimension[0] < 4 || dimension[1] < 4 || dimension[2] < 4;
 }
-static bool is_masked(const frame_plan *plan) { return volume_of(plan)->classifier->mask.factors != NULL; }
 static bool has_two_numbers(const frame_plan *plan) {
   return volume_of(plan)->classifier->plane.sums != NULL;
 }
@@ -37,16 +36,33 @@ static bool is_soft_otherwise(const frame_plan *plan) {
   return false;
 }
 
-/* Whether the frame has cut surfaces with gradient opacity that cast shadows. A device cannot make these
- * shadows as the processors do: matter that gradient opacity hides ends surfaces for all pixels of a block
- * (shadow/attenuate_lanes.h). Behind a cut the processors skip whole blocks, and a pixel of a device does not
- * know which blocks are skipped. */
-static bool hides_cut_surfaces(const frame_plan *plan) {
-  bool shadows = false;
+static bool is_masked(const frame_plan *plan) { return volume_of(plan)->classifier->mask.factors != NULL; }
+
+/* Whether the frame has soft shadows on surfaces. If a factor multiplies extinction, matter that the factor
+ * hides ends surfaces for all pixels of a block (shadow/attenuate_lanes.h). Where everything lies behind a
+ * cut or is hidden by a mask, the processors skip whole blocks, and a pixel of a device does not know which
+ * blocks are skipped. Hard shadows do not depend on the skipped blocks, because surfaces have ended before
+ * them. Blurs bring light there that surfaces have absorbed. */
+static bool has_soft_surfaces(const frame_plan *plan) {
+  bool soft = false;
   for (int i = 0; i < plan->frame.light_count; i++)
-    shadows = shadows || plan->frame.lights[i].shadows != HL_SHADOWS_OFF;
-  return shadows && volume_of(plan)->classifier->steepness != NULL && plan->volumes.grids[0].cut &&
-         volume_of(plan)->look.shading == HL_SHADING_PHONG;
+    soft = soft || plan->frame.lights[i].shadows == HL_SHADOWS_SOFT;
+  return soft && volume_of(plan)->look.shading == HL_SHADING_PHONG;
+}
+static bool steepens_soft_surfaces(const frame_plan *plan) {
+  return volume_of(plan)->classifier->steepness != NULL && plan->volumes.grids[0].cut &&
+         has_soft_surfaces(plan);
+}
+static bool masks_soft_surfaces(const frame_plan *plan) { return is_masked(plan) && has_soft_surfaces(plan); }
+
+/* Whether slabs are so thick that they may lead from visible matter into a brick that a mask hides. A device
+ * skips slabs whose ends lie in such bricks. Around these bricks the mask is 0 for three voxels
+ * (grid/relevant.c), and no ray's way through a slab is longer than twice its thickness. */
+static bool masks_thick_slabs(const frame_plan *plan) {
+  const double most = 1.5 * hl_smallest_edge(&plan->volumes.grids[0]);
+  for (int i = 0; i < plan->sweeps.count; i++)
+    if (is_masked(plan) && plan->sweeps.list[i].geometry->sheets.spacing > most) return true;
+  return false;
 }
 
 static bool has_images(const frame_plan *plan) {
@@ -75,9 +91,10 @@ static const struct {
     {splats, "splatting in place of gathering"},
     {is_over_ranks, "voxels of several processes"},
     {is_thin, "a volume less than four voxels thick"},
-    {is_masked, "a mask"},
     {has_two_numbers, "a function of two numbers"},
-    {hides_cut_surfaces, "gradient opacity of cut surfaces that cast shadows"},
+    {steepens_soft_surfaces, "gradient opacity of cut surfaces with soft shadows"},
+    {masks_soft_surfaces, "a mask of surfaces with soft shadows"},
+    {masks_thick_slabs, "a mask with sheets more than 1.5 voxels apart"},
     {is_soft_otherwise, "soft shadows by another method than the cascade"},
     {has_images, "lights with images"},
     {has_phase_tables, "wide lights in media that scatter unevenly"},

@@ -35,3 +35,19 @@ def write_labels(path):
                    for z, y, x in itertools.product(range(size), repeat=3))
     header = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: %d %d %d\nencoding: raw\n\n" % (size, size, size)
     path.write_bytes(header.encode() + voxels)
+
+
+def write_organs(path, scale=1):
+    """A map on a slanted grid around the origin, which does not cover the cloud: two balls that touch, a bar through them and
+    single voxels, with the numbers 1 to 4. scale: how many times the map is larger."""
+    draw, size = random.Random(8), (20, 22, 18)
+    voxels = bytes(3 if abs(y - 12) < 2 and abs(z - 9) < 2 else
+                   1 if (x - 6) ** 2 + (y - 11) ** 2 + (z - 9) ** 2 < 42 else
+                   2 if (x - 14) ** 2 + (y - 11) ** 2 + (z - 9) ** 2 < 30 else
+                   4 if draw.random() < 0.02 else 0
+                   for z, y, x in itertools.product(*(range(n) for n in reversed(size))))
+    header = ("NRRD0004\ntype: uint8\ndimension: 3\nsizes: %d %d %d\nspace dimension: 3\nspace origin: %s\n"
+              "space directions: %s %s %s\nencoding: raw\n\n"
+              % (*size, *("(%g,%g,%g)" % tuple(scale * x for x in vector)
+                          for vector in ((-13, -17, -15), (1.5, 0.1, 0), (-0.1, 1.4, 0.2), (0, 0.1, 1.6)))))
+    path.write_bytes(header.encode() + voxels)

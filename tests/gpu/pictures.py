@@ -58,6 +58,8 @@ LAMP = {"type": "point", "position": [40, 50, -50], "radius": 9}
 BEHIND = {**SUN, "direction": [0.2, -0.3, -0.9]}
 EVEN_SKY = {"type": "uniform", "color": [0.6, 0.8, 1], "strength": 0.8}
 SKY = {"type": "gradient", "zenith": [0.36, 0.4, 0.5], "horizon": [0.32, 0.33, 0.36], "ground": [0.16, 0.14, 0.12]}
+ORGANS = {"file": "organs.nrrd", "labels": [{"value": 1, "color": [0.9, 0.2, 0.1], "opacity": 0.8}, {"value": 2}, {"value": 3, "color": [0.1, 0.3, 0.9], "tint": 0.6},
+                                            {"value": 4, "visible": False}]}
 GRAINS = {"file": "grains.csv", "array": "density"}
 THIN = [[0.001, 0], [0.05, 0.2], [1, 0.6]]
 FAR = {"type": "perspective", "position": [70, 50, -120], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 30}
@@ -92,10 +94,29 @@ MADE = {
     "a field at levels": scene(opacity=THIN, volume=GRAINS, camera=FAR),
     "a field at levels, surfaces": scene(opacity=[[0.02, 0], [0.06, 0.6]], shading="phong", camera=FAR,
                                          volume={**GRAINS, "cuts": [plane(1, 0.3, 0.2)]}),
+    "a mask": scene(opacity=AROUND, volume={"mask": {**ORGANS, "rest": 0.1}}),
+    "a mask, surfaces": scene(opacity=DENSE, shading="phong", volume={"mask": {**ORGANS, "rest": 0}}),
+    "a mask, surfaces in layers, near light": scene(opacity=LAYERS[:-2], shading="phong", volume={"mask": {**ORGANS, "rest": 0.3}},
+                                                    light={"type": "point", "position": [40, 50, -50]}),
+    "a mask without a colour, light from behind": scene(opacity=DENSE, shading="phong", direction=(0.2, -0.3, -0.9),
+                                                        volume={"mask": {**ORGANS, "labels": [{"value": 2}, {"value": 1, "opacity": 0.3}]}}),
+    "a mask, gradient opacity": scene(opacity=LAYERS, shading="phong", function=STEEP,
+                                      volume={"mask": {**ORGANS, "rest": 0.5}}),
+    "a mask, cuts, flat view": scene(opacity=AROUND, camera=FLAT, volume={"mask": ORGANS, "cuts": [BALL, plane(1, 0.4, -0.2)]}),
+    "a mask of cut surfaces without shadows": scene(opacity=DENSE, shading="phong", shadows="off",
+                                                    volume={"mask": ORGANS, "cuts": [plane(1, 0.4, -0.2)]}),
+    "a mask, soft shadows, colours": scene(shadows="soft", opacity=DENSE, light=SUN,
+                                           volume={"mask": ORGANS, "attenuation_color": [1, 0.5, 0.2]}),
+    "a mask, a sky, surfaces": scene(sky=SKY, opacity=DENSE, shading="phong", volume={"mask": ORGANS}),
+    "a mask, coloured voxels": scene(opacity=[[20, 0], [200, 0.3]], volume={"file": "colors.nrrd", "mask": {**ORGANS, "rest": 0.4}}),
+    "a mask, a field at levels": scene(opacity=THIN, camera=FAR, volume={**GRAINS, "mask": {**ORGANS, "rest": 0.4}}),
     "gradient opacity": scene(opacity=DENSE, function=STEEP, light={"type": "point", "position": [40, 50, -50]}),
     "gradient opacity, surfaces": scene(opacity=LAYERS, shading="phong", function=STEEP),
     "gradient opacity, cuts, light from behind": scene(function=STEEP, direction=(0.2, -0.3, -0.9),
                                                        volume={"cuts": [BALL, plane(1, 0.4, -0.2)]}),
+    "gradient opacity of cut surfaces": scene(opacity=DENSE, shading="phong", function=STEEP, volume={"cuts": [BALL]}),
+    "a mask, cut surfaces, light from behind": scene(opacity=AROUND, shading="phong", direction=(0.2, -0.3, -0.9),
+                                                     volume={"mask": {**ORGANS, "rest": 1}, "cuts": [BALL, plane(1, 0.4, -0.2)]}),
     "soft shadows": scene(shadows="soft", light=SUN),
     "soft shadows of a wide light": scene(shadows="soft", opacity=DENSE, light={**SUN, "angular_diameter_deg": 25}),
     "soft shadows of surfaces": scene(shadows="soft", shading="phong", opacity=LAYERS, light=SUN),
@@ -130,12 +151,14 @@ LARGE = scene(volume={"file": "large.nrrd"}, render={"sheet_spacing": 4},
               camera={"type": "perspective", "position": [380, 250, -680], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 30})
 # One scene of each feature.
 FEW = ("medium", "several surfaces, colours, near light", "cuts, surfaces", "a field at levels, surfaces", "gradient opacity, surfaces",
-       "coloured voxels", "labels", "a sky, soft shadows of surfaces, colours")
+       "coloured voxels", "labels", "a mask, surfaces in layers, near light", "a sky, soft shadows of surfaces, colours")
 LEFT = {
     "soft shadows by another method than the cascade": scene(shadows="soft", light=SUN, render={"soft_method": "paper"}),
     "meshes or isosurfaces": {**scene(), "meshes": [{"spheres": [[0, -12, 0, 3]]}]},
-    "gradient opacity of cut surfaces that cast shadows": scene(opacity=DENSE, shading="phong", function=STEEP,
-                                                                volume={"cuts": [BALL]}),
+    "gradient opacity of cut surfaces with soft shadows": scene(opacity=DENSE, shading="phong", function=STEEP, shadows="soft",
+                                                                light=SUN, volume={"cuts": [BALL]}),
+    "a mask of surfaces with soft shadows": scene(opacity=DENSE, shading="phong", shadows="soft", light=SUN, volume={"mask": ORGANS}),
+    "a mask with sheets more than 1.5 voxels apart": scene(volume={"mask": ORGANS}, render={"sheet_spacing": 1.6}),
     "splatting in place of gathering": scene(render={"reconstruction": "splat"}),
 }
 
@@ -153,9 +176,12 @@ def drawn(seed):
                                   "max": [a + draw.uniform(2, 12) for a in at], **kept})))
     light = {**SUN, "direction": [draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(0.1, 1)],
              "angular_diameter_deg": draw.choice((1, 7, 30))}
-    return scene(opacity=draw.choice((AROUND, LAYERS, DENSE)), shading="phong", light=light,
-                 shadows=draw.choice(("hard", "soft")), sky=draw.choice((None, EVEN_SKY, SKY)),
-                 volume={"cuts": cuts, "cut_casts_shadow": draw.random() < 0.3, "cut_shading": draw.choice(("face", "none"))},
+    opacity, shadows, weighed = draw.choice((AROUND, LAYERS, DENSE)), draw.choice(("hard", "soft")), draw.random() < 0.7
+    weighed = weighed and shadows == "hard"
+    return scene(opacity=opacity, shading="phong", light=light, shadows=shadows, sky=draw.choice((None, EVEN_SKY, SKY)),
+                 function=STEEP if weighed and draw.random() < 0.4 else None,
+                 volume={**({"mask": {**ORGANS, "rest": draw.choice((0, 0.3, 1))}} if weighed else {}), "cuts": cuts,
+                         "cut_casts_shadow": draw.random() < 0.3, "cut_shading": draw.choice(("face", "none"))},
                  render={"slabs_at_once": draw.choice((0, 4, 9))})
 
 
@@ -195,6 +221,7 @@ def main():
         made_volumes.write_grains(folder / "grains.csv")
         made_volumes.write_colors(folder / "colors.nrrd")
         made_volumes.write_labels(folder / "labels.nrrd")
+        made_volumes.write_organs(folder / "organs.nrrd")
         nowhere = folder / "nowhere.json"
         nowhere.write_text(json.dumps(scene()))
         done = run(folder, "render", nowhere, "--device", "no such device", "-o", "n.npy", "--json")

@@ -25,7 +25,7 @@ typedef struct slab_sample {
                        * even; both are fractions of the way through the slab's covered part */
   int sloped;
   vector slope, normal;
-  float factor; /* the factor by which gradient opacity has multiplied extinction and the sums */
+  float factor; /* the factor by which gradient opacity and a mask have multiplied extinction and the sums */
   float surface;
   float behind; /* the distance, in voxels, of the matter from a face that cuts it and is shaded as a surface;
                  * FACE_VOXELS where no such face is near */
@@ -212,7 +212,7 @@ DEVICE float extinction_towards(const volume_data *volume, const slab_sample *s,
   float start = fused(dot3(s->slope, towards), way * volume->plan->scale, seen);
   way_sums sums = sums_of_way(volume->tables, split_coordinate(limited(start, 0.0f, PLAN_ENTRIES)),
                               split_coordinate(seen));
-#if STEEP
+#if WEIGHED
   late = late * s->factor;
 #endif
   return late * sums.extinction;

@@ -4,7 +4,11 @@
 #define HL_GPU_MATTER_H
 
 #include "core/sheet_constants.h"
+#include "gpu/kernels/mask.h"
 #include "gpu/kernels/sample.h"
+
+/* Whether extinction depends on more than the value, so that a factor multiplies it. */
+#define WEIGHED (STEEP || MASKED)
 
 /* A coordinate in the tables: x = entry + fraction. */
 typedef struct table_coordinate {
@@ -95,6 +99,30 @@ DEVICE float factor_of_slope(const volume_data *volume, vector slope) {
   const table_coordinate at = split_coordinate(limited(root(dot3(steps, steps)), 0.0f, PLAN_ENTRIES));
   GLOBAL const float *factor = steepness_table(volume->tables) + at.entry;
   return fused(factor[1] - factor[0], at.fraction, factor[0]);
+}
+
+DEVICE mask_data mask_of_volume(const volume_data *volume) {
+  mask_data mask;
+  mask.plan = &volume->plan->mask;
+  mask.data = volume->mask;
+  return mask;
+}
+
+/* The factor by which gradient opacity and a mask multiply extinction at a point of frame space, as
+ * factor_of_matter() in fill/steepness_lanes.h. *slope: receives the gradient with gradient opacity, else
+ * 0. */
+DEVICE float factor_of_matter(const volume_data *volume, vector point, vector *slope) {
+  float factor = 1.0f;
+  *slope = vector_of(0.0f, 0.0f, 0.0f);
+#if STEEP
+  *slope = gradient_at(*volume, point);
+  factor = factor_of_slope(volume, *slope);
+#endif
+#if MASKED
+  const mask_data mask = mask_of_volume(volume);
+  factor = factor * mask_factor(&mask, point);
+#endif
+  return factor;
 }
 
 /* Moves the coordinates a and b from the slab's two sheets to the ends of the slab's covered part.

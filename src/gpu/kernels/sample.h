@@ -23,6 +23,7 @@ typedef struct volume_data {
   GLOBAL const wide *cell_bits;       /* [bricks z][y][x]; read only where plan->has_cell_bits */
   GLOBAL const float *tables;
   GLOBAL const byte *colors;   /* [z][y][x][4]; read only where the voxels have colours */
+  GLOBAL const byte *mask;     /* the mask's parts (kernels/mask.h); read only where there is a mask */
   GLOBAL const plan_cut *cuts; /* [views][cut_count]; the eye's view comes first, then the lights' views */
 } volume_data;
 

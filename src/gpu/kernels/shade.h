@@ -61,13 +61,12 @@ DEVICE void place_slab(GLOBAL const device_sweep *plan, GLOBAL const plan_rays *
   s->position = add_scaled(s->start, s->step_sheet, s->place);
 }
 
-/* Applies gradient opacity after place_slab(), as weigh_slab() in render/slab_lanes.h. Finds the factor at
- * the place where the matter would be seen without gradient opacity, multiplies the extinction by this
+/* Applies gradient opacity and a mask after place_slab(), as weigh_slab() in render/slab_lanes.h. Finds the
+ * factor at the place where the matter would be seen without this factor, multiplies the extinction by this
  * factor, and places the slab again. */
 DEVICE void weigh_slab(GLOBAL const device_sweep *plan, GLOBAL const plan_rays *rays, float u, float v,
                        const volume_data *volume, slab_sample *s) {
-  s->slope = gradient_at(*volume, s->position);
-  s->factor = factor_of_slope(volume, s->slope);
+  s->factor = factor_of_matter(volume, s->position, &s->slope);
   if (s->factor == 1.0f) return;
   s->extinction = s->extinction * s->factor;
   s->sums.extinction = s->sums.extinction * s->factor;
@@ -91,7 +90,15 @@ DEVICE void find_normal(const volume_data *volume, float density, slab_sample *s
 #endif
 #if PHONG
   vector slope = scaled(s->slope, magnitude(volume->plan->scale));
-  float outward = density < 0.0f ? 1.0f : -1.0f, steepness = root(dot3(slope, slope));
+  const float outward = density < 0.0f ? 1.0f : -1.0f;
+#if MASKED
+  if (volume->plan->mask.faces) {
+    const mask_data mask = mask_of_volume(volume);
+    slope = add_scaled(slope, mask_slope(&mask, s->position),
+                       -outward * magnitude(density) * (magnitude(volume->plan->scale) * 0.5f));
+  }
+#endif
+  const float steepness = root(dot3(slope, slope));
   s->surface = lesser(steepness * divided(1.0f, volume->plan->normal_edge), 1.0f);
   s->normal = scaled(slope, divided(outward, greater(steepness, 1e-18f)));
   if (volume->plan->any_face) find_cut_face(volume, s);
@@ -129,37 +136,6 @@ DEVICE vector color_of_way(const volume_data *volume, const slab_sample *s) {
   return vector_of(greater((at_to[0] - at_from[0]) * inverse, 0.0f),
                    greater((at_to[1] - at_from[1]) * inverse, 0.0f),
                    greater((at_to[2] - at_from[2]) * inverse, 0.0f));
-}
-
-/* The mean colour of the eight voxels around a position, as voxel_color_at() in render/voxel_color_lanes.h.
- */
-DEVICE vector voxel_color_at(const volume_data *volume, vector position) {
-  GLOBAL const plan_volume *plan = volume->plan;
-  int first[3], next[3];
-  float part[3], sum[3] = {0.0f, 0.0f, 0.0f}, all = 0.0f;
-  for (int a = 0; a < 3; a++) {
-    const float at = limited(row_of_point(plan->to_index[a], position), 0.0f, (float)plan->color_last[a]);
-    first[a] = (int)at;
-    next[a] = first[a] + 1 > plan->color_last[a] ? plan->color_last[a] : first[a] + 1;
-    part[a] = at - (float)first[a];
-  }
-  for (int corner = 0; corner < 8; corner++) {
-    int at[3];
-    float share = 1.0f;
-    for (int a = 0; a < 3; a++) {
-      const int is_far = corner >> a & 1;
-      at[a] = is_far ? next[a] : first[a];
-      share = share * (is_far ? part[a] : 1.0f - part[a]);
-    }
-    const wide row = (wide)(unsigned)at[2] * (unsigned)(plan->color_last[1] + 1) + (unsigned)at[1];
-    GLOBAL const byte *codes = volume->colors +
-                               (row * (unsigned)(plan->color_last[0] + 1) + (unsigned)at[0]) * 4;
-    const float weight = share * (float)codes[3];
-    all = all + weight;
-    for (int c = 0; c < 3; c++) sum[c] = fused(weight, plan->color_decode[codes[c]], sum[c]);
-  }
-  all = greater(all, 1e-6f);
-  return vector_of(divided(sum[0], all), divided(sum[1], all), divided(sum[2], all));
 }
 
 /* ---- lights ---- */
@@ -293,8 +269,16 @@ DEVICE vector color_of_slab(GLOBAL const device_sweep *plan, const volume_data *
   GLOBAL const plan_volume *matter = volume->plan;
   vector color = color_of_way(volume, s);
 #if COLORED
-  const vector of_voxels = voxel_color_at(volume, s->position);
-  color = vector_of(color.x * of_voxels.x, color.y * of_voxels.y, color.z * of_voxels.z);
+  float of_voxels[3];
+  color_between_voxels(volume->colors, matter->color_decode, matter->color_last, matter->to_index,
+                       s->position, of_voxels);
+  color = vector_of(color.x * of_voxels[0], color.y * of_voxels[1], color.z * of_voxels[2]);
+#endif
+#if MASKED
+  if (matter->mask.tints) {
+    const mask_data mask = mask_of_volume(volume);
+    color = tinted_by_mask(&mask, s->position, color);
+  }
 #endif
   float own = matter->emission * plan->emission;
   vector lit = vector_of(color.x * (matter->ambient * plan->ambient[0] + own),

@@ -57,7 +57,8 @@ spread_distances(GLOBAL const byte *from, GLOBAL byte *to, unsigned x, unsigned 
       GLOBAL const int *APART shown_from, GLOBAL unsigned *APART counts, GLOBAL float *APART slots,        \
       GLOBAL unsigned *APART list, GLOBAL unsigned *APART masks, GLOBAL const plan_cut *APART cuts,        \
       GLOBAL const plan_brick *APART directory, GLOBAL const byte *APART colors, GLOBAL float *APART soft, \
-      GLOBAL int *APART touched, GLOBAL const short *APART sky, int first, int end, int run
+      GLOBAL int *APART touched, GLOBAL const short *APART sky, GLOBAL const byte *APART mask, int first,  \
+      int end, int run
 
 DEVICE sweep_data sweep_of(SWEEP_ARGUMENTS) {
   sweep_data sweep;
@@ -71,6 +72,7 @@ DEVICE sweep_data sweep_of(SWEEP_ARGUMENTS) {
   sweep.volume.cuts = cuts;
   sweep.volume.directory = directory;
   sweep.volume.colors = colors;
+  sweep.volume.mask = mask;
   sweep.pixels = pixels;
   sweep.soft = soft;
   sweep.touched = touched;
@@ -89,10 +91,10 @@ DEVICE sweep_data sweep_of(SWEEP_ARGUMENTS) {
   return sweep;
 }
 
-#define SWEEP_OF_ARGUMENTS                                                                                  \
-  sweep_of(plan, rays, voxels, distances, cell_bits, tables, pixels, planes, light_state, changed,          \
-           shown_from, counts, slots, list, masks, cuts, directory, colors, soft, touched, sky, first, end, \
-           run)
+#define SWEEP_OF_ARGUMENTS                                                                                   \
+  sweep_of(plan, rays, voxels, distances, cell_bits, tables, pixels, planes, light_state, changed,           \
+           shown_from, counts, slots, list, masks, cuts, directory, colors, soft, touched, sky, mask, first, \
+           end, run)
 
 /* Lists the samples that the picture's pixels may see in slabs first to end - 1. */
 KERNEL(16) find_samples(SWEEP_ARGUMENTS) {

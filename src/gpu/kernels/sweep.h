@@ -255,7 +255,7 @@ DEVICE void shade_slot(const sweep_data *sweep, unsigned slot, int run_first) {
   at[3] = -1.0f;
   if (!(s.extinction > 0.0f)) return;
   place_slab(plan, rays, pixel.u, pixel.v, &s);
-#if STEEP
+#if WEIGHED
   weigh_slab(plan, rays, pixel.u, pixel.v, volume, &s);
   if (!(s.extinction > 0.0f)) return;
 #endif
@@ -304,8 +304,8 @@ typedef struct light_pixel {
 #endif
 } light_pixel;
 
-/* The factor by which gradient opacity multiplies a slab's extinction. It is found at the centre of gravity
- * of the slab's matter. */
+/* The factor by which gradient opacity and a mask multiply a slab's extinction. It is found at the centre of
+ * gravity of the slab's matter. */
 DEVICE float factor_in_slab(const sweep_data *sweep, GLOBAL const plan_light *light,
                             GLOBAL const plan_rays *in_frame, const ray_left *ray, covered_span part, float a,
                             float b, const way_sums *sums) {
@@ -317,14 +317,15 @@ DEVICE float factor_in_slab(const sweep_data *sweep, GLOBAL const plan_light *li
                           : scaled(direction_of(in_frame, ray->u, ray->v),
                                    divided(sweep->plan->spacing, climb_of(in_frame, ray->u, ray->v)));
   const vector point = add_scaled(end, step, centre - 1.0f);
-  return factor_of_slope(&sweep->volume, gradient_at(sweep->volume, point));
+  vector slope;
+  return factor_of_matter(&sweep->volume, point, &slope);
 }
 
 /* The effect of a slab on the light of a pixel. SLAB_TAKES: the slab absorbs light. SLAB_HIDES: the slab
- * absorbs no light, but it ends surfaces in the pixel's block, because gradient opacity may hide matter
+ * absorbs no light, but it ends surfaces in the pixel's block, because a factor may hide matter
  * there. */
 #define SLAB_TAKES 1
-#define SLAB_HIDES (2 * STEEP)
+#define SLAB_HIDES (2 * WEIGHED)
 
 /* Multiplies the light by the transmittance of a slab. Returns 0, SLAB_TAKES or SLAB_HIDES. */
 DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *light,
@@ -341,7 +342,7 @@ DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *ligh
   const way_sums sums = sums_of_way(sweep->volume.tables, a, b);
   float extinction = sums.extinction * part.length, all = 0.0f;
   if (!(extinction > 0.0f)) return SLAB_HIDES;
-#if STEEP
+#if WEIGHED
   extinction = extinction * factor_in_slab(sweep, light, in_frame, ray, part, a.x, b.x, &sums);
   if (!(extinction > 0.0f)) return SLAB_HIDES;
 #endif
