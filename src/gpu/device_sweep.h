@@ -156,6 +156,8 @@ typedef struct plan_volume {
   float weight[3]; /* the extinction in shadow buffers divided by the extinction for the eye */
   float voxel;
   plan_mask mask; /* set where the variant has a mask */
+  /* of a function of value and gradient (plane_table in grid/plane_table.h) */
+  float column_scale, column_offset, row_scale, row_offset;
 } plan_volume;
 
 /* The field of the sky's light: the members of sky_light (field/sky_field.h), but for the cells. */
@@ -243,6 +245,7 @@ typedef struct plan_variant {
   int cuts;    /* the volume has cuts */
   int steep;   /* the volume has gradient opacity */
   int masked;  /* the volume has a mask */
+  int plane;   /* the transfer function is one of value and gradient */
   int colored; /* the voxels have colours of their own */
   int soft;    /* some lights are soft */
   int sky;     /* the sky's light is added in this sweep */
@@ -256,5 +259,12 @@ typedef struct plan_variant {
 #define PLAN_ENTRIES      4096
 #define PLAN_TABLE_ROWS   (PLAN_ENTRIES + 2)
 #define PLAN_TABLE_FLOATS (PLAN_TABLE_ROWS * 15)
+
+/* The two tables of a function of value and gradient, sums and color (plane_table in grid/plane_table.h),
+ * follow the tables above. Each has PLAN_PLANE_FLOATS numbers: four for each point of the plane. */
+#define PLAN_PLANE_COLUMNS 512
+#define PLAN_PLANE_ROWS    256
+#define PLAN_PLANE_STRIDE  (PLAN_PLANE_COLUMNS + 1)
+#define PLAN_PLANE_FLOATS  ((PLAN_PLANE_ROWS + 1) * PLAN_PLANE_STRIDE * 4)
 
 #endif

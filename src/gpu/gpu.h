@@ -63,6 +63,8 @@ typedef struct gpu_volume {
   const float *outside, *bent, *steepness; /* [PLAN_TABLE_ROWS]; bent and steepness may be null: there is no
                                             * such table */
   gpu_mask mask;                           /* it belongs to tables_version */
+  const float *plane_sums, *plane_color;   /* [PLAN_PLANE_FLOATS]; null: the function is not one of two
+                                            * numbers */
 } gpu_volume;
 
 /* The number of bytes of a row of the device's voxels. */

@@ -27,7 +27,7 @@ static const char *const kernel_names[KERNELS] = {"fill_floats",       "try_arit
                                                   "composite_samples", "pass_rows",      "pass_fields",
                                                   "pass_absorbed",     "pass_refill"};
 
-enum { VARIANT_DEFINES = 17, SAMPLE_COUNTERS = 256, TILE_SIDE = 16 };
+enum { VARIANT_DEFINES = 18, SAMPLE_COUNTERS = 256, TILE_SIDE = 16 };
 
 /* ---- memory ---- */
 
@@ -124,7 +124,8 @@ static bool upload_tables(hl_gpu *gpu, const gpu_volume *volume) {
   size_t bricks = (size_t)volume->brick_count[0] * (size_t)volume->brick_count[1] *
                   (size_t)volume->brick_count[2];
   const size_t column = PLAN_TABLE_ROWS * sizeof(float);
-  bool done = reserve(gpu, BUFFER_TABLES, PLAN_TABLE_FLOATS * sizeof(float)) &&
+  const size_t tables = PLAN_TABLE_FLOATS * sizeof(float), plane = PLAN_PLANE_FLOATS * sizeof(float);
+  bool done = reserve(gpu, BUFFER_TABLES, tables + (volume->plane_sums != NULL ? 2 * plane : 0)) &&
               upload(gpu, BUFFER_TABLES, 0, volume->sums, 4 * column) &&
               upload(gpu, BUFFER_TABLES, 4 * column, volume->color, 4 * column) &&
               upload(gpu, BUFFER_TABLES, 8 * column, volume->shown, 4 * column);
@@ -132,6 +133,9 @@ static bool upload_tables(hl_gpu *gpu, const gpu_volume *volume) {
   if (done && volume->bent != NULL) done = upload(gpu, BUFFER_TABLES, 13 * column, volume->bent, column);
   if (done && volume->steepness != NULL)
     done = upload(gpu, BUFFER_TABLES, 14 * column, volume->steepness, column);
+  if (done && volume->plane_sums != NULL)
+    done = upload(gpu, BUFFER_TABLES, tables, volume->plane_sums, plane) &&
+           upload(gpu, BUFFER_TABLES, tables + plane, volume->plane_color, plane);
   if (done)
     done = reserve_and_upload(gpu, BUFFER_DISTANCES, volume->relevant, bricks) &&
            reserve(gpu, BUFFER_DISTANCES_MADE, bricks);
@@ -171,8 +175,8 @@ static void define_variant(const plan_variant *v, char defines[VARIANT_DEFINES][
       {"PHONG", v->phong},       {"LIT", v->lit},         {"SHADOWED", v->shadowed},
       {"OUTSIDE", v->outside},   {"BOXED", v->boxed},     {"BACK_TO_FRONT", v->back_to_front},
       {"CHANNELS", v->channels}, {"CUTS", v->cuts},       {"BRICKS", v->bricks},
-      {"STEEP", v->steep},       {"MASKED", v->masked},   {"COLORED", v->colored},
-      {"SOFT", v->soft},         {"SKY", v->sky}};
+      {"STEEP", v->steep},       {"MASKED", v->masked},   {"PLANE", v->plane},
+      {"COLORED", v->colored},   {"SOFT", v->soft},       {"SKY", v->sky}};
   for (int i = 0; i < VARIANT_DEFINES; i++)
     snprintf(defines[i], sizeof defines[i], "%s=%d", all[i].name, all[i].value);
 }

@@ -18,6 +18,8 @@ _Static_assert(PLAN_LIGHTS >= MAXIMUM_SWEEP_LIGHTS && PLAN_SECTORS == LIGHT_SECT
 _Static_assert(MASK_BRICK_SHIFT == HL_MASK_BRICK_SHIFT && MASK_EVEN == HL_MASK_EVEN &&
                    MASK_EVEN_COLOR == HL_MASK_EVEN_COLOR,
                "masks of plans are masks of labels");
+_Static_assert(PLAN_PLANE_COLUMNS == PLANE_COLUMNS && PLAN_PLANE_ROWS == PLANE_ROWS,
+               "planes of plans are planes of grids");
 _Static_assert(PLAN_HARMONICS == FIELD_HARMONICS, "skies of plans are skies of fields");
 _Static_assert(sizeof(plan_brick) == sizeof(hl_brick_entry) &&
                    offsetof(plan_brick, level) == offsetof(hl_brick_entry, level) &&
@@ -82,6 +84,10 @@ gpu_volume hl_volume_for_device(const frame_plan *plan) {
                      .bent = classifier->bent,
                      .steepness = classifier->steepness,
                      .mask = mask_for_device(&classifier->mask)};
+  if (classifier->plane.sums != NULL) {
+    made.plane_sums = &classifier->plane.sums[0][0];
+    made.plane_color = &classifier->plane.color[0][0];
+  }
   if (grid->pages != NULL) {
     made.pages = grid->pages;
     made.load_row = load_row;
@@ -147,6 +153,10 @@ static void plan_matter(const shade_volume *shade, plan_volume *volume) {
   volume->normal_edge = classifier->normal_edge;
   volume->bends = classifier->bent != NULL;
   volume->steepness_scale = classifier->steepness_scale;
+  volume->column_scale = classifier->plane.column_scale;
+  volume->column_offset = classifier->plane.column_offset;
+  volume->row_scale = classifier->plane.row_scale;
+  volume->row_offset = classifier->plane.row_offset;
   volume->several_surfaces = classifier->several_surfaces;
   volume->only_beginning = classifier->only_beginning;
   volume->cut_count = shade->cut_count;
@@ -474,6 +484,7 @@ static plan_variant variant_of(const sweep_task *task, const device_sweep *plan)
                         .sky = task->constants->shade.sky != NULL,
                         .colored = shade->colors.voxels != NULL,
                         .steep = shade->classifier->steepness != NULL,
+                        .plane = shade->classifier->plane.sums != NULL,
                         .masked = shade->classifier->mask.factors != NULL,
                         .back_to_front = task->plan->geometry->back_to_front,
                         .channels = task->frame_plan->channels};

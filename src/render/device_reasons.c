@@ -25,8 +25,9 @@ static bool is_thin(const frame_plan *plan) {
   if (plan->volumes.grids[0].bricks != NULL) return false;
   return dimension[0] < 4 || dimension[1] < 4 || dimension[2] < 4;
 }
-static bool has_two_numbers(const frame_plan *plan) {
-  return volume_of(plan)->classifier->plane.sums != NULL;
+static bool has_second_volume(const frame_plan *plan) {
+  const plane_table *plane = &volume_of(plan)->classifier->plane;
+  return plane->sums != NULL && plane->axis != HL_SECOND_GRADIENT;
 }
 static bool is_soft_otherwise(const frame_plan *plan) {
   for (int i = 0; i < plan->frame.light_count; i++)
@@ -50,7 +51,7 @@ static bool has_soft_surfaces(const frame_plan *plan) {
   return soft && volume_of(plan)->look.shading == HL_SHADING_PHONG;
 }
 static bool steepens_soft_surfaces(const frame_plan *plan) {
-  return volume_of(plan)->classifier->steepness != NULL && plan->volumes.grids[0].cut &&
+  return hl_classifier_needs_gradient(volume_of(plan)->classifier) && plan->volumes.grids[0].cut &&
          has_soft_surfaces(plan);
 }
 static bool masks_soft_surfaces(const frame_plan *plan) { return is_masked(plan) && has_soft_surfaces(plan); }
@@ -91,7 +92,7 @@ static const struct {
     {splats, "splatting in place of gathering"},
     {is_over_ranks, "voxels of several processes"},
     {is_thin, "a volume less than four voxels thick"},
-    {has_two_numbers, "a function of two numbers"},
+    {has_second_volume, "a function of two volumes' values"},
     {steepens_soft_surfaces, "gradient opacity of cut surfaces with soft shadows"},
     {masks_soft_surfaces, "a mask of surfaces with soft shadows"},
     {masks_thick_slabs, "a mask with sheets more than 1.5 voxels apart"},

@@ -64,6 +64,19 @@ GRAINS = {"file": "grains.csv", "array": "density"}
 THIN = [[0.001, 0], [0.05, 0.2], [1, 0.6]]
 FAR = {"type": "perspective", "position": [70, 50, -120], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 30}
 FLAT = {"type": "orthographic", "position": [50, 32, -88], "target": [0, 0, 0], "up": [0, 1, 0], "height": 50}
+PLANE = {"unit_distance": 1, "second": "gradient", "boxes": [
+    {"value": [0.12, 0.5], "second": [0.01, 0.05], "edge": [0.05, 0.01], "color": [0.2, 0.4, 0.7], "opacity": 0.3},
+    {"value": [0.3, 1], "second": [0.03, 0.2], "edge": [0.1, 0.02], "color": [0.8, 0.5, 0.2], "opacity": 0.9}]}
+
+
+def with_plane(made):
+    """The scene with a transfer function of value and gradient."""
+    shown = made["volumes"][0]
+    kept = {name: value for name, value in shown["transfer_function"].items() if name == "gradient_opacity"}
+    shown["transfer_function"] = {**PLANE, **kept}
+    return made
+
+
 MADE = {
     "medium": scene(),
     "boxed, light from behind": scene(opacity=AROUND, direction=(0.2, -0.3, -0.9)),
@@ -117,6 +130,13 @@ MADE = {
     "gradient opacity of cut surfaces": scene(opacity=DENSE, shading="phong", function=STEEP, volume={"cuts": [BALL]}),
     "a mask, cut surfaces, light from behind": scene(opacity=AROUND, shading="phong", direction=(0.2, -0.3, -0.9),
                                                      volume={"mask": {**ORGANS, "rest": 1}, "cuts": [BALL, plane(1, 0.4, -0.2)]}),
+    "value and gradient": with_plane(scene()),
+    "value and gradient, surfaces": with_plane(scene(shading="phong", light={"type": "point", "position": [40, 50, -50]})),
+    "value and gradient, gradient opacity, a mask": with_plane(scene(shading="phong", function=STEEP, volume={"mask": {**ORGANS, "rest": 0.4}})),
+    "value and gradient, cuts, light from behind": with_plane(scene(shading="phong", direction=(0.2, -0.3, -0.9),
+                                                                    volume={"cuts": [BALL, plane(1, 0.4, -0.2)]})),
+    "value and gradient, soft shadows, a sky": with_plane(scene(shadows="soft", shading="phong", light=SUN, sky=SKY)),
+    "value and gradient, a field at levels, flat view": with_plane(scene(camera=FLAT, volume=GRAINS, direction=(0.2, -0.3, -0.9))),
     "soft shadows": scene(shadows="soft", light=SUN),
     "soft shadows of a wide light": scene(shadows="soft", opacity=DENSE, light={**SUN, "angular_diameter_deg": 25}),
     "soft shadows of surfaces": scene(shadows="soft", shading="phong", opacity=LAYERS, light=SUN),

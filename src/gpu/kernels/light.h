@@ -25,7 +25,8 @@ typedef struct slab_sample {
                        * even; both are fractions of the way through the slab's covered part */
   int sloped;
   vector slope, normal;
-  float factor; /* the factor by which gradient opacity and a mask have multiplied extinction and the sums */
+  float factor; /* the factor (matter_factor) that has multiplied extinction and the sums */
+  float row;    /* as in matter_factor */
   float surface;
   float behind; /* the distance, in voxels, of the matter from a face that cuts it and is shaded as a surface;
                  * FACE_VOXELS where no such face is near */

@@ -5,10 +5,11 @@
 
 #include "core/sheet_constants.h"
 #include "gpu/kernels/mask.h"
+#include "gpu/kernels/plane.h"
 #include "gpu/kernels/sample.h"
 
 /* Whether extinction depends on more than the value, so that a factor multiplies it. */
-#define WEIGHED (STEEP || MASKED)
+#define WEIGHED (STEEP || MASKED || PLANE)
 
 /* A coordinate in the tables: x = entry + fraction. */
 typedef struct table_coordinate {
@@ -108,21 +109,49 @@ DEVICE mask_data mask_of_volume(const volume_data *volume) {
   return mask;
 }
 
-/* The factor by which gradient opacity and a mask multiply extinction at a point of frame space, as
- * factor_of_matter() in fill/steepness_lanes.h. *slope: receives the gradient with gradient opacity, else
- * 0. */
-DEVICE float factor_of_matter(const volume_data *volume, vector point, vector *slope) {
-  float factor = 1.0f;
-  *slope = vector_of(0.0f, 0.0f, 0.0f);
+DEVICE plane_data plane_of_volume(const volume_data *volume) {
+  plane_data plane;
+  plane.sums = volume->tables + PLAN_TABLE_FLOATS;
+  plane.color = plane.sums + PLAN_PLANE_FLOATS;
+  plane.column_scale = volume->plan->column_scale;
+  plane.column_offset = volume->plan->column_offset;
+  return plane;
+}
+
+/* The factor by which gradient opacity, a mask and a function of value and gradient multiply extinction. */
+typedef struct matter_factor {
+  float factor;
+  vector slope; /* the gradient, where the factor depends on it, else 0 */
+  float row;    /* the gradient's row in the tables of a function of value and gradient */
+} matter_factor;
+
+/* Finds the factor at a point of frame space, as factor_of_matter() in fill/steepness_lanes.h. from, to: the
+ * coordinates in the tables at the ends of the way. extinction: its mean extinction by the tables alone. */
+DEVICE matter_factor factor_of_matter(const volume_data *volume, vector point, float from, float to,
+                                      float extinction) {
+  matter_factor found;
+  found.factor = 1.0f;
+  found.row = 0.0f;
+  found.slope = vector_of(0.0f, 0.0f, 0.0f);
+#if STEEP || PLANE
+  found.slope = gradient_at(*volume, point);
+#endif
 #if STEEP
-  *slope = gradient_at(*volume, point);
-  factor = factor_of_slope(volume, *slope);
+  found.factor = factor_of_slope(volume, found.slope);
 #endif
 #if MASKED
   const mask_data mask = mask_of_volume(volume);
-  factor = factor * mask_factor(&mask, point);
+  found.factor = found.factor * mask_factor(&mask, point);
 #endif
-  return factor;
+#if PLANE
+  const plane_data plane = plane_of_volume(volume);
+  found.row = row_of_slope(found.slope, volume->plan->row_scale, volume->plan->row_offset);
+  found.factor = found.factor *
+                 divided(extinction_in_row(&plane, found.row, from, to), greater(extinction, 1e-30f));
+#else
+  (void)from, (void)to, (void)extinction;
+#endif
+  return found;
 }
 
 /* Moves the coordinates a and b from the slab's two sheets to the ends of the slab's covered part.

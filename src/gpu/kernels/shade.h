@@ -61,12 +61,15 @@ DEVICE void place_slab(GLOBAL const device_sweep *plan, GLOBAL const plan_rays *
   s->position = add_scaled(s->start, s->step_sheet, s->place);
 }
 
-/* Applies gradient opacity and a mask after place_slab(), as weigh_slab() in render/slab_lanes.h. Finds the
- * factor at the place where the matter would be seen without this factor, multiplies the extinction by this
- * factor, and places the slab again. */
+/* Applies factors on extinction (matter_factor) after place_slab(), as weigh_slab() in render/slab_lanes.h.
+ * Finds the factor at the place where the matter would be seen without this factor, multiplies the extinction
+ * by this factor, and places the slab again. */
 DEVICE void weigh_slab(GLOBAL const device_sweep *plan, GLOBAL const plan_rays *rays, float u, float v,
                        const volume_data *volume, slab_sample *s) {
-  s->factor = factor_of_matter(volume, s->position, &s->slope);
+  const matter_factor found = factor_of_matter(volume, s->position, s->before, s->after, s->sums.extinction);
+  s->slope = found.slope;
+  s->row = found.row;
+  s->factor = found.factor;
   if (s->factor == 1.0f) return;
   s->extinction = s->extinction * s->factor;
   s->sums.extinction = s->sums.extinction * s->factor;
@@ -80,7 +83,7 @@ DEVICE void find_normal(const volume_data *volume, float density, slab_sample *s
   s->normal = vector_of(0.0f, 0.0f, 0.0f);
   s->surface = 0.0f;
   s->behind = FACE_VOXELS;
-#if !STEEP
+#if !(STEEP || PLANE)
   s->slope = s->normal;
 #if !PHONG
   s->sloped = s->sloped && s->sums.extinction * s->part.length * s->path > THIN_DEPTH;
@@ -113,6 +116,16 @@ DEVICE void shown_below(GLOBAL const float *tables, float x, float sums[4]) {
   table_values(shown_table(tables), split_coordinate(x), 4, sums);
 }
 
+/* The visible part of a way's depth, as coordinates in the tables: returns where it ends. *from: receives
+ * where it begins. */
+DEVICE float end_of_shown(const slab_sample *s, float *from) {
+  way_means means = means_of_way(s->before, s->after, &s->sums);
+  int front = s->evenly <= 0.5f;
+  float part = limited(fused(s->evenly, 2.0f, front ? 0.0f : -1.0f), 0.0f, 1.0f);
+  *from = front ? s->before : s->after;
+  return fused(s->after - s->before, way_of_depth(means.from_a, means.from_b, part), s->before);
+}
+
 /* The mean colour of the visible part of the matter. */
 DEVICE vector color_of_way(const volume_data *volume, const slab_sample *s) {
   GLOBAL const float *tables = volume->tables;
@@ -122,11 +135,7 @@ DEVICE vector color_of_way(const volume_data *volume, const slab_sample *s) {
   if (!volume->plan->bends) return color;
   float bent = bent_table(tables)[(int)s->after] - bent_table(tables)[(int)s->before];
   if (!(magnitude(bent * (s->after - s->before)) > CLASSIFIER_LEAST_BENDING)) return color;
-  way_means means = means_of_way(s->before, s->after, &s->sums);
-  int front = s->evenly <= 0.5f;
-  float part = limited(fused(s->evenly, 2.0f, front ? 0.0f : -1.0f), 0.0f, 1.0f);
-  float from = front ? s->before : s->after;
-  float to = fused(s->after - s->before, way_of_depth(means.from_a, means.from_b, part), s->before);
+  float from, to = end_of_shown(s, &from);
   float at_from[4], at_to[4];
   shown_below(tables, from, at_from);
   shown_below(tables, to, at_to);
@@ -267,7 +276,13 @@ DEVICE vector color_of_slab(GLOBAL const device_sweep *plan, const volume_data *
                             GLOBAL const short *sky, GLOBAL const float *planes, GLOBAL const plan_rays *rays,
                             int slot, const slab_sample *s) {
   GLOBAL const plan_volume *matter = volume->plan;
+#if PLANE
+  const plane_data plane = plane_of_volume(volume);
+  float from, to = end_of_shown(s, &from);
+  vector color = color_in_row(&plane, s->row, from, to, s->before, s->after);
+#else
   vector color = color_of_way(volume, s);
+#endif
 #if COLORED
   float of_voxels[3];
   color_between_voxels(volume->colors, matter->color_decode, matter->color_last, matter->to_index,

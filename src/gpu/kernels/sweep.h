@@ -304,7 +304,7 @@ typedef struct light_pixel {
 #endif
 } light_pixel;
 
-/* The factor by which gradient opacity and a mask multiply a slab's extinction. It is found at the centre of
+/* The factor by which matter_factor multiplies a slab's extinction. It is found at the centre of
  * gravity of the slab's matter. */
 DEVICE float factor_in_slab(const sweep_data *sweep, GLOBAL const plan_light *light,
                             GLOBAL const plan_rays *in_frame, const ray_left *ray, covered_span part, float a,
@@ -317,8 +317,7 @@ DEVICE float factor_in_slab(const sweep_data *sweep, GLOBAL const plan_light *li
                           : scaled(direction_of(in_frame, ray->u, ray->v),
                                    divided(sweep->plan->spacing, climb_of(in_frame, ray->u, ray->v)));
   const vector point = add_scaled(end, step, centre - 1.0f);
-  vector slope;
-  return factor_of_matter(&sweep->volume, point, &slope);
+  return factor_of_matter(&sweep->volume, point, a, b, sums->extinction).factor;
 }
 
 /* The effect of a slab on the light of a pixel. SLAB_TAKES: the slab absorbs light. SLAB_HIDES: the slab
