@@ -8,7 +8,7 @@ import sys
 
 import rattler_build
 
-PYTHONS = ["3.11.* *_cpython", "3.12.* *_cpython", "3.13.* *_cp313"]
+PYTHONS = ["3.11.* *_cpython", "3.12.* *_cpython", "3.13.* *_cp313", "3.14.* *_cp314"]
 
 
 def main():

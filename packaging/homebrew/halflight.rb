@@ -24,6 +24,9 @@ class Halflight < Formula
   depends_on "xz"
   depends_on "zstd"
 
+  uses_from_macos "bzip2"
+  uses_from_macos "zlib"
+
   def install
     system "meson", "setup", "build", "-Dtests=disabled", *std_meson_args
     system "meson", "compile", "-C", "build"
