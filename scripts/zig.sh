@@ -8,7 +8,7 @@ shared_folder=$PWD/build-zig
 install_zig() {
   root=$out/root sources=$shared_folder/sources tools=$shared_folder/tools
   mkdir -p "$root"
-  [ -x "$tools/bin/meson" ] || { python3 -m venv "$tools" && "$tools/bin/pip" install -q meson==1.12.1 ziglang==0.17.1; }
+  [ -x "$tools/bin/meson" ] || { python3 -m venv "$tools" && "$tools/bin/python" -m pip install -q meson==1.12.1 ziglang==0.17.1; }
   zig=$("$tools/bin/python" -c 'import os, ziglang; print(os.path.dirname(ziglang.__file__))')
 }
 
