@@ -20,7 +20,7 @@ typedef struct descent {
 static hl_status add_leaf(descent *d, int level, const size_t brick[3]) {
   if (d->count == d->most)
     return hl_fail_memory(d->error, (d->count + 1) * brick_points(d->source->shift) * sizeof(float),
-                          "the bricks of a field");
+                          "a field in bricks");
   if (d->count == d->room) {
     size_t room = 2 * d->room + 64;
     hl_bricks_leaf *grown = hl_reallocate(d->context, d->leaves, room, sizeof *grown);
