@@ -210,10 +210,23 @@ static int run_formats(const cli_value *values, char **operands) {
   return info_formats(values[INFO_JSON].given);
 }
 
+/* Whether a file is a picture of linear light. The headers of ANALYZE volumes end in .hdr, too, so that the
+ * mark of Radiance HDR counts there. */
+static bool is_light(const char *path) {
+  char mark[2] = {0};
+  if (has_extension(path, ".exr")) return true;
+  FILE *file = has_extension(path, ".hdr") ? fopen(path, "rb") : NULL;
+  if (file == NULL) return false;
+  const bool is_radiance = fread(mark, 1, sizeof mark, file) == sizeof mark &&
+                           memcmp(mark, "#?", sizeof mark) == 0;
+  fclose(file);
+  return is_radiance;
+}
+
 static int info_of_input(cli_host *host, const cli_value *values, const char *path) {
   cli_input input = {0};
   const bool page = has_extension(path, ".pdf") || has_extension(path, ".svg"),
-             light = has_extension(path, ".exr") || has_extension(path, ".hdr");
+             light = !page && is_light(path);
   int exit_code = page || light ? refuse_reading(values, path, "a picture") : EXIT_CODE_OK;
   if (exit_code != EXIT_CODE_OK) return exit_code;
   if (page) return info_of_page(path, values[INFO_JSON].given);
