@@ -288,6 +288,18 @@ def film_is_undone(browser):
     for _ in states[1:]:
         browser.run("halflight.store.undo()")
     check(tracks() == states[0], "the film is as it was")
+    # A step of the scene leaves the view from which a whole turn starts.
+    browser.run("(() => { const t = [...document.querySelectorAll('label')].find((l) => l.textContent === 'Whole turn'); document.getElementById(t.htmlFor).click(); })()")
+    seek(0)
+    browser.run("halflight.store.changeRender('shadows', 'hard')")
+    browser.run("import('./camera.js').then((m) => halflight.store.setCamera(m.turn(halflight.store.scene.camera, 0.3, 0)))")
+    seek(1)
+    start = "JSON.stringify(halflight.store.page.film.from)"
+    chosen = browser.run(start)
+    browser.run("halflight.store.undo()")
+    seek(2)
+    check(browser.run(start) == chosen, "the turn starts where the camera was put")
+    browser.run("halflight.store.undo()")
     open_section(browser, "Session")
     browser.wait("document.querySelector('.timeline').hidden")
     rest(browser)

@@ -14,6 +14,9 @@ function lasting({ scene: { camera, image: { width, height, ...image }, ...rest 
   return { rest, image, marks, film, source, title };
 }
 
+// Whether two films have the same keys and length. They may show other frames, and turn from other views.
+const isSameFilm = (a, b) => ["tracks", "frames", "fps", "turns"].every((key) => a?.[key] === b?.[key]);
+
 // A film of the history, at the frame and with the panel of the film now.
 const filmAgain = (film, now) => ({ ...film, frame: Math.min(now?.frame ?? 0, (film?.frames ?? 1) - 1), open: now?.open ?? false, format: now?.format });
 
@@ -181,7 +184,7 @@ export class Store {
     const now = lasting(this), { rest, image, marks, film, source, title } = from.pop();
     to.push(now);
     this.marks = marks;
-    if (film !== now.film) this.page = { ...this.page, film: filmAgain(film, now.film) };
+    if (!isSameFilm(film, now.film)) this.page = { ...this.page, film: filmAgain(film, now.film) };
     this.source = source ?? null;
     this.title = title ?? this.title;
     this.#last = { name: "", gesture: -1 };
