@@ -221,10 +221,11 @@ typedef struct hl_volume_field_error {
   size_t struct_size; /* set by the caller */
   double value;       /* the difference in data values; NaN: nothing could be compared, as in a mesh of one
                        * layer of cells */
-  double of_range;    /* `value` as a part of the volume's range; NaN as `value` */
-  const char *kind;   /* "exact": somewhere the difference is as great as `value`; "bound": the differences
-                       * may all be smaller; "sampled": `value` is the greatest difference at a few thousand
-                       * places, and other places may have greater ones. A constant text */
+  double
+      of_range; /* `value` divided by the width of the volume's range of values; NaN where `value` is NaN */
+  const char *kind; /* "exact": somewhere the difference is as great as `value`; "bound": the differences
+                     * may all be smaller; "sampled": `value` is the greatest difference at a few thousand
+                     * places, and other places may have greater ones. A constant text */
   const char
       *source; /* what the field was compared with, in words: "the means over the cells". A constant text */
 } hl_volume_field_error;

@@ -61,7 +61,7 @@ bool hl_bricks_are_finite(const hl_bricks *bricks);
  * pool as large as those of `bricks`; the function sets all other members. */
 void hl_bricks_fill_holes(const hl_bricks *bricks, float empty, hl_bricks *filled);
 
-/* The bytes of the directory and the pool. */
+/* The number of bytes that the directory and the pool of `bricks` take together. */
 size_t hl_bricks_bytes(const hl_bricks *bricks);
 
 #endif

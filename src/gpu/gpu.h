@@ -122,7 +122,7 @@ bool hl_gpu_pass(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_passes *passes);
  * there; 0: none. chunks: [light->tiles]. */
 bool hl_gpu_touched(hl_gpu *gpu, const plan_light *light, int32_t *chunks);
 
-/* What a sweep took. */
+/* The time and the work that one sweep took on a device. */
 typedef struct gpu_times {
   double milliseconds; /* time on the device, without copies */
   int launches;

@@ -14,7 +14,7 @@ enum { HL_LEVEL_FACES, HL_LEVEL_VALUE, HL_LEVEL_FALL, HL_LEVEL_THIN, HL_LEVEL_MO
 
 /* Working space of hl_label_level(). */
 typedef struct label_levels {
-  float *values;  /* [HL_LEVEL_PLANES][size z][y][x] */
+  float *values;  /* [HL_LEVEL_PLANES][size[2]][size[1]][size[0]]; the planes, one after the other */
   size_t size[3]; /* number of cells along x, y and z */
 } label_levels;
 

@@ -11,7 +11,7 @@ enum { FIGURE_MOST_PANELS = 64 };
 typedef struct figure_inset {
   int of;            /* the number of the panel in which this inset lies; -1: the panel is no inset */
   double part;       /* the inset's width divided by the width of the panel in which it lies */
-  bool right, lower; /* the corner of that panel */
+  bool right, lower; /* whether the inset lies at the right and at the lower side of that panel */
 } figure_inset;
 
 /* A rectangle of the page; millimetres from its top left corner. */

@@ -339,7 +339,7 @@ static int label_scene(series_job *job, int number, hl_scene **scene) {
   return note(job, number, exit_code);
 }
 
-/* A mesh in place of the first file's. */
+/* Makes the scene of one file of a series of meshes: this file's mesh replaces the first file's mesh. */
 static int mesh_scene(series_job *job, int number, hl_scene **scene) {
   hl_scene_mesh mesh = hl_scene_describe(job->scene)->meshes[0], own;
   hl_error error = {0};
