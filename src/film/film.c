@@ -132,8 +132,7 @@ static hl_status read_frame(const film *f, json_t *text, int frame, hl_scene **s
 
 /* ---- the camera ---- */
 
-/* Zooms a camera: at zoom 2 everything looks twice as large. */
-static void zoom(hl_camera *camera, double factor) {
+void film_zoom(hl_camera *camera, double factor) {
   if (camera->type == HL_CAMERA_ORTHOGRAPHIC) camera->height /= factor;
   else
     for (int k = 0; k < 3; k++)
@@ -152,7 +151,7 @@ static hl_status turn_camera(const film *f, int frame, hl_camera *camera,
     int turn = turn_of(f->keys[k].path);
     double value = film_key_value(&f->keys[k], frame, 0);
     if (turn == TURN_ZOOM && !(value >= 1e-6 && value <= 1e6)) status = HL_ERROR_ARGUMENT;
-    else if (turn == TURN_ZOOM) zoom(camera, value);
+    else if (turn == TURN_ZOOM) film_zoom(camera, value);
     else if (turn >= 0) *angles[turn] = value, turns = true;
   }
   if (status == HL_OK && turns) status = hl_camera_turn(&view, camera);

@@ -44,4 +44,8 @@ int film_frames(const film *f);
  * owned by the caller. */
 hl_status film_scene(const film *f, int frame, hl_scene **scene, hl_error *error);
 
+/* Zooms a camera about its target: at the factor 2 everything looks twice as large. In parallel projection
+ * the eye stays where it is. */
+void film_zoom(hl_camera *camera, double factor);
+
 #endif

@@ -149,13 +149,6 @@ static int frame_file(series_job *job, int number, hl_camera *camera, bool *foun
   return status == HL_ERROR_MEMORY ? host_fail(&job->host, PHASE_CHANGE, status, &error) : EXIT_CODE_OK;
 }
 
-/* Moves a camera towards its target, or back. */
-static void zoom_camera(double zoom, hl_camera *camera) {
-  for (int a = 0; a < 3; a++)
-    camera->position[a] = camera->target[a] + (camera->position[a] - camera->target[a]) / zoom;
-  camera->height /= zoom;
-}
-
 static bool show_the_same(const hl_camera *a, const hl_camera *b) {
   return memcmp(a->position, b->position, sizeof a->position) == 0 && a->height == b->height;
 }
@@ -181,7 +174,7 @@ static int frame_all(series_job *job) {
       hl_camera_join(cameras, count, (double)changed.width / changed.height, &joined) != HL_OK ||
       show_the_same(&joined, &cameras[0]))
     return exit_code;
-  if (job->values[RENDER_ZOOM].given) zoom_camera(job->values[RENDER_ZOOM].number[0], &joined);
+  if (job->values[RENDER_ZOOM].given) film_zoom(&joined, job->values[RENDER_ZOOM].number[0]);
   changed.camera = joined;
   hl_scene *framed = NULL;
   hl_status status = hl_scene_create(job->host.context, &changed, &framed, &error);
