@@ -29,7 +29,8 @@ enum { SIDE = 64, TABLE = 1024, MOST_LIGHTS = 4 };
 typedef struct exposure {
   const hl_scene_description *scene;
   const hl_scene_volume *volume;
-  cut_shape *cuts; /* owned; [volume->cut_count] */
+  cut_shape *cuts;        /* owned; [volume->cut_count] */
+  double low[3], high[3]; /* the volume's box in index space */
   affine3 world_to_index;
   vec3 right, up, forward; /* the camera's axes; `right` and `up` are as long as half the picture's width and
                             * height at distance 1, `forward` is a unit vector */
@@ -129,13 +130,11 @@ static void shade(const exposure *e, const double color[3], const sample_light *
 
 /* Finds the distances along a ray, in lengths of `along` and from 0 on, at which the ray enters and leaves
  * the volume's box; false if it misses the box. */
-static bool cross_grid(const hl_scene_volume *volume, vec3 from, vec3 along, double part[2]) {
-  double low[3], high[3];
+static bool cross_box(const exposure *e, vec3 from, vec3 along, double part[2]) {
   const double origin[3] = {from.x, from.y, from.z}, direction[3] = {along.x, along.y, along.z};
-  hl_scene_volume_box(volume, low, high);
   part[0] = 0, part[1] = INFINITY;
   for (int a = 0; a < 3; a++) {
-    double s = (low[a] - origin[a]) / direction[a], t = (high[a] - origin[a]) / direction[a];
+    double s = (e->low[a] - origin[a]) / direction[a], t = (e->high[a] - origin[a]) / direction[a];
     /* where a ray lies in a face's plane, s or t is NaN, which fmax and fmin ignore */
     part[0] = fmax(part[0], fmin(s, t));
     part[1] = fmin(part[1], fmax(s, t));
@@ -178,8 +177,7 @@ static void pass_face(const exposure *e, ray_face *face, double t, vec3 before, 
  * meets no matter, because the box is convex. */
 static double passing(const exposure *e, vec3 point, vec3 towards) {
   enum { STEPS = 3 };
-  double low[3], high[3];
-  hl_scene_volume_box(e->volume, low, high);
+  const double *low = e->low, *high = e->high;
   vec3 at = affine3_apply(e->world_to_index, point);
   vec3 step = mat3_apply(e->world_to_index.linear, vec3_scale(towards, STEPS * e->step));
   for (double left = 1;; at = vec3_add(at, step)) {
@@ -271,7 +269,7 @@ static pixel look_along(const exposure *e, vec3 origin, vec3 direction) {
   gathered all = {0, {0, 0, 0}};
   pixel p = {-1, INFINITY};
   ray_face face = {.normal = to_eye, .at = -INFINITY};
-  if (!cross_grid(e->volume, from, along, part)) return p;
+  if (!cross_box(e, from, along, part)) return p;
   for (double t = part[0] + 0.5 * e->step; t < part[1] && all.alpha < OPAQUE; t += e->step) {
     vec3 place = vec3_add(from, vec3_scale(along, t));
     const long at[3] = {lround(place.x), lround(place.y), lround(place.z)};
@@ -310,6 +308,7 @@ static bool begin(const hl_scene_description *scene, double empty, double left, 
       !affine3_invert(index_to_world, &e->world_to_index) ||
       !hl_camera_basis(camera, &e->right, &e->up, &e->forward))
     return false;
+  hl_scene_volume_box(volume, e->low, e->high);
   double half = tan(camera->fovy_deg * HL_PI / 360);
   e->right = vec3_scale(e->right, half * scene->width / scene->height);
   e->up = vec3_scale(e->up, half);
