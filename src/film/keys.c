@@ -99,7 +99,7 @@ double film_key_value(const film_key *key, int frame, int component) {
     double span = key->frames[p] - key->frames[p - 1], past = frame - key->frames[p - 1];
     if (frame == key->frames[p]) return values[stride]; /* exactly the given value, without rounding */
     double part = past / span;
-    /* Hermite's curve, which has no speed at both ends */
+    /* Hermite's cubic from 0 to 1, whose slope is 0 at both ends */
     if (key->smooth) part = part * part * (3 - 2 * part);
     return values[0] + (values[stride] - values[0]) * part;
   }

@@ -122,7 +122,7 @@ typedef struct cascade_level {
 typedef struct cascade_exchange {
   const light_exchange *with; /* the renderers of the other parts; null: there are no other parts */
   size_t slot_bytes;          /* bytes of a message */
-  size_t slots;               /* the greatest number of messages in a post */
+  size_t slots;               /* the greatest number of messages that a part sends at once */
   light_post post;            /* the post that sends `outgoing` and receives `incoming` */
   /* owned; outgoing: [post.most], the messages of this part; incoming: [parts][post.most], the messages of
    * all parts */

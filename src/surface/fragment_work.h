@@ -31,7 +31,7 @@ typedef struct fragments_source {
   const surfaces *surfaces;
   const view *view;
   const sheet_stack *sheets;
-  bool falling;  /* whether the view meets great heights before small ones */
+  bool falling;  /* whether the view meets the higher of two sheets first */
   bool of_light; /* if set, the view is a light's, and sees the meshes that cast shadows; other views see the
                   * visible meshes */
   bool unseen;   /* if set, the view is the eye's, and sees only meshes that cast shadows and are not visible.

@@ -13,7 +13,6 @@
 #include "cli/frames.h"
 #include "cli/input.h"
 #include "cli/render/render.h"
-#include "cli/render/series.h"
 #include "film/movie.h"
 
 enum {

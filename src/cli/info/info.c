@@ -1,7 +1,6 @@
 /* cli/info/info.c - `halflight info FILE`: what a volume, a scene or a mesh file holds. */
 #include <errno.h>
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -55,7 +55,7 @@ static const char *text_of(const json_t *object, const char *key) {
   return text != NULL ? text : "";
 }
 
-/* The name by which a volume of the scene is told: its own, or that of its file. */
+/* The name that is printed for a volume of the scene: the volume's own name, or the name of its file. */
 static const char *name_of_volume(const info_picture *picture, size_t index) {
   const json_t *volume = json_array_get(json_object_get(picture->scene, "volumes"), index);
   const char *name = text_of(volume, "name"), *file = text_of(volume, "file");

@@ -5,10 +5,8 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "cli/input.h"
 #include "picture.h"
 
 /* Prints the file's arrays, and which array and component the volume was read from. */
