@@ -9,6 +9,8 @@ import tempfile
 import time
 
 HANG = 300  # seconds, for a browser that hangs alone
+# What Chromium and Firefox answer where a page is left before an expression in it has its value.
+PAGE_LEFT = ("Inspected target navigated", "Execution context was destroyed", "Cannot find context", "Actor 'MessageHandlerFrame' destroyed")
 # What the page is doing, for the message of a test that waits in vain.
 STATE = """JSON.stringify({ ...globalThis.halflight?.frames?.statistics,
   says: [...document.querySelectorAll('#message, #stage, #progress')].map((e) => e.textContent.trim()), visible: document.visibilityState })"""
@@ -129,10 +131,19 @@ class Browser:
             raise BrowserError(f"{script}: {answer['exceptionDetails']}")
         return answer["result"].get("value")
 
+    def holds(self, condition):
+        """Whether a JavaScript expression is true. A page that is left while the browser asks it holds nothing."""
+        try:
+            return self.run(condition)
+        except BrowserError as error:
+            if any(sign in str(error) for sign in PAGE_LEFT):
+                return False
+            raise
+
     def wait(self, condition, timeout=HANG):
         """Waits until a JavaScript expression is true."""
         end = time.monotonic() + timeout
-        while not self.run(condition):
+        while not self.holds(condition):
             if time.monotonic() > end:
                 raise BrowserError(f"never true: {condition}; {self.run(STATE)}; {self.problems}")
             time.sleep(0.03)

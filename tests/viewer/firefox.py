@@ -139,6 +139,7 @@ class Firefox:
             raise BrowserError(f"{script}: {answer['exceptionDetails']['text']}")
         return value_of(answer["result"])
 
+    holds = Browser.holds
     wait = Browser.wait
 
     def resize(self, width, height):
