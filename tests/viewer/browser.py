@@ -116,12 +116,17 @@ class Browser:
                 return answer["result"]
 
     def touch(self, *steps):
-        """Fingers go down at the first step, follow the others, and leave. A step: [[x, y] of each finger]."""
+        """Fingers on the screen. A step: [[x, y] of each finger]; None: this finger is not down. After the last step all leave."""
         self.call("Emulation.setTouchEmulationEnabled", enabled=True, maxTouchPoints=5)
-        for n, places in enumerate(steps):
-            points = [{"x": x, "y": y, "id": finger} for finger, (x, y) in enumerate(places)]
-            self.call("Input.dispatchTouchEvent", type="touchMove" if n else "touchStart", touchPoints=points)
-        self.call("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+        down = {}
+        for places in (*steps, ()):
+            now = {finger: {"x": place[0], "y": place[1], "id": finger} for finger, place in enumerate(places) if place is not None}
+            lifted = [point for finger, point in down.items() if finger not in now]
+            if lifted:
+                self.call("Input.dispatchTouchEvent", type="touchEnd", touchPoints=lifted)
+            if now:
+                self.call("Input.dispatchTouchEvent", type="touchMove" if now.keys() <= down.keys() else "touchStart", touchPoints=list(now.values()))
+            down = now
         self.call("Emulation.setTouchEmulationEnabled", enabled=False)
 
     def run(self, script, timeout=HANG):

@@ -175,12 +175,17 @@ class Firefox:
         time.sleep(0 if count > 1 else 0.6)  # the next click is another one
 
     def touch(self, *steps):
-        """Fingers go down at the first step, follow the others, and leave. A step: [[x, y] of each finger]."""
-        fingers = []
+        """Fingers on the screen. A step: [[x, y] of each finger]; None: this finger is not down. After the last step all leave."""
+        fingers, pause = [], {"type": "pause"}
         for finger in range(len(steps[0])):
-            moves = [{"type": "pointerMove", "x": round(step[finger][0]), "y": round(step[finger][1])} for step in steps]
-            fingers.append({"type": "pointer", "id": f"finger {finger}", "parameters": {"pointerType": "touch"},
-                            "actions": [moves[0], {"type": "pointerDown", "button": 0}, *moves[1:], {"type": "pointerUp", "button": 0}]})
+            places, actions, was_down = [step[finger] for step in steps] + [None], [], False
+            for place in places: # two ticks: to the place, then down or up
+                move = pause if place is None else {"type": "pointerMove", "x": round(place[0]), "y": round(place[1])}
+                is_down = place is not None
+                button = pause if is_down == was_down else {"type": "pointerDown" if is_down else "pointerUp", "button": 0}
+                actions += [move, button]
+                was_down = is_down
+            fingers.append({"type": "pointer", "id": f"finger {finger}", "parameters": {"pointerType": "touch"}, "actions": actions})
         self._perform(*fingers)
 
     def wheel(self, x, y, pixels, modifiers=0):

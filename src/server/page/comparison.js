@@ -2,6 +2,7 @@
 // what the last step has changed.
 
 import { make, row, button, select } from "./controls.js";
+import { followDrag } from "./drag.js";
 
 const KEY_STEP = 0.05; // of the picture's width
 const CHOICES = ["off", "hard", "soft", "before", "kept"];
@@ -34,11 +35,11 @@ export function comparison({ store, channel, failed, find, report }) {
     event.stopPropagation();
     event.preventDefault();
     line.focus({ preventScroll: true });
-    line.setPointerCapture(event.pointerId);
     const box = view.getBoundingClientRect();
-    const move = (moved) => { part = Math.min(Math.max((moved.clientX - box.left) / box.width, 0), 1); place(); };
-    line.addEventListener("pointermove", move);
-    for (const over of ["pointerup", "pointercancel"]) line.addEventListener(over, () => line.removeEventListener("pointermove", move), { once: true });
+    followDrag(event, line, (moved) => {
+      part = Math.min(Math.max((moved.clientX - box.left) / box.width, 0), 1);
+      place();
+    });
   }
 
   function key(event) {

@@ -93,7 +93,8 @@ class Film {
       this.tracks = stretched(this.tracks, before, this.frames);
       this.frame = Math.round((this.frame * (this.frames - 1)) / (before - 1));
     }
-    if (!this.playing) this.#keep(["tracks", "frames", "fps", "turns"].some((key) => key in part));
+    const edits = ["tracks", "frames", "fps", "turns"].some((key) => key in part);
+    if (edits || !this.playing) this.#keep(edits); // the frames that playing passes are no work of a person's
     this.changed();
   }
 

@@ -4,11 +4,12 @@
 
 import { hexOf } from "./color.js";
 import { make, shortNumber } from "./controls.js";
+import { followDrag, reachOf } from "./drag.js";
 import { blankContext, drawBars, drawValueAxis } from "./histogram.js";
 import { addPoint, addStop, colorAt, movePoint, moveStop, opacityAt, removePoint, removeStop } from "./transfer_function.js";
 
 const HEIGHT = 180, STRIP = 16, GAP = 20, MARGIN = 9; // pixels
-const GRIP = 10; // pixels from a point within which it is grabbed
+const GRIP = 10; // pixels from a point within which a mouse grabs it
 
 export class FunctionCanvas {
   element;
@@ -72,12 +73,12 @@ export class FunctionCanvas {
 
   // The point or colour under the pointer: { kind, index }, or null.
   #find(event) {
-    const [x, y] = this.#place(event), tf = this.#get();
+    const [x, y] = this.#place(event), tf = this.#get(), reach = reachOf(event, GRIP);
     if (y > HEIGHT - STRIP - MARGIN - GAP / 2) {
-      const at = tf.color.findIndex(([value]) => Math.abs(this.#x(value) - x) < GRIP * 0.7);
+      const at = tf.color.findIndex(([value]) => Math.abs(this.#x(value) - x) < reach * 0.7);
       return at < 0 ? null : { kind: "stop", index: at };
     }
-    let best = null, nearest = GRIP;
+    let best = null, nearest = reach;
     tf.opacity.forEach(([value, opacity], index) => {
       const far = Math.hypot(this.#x(value) - x, this.#y(opacity) - y);
       if (far < nearest) [best, nearest] = [{ kind: "point", index }, far];
@@ -106,17 +107,13 @@ export class FunctionCanvas {
       this.#set(added.tf, `add ${Math.random()}`);
     }
     this.#select(what);
-    this.#canvas.setPointerCapture(event.pointerId);
     this.#canvas.focus({ preventScroll: true });
     const name = `drag ${Math.random()}`;
-    const move = (moved) => {
+    followDrag(event, this.#canvas, (moved) => {
       if (!this.#get()) return;
       const [mx, my] = this.#place(moved);
       this.#set(this.#moved(what, this.#value(mx), this.#opacity(my)), name);
-    };
-    const end = () => this.#canvas.removeEventListener("pointermove", move);
-    this.#canvas.addEventListener("pointermove", move);
-    for (const over of ["pointerup", "pointercancel"]) this.#canvas.addEventListener(over, end, { once: true });
+    });
   }
 
   #moved({ kind, index }, value, opacity) {

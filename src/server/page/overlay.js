@@ -6,6 +6,7 @@ import { ClipHandles } from "./clip_handles.js";
 import { CutHandles } from "./cut_handles.js";
 import { hexOf } from "./color.js";
 import { make, shortNumber } from "./controls.js";
+import { followDrag } from "./drag.js";
 import { directionOf, sizeOf, steppedDirection, withDirection, withSize } from "./light.js";
 import { SkyRing } from "./sky_ring.js";
 import { symbolOf } from "./units.js";
@@ -204,12 +205,11 @@ export class Overlay {
     this.#choose(l);
     const handle = event.currentTarget.parentNode, target = event.currentTarget;
     handle.focus({ preventScroll: true });
-    target.setPointerCapture(event.pointerId);
     const box = this.#svg.getBoundingClientRect(), sphere = this.#sphere();
     const began = { right: (event.clientX - box.left - sphere.x) / sphere.radius, up: (sphere.y - event.clientY + box.top) / sphere.radius };
     const before = directionOf(this.#store.scene.lights[l], this.#store.scene.camera);
     const offset = { right: before[0] - began.right, up: before[1] - began.up };
-    const move = (moved) => {
+    followDrag(event, target, (moved) => {
       const right = (moved.clientX - box.left - sphere.x) / sphere.radius + (what === "place" ? offset.right : 0);
       const up = (sphere.y - moved.clientY + box.top) / sphere.radius + (what === "place" ? offset.up : 0);
       if (what === "place") this.moveLight(l, right, up, before[2]);
@@ -217,11 +217,7 @@ export class Overlay {
         const [x, y] = [right - before[0], up - before[1]];
         this.resizeLight(l, (Math.hypot(x, y) * sphere.radius - RING_LEAST) / RING_PER_DEGREE);
       }
-    };
-    const end = () => target.removeEventListener("pointermove", move);
-    target.addEventListener("pointermove", move);
-    target.addEventListener("pointerup", end, { once: true });
-    target.addEventListener("pointercancel", end, { once: true });
+    });
   }
 
   // right and up: on the sphere of radius 1; beyond it the light turns to the side away from where it began.

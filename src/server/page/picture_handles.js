@@ -5,6 +5,7 @@
 // such numbers lie. move(steps) moves it by so many numbers along each way from where it was when it was made.
 
 import { make } from "./controls.js";
+import { followDrag } from "./drag.js";
 
 const KEY_STEP = 0.02; // of the way from low to high
 const MARGIN = 14; // pixels between a handle and the picture's edge
@@ -66,16 +67,12 @@ export class PictureHandles {
     event.preventDefault();
     const target = event.currentTarget, from = this.#project(handle.at), ends = handle.ways.map(({ to }) => this.#project(to));
     target.focus({ preventScroll: true });
-    target.setPointerCapture(event.pointerId);
     if (from === null || ends.includes(null)) return;
     const ways = ends.map((end) => [end[0] - from[0], end[1] - from[1]]);
-    const move = (moved) => {
+    followDrag(event, target, (moved) => {
       const parts = partsOf(ways, [moved.clientX - event.clientX, moved.clientY - event.clientY]);
       if (parts !== null) handle.move(parts.map((part, n) => part * handle.ways[n].size));
-    };
-    target.addEventListener("pointermove", move);
-    for (const over of ["pointerup", "pointercancel"])
-      target.addEventListener(over, () => target.removeEventListener("pointermove", move), { once: true });
+    });
   }
 
   #key(event, handle) {

@@ -5,11 +5,12 @@
 
 import { hexOf } from "./color.js";
 import { make, shortNumber } from "./controls.js";
+import { followDrag, reachOf } from "./drag.js";
 import { blankContext } from "./histogram.js";
 import { apexOf, isPolygon, moved, partAt, withVertex, withoutVertex } from "./plane_shapes.js";
 
 const HEIGHT = 190, MARGIN = 9; // pixels
-const GRIP = 7; // pixels from an edge within which it is grabbed
+const GRIP = 7; // pixels from an edge within which a mouse grabs it
 const AXES = ["value", "second"];
 
 export class PlaneCanvas {
@@ -72,7 +73,7 @@ export class PlaneCanvas {
   #find(event) {
     const at = this.#place(event), shapes = this.shapes;
     for (let index = shapes.length - 1; index >= 0; index--) {
-      const part = partAt(this.#inPixels(shapes[index]), at, GRIP);
+      const part = partAt(this.#inPixels(shapes[index]), at, reachOf(event, GRIP));
       if (part !== null) return { index, part };
     }
     return null;
@@ -163,15 +164,11 @@ export class PlaneCanvas {
       return;
     }
     this.#select(found.index, found.part.vertex);
-    this.#canvas.setPointerCapture(event.pointerId);
     const name = `drag ${Math.random()}`, shape = this.shapes[found.index];
-    const move = (moved) => {
+    followDrag(event, this.#canvas, (moved) => {
       const by = this.#place(moved).map((pixel, axis) => this.#number(axis, pixel) - start[axis]);
       this.change(found.index, this.#moved(shape, found.part, by), name);
-    };
-    const end = () => this.#canvas.removeEventListener("pointermove", move);
-    this.#canvas.addEventListener("pointermove", move);
-    for (const over of ["pointerup", "pointercancel"]) this.#canvas.addEventListener(over, end, { once: true });
+    });
   }
 
   #hover(event) {

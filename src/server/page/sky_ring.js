@@ -3,6 +3,7 @@
 
 import { axes } from "./camera.js";
 import { make } from "./controls.js";
+import { followDrag } from "./drag.js";
 import { directionOf, steppedDirection, withDirection } from "./light.js";
 import { hasUp, skyAxes } from "./sky.js";
 import { add, dot, scale } from "./vector.js";
@@ -121,13 +122,9 @@ export class SkyRing {
     event.preventDefault();
     const target = event.currentTarget, box = target.ownerSVGElement.getBoundingClientRect();
     target.focus({ preventScroll: true });
-    target.setPointerCapture(event.pointerId);
-    const follow = (moved) => {
+    followDrag(event, target, (moved) => {
       const { x, y, radius } = this.#sphere;
       move((moved.clientX - box.left - x) / radius, (y - moved.clientY + box.top) / radius);
-    };
-    target.addEventListener("pointermove", follow);
-    for (const over of ["pointerup", "pointercancel"])
-      target.addEventListener(over, () => target.removeEventListener("pointermove", follow), { once: true });
+    });
   }
 }

@@ -3,7 +3,7 @@
 import { unplaced } from "./boxes.js";
 import { button, isActive, make, row, section, segments, select, shortNumber, slider, toggle } from "./controls.js";
 import { anatomical, isAnatomical, pointAt, planeTitle, PLANES } from "./sections.js";
-import { LAYOUTS } from "./slices.js";
+import { DRAGS, LAYOUTS } from "./slices.js";
 
 const BLENDS = [["maximum", "Maximum"], ["mean", "Mean"], ["minimum", "Minimum"]];
 
@@ -25,6 +25,8 @@ export function slicePanel(viewer) {
     set: (name) => store.setPage({ plane: name, ...(name === "oblique" ? { oblique: null } : {}) }), title: "The one beside the picture; the oblique one lies as the picture does",
   });
   const follows = toggle({ label: "Follows the picture", get: () => !store.page.oblique, set: (on) => store.setPage({ oblique: on ? null : store.scene.camera }) });
+
+  const drag = segments({ label: "Drag", choices: DRAGS, get: () => store.page.drag ?? "cursor", set: (name) => store.setPage({ drag: name }) });
 
   const number = (label, get, set) => {
     const input = make("input", { type: "number", step: "any", "aria-label": label, onchange: () => {
@@ -62,17 +64,17 @@ export function slicePanel(viewer) {
   }
   slices.onReadout = tell;
 
-  body.append(layout.element, plane.element, follows.element,
+  body.append(layout.element, plane.element, follows.element, drag.element,
     row(make("span", { class: "name" }, "Value"), value), row(make("span", { class: "name" }, "Place"), place),
     row(make("span", { class: "name" }, "Voxel"), make("span", { class: "numbers" }, ...index.map((one) => one.input))),
     row(make("span", { class: "name" }, "Window"), make("span", { class: "pair" }, width.input, "level", level.input, button("auto", () => { slices.window = null; }, { title: "Window and level as at first" }))),
     thickness.element, blend.element, labels.element, lines.element,
-    make("p", { class: "facts" }, "Click or drag in a slice, or click in the picture, to move the crosshair; right drag: window and level; wheel: through the slices."));
+    make("p", { class: "facts" }, "Click or tap in a slice or in the picture to move the crosshair. By mouse, too: right drag for window and level, shift + drag to pan, wheel through the slices. Two fingers zoom and pan."));
   function update() {
     const hides = slices.layout === "picture", shows = (part, shown) => { part.element.hidden = !shown; };
     shows(plane, slices.layout === "beside");
     shows(follows, slices.layout === "beside" && slices.plane === "oblique");
-    for (const one of [layout, plane, follows, width, level, thickness, blend, labels, lines]) one.update();
+    for (const one of [layout, plane, follows, drag, width, level, thickness, blend, labels, lines]) one.update();
     for (const rest of [...body.children].slice(3)) rest.hidden = hides;
     shows(labels, !hides && store.scene.volumes.some((volume) => volume.labels ?? volume.mask?.labels));
     shows(lines, !hides && store.scene.volumes.some((volume) => volume.iso?.length > 0));

@@ -70,9 +70,9 @@ export class SliceValues {
     if (!this.#busy) this.#load();
   }
 
-  // Asks for everything again.
+  // Finer voxels have taken the place of those that are known. An answer that is on its way is of the old ones and is dropped.
   forget() {
-    this.#known.clear();
+    this.#known = new Map();
     this.shown = null;
   }
 
@@ -82,8 +82,9 @@ export class SliceValues {
       const { plane, requests, maps } = this.#wanted;
       this.#wanted = null;
       try {
-        const known = new Map();
-        for (const request of new Set(requests)) known.set(request, this.#known.get(request) ?? (await this.#channel.slice(JSON.parse(request))));
+        const known = new Map(), before = this.#known;
+        for (const request of new Set(requests)) known.set(request, before.get(request) ?? (await this.#channel.slice(JSON.parse(request))));
+        if (this.#known !== before) continue; // they are forgotten, and whoever forgot them asks again
         this.#known = known;
         const [values, pictured, ...labels] = requests.map((request) => known.get(request));
         this.shown = { plane, values: values.values, pictured: pictured.values, labels: labels.map(({ values: own }, m) => ({ volume: maps[m].volume, of: maps[m].of, values: own })) };

@@ -1,6 +1,7 @@
-// One plane through the volume beside the picture: its greys, labels and isolines, the crosshair, and hands on it. A click or
-// a drag moves the crosshair, a right drag (or alt + drag) changes window and level, the wheel goes through the planes,
-// shift + drag pans, ctrl + wheel or two fingers zoom. With the keyboard, arrow keys move the crosshair.
+// One plane through the volume beside the picture: its greys, labels and isolines, the crosshair, and hands on it. A click moves
+// the crosshair. A drag does what the panel of slices chooses for it (DRAGS in slices.js); a right drag (or alt + drag) changes
+// window and level, shift + drag pans, the wheel goes through the planes, ctrl + wheel or two fingers zoom. With the keyboard,
+// arrow keys move the crosshair.
 
 import { isActive, make } from "./controls.js";
 import { drawSections } from "./cut_sections.js";
@@ -10,6 +11,8 @@ import { subtract } from "./vector.js";
 
 const WHEEL_FACTOR = 1.0015; // factor of zooming for each pixel of the wheel
 const WHEEL_STEP = 40; // pixels of the wheel for each plane
+const DRAG_STEP = 8; // pixels of a drag through the planes for each plane
+const STILL = 6; // pixels that a finger may move during a tap
 const LEAST_ZOOM = 0.2, MOST_ZOOM = 60;
 const SMOOTH_UP_TO = 3; // up to this many pixels of the screen, a voxel is not drawn as a square
 
@@ -25,8 +28,9 @@ export class SliceView {
   #zoom = 1;
   #pan = [0, 0]; // pixels
   #points = new Map(); // the pointers that are down: [x, y]
-  #action = null;
-  #wheeled = 0;
+  #action = null; // one of DRAGS, "pinch", or "none": the pointer has done all that it does
+  #tapped = null; // the place where a finger went down that has not moved yet
+  #wheeled = 0; // pixels of the wheel or of a drag that are less than a plane
   marks = make("svg:g");
 
   // slices: slices.js; name: the plane's name.
@@ -39,7 +43,7 @@ export class SliceView {
     this.area.addEventListener("pointerdown", (event) => this.#down(event));
     this.area.addEventListener("pointermove", (event) => this.#move(event));
     for (const end of ["pointerup", "pointercancel", "lostpointercapture"])
-      this.area.addEventListener(end, (event) => this.#points.delete(event.pointerId));
+      this.area.addEventListener(end, (event) => this.#up(event));
     this.area.addEventListener("wheel", (event) => this.#wheel(event), { passive: false });
     this.area.addEventListener("contextmenu", (event) => event.preventDefault());
     this.area.addEventListener("keydown", (event) => this.#key(event));
@@ -161,22 +165,51 @@ export class SliceView {
     event.preventDefault();
     this.area.focus({ preventScroll: true });
     this.area.setPointerCapture(event.pointerId);
-    this.#points.set(event.pointerId, this.#place(event));
-    if (event.button === 2 || (event.button === 0 && event.altKey)) this.#action = "window";
-    else if (event.button === 1 || event.shiftKey) this.#action = "pan";
-    else this.#action = "cursor";
-    if (this.#action !== "cursor" || this.#points.size > 1) return;
-    // The click is a point of a mark.
-    if (this.#slices.addPoint(this.pointAt(this.#place(event)))) this.#action = "none";
-    else this.#slices.moveTo(this.pointAt(this.#place(event)));
+    const at = this.#place(event);
+    this.#points.set(event.pointerId, at);
+    this.#tapped = null;
+    if (this.#points.size > 1) this.#action = "pinch";
+    else if (event.pointerType === "touch") [this.#action, this.#tapped] = [this.#slices.drag, at]; // a second finger may follow
+    else this.#press(at, this.#actionOf(event));
+  }
+
+  #actionOf(event) {
+    if (event.button === 2 || (event.button === 0 && event.altKey)) return "window";
+    return event.button === 1 || event.shiftKey ? "pan" : this.#slices.drag;
+  }
+
+  // A pointer is pressed: it makes a point of a mark, or moves the crosshair there where this is what drags do.
+  #press(at, action) {
+    this.#action = action;
+    this.#wheeled = 0;
+    if (action === "cursor") this.#point(at);
+  }
+
+  #point(at) {
+    if (this.#slices.addPoint(this.pointAt(at))) this.#action = "none";
+    else this.#slices.moveTo(this.pointAt(at));
+  }
+
+  #up(event) {
+    const tapped = event.type === "pointerup" && this.#points.size === 1 ? this.#tapped : null;
+    this.#points.delete(event.pointerId);
+    this.#tapped = null;
+    if (tapped !== null) this.#point(tapped);
   }
 
   #move(event) {
     const before = this.#points.get(event.pointerId), now = this.#place(event);
     if (before === undefined || this.#plane === null) return;
+    if (this.#tapped !== null) {
+      if (Math.hypot(now[0] - this.#tapped[0], now[1] - this.#tapped[1]) <= STILL) return;
+      const from = this.#tapped;
+      this.#tapped = null;
+      this.#press(from, this.#action);
+    }
     const [dx, dy] = [now[0] - before[0], now[1] - before[1]];
     if (this.#points.size === 2) this.#pinch(event.pointerId, now);
     else if (this.#action === "window") this.#slices.changeWindow(dx / this.area.clientWidth, dy / this.area.clientHeight);
+    else if (this.#action === "planes") this.#scrollBy(dy, DRAG_STEP);
     else if (this.#action === "pan") this.#panBy(dx, dy);
     else if (this.#action === "cursor") this.#slices.moveTo(this.pointAt(now));
     this.#points.set(event.pointerId, now);
@@ -211,9 +244,14 @@ export class SliceView {
       this.#zoomBy(WHEEL_FACTOR ** (-3 * pixels), this.#place(event));
       return;
     }
+    this.#scrollBy(pixels, WHEEL_STEP);
+  }
+
+  // pixels: of the wheel or of a drag; step: their number for each plane.
+  #scrollBy(pixels, step) {
     this.#wheeled += pixels;
-    const planes = Math.trunc(this.#wheeled / WHEEL_STEP);
-    this.#wheeled -= planes * WHEEL_STEP;
+    const planes = Math.trunc(this.#wheeled / step);
+    this.#wheeled -= planes * step;
     if (planes !== 0) this.#scroll(planes);
   }
 
@@ -221,10 +259,10 @@ export class SliceView {
     this.#step(0, 0, planes);
   }
 
-  // Moves the crosshair by whole samples, rows and planes.
+  // Moves the crosshair by whole samples, rows and planes. It may be planes away from the shown plane already, which comes later.
   #step(columns, rows, planes) {
-    const [column, row] = sampleAt(this.#plane, this.#slices.source, this.#slices.cursor);
-    this.#slices.moveTo(samplePoint(this.#plane, this.#slices.source, column + columns, row + rows, planes));
+    const [column, row, layer] = sampleAt(this.#plane, this.#slices.source, this.#slices.cursor);
+    this.#slices.moveTo(samplePoint(this.#plane, this.#slices.source, column + columns, row + rows, Math.round(layer) + planes));
   }
 
   #key(event) {

@@ -1,6 +1,6 @@
 // The planes beside the picture: their layout, the crosshair that links them, their window and level, and
 // what they show. A person's choices are in store.page: layout, plane (beside the picture), cursor (a point
-// of the scene), windows (by volume: [low, high]), thickness (a length of the scene), blend, showLabels,
+// of the scene), drag (of DRAGS), windows (by volume: [low, high]), thickness (a length of the scene), blend, showLabels,
 // showIsolines, oblique (a camera that the oblique plane keeps; null: it follows the picture's).
 
 import { middle, placed, worldBox } from "./boxes.js";
@@ -14,6 +14,8 @@ import { SliceValues, automaticWindow, labelSources, measured, sourceVolume } fr
 import { SliceView } from "./slice_view.js";
 
 export const LAYOUTS = [["picture", "Picture"], ["beside", "One slice"], ["four", "Four-up"]];
+// What a drag by the left button or by one finger does in a slice.
+export const DRAGS = [["cursor", "Crosshair"], ["window", "Window"], ["planes", "Planes"], ["pan", "Pan"]];
 const STILL = 4; // pixels that the pointer may move during a click
 const ARM = 16; // pixels of the crosshair in the picture
 
@@ -46,6 +48,8 @@ export class Slices {
   get available() { return this.#viewer.channel.slice !== undefined && this.#viewer.start.volumes.length > 0; }
   get layout() { return this.available ? (this.#viewer.store.page.layout ?? "picture") : "picture"; }
   get plane() { return this.#viewer.store.page.plane ?? "axial"; }
+  // The points of a mark are set whatever drags do.
+  get drag() { return this.#viewer.marking?.isMaking ? "cursor" : (this.#viewer.store.page.drag ?? "cursor"); }
   get thickness() { return this.#viewer.store.page.thickness ?? 0; }
   get blend() { return this.#viewer.store.page.blend ?? "maximum"; }
 

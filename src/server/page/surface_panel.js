@@ -2,6 +2,7 @@
 
 import { hexOf, linearOf } from "./color.js";
 import { color, make, section, shortNumber, slider, tabs, toggle } from "./controls.js";
+import { followDrag, reachOf } from "./drag.js";
 import { blankContext, drawBars, drawValueAxis } from "./histogram.js";
 import { isProjection, opacityAt, rangeOf } from "./transfer_function.js";
 
@@ -27,13 +28,9 @@ function lines({ surfaces, chosen, choose, set, about }) {
     const value = valueAt(event), far = surfaces().map((surface) => Math.abs(x(surface.value) - x(value)));
     const nearest = far.indexOf(Math.min(...far));
     if (nearest < 0) return;
-    if (far[nearest] < GRIP) choose(nearest);
+    if (far[nearest] < reachOf(event, GRIP)) choose(nearest);
     else set(value);
-    canvas.setPointerCapture(event.pointerId);
-    const move = (moved) => set(valueAt(moved));
-    canvas.addEventListener("pointermove", move);
-    for (const over of ["pointerup", "pointercancel"])
-      canvas.addEventListener(over, () => canvas.removeEventListener("pointermove", move), { once: true });
+    followDrag(event, canvas, (moved) => set(valueAt(moved)));
   }
 
   function update() {

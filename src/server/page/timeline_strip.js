@@ -1,6 +1,7 @@
 // The timeline under the picture: a slider of frames, and a row for each track with its keys, which are dragged.
 
 import { button, make } from "./controls.js";
+import { followDrag } from "./drag.js";
 import { CAMERA, withMovedKey, withoutKey } from "./timeline.js";
 
 // get() returns { tracks, frames, frame, fps }; setTracks(tracks) takes changed tracks; show(frame) goes to a
@@ -18,7 +19,7 @@ export function timelineStrip({ get, setTracks, show, play, canShow }) {
   function drag(event, path, from) {
     const area = event.currentTarget.parentNode.getBoundingClientRect();
     let at = from;
-    const move = (moved) => {
+    followDrag(event, window, (moved) => {
       const part = (moved.clientX - area.left) / area.width, last = get().frames - 1;
       const to = Math.min(Math.max(Math.round(part * last), 0), last);
       if (to === at) return;
@@ -26,9 +27,7 @@ export function timelineStrip({ get, setTracks, show, play, canShow }) {
       if (points.some(([frame]) => frame === to)) return; // keys do not pass over each other
       setTracks(withMovedKey(tracks, path, at, to));
       at = to;
-    };
-    addEventListener("pointermove", move);
-    for (const over of ["pointerup", "pointercancel"]) addEventListener(over, () => removeEventListener("pointermove", move), { once: true });
+    });
   }
 
   function onKey(event, path, frame) {
