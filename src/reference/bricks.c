@@ -1,20 +1,22 @@
-/* reference/bricks.c - evaluates a field in bricks (bricks/bricks.h) at a point. The value is a weighted sum
- * of the 64 coefficients around the point, at the level of the brick that contains the point. */
+/* reference/bricks.c - evaluates a field in bricks (bricks/bricks.h) at a point. Such a field is stored as
+ * B-spline coefficients. The field's value is a weighted sum of the 64 coefficients around the point, at the
+ * level of the brick that contains the point. */
 #include "bricks/bricks.h"
 
 #include "core/memory.h"
 #include "reference/reference.h"
 
-/* The brick at a point, and the weights of the four coefficients along each axis with their slopes. */
+/* The brick that holds a point, the weights of the four coefficients around the point along each axis, and
+ * the derivatives (slopes) of these weights. */
 typedef struct brick_place {
   const hl_brick_entry *entry;
-  const float *first; /* the first of the 4 x 4 x 4 coefficients */
+  const float *first; /* the first of the 4 x 4 x 4 coefficients around the point */
   size_t row, slice;  /* number of floats from one row to the next, and from one slice to the next */
   double weight[3][4], slope[3][4];
 } brick_place;
 
-/* Finds the brick at a point, and the weights of the coefficients there. point: in the index space of the
- * volume that stands for the field. */
+/* Finds the brick that holds a point, and the weights of the coefficients around the point. point: in the
+ * index space of the volume that stands for the field. */
 static void find_place(const reference_volume *volume, vec3 point, brick_place *found) {
   const hl_bricks *bricks = volume->grid->bricks;
   const size_t side = (size_t)1 << bricks->shift;
@@ -36,8 +38,8 @@ static void find_place(const reference_volume *volume, vec3 point, brick_place *
   found->first = bricks->pool + (size_t)found->entry->slot * found->slice * found->row;
   const size_t stride[3] = {1, found->row, found->slice};
   for (int axis = 0; axis < 3; axis++) {
-    /* A brick begins at a multiple of its length. Its first coefficient lies one spacing before this
-     * place. */
+    /* A brick begins at a multiple of its length. The brick's first coefficient lies one spacing of
+     * coefficients before the brick's beginning. */
     double begin = floor((double)block[axis] / spacing) * (double)side;
     double at = x[axis] / spacing - begin, cell = fmin(floor(at), (double)side - 1);
     found->first += (size_t)cell * stride[axis];

@@ -1,12 +1,12 @@
-/* reference/clip_faces.c - the faces of a volume's box that cut matter: at the grid's border, or at the clip
- * box. */
+/* reference/clip_faces.c - the faces of a volume's box at which the volume's matter is cut off. The box ends
+ * at the grid's border or at the clip box. */
 #include <math.h>
 
 #include "reference/reference.h"
 
 static const double TOUCHING = 1e-3; /* greatest distance, in voxels, of two faces that touch */
 
-/* The bounds of another volume's box in the index space of this volume. */
+/* Finds the bounds, in this volume's index space, of another volume's box. */
 static void bounds_of(const hl_scene_volume *other, affine3 world_to_index, double low[3], double high[3]) {
   affine3 placement = affine3_multiply(world_to_index, hl_scene_volume_index_to_world(other));
   double box[2][3];
@@ -19,7 +19,8 @@ static void bounds_of(const hl_scene_volume *other, affine3 world_to_index, doub
   }
 }
 
-/* Removes the volume's faces that touch the other volume's box, because matter goes on there. */
+/* Removes those faces of the volume's box from its clip faces that touch the other volume's box. At these
+ * faces matter goes on in the other volume. */
 static void join(const hl_scene_volume *other, reference_volume *volume) {
   double low[3], high[3];
   bounds_of(other, volume->world_to_index, low, high);

@@ -1,17 +1,17 @@
 /* reference/cuts.c - whether a point of a volume or a mesh remains after the cuts. A cut is given in the
- * world of the volume's file, or in the scene's world. For the test, the point is converted to the cut's
- * world.
+ * world of the volume's file, or in the scene's world. The point is converted to the same world before it is
+ * tested.
  *
- * A point's height over a cut's face is above 0 outside the cut's shape. It is in units of the cut's
- * world. */
+ * The height of a point over a cut's face is positive outside the cut's shape, and negative inside. Heights
+ * have the length unit of the cut's world. */
 #include "reference/reference.h"
 
 typedef struct height {
   double over; /* height over the face */
-  vec3 rise;   /* the gradient of the height, a unit vector of the cut's world */
+  vec3 rise;   /* the height's gradient, a unit vector in the cut's world */
 } height;
 
-/* The map from index space to the world in whose coordinates a cut is given. */
+/* The map from a volume's index space to the world in whose coordinates a cut of the volume is given. */
 static affine3 world_of(const reference_volume *volume, const hl_cut *cut) {
   return cut->world ? volume->index_to_world : volume->grid->index_to_world;
 }
@@ -56,7 +56,8 @@ bool hl_reference_mesh_left(const hl_scene_description *scene, const hl_scene_me
   return true;
 }
 
-/* Returns `crossing` if it lies between `after` and `next`, else `next`. */
+/* Returns the distance `crossing` if it lies between the distances `after` and `next`; otherwise returns
+ * `next`. */
 static double sooner(double crossing, double after, double next) {
   return crossing > after && crossing < next ? crossing : next;
 }
@@ -69,7 +70,7 @@ static double next_of_cut(const hl_cut *cut, vec3 o, vec3 d, double after) {
     return speed == 0 ? next
                       : sooner(vec3_dot(normal, vec3_subtract(vec3_of(cut->point), o)) / speed, after, next);
   }
-  if (cut->type == HL_CUT_SPHERE) { /* the crossings are the roots of a t^2 + 2 b t + c */
+  if (cut->type == HL_CUT_SPHERE) { /* the ray's parameter t at the sphere is a root of a t^2 + 2 b t + c */
     vec3 from = vec3_subtract(o, vec3_of(cut->center));
     double a = vec3_dot(d, d), b = vec3_dot(from, d), c = vec3_dot(from, from) - cut->radius * cut->radius;
     if (!(b * b > a * c)) return next;
@@ -93,8 +94,9 @@ double hl_reference_next_face(const reference_volume *volume, vec3 origin, vec3 
   return next;
 }
 
-/* The normal of a cut's face, in the world. If there are several cuts, it is the cut whose face is nearest to
- * the point. If M is the volume's placement, a height h rises by |(M^-1)^T grad h| per world unit. */
+/* The normal, in the world, of a cut's face. Among several cuts, the one whose face is nearest to the point
+ * counts. Derived: if M maps index space to the world, a height h rises by |(M^-1)^T grad h| per world
+ * unit. */
 vec3 hl_reference_cut_normal(const reference_volume *volume, vec3 point) {
   const hl_scene_volume *described = volume->described;
   vec3 face = {0, 0, 0};
@@ -110,9 +112,10 @@ vec3 hl_reference_cut_normal(const reference_volume *volume, vec3 point) {
   return face;
 }
 
-/* The distance along a ray, from a point that the cuts leave, to the place where the ray meets removed
- * matter. hl_reference_next_face() treats the faces of a box as endless planes, and so may find places before
- * the one where removed matter begins. direction: in index coordinates, but of unit length in the world. */
+/* Finds the distance along a ray from a point that no cut removes to the place where matter removed by a cut
+ * begins. The function looks behind each face that hl_reference_next_face() finds, because this function
+ * treats the faces of a box as endless planes: matter may go on behind such a plane. direction: in index
+ * coordinates, but of unit length in the world. */
 static double way_to_removed(const reference_volume *volume, vec3 point, vec3 direction) {
   const double beyond = 1e-4 * volume->smallest_edge;
   double way = 0;
@@ -121,16 +124,17 @@ static double way_to_removed(const reference_volume *volume, vec3 point, vec3 di
   return way;
 }
 
-/* The face through which a ray leaves a volume's matter. */
+/* The face of a cut or of the box through which a ray leaves a volume's matter. */
 typedef struct left_face {
-  vec3 outward;  /* world; a unit vector */
-  vec3 crossing; /* index space */
-  double skin;   /* how much matter at the point belongs to the face: 1 up to a depth of one voxel, falling to
-                  * 0 at a depth of two */
+  vec3 outward;  /* outward normal of the face; a unit vector in the world */
+  vec3 crossing; /* the point where the ray crosses the face; index space */
+  double skin;   /* how much the matter at the ray's beginning belongs to the face: 1 up to one voxel behind
+                  * the face, falling to 0 at two voxels behind it */
 } left_face;
 
 static left_face find_left_face(const reference_volume *volume, vec3 point, vec3 direction, bool uncut) {
-  static const double FACE_VOXELS = 2; /* points deeper behind a face are lit as without the face */
+  static const double FACE_VOXELS = 2; /* matter deeper than this behind a face, in voxels, is lit as if there
+                                        * were no face */
   const vec3 along = mat3_apply(volume->world_to_index.linear, direction);
   left_face face = {.skin = 0};
   double way = hl_reference_leaves_box(volume, point, along, &face.outward);
@@ -151,8 +155,8 @@ double hl_reference_lit_face(const reference_volume *volume, vec3 point, vec3 to
   return find_left_face(volume, point, to_light, uncut).skin;
 }
 
-/* A point is seen through the face that the ray from the point to the eye crosses first, if matter is visible
- * at this face. */
+/* A point is seen through the face that the ray from the point to the eye crosses first. The face counts only
+ * if matter is visible at the place where the ray crosses it. */
 double hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *normal,
                              double *surface) {
   const hl_scene_volume *described = volume->described;

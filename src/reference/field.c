@@ -1,9 +1,10 @@
-/* reference/field.c - reconstruction of one volume at one point of its index space, and the bricks in which
- * it is transparent.
+/* reference/field.c - reconstructs one volume's field at one point of the volume's index space, and finds the
+ * bricks in which the volume is transparent.
  *
- * f(p) is the sum over the 4 x 4 x 4 voxels around p, weighted by a tensor-product kernel. Beyond the grid,
- * the voxels at its borders are repeated. Every sample of a march (march.c) is such a sum. The three kernels
- * are written out here on purpose, because the reference shares no code with the renderer. */
+ * The field f at a point p is the sum over the 4 x 4 x 4 voxels around p, weighted by a tensor-product
+ * kernel. Beyond the grid, the voxels at its borders are repeated. Every sample of a march (march.c) is such
+ * a sum. The three kernels are written out here on purpose, because the reference shares no code with the
+ * renderer. */
 #include <string.h>
 
 #include "bricks/bricks.h"
@@ -12,7 +13,7 @@
 #include "scene/label/draw_labels.h"
 #include "volume/store/gathered.h"
 
-/* The positions and weights of the four taps along each axis. */
+/* The positions and weights of the four voxels (taps) along each axis that a point's value depends on. */
 typedef struct taps {
   size_t voxel[3][4];
   double weight[3][4];
@@ -37,7 +38,8 @@ double hl_reference_stored_value(const reference_volume *volume, const size_t vo
   return stored_at(volume, volume->grid->storage, row, voxel[0]);
 }
 
-/* The cubic B-spline at distances 1+t, t, 1-t, 2-t, and its derivative with respect to t. */
+/* The weights of the cubic B-spline at the distances 1+t, t, 1-t and 2-t, and their derivatives with respect
+ * to t. */
 static void bspline(double t, double weight[4]) {
   double u = 1 - t;
   weight[0] = u * u * u * (1.0 / 6);
@@ -53,8 +55,8 @@ static void bspline_slope(double t, double slope[4]) {
   slope[3] = t * t / 2;
 }
 
-/* The Gaussian exp(-2 d^2) for |d| < 2, divided by the sum over the four taps so that a constant stays
- * constant. */
+/* The weights of the Gaussian exp(-2 d^2), cut off at |d| = 2, for the four taps. They are divided by their
+ * sum, so that a constant field stays constant. */
 static void gaussian(double t, double weight[4]) {
   double sum = 0;
   for (int tap = 0; tap < 4; tap++) {
@@ -64,8 +66,8 @@ static void gaussian(double t, double weight[4]) {
   }
   for (int tap = 0; tap < 4; tap++) weight[tap] /= sum;
 }
-/* The derivative of the Gaussian's weights. With w = g/S and g' = -4 d g: w' = (g' - w S') / S, and g/S is w
- * again. */
+/* The derivatives of the Gaussian's weights. Derived: a weight is w = g/S, where g = exp(-2 d^2) and S is the
+ * sum of g over the four taps. With g' = -4 d g the derivative is w' = (g' - w S') / S. */
 static void gaussian_slope(double t, const double weight[4], double slope[4]) {
   double sum = 0;
   for (int tap = 0; tap < 4; tap++) sum += slope[tap] = -4 * (t + 1 - tap) * weight[tap];
@@ -104,22 +106,23 @@ static inline size_t clamp_voxel(int64_t voxel, int64_t last) {
   return (size_t)(voxel < 0 ? 0 : voxel > last ? last : voxel);
 }
 
-/* Finds the taps of a point. slopes: whether to set found->slope. */
+/* Finds the taps of a point. slopes: whether the weights' derivatives are found, too. */
 static inline void find_taps(const reference_volume *volume, vec3 point, bool slopes, taps *found) {
   const double p[3] = {point.x, point.y, point.z};
   for (int axis = 0; axis < 3; axis++) {
     int64_t last = (int64_t)volume->grid->dimension[axis] - 1;
     double inside = p[axis] > -0.5 ? p[axis] : -0.5;
     if (inside > (double)last + 0.5) inside = (double)last + 0.5;
-    int64_t base = (int64_t)(inside + 1) - 1; /* rounded down, as inside + 1 is positive */
+    int64_t base = (int64_t)(inside + 1) - 1; /* the conversion rounds down, because inside + 1 is positive */
     double t = inside - (double)base, *weight = found->weight[axis], *slope = found->slope[axis];
     for (int tap = 0; tap < 4; tap++) found->voxel[axis][tap] = clamp_voxel(base - 1 + tap, last);
     hl_reference_weights(volume->kernel, t, weight, slopes ? slope : NULL);
   }
 }
 
-/* The weighted sum over 64 voxels; each tap along each axis has one weight. storage: a constant in each call,
- * so that the compiler makes a loop for each storage. */
+/* The weighted sum of the 64 voxels around a point. A voxel's weight is the product of its three taps'
+ * weights. storage: the type of the stored voxels. Each caller passes a constant, so that the compiler makes
+ * a loop of its own for each type. */
 static inline double weigh_stored(const reference_volume *volume, hl_storage storage,
                                   const size_t voxel[3][4], const double *x, const double *y,
                                   const double *z) {
@@ -158,7 +161,8 @@ static double weigh(const reference_volume *volume, const taps *at, const double
   }
 }
 
-/* Limits a value to the volume's range, because the interpolating kernel overshoots. */
+/* Limits a value to the volume's range, because sums of the interpolating kernel can lie beyond the range of
+ * the voxels. */
 static double in_range(const reference_volume *volume, double value) {
   return volume->coefficients == NULL ? value : fmin(fmax(value, volume->least), volume->greatest);
 }
@@ -179,7 +183,7 @@ vec3 hl_reference_gradient(const reference_volume *volume, vec3 point) {
   vec3 stored = {weigh(volume, &at, at.slope[0], at.weight[1], at.weight[2]),
                  weigh(volume, &at, at.weight[0], at.slope[1], at.weight[2]),
                  weigh(volume, &at, at.weight[0], at.weight[1], at.slope[2])};
-  /* Derived, by the chain rule: df/dworld = (dindex/dworld)^T df/dindex. */
+  /* Derived by the chain rule: df/dworld = (dindex/dworld)^T df/dindex. */
   return vec3_scale(mat3_apply(volume->gradient_to_world, stored), volume->grid->value_scale);
 }
 
@@ -198,31 +202,32 @@ double hl_reference_extinction(const reference_volume *volume, double value, vec
 
 /* ---- where the volume is transparent ----
  *
- * Index space is cut into bricks of 4 cells a side; cell c of an axis holds the points p with
- * floor(p) = c - 1, so that bricks start at p = -1 and cover the half cell before the first voxel.
- * A kernel with weights of one sign never leaves the range of its taps: where the transfer function is
- * transparent over the range of all taps of a brick, every sample in the brick is transparent. */
+ * Index space is cut into bricks of 4 cells a side. Cell c of an axis holds the points p with floor(p) = c -
+ * 1. So bricks start at p = -1, and cover the half cell before the first voxel. A weighted mean with weights
+ * of one sign lies within the range of the weighted voxels. So every sample in a brick is transparent if the
+ * transfer function is transparent over the range of all voxels that the brick's samples depend on. */
 
 enum { BRICK_CELLS = 4, FARTHEST = 255 };
 
 static size_t least(size_t a, size_t b) { return a < b ? a : b; }
 
-/* Finds the voxels, along an axis of n voxels, on which the samples in brick number `brick` depend. There,
- * floor(p) goes from 4 brick - 1 to 4 brick + 2, and taps from one voxel before floor(p) to two after it. */
+/* Finds the voxels, along an axis of n voxels, on which the samples in brick number `brick` depend. In the
+ * brick, floor(p) goes from 4 brick - 1 to 4 brick + 2, and the taps of p go from one voxel before floor(p)
+ * to two after it. */
 static void brick_voxels(size_t brick, size_t n, size_t *first, size_t *last) {
   size_t corner = BRICK_CELLS * brick;
   *first = least(corner < 2 ? 0 : corner - 2, n - 1);
   *last = least(corner + BRICK_CELLS, n - 1);
 }
 
-/* Whether the value of any isosurface lies from low to high. */
+/* Returns whether one of the volume's isosurfaces has a value from low to high. */
 static bool holds_iso(const hl_scene_volume *volume, double low, double high) {
   for (size_t i = 0; i < volume->iso_count; i++)
     if (volume->iso[i].value >= low && volume->iso[i].value <= high) return true;
   return false;
 }
 
-/* The range of the stored values that samples in a brick depend on. */
+/* Finds the range of the stored values on which the samples in a brick depend. */
 static void range_of_brick(const reference_volume *volume, const size_t brick[3], double range[2]) {
   size_t first[3], last[3], voxel[3];
   if (volume->ranges != NULL) {
@@ -259,7 +264,7 @@ static bool brick_visible(const reference_volume *volume, size_t i, size_t j, si
          holds_iso(volume->described, fmin(a, b), fmax(a, b));
 }
 
-/* Marks the visible bricks of layer k. */
+/* Sets the clearance of the bricks in layer k: 0 for visible bricks. */
 static void mark_visible(void *data, size_t k, int worker) {
   (void)worker;
   const reference_volume *volume = data;
@@ -268,10 +273,10 @@ static void mark_visible(void *data, size_t k, int worker) {
     for (size_t i = 0; i < volume->bricks[0]; i++) *out++ = brick_visible(volume, i, j, k) ? 0 : FARTHEST;
 }
 
-/* Lowers the distance of brick (i, j, k) to one more than the least distance of its neighbours on one side:
- * those that come before it in memory (side -1) or after it (+1). Two sweeps over all bricks, one in each
- * direction, give the exact chessboard distance (Rosenfeld and Pfaltz, "Distance functions on digital
- * pictures", 1968). */
+/* Lowers the distance of brick (i, j, k) to one more than the least distance of its neighbours on one side.
+ * side -1: the neighbours that come before the brick in memory; +1: those that come after it. Two sweeps over
+ * all bricks, one in each direction, give the exact chessboard distance (Rosenfeld and Pfaltz, "Distance
+ * functions on digital pictures", 1968). */
 static void relax_brick(const reference_volume *volume, ptrdiff_t i, ptrdiff_t j, ptrdiff_t k, int side) {
   const ptrdiff_t n[3] = {(ptrdiff_t)volume->bricks[0], (ptrdiff_t)volume->bricks[1],
                           (ptrdiff_t)volume->bricks[2]};
@@ -302,7 +307,7 @@ static hl_status create_bricks(hl_context *context, reference_volume *volume, hl
                                hl_error *error) {
   size_t count = 1;
   for (int axis = 0; axis < 3; axis++) {
-    /* The cells 0 .. n of the bricks stand for floor(p) from -1 to n - 1. */
+    /* The bricks' cells 0 .. n along an axis of n voxels are the points p with floor(p) from -1 to n - 1. */
     volume->bricks[axis] = volume->grid->dimension[axis] / BRICK_CELLS + 1;
     count *= volume->bricks[axis];
   }
@@ -341,8 +346,8 @@ static double smallest_edge(const hl_scene_volume *volume) {
   return least;
 }
 
-/* The least gradient of a surface: per voxel edge, a thousandth of the range of values over which the
- * transfer function changes. */
+/* The least gradient at which matter counts fully as a surface: a thousandth, per voxel edge, of the range of
+ * values over which the transfer function changes. */
 static double surface_gradient(const hl_transfer_function *function, double edge) {
   double span = 0;
   if (function->opacity_count > 0)
@@ -389,7 +394,8 @@ hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume
       !hl_reference_bricks_ranges(all->context, grid->bricks, made->empty_stored, &made->ranges))
     return hl_fail_memory(error, grid->bricks->slots * sizeof *made->ranges,
                           "the ranges of a volume's bricks");
-  /* If no value is transparent, the empty value lies below all values and means that there is no matter. */
+  /* If the transfer function makes no value transparent, the empty value lies below all values of the volume.
+   * The empty value then means that there is no matter. */
   bool opaque_everywhere = hl_transfer_function_opacity(&described->transfer_function, made->empty_value) > 0;
   made->transparent_below = opaque_everywhere ? (made->empty_value + grid->minimum) / 2 : -INFINITY;
   if (made->kernel == HL_KERNEL_INTERPOLATING) {

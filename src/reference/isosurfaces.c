@@ -3,7 +3,7 @@
  * face cuts through the inside of the surface. */
 #include "reference/reference.h"
 
-/* A stretch of a ray at whose ends the field lies on different sides of an isosurface's value. */
+/* A stretch of a ray. At one end the field is above an isosurface's value, at the other end below it. */
 typedef struct bracket {
   double from, to; /* distances along the ray */
   bool rises;
@@ -24,8 +24,8 @@ static double bisect(const crossing *part, double value, bracket b) {
   return (b.from + b.to) / 2;
 }
 
-/* Finds the first place between two distances at which the field has the value of one of the volume's
- * isosurfaces. a, b: the field at the two distances. */
+/* Finds the first place between two distances along a ray at which the field has the value of one of the
+ * volume's isosurfaces. a, b: the field's values at the two distances. */
 static void find_roots(const crossing *part, double from, double to, double a, double b, reference_hit *hit) {
   const hl_scene_volume *described = part->volume->described;
   for (size_t i = 0; i < described->iso_count; i++) {
@@ -41,7 +41,8 @@ static void find_roots(const crossing *part, double from, double to, double a, d
   }
 }
 
-/* Walks along the ray in steps, and skips bricks that cannot hold the isosurfaces' values. */
+/* Walks along the ray in steps, and looks for isosurfaces in each step. Bricks whose range of values holds no
+ * isosurface's value are skipped. */
 static void meet_volume(const reference *all, const crossing *part, reference_hit *hit) {
   double at = part->enter, before = value_at(part, at);
   while (at < part->leave && at < hit->distance) {
@@ -54,7 +55,7 @@ static void meet_volume(const reference *all, const crossing *part, reference_hi
   }
 }
 
-/* Whether a point of the ray lies in the box and is not removed by a cut. */
+/* Returns whether the ray's point at this distance lies in the volume's box and is not removed by a cut. */
 static bool is_there(const crossing *part, double distance) {
   const vec3 here = vec3_add(part->origin, vec3_scale(part->direction, distance));
   const double at[3] = {here.x, here.y, here.z};
@@ -63,8 +64,8 @@ static bool is_there(const crossing *part, double distance) {
   return hl_reference_left(part->volume, here);
 }
 
-/* The outward normal, in the world, of the face of the box that a point lies on; 0 if another volume goes on
- * there. */
+/* The outward normal, in the world, of the face of the box on which a point lies. The result is 0 if another
+ * volume continues the matter at this face. */
 static vec3 normal_of_box(const reference_volume *volume, vec3 point) {
   const double at[3] = {point.x, point.y, point.z};
   double least = INFINITY;
@@ -81,8 +82,8 @@ static vec3 normal_of_box(const reference_volume *volume, vec3 point) {
   return normal;
 }
 
-/* Notes a hit where a ray crosses a face of the box or of a cut, if the face closes an isosurface: if matter
- * inside the surface is left on one side of the face and removed on the other. */
+/* Notes a hit where a ray crosses a face of the box or of a cut, if the face closes an isosurface. A face
+ * closes an isosurface at a point inside the surface where matter is left on one side of the face only. */
 static void meet_face(const reference *all, const crossing *part, double at, vec3 normal,
                       reference_hit *hit) {
   const hl_scene_volume *described = part->volume->described;
@@ -97,7 +98,8 @@ static void meet_face(const reference *all, const crossing *part, double at, vec
                              .opacity = described->iso[i].opacity};
 }
 
-/* Looks for faces along the ray. part: the ray from `first` to `last`, clipped to the box. */
+/* Notes hits at the faces of the box and of cuts that the ray crosses between two distances. part: the ray
+ * between these distances, clipped to the volume's box. */
 static void meet_faces(const reference *all, const crossing *part, double first, double last,
                        reference_hit *hit) {
   const vec3 enters = vec3_add(part->origin, vec3_scale(part->direction, part->enter)),

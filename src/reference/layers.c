@@ -1,7 +1,8 @@
-/* reference/layers.c - the contributions to samples and rays: the light of each source, depth and normals.
+/* reference/layers.c - handles contributions to samples and rays: the light of each source, depth and
+ * normals.
  *
- * The picture is the sum of all contributions. A layer is one of the contributions, or a mean weighted by
- * opacity. */
+ * A pixel of the picture is the sum of all light contributions. A layer is a single contribution, or a mean
+ * of depths, normals or shadows weighted by opacity. */
 #include "reference/reference.h"
 
 void hl_reference_parts_clear(reference_parts *parts, size_t light_count) {

@@ -1,9 +1,10 @@
-/* reference/lights.c - points on the lights, and how much of their light reaches a sample.
+/* reference/lights.c - finds points on the lights, and the part of a light that reaches a sample.
  *
  * Surfaces are shaded as if all of a light came from its centre. The light's extent matters to shadows, to
- * light textures and to media that scatter unevenly. For these, transmittance, texture and phase function are
- * means over a fixed set of points on the light. The set is the same for every sample, so that the picture
- * has no noise. A sphere counts as the disk of the same radius that faces the sample. */
+ * light textures and to media that scatter unevenly. The transmittance, the texture's colour and the phase
+ * function are therefore means over a fixed set of points on the light. The set is the same for every sample,
+ * so that the picture has no noise. A spherical light counts as a disk of the same radius that faces the
+ * sample. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -12,12 +13,13 @@
 
 /* ---- the light texture, eq. (2), and the emission image ----
  *
- * The ray from a point of the light meets the light texture's parallelogram (its screen) or passes beside it.
- * Images are bilinear between the middles of their pixels, and constant from the outermost middles to the
- * borders. */
+ * The light texture is an image on a screen, a parallelogram in space. A ray from a point of the light meets
+ * the screen or passes beside it. Images are interpolated bilinearly between the middles of their pixels.
+ * Beyond the outermost middles, up to the image's borders, they are constant. */
 
-/* Finds where a ray crosses the texture's screen: s along right and t along up, each from -1 to 1 on the
- * screen. False if the ray does not cross the screen's plane. */
+/* Finds where a ray crosses the plane of the texture's screen: at s times right and t times up from the
+ * screen's centre. On the screen both numbers are from -1 to 1. Returns false if the ray does not cross the
+ * plane. */
 static bool meet_screen(const hl_light_texture *texture, bool far, vec3 light, vec3 point, double *s,
                         double *t) {
   vec3 right = vec3_of(texture->screen_right), up = vec3_of(texture->screen_up),
@@ -32,8 +34,8 @@ static bool meet_screen(const hl_light_texture *texture, bool far, vec3 light, v
   return fabs(*s) <= 1 && fabs(*t) <= 1;
 }
 
-/* The two pixels nearest to a position along one axis, and the position between them: 0 at the first, 1 at
- * the second. */
+/* Finds the two pixels nearest to a position along one axis. Returns where the position lies between the two
+ * pixels' middles: 0 at the first middle, 1 at the second. */
 static double neighbours(double place, int count, size_t pixel[2]) {
   double at = fmin(fmax(place - 0.5, 0), count - 1);
   pixel[0] = (size_t)at;
@@ -41,7 +43,8 @@ static double neighbours(double place, int count, size_t pixel[2]) {
   return at - (double)pixel[0];
 }
 
-/* The image's colour at s along right and t along up, each from -1 to 1. */
+/* Finds the image's colour at a place that lies s times right and t times up from the image's middle. s and t
+ * are from -1 to 1. */
 static void look_up(const float *pixels, int width, int height, double s, double t, double color[3]) {
   size_t column[2], row[2];
   double x = neighbours((1 + s) / 2 * width, width, column),
@@ -72,15 +75,15 @@ static void emission_color(const hl_light_emission *emission, const emission_pla
 
 /* ---- points on the lights ---- */
 
-/* The fractional part of 1/2 + i step. If the step is the golden section, the first n results are spread
- * evenly over 0 to 1 for any n. */
+/* The fractional part of 1/2 + i step. With the golden section as the step, the results for the first n
+ * numbers i lie evenly between 0 and 1, for any n. */
 static double spread(size_t i, double step) {
   double x = 0.5 + (double)i * step;
   return x - floor(x);
 }
 
-/* Point i of n spread evenly over the disk of radius 1: the sunflower, by the golden angle
- * (Vogel, "A better way to construct the sunflower head", 1979). */
+/* Finds point i of n points that lie evenly in the disk of radius 1. The points form a sunflower with the
+ * golden angle (Vogel, "A better way to construct the sunflower head", 1979). */
 static void sunflower(size_t i, size_t n, double *u, double *v) {
   double angle = (double)i * HL_PI * (3 - sqrt(5)), radius = sqrt(((double)i + 0.5) / (double)n);
   *u = radius * cos(angle);
@@ -94,8 +97,9 @@ static vec3 point_of_disk(vec3 centre, vec3 normal, double radius, size_t i, siz
   return vec3_add(centre, vec3_add(vec3_scale(u_axis, radius * u), vec3_scale(v_axis, radius * v)));
 }
 
-/* Fills the points of a rectangle: one point in each of n strips across the first edge. Along the second
- * edge, consecutive points are a golden section apart. */
+/* Fills the points of a rectangle. The first edge is cut into n strips of equal width, each of which has one
+ * point. Along the second edge, consecutive points differ by a golden section of the edge (modulo the edge's
+ * length). */
 static void fill_rect(const hl_light *light, vec3 centre, size_t n, vec3 *points) {
   vec3 edge1 = vec3_of(light->edge1), edge2 = vec3_of(light->edge2);
   for (size_t i = 0; i < n; i++) {
@@ -104,8 +108,8 @@ static void fill_rect(const hl_light *light, vec3 centre, size_t n, vec3 *points
   }
 }
 
-/* Whether a point in the polygon's plane is inside the polygon: whether the ray from the point along u
- * crosses an odd number of edges. */
+/* Returns whether a point in the polygon's plane is inside the polygon. It is inside if the ray from the
+ * point along u crosses an odd number of the polygon's edges. */
 static bool inside_polygon(const hl_light *light, vec3 point, vec3 u_axis, vec3 v_axis) {
   bool inside = false;
   for (size_t i = 0; i < light->vertex_count; i++) {
@@ -120,8 +124,8 @@ static bool inside_polygon(const hl_light *light, vec3 point, vec3 u_axis, vec3 
 }
 
 /* Fills the points of a polygon. Roberts's sequence (powers of the plastic number) spreads points evenly over
- * a rectangle around the polygon, one of whose sides is along the polygon's longest edge. The points inside
- * the polygon are kept. */
+ * a rectangle around the polygon. One side of the rectangle is parallel to the polygon's longest edge. Only
+ * the points inside the polygon are used. */
 static void fill_polygon(const hl_light *light, size_t n, vec3 *points) {
   const double plastic = 1.32471795724474602596;
   polygon_shape shape = hl_polygon_shape(light->vertices, light->vertex_count);
@@ -156,7 +160,7 @@ static void fill_points(reference_light *light) {
   size_t n = light->point_count;
   if (n == 1) {
     light->points[0] = light->directional ? light->towards : light->centre;
-    /* The directions are those to points of a disk at unit distance. */
+    /* A directional light's points are directions: unit vectors to the points of a disk at the distance 1. */
   } else if (light->directional) {
     double radius = tan(described->angular_diameter_deg * HL_PI / 360);
     for (size_t i = 0; i < n; i++)
@@ -184,8 +188,8 @@ static bool has_extent(const hl_light *light) {
   }
 }
 
-/* The offset of a light's point from the light's centre; for a directional light, the offset at distance 1
- * from the direction to the light. */
+/* The vector from the light's centre to a point of the light. A directional light's centre and points lie at
+ * the distance 1 in their directions. */
 static vec3 offset_of(const reference_light *light, vec3 light_point) {
   if (!light->directional) return vec3_subtract(light_point, light->centre);
   vec3 at_distance_1 = vec3_scale(light_point, 1 / vec3_dot(light_point, light->towards));
@@ -194,7 +198,8 @@ static vec3 offset_of(const reference_light *light, vec3 light_point) {
 
 enum { MEAN_POINTS = 1 << 14 };
 
-/* Finds the mean of the image over the light's points. A light that counts as a point has this colour. */
+/* Finds the emission image's mean colour over the light's points. A light that counts as a single point has
+ * this colour. */
 static hl_status find_mean(hl_context *context, reference_light *light, hl_error *error) {
   reference_light dense = *light;
   vec3 facing = light->directional ? vec3_scale(light->towards, -1) : (vec3){0, 0, 1};
@@ -217,8 +222,8 @@ static hl_status find_mean(hl_context *context, reference_light *light, hl_error
   return HL_OK;
 }
 
-/* Fills the points over which the phase function is averaged. The points of a sphere are computed later, for
- * every sample. */
+/* Fills the points of a light over which the phase function is averaged. The points of a sphere depend on the
+ * sample, and are computed later. */
 static hl_status fill_extent(hl_context *context, reference_light *light, hl_error *error) {
   if (light->directional || !has_extent(light->described)) return HL_OK;
   reference_light dense = *light;
@@ -261,9 +266,9 @@ hl_status hl_reference_light_create(const reference *all, const hl_light *light,
 
 /* The mean of the phase function p over a cap of directions. c: the cosine of the cap's half angle. cosine:
  * the cosine of the angle between the cap's middle and the direction from which light reaches the eye without
- * being turned. The mean is the sum over n of (2 n + 1) g^n k_n P_n(cosine), where k_n, the mean of P_n over
- * the cap, is (P_(n-1)(c) - P_(n+1)(c)) / ((2 n + 1) (1 - c)) (derived: by the addition theorem, only the
- * harmonics that are symmetric about the cap's middle remain). */
+ * being turned. Derived: the mean is the sum over n of (2 n + 1) g^n k_n P_n(cosine). The factor k_n is the
+ * mean of the Legendre polynomial P_n over the cap, (P_(n-1)(c) - P_(n+1)(c)) / ((2 n + 1) (1 - c)). By the
+ * addition theorem, only the harmonics that are symmetric about the cap's middle remain. */
 static double phase_of_cap(double g, double c, double cosine) {
   double before = 1, here = cosine, cap_before = 1, cap_here = c, power = 1, sum = 1;
   for (int n = 1; fabs(power) > 1e-9; n++) {
@@ -294,8 +299,9 @@ double hl_reference_light_phase(const reference_light *light, double g, vec3 to_
   return light->extent != NULL ? sum : hl_reference_phase(g, to_eye, facing);
 }
 
-/* A spot light's brightness rises from 0 to 1 by a smooth step of the cosine of the angle to its axis, from
- * half the opening angle to half the opening angle less the falloff angle. */
+/* The fraction of a spot light's brightness in a direction. It is a smooth step of the cosine of the angle to
+ * the light's axis. The fraction is 0 from half the opening angle on, and 1 up to half the opening angle less
+ * the falloff angle. */
 static double spot_brightness(const hl_light *light, vec3 towards) {
   double cosine = -vec3_dot(towards, vec3_normalise(vec3_of(light->direction)));
   double outer = cos(light->opening_angle_deg * HL_PI / 360);
@@ -320,10 +326,10 @@ void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival
   for (int c = 0; c < 3; c++) arrived->incoming[c] = light->color[c] * factor;
 }
 
-/* Finds the colour of the ray from a point of the light to `point`, as the light's images give it: the
- * texture that the light projects, or the emission image on its surface. Returns false if the colour is
- * black. light_point: for a directional light, a direction. plane: the plane of the emission image; null:
- * each point of the light has the image's mean colour. */
+/* Finds the colour that the light's images give to the ray from a point of the light to `point`. An image is
+ * the texture that the light projects, or the emission image on its surface. Returns false if the colour is
+ * black. light_point: the point of the light; for a directional light, a direction. plane: the plane of the
+ * emission image; null: each point of the light has the image's mean colour. */
 static bool find_pattern(const reference_light *light, const emission_plane *plane, vec3 light_point,
                          vec3 point, double pattern[3]) {
   pattern[0] = pattern[1] = pattern[2] = 1;
@@ -333,7 +339,8 @@ static bool find_pattern(const reference_light *light, const emission_plane *pla
   return pattern[0] > 0 || pattern[1] > 0 || pattern[2] > 0;
 }
 
-/* Finds the fraction of light that passes from a point of the light to the receiver `at`. */
+/* Finds the fraction of light, in each channel, that passes from a point of the light to the receiver
+ * `at`. */
 static void find_passing(const reference *all, const reference_light *light, vec3 light_point,
                          const reference_receiver *at, crossing *scratch, double passing[3]) {
   vec3 offset = vec3_subtract(light_point, at->point);
@@ -364,7 +371,7 @@ void hl_reference_light_reach(const reference *all, const reference_light *light
   }
   for (size_t i = 0; i < count && !hl_pool_stops(all->pool, worker->number); i++) {
     vec3 light_point = casts ? light->points[i] : centre;
-    if (light->sphere) /* as seen from `point`, a sphere is the disk that faces the point */
+    if (light->sphere) /* a sphere counts as the disk that faces `point` */
       light_point = point_of_disk(light->centre, facing, light->described->radius, i, count);
     double pattern[3], passing[3] = {1, 1, 1};
     if (!find_pattern(light, extended ? &plane : NULL, light_point, point, pattern)) continue;

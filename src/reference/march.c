@@ -1,12 +1,13 @@
-/* reference/march.c - a ray through the boxes of several volumes.
+/* reference/march.c - follows a ray through the boxes of several volumes.
  *
- * The ray is divided into stretches at the distances at which it enters and leaves boxes, and crosses the
- * faces of cuts. On the whole length of a stretch, the ray is in the same volumes. A stretch is walked in
+ * The ray is divided into stretches. A stretch ends where the ray enters or leaves a box, or crosses the face
+ * of a cut. So the ray is in the same volumes over the whole length of a stretch. A stretch is divided into
  * equal steps, no longer than the requested step, and each step is sampled at its middle. A homogeneous box
  * is therefore integrated exactly, wherever its faces lie. */
 #include "reference/reference.h"
 
-/* The ray's entry to and exit from the index-space box, by the slab method. */
+/* Finds the distances at which the ray enters and leaves the volume's box in index space, by the slab
+ * method. */
 static void clip_to_box(crossing *part, double nearest, double farthest) {
   const double o[3] = {part->origin.x, part->origin.y, part->origin.z};
   const double d[3] = {part->direction.x, part->direction.y, part->direction.z};
@@ -45,12 +46,13 @@ void hl_reference_march_begin(const reference *all, reference_role role, const r
   }
 }
 
-/* The next distance at which the ray crosses a face of a cut. */
+/* Finds the next distance at which the ray crosses a face of one of the volume's cuts. */
 static double next_face(const crossing *part, double after) {
   return part->uncut ? INFINITY : hl_reference_next_face(part->volume, part->origin, part->direction, after);
 }
 
-/* Makes the volumes inactive that cuts remove in this stretch. Returns whether any volume stays active. */
+/* Marks volumes as inactive if their cuts remove the matter in this stretch. Returns whether any volume stays
+ * active. */
 static bool leave_uncut(march *walk) {
   double middle = (walk->start + walk->end) / 2;
   bool inside = false;
@@ -106,8 +108,8 @@ bool hl_reference_march_next(march *walk) {
     double clear = hl_reference_march_place(walk, walk->start + (walk->next + 0.5) * walk->length);
     walk->next++;
     if (clear <= 0) return true;
-    /* Skips the samples that lie strictly inside the empty stretch. The margin prevents rounding from
-     * skipping one sample too many. */
+    /* Skips the samples that lie strictly inside the stretch without visible bricks. The small margin keeps
+     * rounding from skipping one sample too many. */
     walk->next += floor(fmax(clear / walk->length - 1e-6, 0));
   }
 }

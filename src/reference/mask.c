@@ -1,16 +1,16 @@
-/* reference/mask.c - a volume's mask at a point of the volume's index space: it is interpolated linearly
- * between the voxels of its lattice (label/mask.h), which stores square roots of colours. Outside the
- * lattice, the factor is that of the rest. */
+/* reference/mask.c - finds the factor and the colour of a volume's mask at a point of the volume's index
+ * space. The mask is stored at the voxels of a lattice (label/mask.h), and is interpolated linearly between
+ * them. The lattice stores square roots of colours. Outside the lattice, the factor is hl_mask's `rest`. */
 #include "reference/reference.h"
 
-/* The eight voxels around a point, and their weights. */
+/* The eight voxels of the mask's lattice around a point, and their weights. */
 typedef struct mask_voxels {
   size_t voxel[8];
   double share[8];
 } mask_voxels;
 
-/* Finds the voxels around p, a point of the lattice's index space. False if p lies outside the lattice; the
- * voxels are then those at the nearest place of its border. */
+/* Finds the voxels around p, a point of the lattice's index space. If p lies outside the lattice, the voxels
+ * are those around the nearest point of the lattice's border, and the result is false. */
 static bool find_voxels_at(const hl_volume *mask, const double p[3], mask_voxels *found) {
   bool inside = true;
   for (int corner = 0; corner < 8; corner++) {
@@ -51,8 +51,8 @@ double hl_reference_mask_factor(const reference_volume *volume, vec3 point) {
   return factor_of(mask->volume, &found);
 }
 
-/* The slope of the mask's factor, by differences over two voxels of the lattice. These differences are
- * interpolated linearly between the lattice's points, as the factor is. */
+/* The gradient of the mask's factor. At the lattice's points it is the difference of the two neighbouring
+ * points along each axis; between the points it is interpolated linearly, like the factor itself. */
 vec3 hl_reference_mask_slope(const reference_volume *volume, vec3 point) {
   const hl_mask *mask = &volume->described->mask;
   double slope[3];

@@ -1,25 +1,25 @@
-/* reference/maximum.c - the greatest value along a ray (maximum projection).
+/* reference/maximum.c - finds the greatest value along a ray (maximum projection).
  *
  * Each volume's field is sampled at the march's steps and at the faces of its box. If the transfer function
- * shows the value at only one of two neighbouring samples, the border between shown and hidden values is
- * searched for. The peak around the greatest sample is searched for, too. */
+ * shows the value at only one of two neighbouring samples, the search also finds the place between the two
+ * samples where the shown values end. The peak around the greatest sample is found, too. */
 #include "reference/reference.h"
 
 enum { HALVINGS = 40 };
 
-/* A search along a ray through one volume, and the greatest value found so far. */
+/* The state of a search along a ray through one volume. */
 typedef struct search {
   const crossing *part;
-  double greatest, where; /* the greatest value so far, and its distance; -infinity if no value is shown
-                           * yet */
+  double greatest, where; /* the greatest shown value so far, and its distance along the ray; -infinity if no
+                           * value is shown yet */
 } search;
 
 static double value_at(const crossing *part, double at) {
   return hl_reference_value(part->volume, vec3_add(part->origin, vec3_scale(part->direction, at)));
 }
 
-/* The least opacity of a value that is shown. At the foot of a ramp, the rounding of voxels and of their
- * weighted sums can give a tiny opacity. */
+/* The least opacity at which a value counts as shown. Smaller opacities can come from the rounding of voxels
+ * and of their weighted sums at the foot of an opacity ramp. */
 static const double LEAST_OPACITY = 1e-7;
 
 static bool is_shown(const crossing *part, double value) {
@@ -27,7 +27,8 @@ static bool is_shown(const crossing *part, double value) {
          hl_transfer_function_opacity(&part->volume->described->transfer_function, value) > LEAST_OPACITY;
 }
 
-/* Notes the value at this distance if the transfer function shows it. Returns whether it does. */
+/* Notes the volume's value at this distance along the ray if the transfer function shows the value. Returns
+ * whether the function shows it. */
 static bool ask(search *found, double at) {
   double value = value_at(found->part, at);
   if (!is_shown(found->part, value)) return false;
@@ -38,7 +39,7 @@ static bool ask(search *found, double at) {
   return true;
 }
 
-/* Searches between a shown and a hidden distance for the last shown distance, to the precision of doubles. */
+/* Searches for the last shown distance between a shown and a hidden distance, to the precision of doubles. */
 static void ask_at_end(search *found, double shown, double other) {
   for (int i = 0; i < HALVINGS; i++) {
     double middle = (shown + other) / 2;
@@ -47,8 +48,8 @@ static void ask_at_end(search *found, double shown, double other) {
   }
 }
 
-/* Searches for the peak within one step before and after (golden-section search, Kiefer 1953). Hidden values
- * guide the search, but are never the result. */
+/* Searches for the peak of the values within one step before and after the greatest sample (golden-section
+ * search, Kiefer 1953). Hidden values guide the search, but never become the result. */
 static void ask_at_peak(search *found, double low, double high) {
   static const double golden = 0.6180339887498949;
   for (int i = 0; i < HALVINGS; i++) {
@@ -59,7 +60,7 @@ static void ask_at_peak(search *found, double low, double high) {
   (void)ask(found, (low + high) / 2);
 }
 
-/* The greatest shown value between two faces; -infinity if none is shown. */
+/* The greatest shown value on the ray between two faces of boxes or cuts; -infinity if no value is shown. */
 static double greatest_between(const crossing *part, double step) {
   search found = {part, -INFINITY, 0};
   double steps = fmax(ceil((part->leave - part->enter) / step), 1),
@@ -69,7 +70,7 @@ static double greatest_between(const crossing *part, double step) {
     double at = part->enter + next * length;
     double clear = hl_reference_clearance(
         part->volume, vec3_add(part->origin, vec3_scale(part->direction, at)), part->direction);
-    /* Jumps over the samples in empty bricks. */
+    /* jumps over the samples in bricks without visible values */
     next += floor(fmax(clear / length - 1e-6, 0));
     bool shown = clear <= 0 && ask(&found, at);
     if (shown && !before) ask_at_end(&found, at, at - length);
@@ -81,7 +82,8 @@ static double greatest_between(const crossing *part, double step) {
   return found.greatest;
 }
 
-/* One volume's greatest shown value; -infinity if it shows none. */
+/* The greatest value of one volume along the ray that the transfer function shows; -infinity if no value is
+ * shown. */
 static double greatest_along(const crossing *whole, double step) {
   double greatest = -INFINITY;
   crossing part = *whole;

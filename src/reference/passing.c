@@ -1,17 +1,17 @@
-/* reference/passing.c - the light that passes volumes and surfaces on a ray: to a point, or to the outside of
- * the volume's surface in which the point lies.
+/* reference/passing.c - the fraction of light that passes volumes and surfaces on a ray. The light goes to a
+ * point, or to the outside of the volume's surface in which the point lies.
  *
- * A volume's surface is lit by the light that arrives at its outside. So the matter of a surface, which light
- * crosses on its way deeper into it, does not shade the same surface. A ray is followed from the point to the
- * light. T is the light that is left on the ray, and A the light that the surface has taken. Each step
- * changes T and A linearly. So two factors hold the effect of all steps between the current place and the
- * point. */
+ * A volume's surface is lit by the light that arrives at the surface's outside. So the matter of a surface
+ * does not shade the deeper parts of the same surface. A ray is followed from the point to the light. T is
+ * the light that is left on the ray, and A is the light that the surface has taken. Each step changes T and A
+ * linearly. So two factors hold the effect of all steps between the ray's current place and the point. */
 #include <stdlib.h>
 
 #include "core/memory.h"
 #include "reference/reference.h"
 
-/* The optical depth from which on a light counts as dark, if all channels have it: exp(-18) is 2e-8. */
+/* A light counts as dark if the optical depth to it is greater than this in all channels: exp(-18) is
+ * 2e-8. */
 static const double DARK_DEPTH = 18;
 
 void hl_reference_transmittance(const reference *all, const reference_ray *ray, crossing *scratch,
@@ -36,8 +36,8 @@ void hl_reference_transmittance(const reference *all, const reference_ray *ray, 
 
 /* ---- where surfaces begin ---- */
 
-/* The optical depth, in one unit of distance, of matter with this value. For a function of two numbers, it is
- * the greatest optical depth over all second numbers. */
+/* The optical depth of matter with this value over one unit distance of the transfer function. For a function
+ * of two numbers, it is the greatest optical depth over all second numbers. */
 static double extinction_at(const reference_volume *volume, double value) {
   if (value < volume->transparent_below) return 0;
   double opacity = hl_transfer_function_opacity(&volume->described->transfer_function, value);
@@ -53,12 +53,13 @@ static int index_of_value(const reference_volume *volume, double value) {
   return (int)fmin(fmax(place, 0), HL_REFERENCE_FEET - 1);
 }
 
-/* Matter with this value belongs to a surface. Returns the value at which this surface begins. */
+/* Returns the value at which the surface begins that matter with the given value belongs to. */
 static double foot_of(const reference_volume *volume, double value) {
   return volume->feet[index_of_value(volume, value)];
 }
 
-/* The integral of extinction over values, from feet_low up to a value. It is tabulated in steps of values. */
+/* The integral of extinction over the values from feet_low to the given value. It is interpolated in a
+ * table. */
 static double depth_to(const reference_volume *volume, double value) {
   double place = (value - volume->feet_low) / (volume->feet_high - volume->feet_low) * HL_REFERENCE_FEET;
   place = fmin(fmax(place, 0), HL_REFERENCE_FEET);
@@ -114,20 +115,22 @@ hl_status hl_reference_feet_create(hl_context *context, reference_volume *volume
 
 /* ---- the light at the outside ---- */
 
-/* The fractions that a step keeps: of the light that the surface took before the step, and of the light that
- * it takes in the step. second: in this step, light comes from another surface into this one. A part of the
- * light that the other surface took may then count as taken by this one. */
+/* The fractions of the surface's light that still count as the surface's after one step of the light. before:
+ * the fraction of the light that the surface took before the step. within: the fraction of the light that the
+ * surface takes in the step. second: in this step, the light comes from another surface into this surface. A
+ * part of the light that the other surface took may then count as taken by this one. */
 typedef struct kept_light {
   double before, within;
   bool second;
 } kept_light;
 
 /* Raises a kept fraction towards 1 where matter belongs to the skin of a face: returns kept to the power 1 -
- * skin. With powers, products over steps do not depend on the steps' length. */
+ * skin. Because skin is in the exponent, the product over all steps does not depend on the steps' length. */
 static double kept_in_skin(double kept, double skin) { return skin > 0 ? pow(kept, 1 - skin) : kept; }
 
-/* Finds the fractions of the taken light that a step keeps. from, to: the values at the step's ends, in the
- * direction of light. skin: how much of the visible matter there belongs to a face that cuts it, 0 to 1. */
+/* Finds the fractions of the light taken by a surface that still count as taken by this surface after one
+ * step. from, to: the volume's values at the step's ends, in the direction of the light. skin: how much of
+ * the visible matter in the step belongs to the face of a cut, 0 to 1. */
 static kept_light kept_of_step(const reference_volume *volume, double from, double to, double length,
                                double skin) {
   double foot_from = foot_of(volume, from), foot_to = foot_of(volume, to), deep = to - foot_to,
@@ -143,18 +146,19 @@ static kept_light kept_of_step(const reference_volume *volume, double from, doub
   return (kept_light){0, enters ? 1 : 0, enters && extinction_at(volume, from) > 0};
 }
 
-/* The state while the ray, on its way to the light, is in another surface, after it has left the point's
- * surface. It is not known yet whether the other surface is a layer of its own. */
+/* A layer is another surface that the ray has entered, on its way to the light, after it left the point's own
+ * surface. While a layer is pending, it is not known whether it counts as part of the point's surface. */
 typedef struct pending_layer {
   bool any;
-  /* depth: the other surface's optical depth so far. rise: the values' change per length where the ray left
-   * the point's surface. ramp: the depth of a straight ramp, times `rise`. */
+  /* depth: the other surface's optical depth so far. rise: the change of the volume's values per length where
+   * the ray left the point's surface. ramp: the optical depth, times `rise`, that the other surface would
+   * have if values rose in it along a straight ramp. */
   double depth, rise, ramp;
 } pending_layer;
 
-/* The factors by which all steps between here and the point multiply the light and the light taken by the
- * surface. kept_light and kept_taken are these factors for the case that the light taken by the pending layer
- * counts as taken by the surface. */
+/* The factors by which all steps between the ray's current place and the point multiply the light and the
+ * light taken by the surface. kept_light and kept_taken are these factors for the case that the light taken
+ * by the pending layer counts as taken by the surface. */
 typedef struct light_factors {
   double light[3], kept_light[3], kept_taken;
 } light_factors;
@@ -166,8 +170,9 @@ static double ramp_depth(const reference_volume *volume, double from, double to)
   return sum / steps * fabs(to - from) / volume->described->transfer_function.unit_distance;
 }
 
-/* Decides about a pending layer. If it is up to 1.2 times as thick as a straight ramp of values, it counts
- * fully as part of the surface; if it is 1.6 times as thick or more, it does not count. */
+/* Decides whether a pending layer is part of the point's surface. The layer's optical depth is compared with
+ * the depth of a straight ramp of values. Up to 1.2 times the ramp's depth, the layer counts fully as part of
+ * the surface. From 1.6 times on, it does not count. Between these ratios, the layer counts in part. */
 static void settle(light_factors *all, pending_layer *layer) {
   double ratio = layer->depth * layer->rise / fmax(layer->ramp, 1e-300),
          kept = fmin(fmax((1.6 - ratio) / 0.4, 0), 1);
@@ -176,8 +181,8 @@ static void settle(light_factors *all, pending_layer *layer) {
   layer->any = false;
 }
 
-/* Adds a step to the factors. depth: the optical depth of all volumes in the step, for each channel. kept:
- * the mean of the fractions that the volumes keep. */
+/* Adds a step to the factors. depth: the optical depth of all volumes in the step, in each channel. kept: the
+ * mean, weighted by optical depth, of the fractions that the volumes keep. */
 static void add_step(light_factors *all, pending_layer *layer, const double depth[3], kept_light kept) {
   if (layer->any && kept.before == 0) settle(all, layer);
   for (int c = 0; c < 3; c++) {

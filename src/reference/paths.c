@@ -1,18 +1,20 @@
-/* reference/paths.c - light that media scatter more than once, by following paths from the eye.
+/* reference/paths.c - estimates the light that media scatter more than once, by following random paths from
+ * the eye.
  *
- * A path flies until it has passed a random optical depth. There it is turned by the medium's phase function,
- * and flies on. At its second and every later collision it collects the unscattered light that the lights and
- * the sky send to the collision. This is an unbiased estimate of the light that was scattered at least twice.
- * Light that was scattered once is integrated in shade.c. Meshes and isosurfaces on a path absorb their part
- * of the light and scatter none. Random numbers depend on the pixel and the path alone. Paths treat the
- * volumes' extinction as equal in all channels. */
+ * A path flies until it has passed a random optical depth. At this place, the collision, the path is turned
+ * by the medium's phase function, and flies on. At its second and every later collision the path collects the
+ * unscattered light that the lights and the sky send to the collision. This is an unbiased estimate of the
+ * light that was scattered at least twice. Light that was scattered once is integrated in shade.c. Meshes and
+ * isosurfaces on a path absorb their part of the light and scatter none. Random numbers depend on the pixel
+ * and the path alone. Paths treat the volumes' extinction as equal in all channels. */
 #include "reference/reference.h"
 
-/* A path has at least SURE_TURNS turns; after them it may end at random. */
+/* A path has at least SURE_TURNS turns. After these turns it ends with some probability at each collision,
+ * and at the latest after MOST_TURNS turns. */
 enum { SURE_TURNS = 8, MOST_TURNS = 100000 };
 
-/* A random number from 0 to 1. Steele, Lea and Flood, "Fast splittable pseudorandom number generators"
- * (2014). */
+/* Returns a random number from 0 to 1 (Steele, Lea and Flood, "Fast splittable pseudorandom number
+ * generators", 2014). */
 static double uniform(uint64_t *state) {
   uint64_t z = *state += UINT64_C(0x9e3779b97f4a7c15);
   z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
@@ -47,7 +49,7 @@ static void choose_volume(const march *walk, double total, uint64_t *random, col
   }
 }
 
-/* Flies along a ray until a collision; false if there is none. */
+/* Follows the path along a ray until its next collision. Returns false if there is none. */
 static bool fly(const reference *all, reference_role role, const reference_ray *ray, reference_worker *worker,
                 uint64_t *random, collision *met) {
   march walk;
@@ -69,8 +71,8 @@ static bool fly(const reference *all, reference_role role, const reference_ray *
   return false;
 }
 
-/* Multiplies the path's light by the fraction that surfaces on the way to a collision let through. Surfaces
- * scatter nothing. */
+/* Multiplies the path's light by the fraction of light that surfaces let through between the way's beginning
+ * and a collision. */
 static void take_surfaces(const reference *all, reference_role role, reference_ray way, double distance,
                           double weight[3]) {
   double passing[3] = {1, 1, 1}, after = way.nearest;
@@ -83,12 +85,13 @@ static void take_surfaces(const reference *all, reference_role role, reference_r
   for (int c = 0; c < 3; c++) weight[c] *= passing[c];
 }
 
-/* A random direction, distributed by Henyey and Greenstein's function about the previous direction. */
+/* Chooses a random direction. Its angle to the previous direction is distributed by Henyey and Greenstein's
+ * phase function. */
 static vec3 turn(vec3 way, double g, uint64_t *random) {
   double a = uniform(random), angle = 2 * HL_PI * uniform(random), cosine = 2 * a - 1;
   if (fabs(g) > 1e-6) {
-    double part = (1 - g * g) / (1 - g + 2 * g * a); /* derived: the equation of p's integral, solved for the
-                                                      * cosine */
+    double part = (1 - g * g) / (1 - g + 2 * g * a); /* derived: the integral of the phase function p, solved
+                                                      * for the cosine */
     cosine = (1 + g * g - part * part) / (2 * g);
   }
   double sine = sqrt(fmax(1 - cosine * cosine, 0));
@@ -97,13 +100,14 @@ static vec3 turn(vec3 way, double g, uint64_t *random) {
       vec3_scale(way, cosine), vec3_add(vec3_scale(u, sine * cos(angle)), vec3_scale(v, sine * sin(angle)))));
 }
 
-/* Adds the light that comes from the scene's lights to a collision and is scattered there onto the path. One
- * random point represents each light. way: the path's direction, away from the eye; a unit vector. */
+/* Adds the light that goes from the scene's lights to a collision and is scattered there into the path. A
+ * single random point represents each light. way: the path's direction, away from the eye; a unit vector. */
 static void add_lights(const reference *all, const collision *met, vec3 way, const double weight[3],
                        reference_worker *worker, uint64_t *random, double sum[3]) {
   for (size_t l = 0; l < all->scene->light_count; l++) {
     reference_light one = all->lights[l];
-    if (one.points == NULL) continue; /* lights without shadows count only for the first scattering */
+    /* A light without shadows counts only for light that is scattered once. */
+    if (one.points == NULL) continue;
     vec3 point = one.points[(size_t)(uniform(random) * (double)one.point_count)];
     if (!one.sphere) one.points = &point, one.point_count = 1;
     arrival arrived;

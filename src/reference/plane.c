@@ -1,5 +1,5 @@
-/* reference/plane.c - evaluates a volume's transfer function of two numbers at one point, by its
- * description. */
+/* reference/plane.c - evaluates a volume's transfer function of two numbers at one point, directly from the
+ * function's description. */
 #include <string.h>
 
 #include "reference/reference.h"

@@ -1,16 +1,16 @@
-/* reference/rays.c - how many rays a pixel has in a small picture of a large volume.
+/* reference/rays.c - finds how many rays a pixel needs, so that a small picture of a large volume is right.
  *
- * In: the scene and the boxes of its volumes' visible bricks. Out: rays along each side of a pixel. Where
- * voxels are smaller than pixels, the renderer averages over a pixel's area (docs/decisions.md). A reference
- * with a single ray through the pixel's centre would make another picture. */
+ * In: the scene and the boxes of its volumes' visible bricks. Out: the number of rays along each side of a
+ * pixel. Where voxels are smaller than pixels, the renderer averages over a pixel's area (docs/decisions.md).
+ * A reference with a single ray through the pixel's centre would make another picture. */
 #include "reference/reference.h"
 
-/* SURFACE_RAYS: the number of rays along each side of a pixel in scenes with meshes, so that their edges are
- * smooth. */
+/* SURFACE_RAYS: the number of rays along each side of a pixel in scenes with meshes, so that the meshes'
+ * edges are smooth. */
 enum { BRICK_CELLS = 4, LONGEST_SIDE = 4096, SURFACE_RAYS = 4 };
 
-/* The box, in index space, around the visible bricks, as far as it lies within the volume's box. Bricks at
- * the borders reach half a voxel beyond the grid. False if no brick is visible. */
+/* Finds the box, in index space, around the visible bricks within the volume's box. Bricks at the grid's
+ * borders reach half a voxel beyond the outermost voxels. Returns false if no brick is visible. */
 static bool shown_box(const reference_volume *volume, double low[3], double high[3]) {
   const unsigned char *clear = volume->clearance;
   size_t brick[3];
@@ -37,8 +37,8 @@ static bool shown_box(const reference_volume *volume, double low[3], double high
   return any;
 }
 
-/* About the corners, in the world, of the boxes around visible bricks: the sum of their positions, the depth
- * of the nearest corner, and the number of corners. */
+/* Sums over the corners, in the world, of the boxes around all volumes' visible bricks: the sum of the
+ * corners' positions, the depth of the nearest corner, and the number of corners. */
 typedef struct content {
   vec3 sum;
   double nearest;
@@ -58,8 +58,9 @@ static void add_volume(const reference_volume *volume, vec3 position, vec3 forwa
   }
 }
 
-/* The edge of a pixel in the world at unit depth; in an orthographic picture, at any depth. Derived: the
- * picture's height divided by its number of rows, where the height is 2 tan(fovy / 2) at unit depth. */
+/* The length of a pixel's edge in the world at the depth 1; for an orthographic camera, at any depth.
+ * Derived: it is the picture's height divided by the number of rows. At the depth 1, the height of a
+ * perspective picture is 2 tan(fovy / 2). */
 static double pixel_edge(const hl_scene_description *scene) {
   bool orthographic = scene->camera.type == HL_CAMERA_ORTHOGRAPHIC;
   return (orthographic ? scene->camera.height : 2 * tan(scene->camera.fovy_deg * HL_PI / 360)) /

@@ -1,7 +1,8 @@
-/* reference/reference.c - the oracle's entry: camera rays, and emission-absorption along them.
+/* reference/reference.c - the entry of the reference: makes camera rays, and adds up emission and absorption
+ * along them.
  *
  * In: a scene. Out: linear premultiplied RGBA without a background, top row first. Pixels are independent of
- * each other; threads take them in runs. */
+ * each other. Each thread takes runs of pixels of a row. */
 #include <stdatomic.h>
 
 #include <halflight/render.h>
@@ -12,23 +13,24 @@
 #include "reference/reference.h"
 #include "scene/check/check.h"
 
-/* Alpha at which a ray ends. */
+/* A ray ends when its alpha reaches this value. */
 static const double OPAQUE = 1 - 1e-5;
 
 /* The alpha that a ray must reach for its first depth (halflight/layers.h). */
 static const double FIRST_OPACITY = 0.01;
 
 /* The greatest opacity that one sample may add to a pixel. It is small, because light that grazes a dense
- * volume fades within a small fraction of a step. The error grows linearly with this bound, and quadratically
- * with the step. So steps that are coarser than the default allow more opacity, in proportion. */
+ * volume fades within a small fraction of a step. The error grows linearly with this bound, and with the
+ * square of the step. So a step coarser than the default allows more opacity: the bound grows with the square
+ * of the step, up to COARSEST_OPACITY. */
 static const double MOST_OPACITY = 0.02, USUAL_STEP = 0.25, COARSEST_OPACITY = 0.1;
 
 enum { RUN_PIXELS = 16 };
 
 typedef struct eye_rays {
   vec3 position, forward;
-  vec3 right, up; /* from the picture's centre to the middle of its right and top edge: on the plane at unit
-                   * distance (perspective), or in world units (orthographic) */
+  vec3 right, up; /* vectors from the picture's centre to the middle of its right and of its top edge: on the
+                   * plane at the distance 1 (perspective), or in world units (orthographic) */
   bool orthographic;
 } eye_rays;
 
@@ -38,9 +40,10 @@ typedef struct picture {
   reference_worker *workers; /* [threads] */
   float *pixels;             /* the caller's pixels */
   const hl_layers *layers;   /* the caller's layers; null if there are none */
-  size_t row_stride;         /* floats from row to row */
-  size_t runs_per_row, runs; /* runs of pixels in a row, and in the picture */
-  size_t stride;             /* the distance, modulo `runs`, of the runs that are taken one after the other */
+  size_t row_stride;         /* number of floats from one row to the next */
+  size_t runs_per_row, runs; /* number of runs of pixels in a row, and in the picture */
+  size_t stride;             /* successive work items take runs that are this many runs apart, modulo
+                              * `runs` */
   atomic_size_t runs_done;
 } picture;
 
@@ -56,8 +59,8 @@ static eye_rays eye_rays_of(const hl_scene_description *scene) {
   return eye;
 }
 
-/* Makes ray (x, y) of the picture. Rays are numbered across the whole picture; each pixel has rays x rays of
- * them. *direction: a unit vector. */
+/* Makes ray (x, y) of the picture. Rays are numbered across the whole picture; each pixel has `rays` rays
+ * along each side. *direction: a unit vector. */
 static void eye_ray(const picture *all, size_t x, size_t y, vec3 *origin, vec3 *direction) {
   const eye_rays *eye = &all->eye;
   double across = 2 * ((double)x + 0.5) / ((double)all->all->scene->width * all->all->rays) - 1;
@@ -99,9 +102,9 @@ static void sample(const reference *all, const march *walk, vec3 point, vec3 to_
   made->depth = made->weight * walk->at;
 }
 
-/* Adds the sample at the march's position, for a step of this length, and returns its extinction. Front to
- * back: C += (1-A) a c, A += (1-A) a, with a = 1 - exp(-sigma dt), which is the exact integral if nothing
- * varies in the step. */
+/* Adds the samples of all volumes at the march's position, for a step of the given length. Returns their
+ * extinction. Samples are composited front to back: C += (1-A) a c, A += (1-A) a, with a = 1 - exp(-sigma
+ * dt). This is the exact integral if nothing varies in the step. */
 static double composite(const reference *all, const march *walk, double length, vec3 origin, vec3 direction,
                         reference_worker *worker) {
   vec3 point = vec3_add(origin, vec3_scale(direction, walk->at));
@@ -113,16 +116,16 @@ static double composite(const reference *all, const march *walk, double length, 
   return extinction;
 }
 
-/* The distance at which alpha passes FIRST_OPACITY in a step that begins at `start` with alpha `before`.
- * Derived: (1 - A) exp(-sigma t) = 1 - FIRST_OPACITY. */
+/* The distance at which a ray's alpha reaches FIRST_OPACITY, in a step that begins at the distance `start`
+ * with the alpha `before`. Derived: (1 - A) exp(-sigma t) = 1 - FIRST_OPACITY. */
 static double first_within(double before, double extinction, double start) {
   return start + log((1 - before) / (1 - FIRST_OPACITY)) / extinction;
 }
 
-/* Marches along a part of a camera ray. Every step is cut into pieces so short that no piece adds more
- * opacity than most_opacity. The extinction of the previous piece tells how long a piece may be. Adds the
- * contributions of the part's samples to worker->ray. Sets *first to the first depth if it lies in this
- * part. */
+/* Marches along a part of a camera ray. Every step is cut into pieces that each add at most most_opacity to
+ * the ray's opacity. The length of a piece follows from the extinction of the piece before it. Adds the
+ * contributions of the part's samples to worker->ray. Sets *first to the first depth if the first depth lies
+ * in this part. */
 static void trace_part(const reference *all, const reference_ray *way, reference_worker *worker,
                        double *first) {
   march walk;
@@ -146,8 +149,9 @@ static void trace_part(const reference *all, const reference_ray *way, reference
   }
 }
 
-/* Follows one camera ray, from surface to surface. A perspective ray begins at the eye; an orthographic ray
- * has no beginning. Leaves the ray's contributions in the worker. Returns the first depth. */
+/* Follows one camera ray from surface to surface, and marches through the volumes between them. A perspective
+ * ray begins at the eye; an orthographic ray has no beginning. Leaves the ray's contributions in worker->ray.
+ * Returns the first depth. */
 static double trace(const reference *all, vec3 origin, vec3 direction, reference_worker *worker) {
   reference_parts *ray = &worker->ray;
   bool orthographic = all->scene->camera.type == HL_CAMERA_ORTHOGRAPHIC;
@@ -173,7 +177,7 @@ static double trace(const reference *all, vec3 origin, vec3 direction, reference
   return first;
 }
 
-/* Writes the pixel, which is the sum of the ray's contributions. */
+/* Writes a pixel as the sum of the ray's contributions. */
 static void write_pixel(const reference_parts *ray, size_t light_count, float rgba[4]) {
   for (int c = 0; c < 3; c++) {
     double sum = ray->ambient[c] + ray->emission[c] + ray->sky[c];
@@ -183,7 +187,8 @@ static void write_pixel(const reference_parts *ray, size_t light_count, float rg
   rgba[3] = (float)ray->weight;
 }
 
-/* Adds the light that paths find to the pixel's ambient light, and writes the light's standard error. */
+/* Follows the pixel's random paths, adds the light that they find to the pixel's ambient light, and writes
+ * the standard error of this light. */
 static void follow_paths(const picture *all, size_t x, size_t y, reference_worker *worker) {
   size_t rays = (size_t)all->all->rays, pixel = y * (size_t)all->all->scene->width + x;
   double sum[3] = {0, 0, 0}, squares[3] = {0, 0, 0}, count = all->all->paths;
@@ -203,7 +208,8 @@ static void follow_paths(const picture *all, size_t x, size_t y, reference_worke
   }
 }
 
-/* The number that occurs most often; of several such numbers, the least. 0 if there are no numbers. */
+/* Returns the number that occurs most often in the array. Of several such numbers it returns the least.
+ * Returns 0 if the array is empty. */
 static int most_frequent(const int *numbers, size_t count) {
   size_t most = 0;
   int found = 0;
@@ -217,7 +223,7 @@ static int most_frequent(const int *numbers, size_t count) {
   return found;
 }
 
-/* Averages a pixel's rays. The first depth is averaged only over the rays that meet something. */
+/* Averages the rays of a pixel. The first depth is averaged only over the rays that meet something. */
 static void trace_pixel(const picture *all, size_t x, size_t y, int worker) {
   reference_worker *own = &all->workers[worker];
   size_t lights = all->all->scene->light_count, rays = (size_t)all->all->rays, hits = 0;
@@ -255,10 +261,11 @@ static void project_pixel(const picture *all, size_t x, size_t y, int worker) {
   for (int c = 0; c < 4; c++) pixel[c] = (float)(sum[c] / (double)(rays * rays));
 }
 
-/* The distance of runs that are taken one after the other: a number without a common divisor with their
- * count, so that each is taken once, and near the golden section of the count, so that any number of
- * successive runs is spread evenly over the picture. A picture's border is mostly empty and quick. With this
- * order the part of the runs that are done tells the time that the others take. */
+/* Returns the stride between runs of pixels that are rendered one after the other. The stride has no common
+ * divisor with the number of runs, so that each run is rendered once. It is near the golden section of this
+ * number, so that any successive runs are spread evenly over the picture. A picture's border is mostly empty
+ * and quick to render. Because of the even spread, the fraction of runs that are done tells the fraction of
+ * time that has passed. */
 static size_t stride_for(size_t count) {
   size_t stride = (size_t)(0.6180339887498949 * (double)count);
   for (bool common = true; common; stride += common) {
@@ -333,8 +340,8 @@ static void release(reference *all) {
   hl_reference_surfaces_release(all);
 }
 
-/* Allocates one block each for all workers, all of their crossings, all of their arrivals and all of their
- * contributions. */
+/* Makes the workers' state. All workers share four blocks of memory: one for the workers, one for their
+ * crossings, one for their arrivals and one for their contributions. */
 static reference_worker *workers_create(const reference *all, size_t threads) {
   size_t volumes = all->scene->volume_count, lights = all->scene->light_count;
   reference_worker *workers = hl_allocate_zeroed(all->context, threads, sizeof *workers);
@@ -444,7 +451,7 @@ hl_status hl_reference_render_layers(hl_context *context, const hl_scene *scene,
   status = hl_scene_draw(scene, &drawn, error);
   if (status == HL_OK) status = hl_pool_create(context, chosen.threads, &pool, error);
   if (status != HL_OK) return status;
-  /* in the reference the sky is the whole image; no lights take the place of suns */
+  /* The reference renders the whole sky image. It makes no lights of the image's suns. */
   hl_scene_description whole = drawn->description;
   whole.sky = scene->description.sky;
   whole.light_count = scene->description.light_count;

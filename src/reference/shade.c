@@ -1,19 +1,21 @@
 /* reference/shade.c - the colour that a lit sample sends to the eye; eqs. (3) and (4).
  *
- *
  *     surface   C = c ka Ia + c kd I max(N.L, 0) + ks I max(E.R, 0)^n     (specular only where N.L > 0)
  *     medium    C = c (ka Ia + p I)
  *     flat      C = c, for any light
  *
- * p is the mean over the light of Henyey and Greenstein's phase function times 4 pi. Emission adds c ke to a
- * surface and to a medium. In a volume shaded "phong", a sample without a gradient is a medium; as the
- * gradient grows, the sample becomes more and more a surface. */
+ * c is the volume's colour at the sample, Ia is ambient light, and I is the light of one source. N is the
+ * normal. L and E point to the light and to the eye, and R is L mirrored by N. ka, kd, ks, ke and n are the
+ * material's ambient, diffuse, specular and emission factors and its shininess. p is the mean over the light
+ * of Henyey and Greenstein's phase function times 4 pi. Emission adds c ke to a surface and to a medium. In a
+ * volume shaded "phong", a sample without a gradient is a medium; as the gradient grows, the sample becomes
+ * more and more a surface. */
 #include <string.h>
 
 #include "reference/reference.h"
 
-/* The fraction of a light that reaches a sample. It is by far the costliest part of a sample, so that it is
- * computed only when it is first needed, and then kept in worker->arrivals. */
+/* Finds the fraction of a light that reaches a sample. This fraction takes by far the most time of all that a
+ * sample needs. So it is computed only when it is first needed, and is then kept in worker->arrivals. */
 static const double *light_reach(const reference *all, const reference_sample *at, size_t light, bool surface,
                                  reference_worker *worker) {
   arrival *arrived = &worker->arrivals[light];
@@ -32,8 +34,9 @@ static const double *light_reach(const reference *all, const reference_sample *a
   return reach;
 }
 
-/* Finds the outward normal, and the fraction of the sample that is surface. Outward means towards the empty
- * value, so that lobes with values above and below it are lit from outside. */
+/* Finds a sample's outward normal, and the fraction of the sample that is surface. Outward means towards the
+ * empty value. So regions with values above the empty value and regions with values below it are both lit
+ * from outside. */
 static vec3 find_normal(const reference_volume *volume, vec3 index_point, double value, double *surface) {
   *surface = 0;
   if (volume->described->shading != HL_SHADING_PHONG) return (vec3){0, 0, 0};
@@ -67,20 +70,20 @@ void hl_reference_light_shadow(const reference *all, const reference_light *ligh
 
 /* The properties of a sample that are the same for every light. */
 typedef struct surface {
-  double own[3]; /* the volume's own colour */
+  double own[3]; /* the volume's own colour at the sample */
   vec3 normal;   /* unit length, outward; 0 in a medium */
   double amount; /* 0 for a medium, 1 for a surface */
-  vec3 outside;  /* world; for surfaces: the place along the normal at which the surface's matter begins */
+  vec3 outside;  /* world; for surfaces: the place along the normal where the matter of the surface begins */
 } surface;
 
-/* The phase function p = (1 - g^2) / (1 + g^2 - 2 g cos)^(3/2), cos = -E.L. It is 1 in all directions for g =
- * 0. */
+/* The phase function p = (1 - g^2) / (1 + g^2 - 2 g cos)^(3/2). cos = -E.L is the cosine of the angle by
+ * which light is turned. For g = 0, p is 1 in all directions. */
 double hl_reference_phase(double g, vec3 to_eye, vec3 towards) {
   return (1 - g * g) / pow(1 + g * g + 2 * g * vec3_dot(to_eye, towards), 1.5);
 }
 
-/* Adds the fraction of a light that reaches a sample to a shadow layer. If the sample is on a surface that
- * faces the light, it is the fraction that reaches the surface's outside. */
+/* Adds the fraction of a light that reaches a sample to the light's shadow layer. If the sample is on a
+ * surface that faces the light, the fraction is for the light that reaches the surface's outside. */
 static void add_shadow(const reference *all, const reference_sample *at, const surface *here, size_t light,
                        reference_worker *worker, double shadow[3]) {
   bool faces = vec3_dot(here->normal, worker->arrivals[light].towards) > 0;
@@ -94,7 +97,7 @@ static void add_shadow(const reference *all, const reference_sample *at, const s
   }
 }
 
-/* The light of one source that the sample sends to the eye. */
+/* Finds the light of one source that the sample sends to the eye. */
 static void shade_light(const reference *all, const reference_sample *at, const surface *here, size_t light,
                         reference_worker *worker, light_part *part) {
   const hl_material *material = &at->volume->described->material;
@@ -103,7 +106,7 @@ static void shade_light(const reference *all, const reference_sample *at, const 
   *part = (light_part){{0, 0, 0}, {0, 0, 0}};
   if (all->all_shadows) add_shadow(all, at, here, light, worker, part->shadow);
   if (cosine > 0) {
-    /* R = 2 (N.L) N - L */
+    /* the direction of mirror reflection: R = 2 (N.L) N - L */
     vec3 reflected = vec3_subtract(vec3_scale(here->normal, 2 * cosine), arrived->towards);
     gloss = material->specular * pow(fmax(vec3_dot(at->to_eye, reflected), 0), material->shininess);
   }
@@ -122,9 +125,10 @@ static void shade_light(const reference *all, const reference_sample *at, const 
                        arrived->incoming[c];
 }
 
-/* The place, along the normal from a sample of a surface, where the surface's matter begins. It is assumed
- * that values change along the normal by the gradient's length per unit of length, until they show nothing.
- * The place is at most 8 voxels away. Just behind the face of a cut, it is the sample's own place. */
+/* Finds the place on a surface sample's normal where the matter of the surface begins. It is assumed that
+ * values along the normal change at a constant rate, the gradient's length, until the transfer function shows
+ * nothing. The place is at most 8 voxels away. Just behind the face of a cut, the place is the sample's
+ * own. */
 static vec3 outside_of_surface(const reference_sample *at, const surface *here, double behind_face) {
   const reference_volume *volume = at->volume;
   double empty = volume->empty_value, outside = empty,
@@ -159,7 +163,8 @@ static void shade_sky(const reference *all, const reference_sample *at, const su
   }
 }
 
-/* Adds full light to the shadow layers, as flat colours receive no shadow. */
+/* Adds full light to the shadow layers for a volume of flat shading, because flat colours receive no
+ * shadow. */
 static void add_no_light(const reference *all, double weight, reference_parts *sample) {
   for (size_t l = 0; l < all->scene->light_count && all->all_shadows; l++)
     for (int c = 0; c < 3; c++) sample->lights[l].shadow[c] += weight;

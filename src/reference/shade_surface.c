@@ -1,10 +1,10 @@
-/* reference/shade_surface.c - the light that a point of a mesh's surface sends to the eye; eqs. (3) and (4).
- */
+/* reference/shade_surface.c - finds the light that a point of a mesh or of an isosurface sends to the eye;
+ * eqs. (3) and (4). */
 #include "mesh/mesh.h"
 #include "reference/reference.h"
 
-/* The normal, of any length, of a triangle's corner: the corner's own normal at a crease, else the vertex's
- * normal. */
+/* The normal, of any length, at a corner of a triangle. At a crease of the mesh it is the corner's own
+ * normal, elsewhere the normal of the vertex. */
 static vec3 corner_normal(const reference *all, const hl_scene_mesh *mesh, size_t triangle, int i) {
   const hl_mesh *of = mesh->mesh;
   const vec3 *normals = all->surfaces.normals + all->surfaces.first_normal[mesh - all->scene->meshes];
@@ -44,14 +44,14 @@ static void color_of(const reference_hit *hit, double color[3]) {
   }
 }
 
-/* The normal of the triangle, or of the sphere at the point. */
+/* The unit normal of the triangle, or of the sphere at the point. */
 static vec3 flat_normal(const reference_hit *hit, vec3 point) {
   const vec3 *corner = hit->triangle->corner;
   if (hit->triangle->radius > 0) return vec3_normalise(vec3_subtract(point, corner[2]));
   return vec3_normalise(vec3_cross(vec3_subtract(corner[1], corner[0]), vec3_subtract(corner[2], corner[0])));
 }
 
-/* Adds one light by eqs. (3) and (4). */
+/* Adds the light of one source that the surface point sends to the eye, by eqs. (3) and (4). */
 static void add_light(const reference *all, size_t light, const reference_surface_point *at,
                       reference_worker *worker, light_part *part) {
   const hl_material *material = &at->material;
@@ -92,8 +92,8 @@ static void add_sky(const reference *all, const reference_surface_point *at, ref
   }
 }
 
-/* Finds the normal and the colour where the ray meets a triangle. Returns whether the ray meets the
- * triangle's back. */
+/* Finds the normal, the colour and the material at the point where the ray meets a triangle or a sphere.
+ * Returns whether the ray meets the back. */
 static bool find_mesh_point(const reference *all, const reference_hit *hit, reference_surface_point *at) {
   const hl_scene_mesh *mesh = hit->triangle->mesh;
   vec3 flat = flat_normal(hit, at->point);

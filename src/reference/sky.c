@@ -1,10 +1,11 @@
-/* reference/sky.c - light from all directions, integrated over cells of equal solid angle.
+/* reference/sky.c - computes the sky's light at a sample. The sky is light from all directions, and is
+ * integrated over cells of equal solid angle.
  *
- * The sky's sphere, or its upper hemisphere, is cut into rings about `up` and these into cells of nearly
- * equal sides, all of the same solid angle. A cell has the mean radiance of its directions. Its shadow is
- * cast from its middle, or for an image from the middle of its light. Its cosine is that of the mean of its
- * directions; this is the exact mean of the cosine unless a part of the cell is below the surface's
- * horizon. */
+ * The sky's sphere, or its upper hemisphere, is cut into rings about the axis `up`. Each ring is cut into
+ * cells with sides of nearly equal length. A cell has the mean radiance of its directions. The cell's shadow
+ * is cast by a single ray to the cell's middle. If the sky is an image, the ray goes to the middle of the
+ * light in the cell. The cell's cosine is taken with the mean of its directions. This is the exact mean of
+ * the cosine, unless a part of the cell is below the surface's horizon. */
 #include "core/memory.h"
 #include "reference/reference.h"
 
@@ -12,11 +13,11 @@
  * along each side of a cell. */
 enum { PIXEL_SAMPLES = 3, MOST_SAMPLES = 256 };
 
-/* A ring of cells. Heights are cosines of angles to `up`. */
+/* A ring of cells. Heights are cosines of the angle to the axis `up`. */
 typedef struct sky_ring {
   double low, high; /* heights of its borders */
   size_t cells;
-  double turn; /* angle of the ring's first cell, as a fraction of the full circle */
+  double turn; /* angle at which the ring's first cell begins, as a fraction of the full circle */
 } sky_ring;
 
 static vec3 direction_of(const sky_axes *axes, double height, double turn) {
@@ -26,9 +27,9 @@ static vec3 direction_of(const sky_axes *axes, double height, double turn) {
   return vec3_add(level, vec3_scale(axes->up, height));
 }
 
-/* Finds the mean of the radiance over a cell that begins at `turn`, and the mean of the cell's directions. If
- * the sky is an image, each direction is weighted by its brightness, so that a sun in the cell shines from
- * its own place. */
+/* Finds the mean of the radiance over a cell that begins at the angle `turn`, and the mean of the cell's
+ * directions. If the sky is an image, each direction is weighted by its brightness. So a sun in the cell
+ * shines from its own direction. */
 static void find_means(const hl_sky *sky, const sky_axes *axes, const sky_ring *ring, double turn,
                        reference_sky_cell *cell) {
   double wide = sky->type == HL_SKY_IMAGE ? ceil(PIXEL_SAMPLES * (double)sky->width / (double)ring->cells)
@@ -63,8 +64,8 @@ hl_status hl_reference_sky_create(reference *all, int cell_count, hl_error *erro
   const hl_sky *sky = &all->scene->sky;
   if (sky->type == HL_SKY_NONE) return HL_OK;
   double least = sky->hemisphere ? 0 : -1, widest = sky->hemisphere ? HL_PI / 2 : HL_PI;
-  /* derived: all cells together cover 2 pi (1 - least), and a cell with the angle a on each side covers a^2
-   */
+  /* derived: all cells together cover the solid angle 2 pi (1 - least); a cell whose sides are the angle a
+   * covers a^2 */
   double angle = sqrt(2 * HL_PI * (1 - least) / cell_count);
   size_t rings = (size_t)fmax(floor(widest / angle + 0.5), 1), count = 0;
   angle = widest / (double)rings;
@@ -91,8 +92,8 @@ hl_status hl_reference_sky_create(reference *all, int cell_count, hl_error *erro
   return HL_OK;
 }
 
-/* Applies eqs. (3) and (4) to each cell. A surface receives diffuse / pi times radiance, cosine and solid
- * angle. A medium receives 1 / (4 pi) times radiance, phase and solid angle, where p is the phase function
+/* Applies eqs. (3) and (4) to the light of each cell. A surface receives diffuse / pi times radiance, cosine
+ * and solid angle. A medium receives 1 / (4 pi) times radiance, p and solid angle. p is the phase function
  * times 4 pi. */
 void hl_reference_sky_arrive(const reference *all, const reference_sky_receiver *at, reference_worker *worker,
                              reference_sky_light *light) {

@@ -1,5 +1,5 @@
-/* reference/surfaces.c - the meshes of a scene, for the reference: finds where rays meet triangles and
- * spheres, by a tree of boxes. */
+/* reference/surfaces.c - finds where rays meet the triangles and spheres of a scene's meshes, by a tree of
+ * boxes around them. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -26,8 +26,8 @@ static double middle_of(const reference_triangle *triangle, int axis) {
   return sum / 3;
 }
 
-/* Moves the triangles whose middles lie below `at` along an axis to the front of the array. Returns their
- * number. */
+/* Moves the triangles whose middles lie below the coordinate `at` along an axis to the front of the array.
+ * Returns the number of these triangles. */
 static size_t part_triangles(reference_triangle *triangles, size_t count, int axis, double at) {
   size_t below = 0;
   for (size_t t = 0; t < count; t++) {
@@ -39,8 +39,8 @@ static size_t part_triangles(reference_triangle *triangles, size_t count, int ax
   return below;
 }
 
-/* Makes the tree of a range of triangles, and sorts the range. Returns the tree's node. The node's first
- * child follows it; its second child is at `second`. */
+/* Makes the tree of boxes for a range of triangles, and sorts the range. Returns the index of the tree's
+ * root. A node's first child follows the node in the array, and its second child is at the index `second`. */
 static size_t make_tree(reference_surfaces *all, size_t first, size_t count, int depth) {
   size_t made = all->node_count++;
   reference_node *node = &all->nodes[made];
@@ -102,8 +102,8 @@ static void add_mesh(reference_surfaces *all, const hl_scene_mesh *mesh) {
   }
 }
 
-/* Adds the normals of a mesh's vertices, in the world: the mesh's own normals, or the sums of the triangles'
- * cross products. */
+/* Adds the normals of a mesh's vertices, in the world. They are the mesh's own normals; a mesh without
+ * normals gets the sums of the triangles' cross products. */
 static void add_normals(const hl_scene_mesh *mesh, vec3 *normals) {
   const hl_mesh_description *d = &mesh->mesh->description;
   affine3 placement = hl_scene_mesh_to_world(mesh);
@@ -155,8 +155,8 @@ void hl_reference_surfaces_release(reference *all) {
 
 /* ---- rays ---- */
 
-/* The distance at which a ray meets a triangle, infinite if it misses. Moeller and Trumbore, "Fast, minimum
- * storage ray/triangle intersection" (1997). */
+/* The distance at which a ray meets a triangle; infinite if the ray misses it (Moeller and Trumbore, "Fast,
+ * minimum storage ray/triangle intersection", 1997). */
 static double meet_triangle(const reference_triangle *triangle, const reference_ray *ray, double weight[3]) {
   vec3 ab = vec3_subtract(triangle->corner[1], triangle->corner[0]);
   vec3 ac = vec3_subtract(triangle->corner[2], triangle->corner[0]);
@@ -171,8 +171,8 @@ static double meet_triangle(const reference_triangle *triangle, const reference_
   return vec3_dot(ac, q) / determinant;
 }
 
-/* The least distance, beyond a given one, at which a ray meets a sphere: |origin + s direction - centre| =
- * r. */
+/* The least distance greater than a given one at which a ray meets a sphere: a solution s of |origin + s
+ * direction - centre| = r. */
 static double meet_sphere(const reference_triangle *sphere, const reference_ray *ray, double after) {
   vec3 away = vec3_subtract(ray->origin, sphere->corner[2]);
   double along = vec3_dot(away, ray->direction);
@@ -187,7 +187,7 @@ static vec3 along(const reference_ray *ray, double distance) {
   return vec3_add(ray->origin, vec3_scale(ray->direction, distance));
 }
 
-/* The distance of the first hit, beyond a given distance, that the scene's cuts do not remove. */
+/* The distance of the first hit, beyond a given distance, at a place that the scene's cuts leave. */
 static double meet(const hl_scene_description *scene, const reference_triangle *triangle,
                    const reference_ray *ray, double after, double weight[3]) {
   if (triangle->radius == 0) {
@@ -219,7 +219,7 @@ static bool takes_part(const reference_triangle *triangle, reference_role role) 
   return role == REFERENCE_SEEN ? triangle->mesh->visible : triangle->mesh->casts_shadow;
 }
 
-/* Finds the next hit by walking the tree: visits the leaves whose boxes the ray meets. */
+/* Finds the next hit by walking through the tree. Only nodes whose boxes the ray meets are visited. */
 bool hl_reference_surface_next(const reference *all, reference_role role, const reference_ray *ray,
                                double after, reference_hit *hit) {
   const reference_surfaces *surfaces = &all->surfaces;

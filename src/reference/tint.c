@@ -1,21 +1,22 @@
-/* reference/tint.c - the colours of a volume's own voxels at a point: the trilinear mean of linear colours
- * times weights, divided by the trilinear mean of the weights. The mask's colour is applied after it. */
+/* reference/tint.c - finds the colour of a volume's own voxels at a point. It is the trilinear mean of the
+ * voxels' linear colours times their weights, divided by the trilinear mean of the weights. The mask's colour
+ * is applied afterwards. */
 #include "reference/reference.h"
 
-/* The linear value of an sRGB code (IEC 61966-2-1). */
+/* The linear value, from 0 to 1, of an 8-bit sRGB code (IEC 61966-2-1). */
 static double linear_of(unsigned char code) {
   double encoded = code / 255.0;
   return encoded <= 0.04045 ? encoded / 12.92 : pow((encoded + 0.055) / 1.055, 2.4);
 }
 
-/* Adds a voxel's colour. color: four bytes, the last of which is the weight. */
+/* Adds the colour of one voxel to a weighted sum. color: four bytes; the last byte is the voxel's weight. */
 static void add_voxel(const unsigned char *color, double share, double sum[3], double *weights) {
   double weight = share * color[3];
   *weights += weight;
   for (int c = 0; c < 3; c++) sum[c] += weight * linear_of(color[c]);
 }
 
-/* Multiplies a colour by the colour of the voxels. */
+/* Multiplies a colour by the colour of the volume's voxels at a point. */
 static void multiply_by_voxels(const reference_volume *volume, vec3 point, double color[3]) {
   const hl_volume *grid = volume->grid;
   const double p[3] = {point.x, point.y, point.z};
