@@ -1,4 +1,5 @@
-/* halflight/compose.h - makes scenes by named options. A volume without a scene (a bare volume) gets one.
+/* halflight/compose.h - makes scenes by named options, also for a bare volume, a volume that is given without
+ * a scene.
  *
  * The program, the Python package and the viewer make their scenes by hl_scene_compose(). The options are
  * those of `halflight render`: an option is its name, without dashes, and its value as text. */
@@ -11,76 +12,82 @@
 extern "C" {
 #endif
 
-/* One option. An option that may be given several times ("iso", "tf", "show", ...) stands in the list several
- * times. */
+/* One option. An option that may be given several times ("iso", "tf", "show", ...) stands in the list of
+ * options several times. */
 typedef struct hl_option {
   const char *name;  /* the option's name, as "look", "iso" or "view"; hl_option_name() lists all names */
-  const char *value; /* the option's value, written as for `halflight render`; null or "" for a switch */
+  const char *value; /* the option's value, as text that is written as for `halflight render`; null or "" for
+                      * a switch, an option without a value */
 } hl_option;
 
 /* How the value of an option is read. */
 typedef enum hl_option_kind {
   HL_OPTION_SWITCH = 0,  /* no value */
-  HL_OPTION_TEXT = 1,    /* the value is a text in the option's own form, as "120:gold:0.3" for "iso" */
-  HL_OPTION_CHOICE = 2,  /* one of hl_option_choices() */
+  HL_OPTION_TEXT = 1,    /* the value is a text in the option's own form; for example "120:gold:0.3" for the
+                          * option "iso" */
+  HL_OPTION_CHOICE = 2,  /* the value is one of hl_option_choices() */
   HL_OPTION_NUMBERS = 3, /* the value is numbers joined by ',' or 'x', or one of hl_option_choices() */
   HL_OPTION_COLOR = 4    /* the value is a colour (linear R,G,B, a grey, #rrggbb or a CSS name), or one of
                           * hl_option_choices() */
 } hl_option_kind;
 
-/* The name of option number `index` of hl_scene_compose(); null past the last. */
+/* Returns the name of option number `index` of hl_scene_compose(), or null past the last option. */
 HL_API const char *hl_option_name(size_t index);
 
-/* The kind of a named option; HL_OPTION_TEXT for an unknown name. */
+/* Returns how the value of a named option is read; HL_OPTION_TEXT for an unknown name. */
 HL_API hl_option_kind hl_option_kind_of(const char *name);
 
-/* The choices of a named option, ended by a null name; null where the option has no choices. */
+/* Returns the choices of a named option as an array that a choice with a null name ends. Returns null if the
+ * option has no choices. */
 HL_API const hl_setting_choice *hl_option_choices(const char *name);
 
 /* Flags, joined by |, that tell hl_scene_compose() how the caller made or changed the description. */
 typedef enum hl_compose_flag {
   /* The description was made by hl_scene_for_volume() or a similar function, which chose its camera, light
-   * and sky. Where an option affects one of these, it is then chosen anew. */
+   * and sky. If an option affects the camera, the light or the sky, it is chosen anew. */
   HL_COMPOSE_BARE = 1,
-  HL_COMPOSE_CHANGED = 2, /* the caller changed what is seen of the volumes: the camera of an HL_COMPOSE_BARE
-                           * description frames them anew */
+  HL_COMPOSE_CHANGED = 2, /* the caller changed which voxels of the volumes are seen: the camera of an
+                           * HL_COMPOSE_BARE description is placed anew so that they fill the picture */
   HL_COMPOSE_CUT = 4, /* the caller cut the volume: the light of an HL_COMPOSE_BARE description is chosen for
                        * the part that is left */
-  HL_COMPOSE_CAMERA = 8,  /* the caller placed the camera: it stays */
-  HL_COMPOSE_LIGHTS = 16, /* the caller chose the lights: their strengths stay */
-  HL_COMPOSE_SKY = 32,    /* the caller chose the sky: it stays */
-  HL_COMPOSE_MESHES = 64, /* the caller added meshes: the camera of an HL_COMPOSE_BARE description takes them
-                           * into the picture, too */
-  HL_COMPOSE_VALUES = 128 /* label maps of an HL_COMPOSE_BARE description are drawn by their values, even if
-                           * no option asks for this */
+  HL_COMPOSE_CAMERA = 8,  /* the caller placed the camera: it is not moved */
+  HL_COMPOSE_LIGHTS = 16, /* the caller chose the lights: their strengths are not changed */
+  HL_COMPOSE_SKY = 32,    /* the caller chose the sky: it is not changed */
+  HL_COMPOSE_MESHES = 64, /* the caller added meshes: the camera of an HL_COMPOSE_BARE description shows the
+                           * meshes, too */
+  HL_COMPOSE_VALUES = 128 /* a label map of an HL_COMPOSE_BARE description is drawn by its values, even if no
+                           * option asks for this */
 } hl_compose_flag;
 
-/* Makes a scene of a description and options. The options are applied in a fixed order, which is not that of
- * the list: label maps, looks and functions, cuts, camera, floor, lights, exposure, sky, ambient light,
- * settings. A bare label map is drawn by its values where options say how values are drawn: "tf", "colormap",
- * "range", "threshold", "iso", "mask" and the maximum projection. If a bare label map's file has further
- * layers, the scene shows them, too. flags: hl_compose_flag values, joined by |. The context's log names
- * options that change nothing. Errors name an option as the program does, with two dashes: HL_ERROR_ARGUMENT
- * for an impossible value, HL_ERROR_INPUT or HL_ERROR_IO for a file that an option names. */
+/* Makes a scene of a description and options. The options are applied in this fixed order, whatever their
+ * order in the list is: label maps, looks and functions, cuts, camera, floor, lights, exposure, sky, ambient
+ * light, settings. A bare label map is drawn by its values, and not by its labels, if one of these options
+ * says how values are drawn: "tf", "colormap", "range", "threshold", "iso", "mask" and the maximum
+ * projection. If a bare label map's file has further layers, the scene shows them, too. flags:
+ * hl_compose_flag values, joined by |. The context's log names options that change nothing. *scene is owned
+ * by the caller, who releases it. Errors name an option with two dashes, as on the program's command line:
+ * HL_ERROR_ARGUMENT for an impossible value, HL_ERROR_INPUT or HL_ERROR_IO for a file that an option
+ * names. */
 HL_API HL_WARN_UNUSED hl_status hl_scene_compose(hl_context *context, const hl_scene_description *description,
                                                  unsigned flags, const hl_option *options,
                                                  size_t option_count, hl_scene **scene, hl_error *error);
 
-/* Refuses options that hl_scene_compose() would refuse before it reads a file: unknown names, values that
- * cannot be read, options that exclude each other. */
+/* Checks options before any file is read. Refuses unknown names, values that cannot be read, and options that
+ * exclude each other, as hl_scene_compose() would. */
 HL_API HL_WARN_UNUSED hl_status hl_options_check(const hl_option *options, size_t option_count,
                                                  hl_error *error);
 
 /* Makes a scene of a label map's layers, each of which becomes a volume. The options "label-table" and "show"
  * say how the labels are named and which of them show; labels of "show" that the map lacks are passed over.
- * path, reading (null: the defaults): as for hl_volume_load_with(). */
+ * path: the label map's file; reading: the options for reading it, as for hl_volume_load_with(); null: the
+ * defaults. */
 HL_API HL_WARN_UNUSED hl_status hl_scene_for_label_map(hl_context *context, const char *path,
                                                        const hl_volume_load_options *reading,
                                                        const hl_option *options, size_t option_count,
                                                        hl_scene **scene, hl_error *error);
 
-/* The colour, linear RGB, of mesh or isosurface number `index` where it has none of its own: ivory, blue,
- * ochre, green, rose, violet, and ivory again. */
+/* Finds the colour, linear RGB, of mesh or isosurface number `index` if it has no colour of its own. The
+ * colours are ivory, blue, ochre, green, rose and violet, and then the same again. */
 HL_API void hl_surface_color(size_t index, double color[3]);
 
 #ifdef __cplusplus

@@ -1,11 +1,12 @@
 /* halflight/figure.h - figures: pictures on a page, with scale bars, legends, axes and text over them.
  *
  * A figure is written as PDF or SVG (pictures as pixels, all else as vectors) or as PNG or TIFF (pixels). It
- * is drawn after the pictures are rendered, by cairo and pango; a build without these refuses to draw, with
- * HL_ERROR_UNSUPPORTED. Lengths on the page are in millimetres, sizes of letters in points (1/72 inch).
+ * is drawn after the pictures are rendered, by cairo and pango; a build without these two libraries refuses
+ * to draw, with HL_ERROR_UNSUPPORTED. Lengths on the page are in millimetres, sizes of letters in points
+ * (1/72 inch).
  *
- * Texts are UTF-8 and are drawn as they are: nothing in them is markup. Control characters but a line break,
- * and bytes that are no UTF-8, are drawn as U+FFFD. */
+ * Texts are UTF-8 and are drawn as they are: nothing in them is markup. Control characters other than a line
+ * break are drawn as U+FFFD, and so are bytes that are not UTF-8. */
 #ifndef HALFLIGHT_FIGURE_H
 #define HALFLIGHT_FIGURE_H
 
@@ -15,69 +16,74 @@
 extern "C" {
 #endif
 
-/* How a picture shows the directions of the world. */
+/* The ways in which a picture can show the directions of the world. */
 typedef enum hl_axes {
   HL_AXES_NONE = 0,
-  HL_AXES_ARROWS = 1, /* three arrows at the lower right: the axes x, y and z, or the body's directions where
-                       * the volume's file tells them */
-  HL_AXES_LETTERS = 2 /* letters at the picture's edges for the body's directions: R or L, A or P, S or I;
-                       * refused where the volume's file does not tell them */
+  HL_AXES_ARROWS = 1, /* three arrows at the lower right of the picture. They are named after the directions
+                       * of the body if the volume's file tells these; else x, y and z */
+  HL_AXES_LETTERS = 2 /* letters at the picture's edges for the directions of the body: R or L, A or P, S or
+                       * I; refused if the volume's file does not tell these directions */
 } hl_axes;
 
 /* A text over a picture. */
 typedef struct hl_annotation {
   const char *text;
-  double at[3]; /* place in the picture, as fractions of its width and height from its upper left corner;
-                 * at[2] is not used */
+  double at[3]; /* the place in the picture, as fractions of the picture's width and height, measured from its
+                 * upper left corner; at[2] is not used */
   int in_world; /* non-zero: `at` is a point of the scene's world instead, and a ring is drawn around the
                  * point */
 } hl_annotation;
 
-/* A value of hl_overlay.scale_bar_depth: the distance from the eye to the camera's target. */
+/* A value of hl_overlay.scale_bar_depth that stands for the distance from the eye to the camera's target. */
 #define HL_DEPTH_OF_TARGET (-1.0)
 
-/* What is drawn over one picture. hl_overlay_defaults() fills it so that nothing is drawn. Where the panel's
- * image shows matter behind the scale bar, the legend or the arrows, a translucent ground lies between. */
+/* The things that are drawn over one picture. hl_overlay_defaults() fills the struct so that nothing is
+ * drawn. If the panel's image shows matter behind the scale bar, the legend or the arrows, a translucent
+ * ground is drawn between the image and the bar, the legend or the arrows. */
 typedef struct hl_overlay {
   size_t struct_size;
-  int scale_bar;              /* non-zero: a bar at the lower left, with its length */
-  double scale_bar_length;    /* length of the scale bar in scale_bar_unit; 0: a length is chosen, 1, 2 or 5
-                               * times a power of ten and at most a quarter of the picture's width */
-  const char *scale_bar_unit; /* unit of the scale bar's length and text; null: world_unit, or a unit that
-                               * makes the number short */
+  int scale_bar;              /* non-zero: a scale bar is drawn at the lower left, with its length as text */
+  double scale_bar_length;    /* the scale bar's length in scale_bar_unit; 0: a length is chosen that is 1, 2
+                               * or 5 times a power of ten and at most a quarter of the picture's width */
+  const char *scale_bar_unit; /* the unit of the scale bar's length and text; null: world_unit, or another
+                               * unit that makes the number short */
   const char *world_unit;     /* the unit of length of the scene's world: "m", "mm", "um", "nm", "A", ..., or
                                * any other text, which is written as it is; null: the unit that the volumes'
-                               * files tell; the scale bar is refused where they tell none */
-  double scale_bar_depth; /* for a perspective camera, whose scale changes with depth: the distance from the
-                           * eye at which the scale bar is right, in the scene's units, or HL_DEPTH_OF_TARGET;
-                           * 0: the bar is refused */
-  int legend; /* non-zero: a legend at the right shows the colours and opacity of each visible volume over
-               * its values, its isosurfaces, or the names of its labels */
-  const char *legend_title; /* title of the first volume's legend, in place of the volume's name; the
-                             * values' unit is added; may be null */
+                               * files tell. If the files tell no unit either, the scale bar is refused */
+  double scale_bar_depth; /* the distance from the eye, in the scene's units, at which the scale bar is right,
+                           * or HL_DEPTH_OF_TARGET. A perspective camera needs it, because its scale changes
+                           * with depth; 0: the scale bar is refused for such a camera */
+  int legend; /* non-zero: a legend is drawn at the right. It shows the colours and opacity of each visible
+               * volume over the volume's values, the colours of its isosurfaces, or the names of its
+               * labels */
+  const char *legend_title; /* the title of the first volume's legend, which replaces the volume's name; the
+                             * unit of the values is added; may be null */
   hl_axes axes;
-  int marks; /* non-zero: the scene's marks (hl_mark), with their lengths and angles in the world of the first
-              * volume's file. Lengths have world_unit or the unit that this file tells; where neither is
-              * known, no unit is written. Refused where the scene has no marks */
+  int marks; /* non-zero: the scene's marks (hl_mark) are drawn, with their lengths and angles in the world of
+              * the first volume's file. The unit of lengths is world_unit, or else the unit that this file
+              * tells; without either, no unit is written. Refused if the scene has no marks */
   const hl_annotation *annotations; /* [annotation_count] */
   size_t annotation_count;
-  const char *letter;     /* the panel's letter, such as "a", drawn in bold at the upper left; may be null */
-  double legend_range[2]; /* the values over which the legend's strips go, the lower first; equal (the
-                           * default): each goes over the values with opacity that its volume has */
+  const char *letter;     /* the panel's letter, such as "a", which is drawn in bold at the upper left; may be
+                           * null */
+  double legend_range[2]; /* the range of values over which the legend's strips go, the lower end first; if
+                           * both ends are equal (the default), each strip goes over the range of its volume's
+                           * values that have opacity */
 } hl_overlay;
 
 HL_API void hl_overlay_defaults(hl_overlay *overlay);
 
 /* A picture on the page. */
 typedef struct hl_figure_panel {
-  /* Borrowed; null: the panel shows the overlay alone. On a transparent page, an overlay without an image is
-   * drawn in the colours that suit the scene's picture, so that somebody can lay it over the picture. */
+  /* Borrowed; the picture; null: the panel shows the overlay alone. On a transparent page, an overlay without
+   * an image has the colours that suit the scene's picture, so that somebody can lay the overlay over the
+   * picture. */
   const hl_image *image;
-  const hl_scene *scene; /* borrowed; the scene of the picture, for its background, exposure, camera and
-                          * volumes; null: the overlay may hold only a letter and annotations whose places are
-                          * fractions */
-  double left, top, width, height; /* place and size of the panel on the page, in millimetres; left and top
-                                    * are measured from the page's upper left corner */
+  const hl_scene *scene;           /* borrowed; the scene that the picture shows, from which the overlay takes
+                                    * background, exposure, camera and volumes; null: the overlay may hold only a
+                                    * letter, and annotations whose places are fractions */
+  double left, top, width, height; /* the place and size of the panel on the page, in millimetres; left and
+                                    * top are measured from the page's upper left corner */
   int frame;                       /* non-zero: a thin line is drawn around the panel, as around an inset */
   hl_overlay overlay;
 } hl_figure_panel;
@@ -85,9 +91,9 @@ typedef struct hl_figure_panel {
 typedef struct hl_figure {
   size_t struct_size;            /* set by hl_figure_defaults() */
   double width, height;          /* of the page, millimetres */
-  double pixels_per_inch;        /* of PNG and TIFF; default 300 */
+  double pixels_per_inch;        /* the number of pixels per inch in a PNG or TIFF file; default 300 */
   double font_points;            /* size of letters; default 7 */
-  const char *font;              /* a family's name; default "Sans" */
+  const char *font;              /* the name of the texts' font family; default "Sans" */
   double background[3];          /* linear RGB; default white */
   int background_transparent;    /* default 0 */
   const hl_figure_panel *panels; /* borrowed; [panel_count]; later panels are drawn over earlier ones */
@@ -97,31 +103,33 @@ typedef struct hl_figure {
 /* A page without panels. */
 HL_API void hl_figure_defaults(hl_figure *figure);
 
-/* Describes a page that one picture fills: sets the sizes of the figure and the panel, and figure->panels.
- * width: the page's width in millimetres; 0: it is chosen so that letters of 7 points are as high as a 36th
- * of the page's width, and at least 9 pixels high. figure and panel must have their defaults. */
+/* Describes a page that one picture fills: sets the size of the figure, the size of the panel, and
+ * figure->panels. width: the page's width in millimetres; 0: a width is chosen at which letters of 7 points
+ * are as high as a 36th of the page's width, and at least 9 pixels high. Before the call, figure and panel
+ * must have their defaults. */
 HL_API void hl_figure_of_picture(const hl_image *image, const hl_scene *scene, double width,
                                  hl_figure *figure, hl_figure_panel *panel);
 
-/* Finds out, before pictures are made, whether everything in a figure can be drawn: draws its page at an
- * eighth of its pixels, without the panels' images. Errors: those of hl_figure_draw(). */
+/* Checks whether everything in a figure can be drawn, before its pictures are made. For this, the page is
+ * drawn with an eighth of its pixels along each side, and without the panels' images. Errors: as for
+ * hl_figure_draw(). */
 HL_API HL_WARN_UNUSED hl_status hl_figure_check(hl_context *context, const hl_figure *figure,
                                                 hl_error *error);
 
-/* Draws the figure as pixels: each side is its length in millimetres x pixels_per_inch / 25.4, rounded. Where
- * a picture's pixels coincide with the page's pixels, the page has the picture's 8-bit sRGB codes unchanged.
- * *image is owned by the caller. */
+/* Draws the figure as pixels. The number of pixels along a side is the side's length in millimetres x
+ * pixels_per_inch / 25.4, rounded. If a picture's pixels coincide with the page's pixels, the page has the
+ * picture's 8-bit sRGB codes unchanged. *image is owned by the caller. */
 HL_API HL_WARN_UNUSED hl_status hl_figure_draw(hl_context *context, const hl_figure *figure, hl_image **image,
                                                hl_error *error);
 
 /* Writes the figure in the format of the path's extension: .pdf, .svg, .png, .tif or .tiff. The file appears
- * whole or not at all. options: only scene_json and pixels_per_inch are used, which PNG and TIFF files state;
- * null: the file states no scene, and the figure's pixels_per_inch. */
+ * whole or not at all. options: only the members scene_json and pixels_per_inch are used, which are stored in
+ * PNG and TIFF files. options null: no scene is stored, and pixels_per_inch is the figure's. */
 HL_API HL_WARN_UNUSED hl_status hl_figure_write(hl_context *context, const hl_figure *figure,
                                                 const char *path, const hl_image_write_options *options,
                                                 hl_error *error);
 
-/* Makes the bytes of a figure's file in memory; format: "pdf", "svg", "png" or "tif". *bytes: [*length],
+/* Makes the bytes of a figure's file in memory. format: "pdf", "svg", "png" or "tif". *bytes: [*length],
  * owned by the caller (hl_bytes_release()). */
 HL_API HL_WARN_UNUSED hl_status hl_figure_encode(hl_context *context, const hl_figure *figure,
                                                  const char *format, const hl_image_write_options *options,

@@ -1,6 +1,7 @@
-/* halflight/formats.h - which formats of files this build of the library reads and writes.
+/* halflight/formats.h - lists the file formats that this build of the library reads and writes.
  *
- * A build lacks the formats whose libraries were not installed. docs/formats.md describes the formats. */
+ * A build lacks the formats whose libraries were missing when it was made. docs/formats.md describes the
+ * formats. */
 #ifndef HALFLIGHT_FORMATS_H
 #define HALFLIGHT_FORMATS_H
 
@@ -10,21 +11,21 @@
 extern "C" {
 #endif
 
-/* A format of files, or a method of compression within volume files. The texts are static. */
+/* A format of files, or a method of compression that is used within volume files. The texts are static. */
 typedef struct hl_file_format {
   size_t struct_size;  /* set by the caller: sizeof(hl_file_format) */
   const char *name;    /* "NRRD" */
-  int reads, writes;   /* non-zero: this build does */
+  int reads, writes;   /* non-zero: this build reads, or writes, the format */
   const char *missing; /* the library that the format needs and that this build lacks, as "libtiff"; null:
-                        * the build reads the format */
-  /* Endings of file names, separated by blanks, as ".nrrd .nhdr": files with these names are read, or
-   * written, in this format. "" where the ending does not tell the format, or where the format is not read or
-   * not written. */
+                        * this build reads the format */
+  /* The endings of file names for reading and for writing, separated by blanks, as ".nrrd .nhdr". Files with
+   * these endings are read, or written, in this format. The text is "" if the ending does not tell the
+   * format, or if the format is not read, or not written. */
   char read_endings[64], written_endings[64];
 } hl_file_format;
 
-/* Describe a format of volumes, meshes or pictures. index: from 0 on. HL_ERROR_ARGUMENT beyond the last
- * format. */
+/* Describe format number `index` of volumes, meshes or pictures. index: from 0 on; beyond the last format,
+ * the functions fail with HL_ERROR_ARGUMENT. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_format(size_t index, hl_file_format *format);
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_packing(size_t index, hl_file_format *packing);
 HL_API HL_WARN_UNUSED hl_status hl_mesh_get_format(size_t index, hl_file_format *format);

@@ -2,9 +2,8 @@
  *
  * A picture of a volume's file takes seven calls: hl_context_create(), hl_volume_load(),
  * hl_scene_for_volume(), hl_renderer_create(), hl_image_create(), hl_renderer_render() and hl_image_write().
- * The program picture.c has them. It is installed in share/doc/halflight/examples, with programs that start
- * from arrays in memory, show pictures in windows, move a camera or ask for layers.
- */
+ * The example program picture.c makes these calls. It is installed in share/doc/halflight/examples, beside
+ * programs that start from arrays in memory, show pictures in windows, move a camera or ask for layers. */
 #ifndef HALFLIGHT_HALFLIGHT_H
 #define HALFLIGHT_HALFLIGHT_H
 

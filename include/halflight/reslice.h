@@ -1,7 +1,7 @@
 /* halflight/reslice.h - cuts planes of samples out of a volume, at any angle and of any thickness.
  *
- * A plane is a grid of samples. It is placed by voxel numbers: voxel (i, j, k) has its centre at the
- * coordinates i, j, k, and hl_volume_info tells where these lie in the world. */
+ * A plane is a grid of samples. Its place is given in voxel numbers: voxel (i, j, k) has its centre at the
+ * coordinates i, j, k. hl_volume_info tells where voxels lie in the world. */
 #ifndef HALFLIGHT_RESLICE_H
 #define HALFLIGHT_RESLICE_H
 
@@ -11,25 +11,25 @@
 extern "C" {
 #endif
 
-/* How samples of a thick plane that lie behind each other become one value. */
+/* How the samples of a thick plane that lie behind each other are combined into one value. */
 typedef enum hl_blend {
-  HL_BLEND_MAXIMUM = 1, /* maximum intensity projection */
+  HL_BLEND_MAXIMUM = 1, /* the greatest value: maximum intensity projection */
   HL_BLEND_MINIMUM = 2,
   HL_BLEND_MEAN = 3
 } hl_blend;
 
 typedef struct hl_reslice_options {
   size_t struct_size;          /* set by hl_reslice_options_defaults() */
-  size_t width, height, depth; /* number of samples along a row, number of rows, and number of layers of a
-                                * thick plane; each at least 1; default 1 */
-  double origin[3]; /* place of the first sample of the first row of the first layer, as voxel numbers i,
-                     * j, k; default 0 */
-  double across[3], down[3], through[3]; /* steps from one sample to the next, from one row to the next and
-                                          * from one layer to the next, in voxels along i, j, k; default:
+  size_t width, height, depth; /* the number of samples along a row, the number of rows, and the number of
+                                * layers of a thick plane; each at least 1; default 1 */
+  double origin[3]; /* the place, in voxel numbers i, j, k, of the first sample of the first row of the first
+                     * layer; default 0 */
+  double across[3], down[3], through[3]; /* the steps from one sample to the next, from one row to the next
+                                          * and from one layer to the next, in voxels along i, j, k; default:
                                           * the unit steps along i, j, k */
   hl_blend blend;                        /* default HL_BLEND_MAXIMUM */
-  int interpolate; /* non-zero: values between voxels are interpolated linearly; default 0: the nearest
-                      voxel's value */
+  int interpolate; /* non-zero: values between voxels are interpolated linearly; 0 (default): a sample has the
+                    * value of the nearest voxel */
 } hl_reslice_options;
 
 HL_API void hl_reslice_options_defaults(hl_reslice_options *options);

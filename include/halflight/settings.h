@@ -1,7 +1,7 @@
 /* halflight/settings.h - the tables of settings: type, range, default and meaning of each key of a scene.
  *
- * Each key has one row. Scene files are read and written by these rows; the checks of hl_scene_create() and
- * the defaults follow from them. Editors and documents can be made from them, too. */
+ * Each key has one row in a table. Scene files are read and written by these rows, and hl_scene_create()
+ * takes its checks and defaults from them. Programs can make editors and documents from them, too. */
 #ifndef HALFLIGHT_SETTINGS_H
 #define HALFLIGHT_SETTINGS_H
 
@@ -11,8 +11,8 @@
 extern "C" {
 #endif
 
-/* The tables of settings. The comment at each table names the struct with its fields, and the place of its
- * keys in a scene file. */
+/* The tables of settings. The comment at each table names the struct that has the fields, and then the place
+ * of the keys in a scene file. */
 typedef enum hl_setting_kind {
   HL_SETTINGS_SCENE = 0,             /* hl_scene_description; the file's top level */
   HL_SETTINGS_IMAGE = 1,             /* hl_scene_description; "image" */
@@ -40,38 +40,41 @@ typedef enum hl_setting_type {
   HL_SETTING_COLOR = 6      /* double[3]; [r, g, b] */
 } hl_setting_type;
 
+/* One of the values that a setting may have. */
 typedef struct hl_setting_choice {
   const char *name; /* null ends the list */
   int value;
 } hl_setting_choice;
 
 typedef struct hl_setting {
-  const char *key;   /* the key in a scene file; "transform/translate" is the key translate in the object
-                      * transform */
-  const char *field; /* in the struct */
+  const char *key;   /* the key in a scene file; "transform/translate" stands for the key "translate" in the
+                      * object "transform" */
+  const char *field; /* the field's name in the struct */
   hl_setting_type type;
   const char *unit;                 /* "degrees", "world units", ...; "" for none */
-  double low, high;                 /* the range of a number, and of each of three numbers; ends included */
-  int open_low;                     /* non-zero: low itself is refused */
-  double standard[3];               /* the default: its first number, or three */
-  const hl_setting_choice *choices; /* null: none */
-  size_t offset;                    /* of the field in the struct */
+  double low, high;                 /* the least and the greatest value of a number, or of each of three
+                                     * numbers; both ends are allowed */
+  int open_low;                     /* non-zero: the value `low` itself is refused */
+  double standard[3];               /* the default: one number in standard[0], or three numbers */
+  const hl_setting_choice *choices; /* the choices, which a null name ends; null: the setting has none */
+  size_t offset;                    /* the byte offset of the field in the struct */
   unsigned only_for; /* for lights, cameras and skies: the types that have the key, as bits (1 << type); 0:
-                      * all types */
+                      * all types have it */
   int optional;      /* non-zero: hl_scene_to_json() leaves the key out if the field has its default */
   const char *sentence;
-  const char *mend;   /* the part of an error's text that asks for a value in range; {low} and {high} stand
-                       * for the range's ends */
-  const char *option; /* the option of `halflight render` that sets the field, without dashes; null: none */
+  const char *mend;   /* the part of an error's text that asks for a value in the range; {low} and {high}
+                       * stand for the range's ends */
+  const char *option; /* the option of `halflight render` that sets the field, without dashes; null: there is
+                       * no such option */
 } hl_setting;
 
-/* The number of rows in the table of a kind; 0 for an unknown kind. */
+/* Returns the number of rows of a table; 0 for an unknown kind of table. */
 HL_API size_t hl_setting_count(hl_setting_kind kind);
 
-/* Row number `index` of a table. The row stays valid; null past the last. */
+/* Returns row number `index` of a table, or null past the last row. The row is constant. */
 HL_API const hl_setting *hl_setting_get(hl_setting_kind kind, size_t index);
 
-/* The row of a key; null: there is none. */
+/* Returns the row of a key, or null if the table has no such key. */
 HL_API const hl_setting *hl_setting_find(hl_setting_kind kind, const char *key);
 
 #ifdef __cplusplus

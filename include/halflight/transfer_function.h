@@ -1,7 +1,7 @@
-/* halflight/transfer_function.h - transfer functions: what the values of a volume look like.
+/* halflight/transfer_function.h - transfer functions, which give each value of a volume its opacity and
+ * colour.
  *
- * Opacities are per unit of length, colours linear RGB.
- */
+ * Opacities are per unit of length. Colours are linear RGB. */
 #ifndef HALFLIGHT_TRANSFER_FUNCTION_H
 #define HALFLIGHT_TRANSFER_FUNCTION_H
 
@@ -19,13 +19,13 @@ typedef struct hl_color_point {
   double color[3];
 } hl_color_point;
 
-/* What a transfer function takes as its second number. */
+/* The second number of a transfer function of two numbers. The first number is the volume's value. */
 typedef enum hl_second_axis {
   HL_SECOND_NONE = 0,
-  HL_SECOND_GRADIENT = 1, /* the length of the data's gradient, found with the scene's kernel, in data
-                           * units per world unit */
+  HL_SECOND_GRADIENT = 1, /* the length of the gradient of the volume's values, which the scene's kernel
+                           * gives, in data units per world unit */
   HL_SECOND_VOLUME = 2    /* the value of another volume of the scene at the same place, whether or not the
-                           * scene shows it; beyond the other volume's faces, the values at its faces
+                           * scene shows that volume. Beyond the other volume's faces, its values at the faces
                            * continue */
 } hl_second_axis;
 
@@ -34,105 +34,112 @@ typedef enum hl_second_axis {
  * shape's opacity. Where shapes overlap, their extinctions add up, and their colours are averaged with the
  * extinctions as weights. */
 
-/* A box. Its weight rises from 0 at its border to 1 over the width `edge`; or the weight is a Gaussian. */
+/* A box. Its weight rises from 0 at the border to 1 at the distance `edge` from the border. With sigma, the
+ * weight is a Gaussian instead. */
 typedef struct hl_function_box {
-  double low[2], high[2]; /* its corners belong to it */
+  double low[2], high[2]; /* the corners with the least and the greatest numbers; both belong to the box */
   double color[3];        /* linear RGB */
   double opacity;         /* per unit_distance */
-  double edge[2];         /* 0: hard; at most half of the box is edge */
-  double sigma; /* above 0: `edge` is not used; the weight is a Gaussian around the box's middle, and 0
-                   outside the box. Its standard deviation is this fraction of the box's sides */
+  double edge[2];         /* the width of the edge along both axes; 0: the weight is 1 up to the border; at
+                           * most half of the box's side */
+  double sigma; /* above 0: the weight is a Gaussian around the box's middle, and `edge` is not used. The
+                 * Gaussian's standard deviation is this fraction of the box's sides, and it is cut off at the
+                 * box's border */
 } hl_function_box;
 
-/* A polygon, as of Kniss et al.: its weight falls, along straight lines, from the apex to 0 at the border. */
+/* A polygon, as in Kniss et al. Its weight falls along straight lines from the apex to 0 at the border. */
 typedef struct hl_function_polygon {
-  const double (*vertices)[2]; /* [vertex_count]; the whole border must be visible from the apex */
+  const double (*vertices)[2]; /* [vertex_count]; straight lines from the apex to all points of the border
+                                * must lie in the polygon */
   size_t vertex_count;
   double apex[2];
   double color[3]; /* linear RGB */
   double opacity;  /* per unit_distance */
-  double falloff;  /* the part of the way from the apex to the border over which the weight falls: 1: from
-                    * the apex on, 0: the border is hard */
+  double falloff;  /* the part of the way from the apex to the border over which the weight falls. 1: it falls
+                    * over the whole way; 0: it is 1 up to the border */
 } hl_function_polygon;
 
-/* An image, which is interpolated bilinearly between the middles of its pixels. Outside the image nothing is
- * visible. */
+/* An image over the plane. It is interpolated bilinearly between the middles of its pixels. Outside the image
+ * nothing is visible. */
 typedef struct hl_function_image {
-  const char *file;    /* where the pixels came from, for hl_scene_to_json; may be null */
-  const float *pixels; /* [height][width][4]: linear RGB times opacity, and opacity per unit_distance; the top
-                          row has the greatest second numbers; null: there is no image */
+  const char *file;    /* the file that the pixels came from, which hl_scene_to_json writes; may be null */
+  const float *pixels; /* [height][width][4]: linear RGB times opacity, and opacity per unit_distance. The top
+                        * row has the greatest second numbers; null: there is no image */
   int width, height;
-  double low[2], high[2]; /* the part of the plane that the image covers: from the outer border of its first
-                           * pixels to the outer border of its last ones */
+  double low[2], high[2]; /* the least and the greatest numbers that the image covers: its outermost pixels
+                           * end there */
 } hl_function_image;
 
-/* A transfer function of two numbers. */
+/* The part of a transfer function that depends on two numbers. */
 typedef struct hl_function_plane {
   hl_second_axis second; /* HL_SECOND_NONE: the transfer function depends on the value alone */
-  const char *volume;    /* HL_SECOND_VOLUME: the name of the other volume */
+  const char *volume;    /* for HL_SECOND_VOLUME: the name of the other volume */
   const hl_function_box *boxes;
   size_t box_count;
   const hl_function_polygon *polygons;
   size_t polygon_count;
   hl_function_image image;
-  double second_scale; /* the second number is multiplied by this factor before the function uses it; 0 counts
-                        * as 1 */
+  double second_scale; /* a factor by which the second number is multiplied before the function uses it; 0
+                        * counts as 1 */
 } hl_function_plane;
 
-/* What the values of a volume look like: opacity and colour are piecewise linear in data values, and
- * constant beyond the end points. */
+/* A transfer function: the opacity and colour of each data value of a volume. Both are piecewise linear in
+ * the data value, and constant beyond the first and the last point. */
 typedef struct hl_transfer_function {
-  double unit_distance;            /* world units; opacities are per this length */
+  double unit_distance;            /* the length, in world units, to which opacities refer */
   const hl_opacity_point *opacity; /* sorted by value */
   size_t opacity_count;
   const hl_color_point *color; /* sorted by value; linear RGB */
   size_t color_count;
-  /* Factors of extinction, 0 to 1, by the length of the data's gradient. `value` is a length in data units
-   * per world unit; points are sorted by it. Without points the factor is 1 everywhere. */
+  /* The factor, 0 to 1, by which extinction is multiplied, as a function of the length of the data's
+   * gradient. `value` is this length, in data units per world unit; points are sorted by it. Without points
+   * the factor is 1. */
   const hl_opacity_point *gradient_opacity;
   size_t gradient_opacity_count;
-  /* A function of two numbers. If there is one, a scene makes opacity and color from it: for each value the
-   * greatest opacity that the value has with any second number, and the mean colour. */
+  /* A function of two numbers. If it is set, a scene derives `opacity` and `color` from it. A value's opacity
+   * is the greatest opacity that the value has with any second number; its colour is the mean colour. */
   hl_function_plane plane;
 } hl_transfer_function;
 
 /* ---- functions that make transfer functions: release their points with hl_transfer_function_release()
  * ---- */
 
-/* Makes a transfer function from the volume's values alone. It separates objects from their background in CT,
- * MR and simulations alike. */
+/* Makes a transfer function from nothing but the volume's values. It separates objects from their background
+ * in CT, MR and simulations alike. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_automatic(hl_context *context, const hl_volume *volume,
                                                                hl_transfer_function *function,
                                                                hl_error *error);
-/* Makes a transfer function from a preset, which adapts to the volume's values. name: one of
- * hl_preset_name(). */
+/* Makes a transfer function from a preset, which adapts to the volume's values. name: a preset's name
+ * (hl_preset_name()). */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_preset(hl_context *context, const char *name,
                                                             const hl_volume *volume,
                                                             hl_transfer_function *function, hl_error *error);
-/* Replaces the colours by a named colormap over [low, high]. */
+/* Replaces the colours of a transfer function by a named colormap over the values from low to high. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_colormap(hl_context *context, const char *name,
                                                               double low, double high,
                                                               hl_transfer_function *function,
                                                               hl_error *error);
-/* Finds the range that holds nearly all values that are visible with this function, as seen from any side. It
- * is a good range for a colormap. Where nothing is visible, it is the volume's range. range[0] < range[1]. */
+/* Finds the range that holds nearly all values that are visible with this function, as seen from any side.
+ * This range is a good range for a colormap. If nothing is visible, the result is the volume's range. Always
+ * range[0] < range[1]. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_seen_range(const hl_volume *volume,
                                                                 const hl_transfer_function *function,
                                                                 double range[2], hl_error *error);
-/* The range of values that have opacity: from where opacity first rises above zero to where it last falls to
- * zero, cut to the volume's values. range[0] < range[1]. */
+/* Finds the range of values that have opacity. It goes from the value at which opacity first rises above 0 to
+ * the value at which opacity last falls to 0, and is cut to the range of the volume's values. Always range[0]
+ * < range[1]. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_visible_range(const hl_volume *volume,
                                                                    const hl_transfer_function *function,
                                                                    double range[2], hl_error *error);
-/* How a function spreads over a range of values. */
+/* How the colours or points of a function are spread over a range of values. */
 typedef enum hl_range_scale {
   HL_RANGE_LINEAR = 0,
-  HL_RANGE_LOG = 1 /* colours are spread evenly over the values' logarithms; the range must be above 0 */
+  HL_RANGE_LOG = 1 /* they are spread evenly over the logarithms of the values; the range must be above 0 */
 } hl_range_scale;
 /* Makes the function *to by moving the points of `from`: the values from old[0] to old[1] become those from
  * range[0] to range[1]. Lengths of gradients are multiplied by the ratio of the ranges' widths. With
- * HL_RANGE_LOG, *to gets further points, so that it follows the logarithm between points, too. Beyond the
- * range, *to then stays as it is at the range's ends. The caller owns the points of *to. */
+ * HL_RANGE_LOG, *to gets further points, so that it follows the logarithm between the moved points, too;
+ * beyond the range, *to is constant. The caller owns the points of *to. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_spread(hl_context *context,
                                                             const hl_transfer_function *from,
                                                             const double old[2], const double range[2],
@@ -147,11 +154,11 @@ HL_API HL_WARN_UNUSED hl_status hl_transfer_function_colormap_scaled(hl_context 
                                                                      hl_error *error);
 /* Reads Halflight's own JSON object, a scene (its first volume's function), ParaView's .json colour maps, the
  * boxes of ParaView's states (.pvsm), or Slicer's .vp.json, .vp, and presets.xml (path: FILE.xml:PRESET). If
- * the file has only colours, opacity becomes null, and the caller must take opacity points from elsewhere.
- * Slicer's lengths of gradients, like VTK's, are per mean voxel edge and end at a quarter of the range of
- * values. They are converted for the volume; if it is null, as for voxels with edges of 1. From a .vp.json of
- * several components, the functions of the volume's component are read; it is an error if the volume is null
- * or has another component. */
+ * the file has only colours, opacity becomes null, and the caller must take opacity points from elsewhere. In
+ * Slicer and VTK, lengths of gradients are per mean voxel edge, and end at a quarter of the range of values.
+ * They are converted to this volume's voxels; if volume is null, to voxels with edges of 1. From a .vp.json
+ * of several components, the functions of the volume's component are read; it is an error if the volume is
+ * null or has another component. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_load_for(hl_context *context, const char *path,
                                                               const hl_volume *volume,
                                                               hl_transfer_function *function,
