@@ -1,5 +1,5 @@
-/* shadow/attenuate.h - step 17 of the algorithm: composites the extinction of a slab into the shadow buffer,
- * as seen from the light. */
+/* shadow/attenuate.h - attenuates a light's shadow buffer by the matter of one slab, as seen from the light.
+ * This is step 17 of the paper's algorithm. */
 #ifndef HL_SHADOW_ATTENUATE_H
 #define HL_SHADOW_ATTENUATE_H
 
@@ -7,38 +7,39 @@
 #include "grid/classifier.h"
 #include "light/light_source.h"
 
-/* The densities of one volume in a tile. Each thread writes its own densities, so these structs have cache
- * lines of their own. */
+/* The densities of one volume in a tile of the light's view. Each struct fills whole lines of the cache,
+ * because each thread writes a struct of its own. */
 typedef struct attenuate_volume {
   _Alignas(64) const classifier *classifier;
   const float *density;       /* [256], block-major; the volume's densities on the current sheet */
   const float *before;        /* [256], block-major; the volume's densities on the sheet before */
   const float *enter, *leave; /* [256], block-major: the heights at which rays enter and leave the volume's
                                * box; null: the box does not cut anything visible */
-  uint32_t blocks;            /* blocks of the tile with density on either sheet, one bit each */
+  uint32_t blocks;            /* the blocks of the tile in which the volume has density on the current sheet
+                               * or on the sheet before; one bit each */
   int surface;                /* whether the volume has surfaces; if not, it is a medium */
   float voxel;                /* the smallest edge of the volume's voxels; frame units */
   float weight[HL_CHANNELS];  /* the relative extinction of red, green and blue light */
   int uncut;                  /* whether the volume's box does not cut the slab in this tile */
-  /* if a face that cuts matter and is lit as a surface is near: the run of slabs that holds the slab; else
-   * null */
+  /* set if a face that cuts matter is near and is lit as a surface: the run of slabs (a few successive slabs)
+   * that holds the slab; else null */
   const slab_run *faces;
   int slab;         /* the slab's number in the run `faces` */
-  const grid *grid; /* the grid whose gradient decides the factor of gradient opacity */
+  const grid *grid; /* the grid from whose gradient the factor of gradient opacity follows */
   const kernel *kernel;
   const float (*to_index)[4]; /* maps frame space to the volume's index space */
 } attenuate_volume;
 
 typedef struct attenuate_job {
-  sheet_rays rays; /* the rays of the light's pixels in frame space */
-  /* length of the rays' way through the slab, frame units. For parallel light it is the distance of sheets
-   * divided by |l.h|, where l is the light's direction and h the sheets' normal. For a near light it is the
-   * distance of sheets, which each pixel divides by |l.h| for its own ray */
+  sheet_rays rays; /* the rays of the pixels of the light's view; frame space */
+  /* the length of the rays' way through the slab, frame units. For parallel light it is the distance of
+   * sheets divided by |l.h|, where l is the light's direction and h the sheets' normal. For a near light it
+   * is the distance of sheets alone, and each pixel divides it by |l.h| for its own ray */
   float path;
   float through[3]; /* for parallel light: the step along a ray of the light from one sheet to the next;
                      * frame units */
-  /* height: the height of the sheet above the first sheet; spacing: the distance to the sheet before; frame
-   * units */
+  /* height: the height of the current sheet above the first sheet; spacing: its distance from the sheet
+   * before; frame units */
   float height, spacing;
   int sheet; /* the number k of the sheet: the slab lies between sheets k-1 and k */
   const attenuate_volume *volumes;
@@ -72,7 +73,7 @@ typedef struct attenuate_job {
  * The depth h of a value is the integral of extinction over values, from the value at which its surface
  * begins, classifier.outside. In an edge whose values rise evenly, the optical depth up to a value is
  * proportional to h. While light goes on within one surface, which begins at one value, k = k' = min(1, h2 /
- * h1)^OUTWARDS_POWER, where h1 and h2 are the depths of x1 and x2. This is 1 while light goes deeper, and
+ * h1)^OUTWARDS_POWER. Here h1 and h2 are the depths of x1 and x2. So k is 1 while light goes deeper, and
  * falls to 0 where the surface ends. Where light enters another surface within the slab, k = 0 and k' = 1.
  * Where light leaves a surface, or a cut's face, k = k' = 0. The product of k over slabs depends only on h at
  * both ends of the way, and not on how the way is cut into slabs. Where values hardly change, matter is no
@@ -86,22 +87,22 @@ typedef struct attenuate_job {
  * less and less of the face (render/slab_lanes.h). */
 
 /* Marks of surfaces in the dark. A surface in the dark absorbs no light. But a method that blurs absorbed
- * light needs to know where the surface is, because light from beside the shadow ends at the surface, too.
- * Where less than DARK_AT_START of the light is left, the pixel becomes -DARK_MARK times the transmittance of
- * the chunk's surfaces, but not more than -LEAST_MARK. Where a surface absorbs all light, the pixel becomes
- * -LEAST_MARK. A reader of the light must take marks as 0. */
+ * light needs to know where the surface is, because blurs move light from beside the shadow to the surface,
+ * and this light ends at the surface, too. Where less than DARK_AT_START of the light is left, the pixel
+ * becomes -DARK_MARK times the transmittance of the chunk's surfaces, but not more than -LEAST_MARK. Where a
+ * surface absorbs all light, the pixel becomes -LEAST_MARK. A reader of the light must take marks as 0. */
 #define DARK_MARK  0x1p-64f
 #define LEAST_MARK 0x1p-88f
 
 /* Two sets of blocks of a tile. Each block has one bit in each set. */
 typedef struct attenuated_blocks {
-  uint32_t lit;   /* blocks with density that some light still reaches, or whose surface is lit at its
-                   * outside */
-  uint32_t taken; /* blocks in which some light was absorbed */
+  uint32_t lit;   /* the blocks with density that some light still reaches, or in which the outside of a
+                   * surface is lit */
+  uint32_t taken; /* the blocks in which the slab absorbed some light */
 } attenuated_blocks;
 
-/* Multiplies a tile's transmittance by exp(-sum of extinction * path), the transmittance of the slab, where
- * volumes have density. */
+/* The type of the function that attenuates a tile. It multiplies the tile's transmittance by the
+ * transmittance of the slab, exp(-sum of extinction * path), wherever volumes have density. */
 typedef attenuated_blocks attenuate_tile_function(const attenuate_job *job, int tile_x, int tile_y);
 
 /* Returns the blocks of a tile that light reaches, one bit each. transmittance: for each channel, the tile's

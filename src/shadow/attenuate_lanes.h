@@ -10,14 +10,15 @@
 #include "shadow/attenuate.h"
 #include "view/rays_lanes.h"
 
-/* The lanes in which the sheet lies ahead of the view's origin, or behind the origin by at most the height
- * `reach`. */
+/* Finds the lanes whose pixels' rays meet the sheet ahead of the view's origin, or behind the origin by at
+ * most the height `reach`. */
 LANES_INLINE lanes_int is_ahead(const sheet_rays *rays, lanes climb, float reach) {
   return lanes_add_scaled(climb * rays->step, lanes_abs(climb), reach) > 0.0f;
 }
 
 /* The length of the rays' way through one slab: spacing * |W| / |h.W|, where W is a ray's vector and h the
- * sheets' normal (algorithm: dt = ds / |w.h|). It is 0 behind the view's origin. */
+ * sheets' normal. The algorithm's formula is dt = ds / |w.h|, with a unit vector w. The length is 0 for rays
+ * that meet the sheet behind the view's origin. */
 LANES_INLINE lanes path_through_sheet(const sheet_rays *rays, float path, lanes u, lanes v) {
   if (!rays->perspective) return lanes_set(path);
   lanes3 w = rays_directions(rays, u, v);
@@ -26,8 +27,8 @@ LANES_INLINE lanes path_through_sheet(const sheet_rays *rays, float path, lanes 
   return lanes_keep(is_ahead(rays, climb, 0), length);
 }
 
-/* The span of heights in which a slab lies in the volume's box, for the rays of one block. uncut: whether the
- * whole slab lies in the box. */
+/* Finds the part of a slab that lies in the volume's box, as a span of heights for each ray of one block.
+ * uncut: whether the whole slab lies in the box. */
 LANES_INLINE covered_span covered_block(const float *enter, const float *leave, int uncut, int block,
                                         float height, float spacing) {
   if (enter == NULL) return (covered_span){lanes_set(0), lanes_set(1.0f)};
@@ -36,7 +37,7 @@ LANES_INLINE covered_span covered_block(const float *enter, const float *leave, 
                  spacing);
 }
 
-/* The blocks of a tile with a pixel that some light reaches. */
+/* Finds the blocks of a tile that have a pixel with some light. */
 static __attribute__((unused)) uint32_t lit_blocks_tile(const float *const transmittance[HL_CHANNELS],
                                                         int channels, size_t stride) {
   uint32_t lit = 0;
@@ -51,8 +52,8 @@ static __attribute__((unused)) uint32_t lit_blocks_tile(const float *const trans
   return lit;
 }
 
-/* Moves a and b, the densities on the slab's two sheets, to the ends of the slab's covered part. Between the
- * sheets density is linear. */
+/* The densities a and b on the slab's two sheets become the densities at the ends of the slab's covered part.
+ * Between the sheets, density is linear. */
 LANES_INLINE void cut_way(covered_span span, table_coordinate *a, table_coordinate *b) {
   lanes from = a->x, way = b->x - a->x;
   *a = split_coordinate(lanes_fma(way, span.begin, from));
@@ -68,8 +69,9 @@ LANES_INLINE lanes3 position_in_slab(const attenuate_job *job, lanes u, lanes v,
   return add_scaled3(end, step, fraction - 1.0f);
 }
 
-/* The factor by which gradient opacity, a mask and a function of two numbers multiply a volume's extinction
- * in a block. It is found at the centre of gravity of the slab's matter. corner: the block's first pixel. */
+/* The factor by which the volume's extinction in a block is multiplied. It is the product of gradient
+ * opacity, the mask's factor and the function of two numbers, at the centre of gravity of the slab's matter.
+ * corner: the block's first pixel. */
 LANES_INLINE lanes factor_in_block(const attenuate_job *job, const attenuate_volume *volume,
                                    const int corner[2], const way_sums *sums, lanes a, lanes b,
                                    covered_span span) {
@@ -97,27 +99,28 @@ typedef struct kept_light {
   lanes before, within;
 } kept_light;
 
-/* min(1, h2 / h1)^OUTWARDS_POWER. A depth h1 or h2 is the difference of two integrals of extinction: up to a
- * value, and up to the beginning of this value's surface. */
+/* Computes min(1, h2 / h1)^OUTWARDS_POWER, the fraction k of attenuate.h within one surface. h1 and h2 are
+ * the depths in the surface at the two ends of the way: integrals of extinction from the value at which the
+ * surface begins. */
 LANES_INLINE lanes power_of_depth(lanes h1, lanes h2) {
   lanes left = lanes_min(lanes_abs(h2) / lanes_max(lanes_abs(h1), lanes_set(1e-30f)), lanes_set(1.0f));
   for (int power = 1; power < OUTWARDS_POWER; power *= 2) left = left * left;
   return left;
 }
 
-/* The number `kept` (k in attenuate.h) to the power 1 - skin. The product of such powers over slabs does not
- * depend on how thick the slabs are. */
+/* The fraction k of attenuate.h, changed near a face that cuts matter: `kept` to the power 1 - skin. Powers
+ * are used because their product over several slabs does not depend on how thick the slabs are. */
 LANES_INLINE lanes kept_in_skin(lanes kept, lanes skin) {
   return lanes_select(skin > 0.0f, lanes_power_of_part(kept, 1.0f - skin), kept);
 }
 
-/* The fractions k and k' (kept_light) near a face that cuts matter. The matter belongs to the face's surface
- * if it is visible where the light leaves the slab. b: the table coordinate of the value at that place.
- * corner: the block's first pixel. */
+/* Finds the fractions k and k' of attenuate.h near a face that cuts matter. The matter belongs to the face's
+ * surface if it is visible where the light leaves the slab. b: the table coordinate of the value where the
+ * light leaves the slab. corner: the block's first pixel. */
 LANES_INLINE kept_light kept_by_face(const attenuate_volume *volume, kept_light kept, table_coordinate b,
                                      const int corner[2]) {
   lanes skin = skin_of_faces(volume->faces, volume->slab, block_u(corner[0]), block_v(corner[1]));
-  /* the usual case: most blocks lie deeper behind the face than its skin reaches */
+  /* most blocks lie deeper behind the face than its skin reaches */
   if (lanes_bits(skin > 0.0f) == 0) return kept;
   lanes values[3];
   table_values(volume->classifier->sums, b, values);
@@ -125,21 +128,21 @@ LANES_INLINE kept_light kept_by_face(const attenuate_volume *volume, kept_light 
   return (kept_light){kept_in_skin(kept.before, skin), kept_in_skin(kept.within, skin)};
 }
 
-/* The fractions k and k' (kept_light) where the matter begins or ends within the slab, at a face of the
- * volume's box. Where matter ends, light leaves the surface, and k = k' = 0. Where matter begins, no surface
- * lies before it. But blurs may have spread the shadow of the face's own matter across the face, together
- * with the light that this matter has absorbed. This light still lights the face, so k is not changed
- * there. */
+/* Finds the fractions k and k' of attenuate.h in a slab that a face of the volume's box divides. If the
+ * matter ends within the slab, light leaves the surface, and k = k' = 0. If the matter begins within the
+ * slab, no surface lies before it, so k would not matter. But blurs may have spread the shadow of the face's
+ * own matter across the face, together with the light that this matter has absorbed. This light still lights
+ * the face, so k is not changed. */
 LANES_INLINE kept_light kept_in_span(const attenuate_volume *volume, kept_light kept, covered_span span) {
   if (volume->enter == NULL) return kept;
   lanes_int ends = (span.begin + span.length) < (1.0f - ROUNDING_OF_SPAN);
   return (kept_light){lanes_keep(~ends, kept.before), lanes_keep(~ends, kept.within)};
 }
 
-/* The fractions k and k' (kept_light) that follow from one volume's own values. a, b: the table coordinates
- * of the values at the two ends of the slab's covered part. to: the integrals of extinction up to the values
- * a and b. path: length of the light's ray through the slab. extinction: the volume's extinction in the slab.
- * at: offset of the block's first pixel. */
+/* Finds the fractions k and k' of attenuate.h from the values of one volume. a, b: the table coordinates of
+ * the values at the two ends of the part of the slab that is in the box. to: the integrals of extinction up
+ * to these two values. path: length of the light's ray through the slab. extinction: the volume's extinction
+ * in the slab. at: offset of the block's first pixel. */
 LANES_INLINE kept_light kept_by_values(const attenuate_job *job, const attenuate_volume *volume,
                                        table_coordinate a, table_coordinate b, const way_ends *to,
                                        covered_span span, lanes path, lanes extinction, size_t at) {
@@ -178,8 +181,8 @@ LANES_INLINE kept_light kept_by_values(const attenuate_job *job, const attenuate
   return kept;
 }
 
-/* Adds one volume's fractions k and k' to their mean over the volumes, which is weighted by optical depth.
- * weight: the volume's weight. */
+/* Adds one volume's fractions k and k' of attenuate.h to the means over all volumes. weight: the volume's
+ * weight in the means, its optical depth. */
 LANES_INLINE void add_kept(kept_light *sum, kept_light kept, lanes weight) {
   sum->before = lanes_fma(kept.before, weight, sum->before);
   sum->within = lanes_fma(kept.within, weight, sum->within);
@@ -189,8 +192,8 @@ typedef struct attenuated_block {
   int taken, lit;
 } attenuated_block;
 
-/* Composites a slab into a channel of the light at the outside of surfaces. before, after: the transmittance
- * before and after the slab. Returns the new light. */
+/* Attenuates one channel of the light at the outside of surfaces by a slab. before, after: the transmittance
+ * before and after the slab. Returns the new light at the outside. */
 LANES_INLINE lanes pass_outside(float *at, size_t stride, lanes before, lanes after, kept_light kept) {
   lanes light = lanes_max(before, lanes_set(0)), left = lanes_max(after, lanes_set(0));
   lanes taken = lanes_max(lanes_load_block(at, stride) - light, lanes_set(0));
@@ -207,8 +210,8 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
   lanes depth[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)}, total = lanes_set(0);
   kept_light kept = {lanes_set(0), lanes_set(0)};
   lanes path = path_through_sheet(&job->rays, job->path, block_u(corner[0]), block_v(corner[1]));
-  /* if it is not 0, a surface may have ended because a factor hides the surface's matter, although values are
-   * not low */
+  /* not 0: a factor may hide the surface's matter, so that the surface has ended, although the values are not
+   * low */
   int hidden = 0;
   for (int i = 0; i < volume_count; i++) {
     const attenuate_volume *volume = &job->volumes[i];
@@ -285,8 +288,8 @@ LANES_INLINE attenuated_blocks attenuate_volumes(const attenuate_job *job, int v
   return blocks;
 }
 
-/* The code for one volume with grey shadows, the usual case, is compiled separately, because it needs no
- * loops. */
+/* Attenuates a tile. In the usual case, one volume and grey shadows, a copy of the code is used that needs no
+ * loops over volumes and channels. */
 static __attribute__((unused)) attenuated_blocks attenuate_tile(const attenuate_job *job, int tile_x,
                                                                 int tile_y) {
   if (job->volume_count == 1 && job->channels == 1) return attenuate_volumes(job, 1, 1, tile_x, tile_y);

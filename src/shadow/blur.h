@@ -7,8 +7,8 @@
 
 #include "shadow/attenuate.h"
 
-/* A box blur, whose width is 2 reach + 1 + 2 edge pixels. Pixels up to `reach` away have the weight 1, and
- * pixels reach + 1 away have the weight `edge`, 0 to 1. */
+/* A box blur whose width is 2 reach + 1 + 2 edge pixels. Pixels up to `reach` pixels away have the weight 1;
+ * the pixels at the distance reach + 1 have the weight `edge`, from 0 to 1. */
 typedef struct blur_box {
   int reach;
   float edge;
@@ -27,8 +27,8 @@ typedef void blur_tile_function(const blur_job *job, int tile_x, int tile_y);
 
 enum { BLUR_GREATEST_REACH = 46 };
 
-/* A blur by the taps of a penumbra (light_emission.h): each pixel becomes the weighted sum of the pixels at
- * its taps. */
+/* A blur with the taps of a penumbra of an emission image (light_emission.h). Each pixel becomes the weighted
+ * sum of the pixels at its taps. */
 typedef struct emission_job {
   const float *from; /* pixel (0,0) of the image that is blurred; rows are `stride` floats apart */
   float *to;
@@ -43,7 +43,7 @@ typedef void emission_tile_function(const emission_job *job, int tile_x, int til
 typedef struct blur_functions {
   blur_tile_function *rows, *columns;
   lit_blocks_function *lit_blocks;
-  emission_tile_function *emission; /* writes to `to` the weighted sums of `from` */
+  emission_tile_function *emission; /* writes the weighted sums of the pixels of `from` to `to` */
 } blur_functions;
 
 /* The box of a given width in pixels, at least 1. If the width is an even number, the pixels at both ends
@@ -55,8 +55,8 @@ static inline blur_box hl_blur_box(float width) {
 
 /* The box whose weights have a given variance v, in squared pixels, or the widest box if BLUR_GREATEST_REACH
  * does not allow this variance. Derived: weights of 1 up to r pixels away have the variance r (r + 1) / 3.
- * With the weight e at r + 1 on both sides, and n = 2 r + 1, v (n + 2 e) = n r (r + 1) / 3 + 2 e (r + 1)^2,
- * which gives e. */
+ * The weight e is added at the distance r + 1 on both sides. With n = 2 r + 1, the variance v then satisfies
+ * v (n + 2 e) = n r (r + 1) / 3 + 2 e (r + 1)^2. This equation gives e. */
 static inline blur_box hl_blur_box_of_variance(double variance) {
   int most = BLUR_GREATEST_REACH - 2, reach = (int)fmin(sqrt(3 * variance + 0.25) - 0.5, most);
   double whole = reach * (reach + 1) / 3.0, width = 2 * reach + 1;

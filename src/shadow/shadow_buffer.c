@@ -1,4 +1,4 @@
-/* shadow/shadow_buffer.c - position, size and memory of shadow buffers. */
+/* shadow/shadow_buffer.c - decides the position and size of shadow buffers, and manages their memory. */
 #include "shadow/shadow_buffer.h"
 
 #include <string.h>
@@ -6,7 +6,8 @@
 #include "core/memory.h"
 #include "light/light_source.h"
 
-/* The tangent of the greatest angle, from the middle, that a point light's buffer covers. */
+/* A point light's buffer covers directions up to a greatest angle from its middle; this is the tangent of
+ * that angle. */
 static const double WIDEST = 6;
 enum { GREATEST_SIDE = 8192, BORDER_PIXELS = 2 };
 
@@ -18,7 +19,9 @@ static void bound_points(const view *unit, const light_source *source, const vec
     double uv[2];
     bool in_front = hl_view_project(unit, points[i], uv);
     for (int axis = 0; axis < 2; axis++) {
-      if (!in_front) { /* the point lies beside or behind a near light: the buffer gets the greatest bounds */
+      /* A point of the content lies beside or behind a near light: the buffer becomes as large as it may
+       * be. */
+      if (!in_front) {
         low[axis] = -WIDEST;
         high[axis] = WIDEST;
         continue;
@@ -35,7 +38,8 @@ static void bound_points(const view *unit, const light_source *source, const vec
   }
 }
 
-/* Bounds the points, and a margin around them for penumbrae. The margin does not reach beyond the content. */
+/* Finds bounds of the points, with a margin around them for penumbrae. The margin ends where all content
+ * ends. */
 static void bound_buffer(const view *unit, const light_source *source, const shadow_extent *extent,
                          double low[2], double high[2]) {
   double content_low[2], content_high[2];
@@ -49,7 +53,8 @@ static void bound_buffer(const view *unit, const light_source *source, const sha
 }
 
 /* The edge of a buffer's pixel. For parallel light it is in frame units; for a near light it is the edge at
- * distance 1. Pixels of a near light grow with distance, and must be small enough at the farthest point. */
+ * the distance 1 from the light. Pixels of a near light grow with the distance, so they must be small enough
+ * at the farthest point. */
 static double pixel_edge(const light_source *source, vec3 normal, const shadow_extent *extent,
                          const double size[2]) {
   double pixel = extent->pixel;
@@ -77,10 +82,10 @@ static pixel_row row_around(double low, double high, double size, double pixel) 
   return (pixel_row){count, (low + high) / 2 - count * pixel / 2, pixel};
 }
 
-/* The least width, in pixels, of bounds that row_between() fits. This function makes pixels a little smaller,
- * so that the middles of the first and the last pixel, without the borders, lie just inside the bounds. Light
- * along a box's face is then not mixed with light that passes outside the face. Bounds of soft shadows are
- * not fitted. */
+/* The least width, in pixels, of bounds that row_between() fits. This function makes pixels a little smaller.
+ * The middles of the first and the last pixel inside the borders then lie just inside the bounds. So light
+ * along a box's face is not mixed with light that passes outside the face. Bounds of soft shadows are not
+ * fitted. */
 static const double LEAST_FITTED = 0.25;
 
 static pixel_row row_between(double low, double size, double pixel) {

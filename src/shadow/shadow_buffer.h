@@ -1,13 +1,14 @@
-/* shadow/shadow_buffer.h - the 2D shadow buffer: transmittance from the light to the last sheets.
+/* shadow/shadow_buffer.h - the shadow buffer, an image that holds the transmittance from a light to each of
+ * the last sheets.
  *
  * For hard shadows the buffer is perpendicular to the light's direction, for soft shadows parallel to the
  * sheets (fig. 17). At the volume its pixels are hardly larger than the picture's pixels. Around the buffer
  * is a margin of ones (unattenuated light), which blurs read.
  *
- * The buffer advances from sheet to sheet ahead of the picture, and the picture reads the planes of earlier
- * sheets. So the buffer keeps the planes of the last sheets in a ring: sheet k has the planes number k %
- * ring. A tile that has changed is copied from sheet to sheet until all planes of the ring hold its last
- * content. A tile that never changes costs nothing.
+ * The buffer advances from sheet to sheet ahead of the picture, and the picture reads the buffer's planes
+ * (images) for earlier sheets. So the buffer keeps the planes of the last sheets in a ring: sheet k has the
+ * planes number k % ring. A tile that has changed is copied from sheet to sheet until all planes of the ring
+ * hold its last content. A tile that never changes costs nothing.
  *
  * Surfaces of volumes are lit by the light that arrives at their outside. Where a scene has such surfaces, a
  * pixel also holds this light. This light is the transmittance, plus the light that the surface in which the
@@ -26,9 +27,8 @@ typedef enum shadow_plane {
   SHADOW_TRANSMITTANCE,
   SHADOW_OUTSIDE, /* the light that arrives at the outside of the surface in which a pixel's ray is. It is not
                    * less than the transmittance */
-  SHADOW_SECOND   /* planes for the shadow method's own use. The method `paper` keeps the result of half a
-                   * blur in them. The method `cascade` keeps the light from which samples fade to the
-                   * transmittance */
+  SHADOW_SECOND   /* planes that a shadow method uses for itself: `paper` keeps half-blurred light in them,
+                   * `cascade` keeps the older light from which samples fade to the transmittance */
 } shadow_plane;
 
 typedef struct shadow_buffer {
@@ -41,9 +41,9 @@ typedef struct shadow_buffer {
   int ring;                          /* number of sheets whose planes are kept */
   bool has_outside, has_second;      /* whether each sheet has planes of these two kinds in addition to the
                                       * transmittance */
-  float *transmittance[HL_CHANNELS]; /* pixel (0,0) of each channel, in the planes of the sheet for which
-                                      * hl_shadow_buffer_reach() was called last; a part of `memory` */
-  /* pixel (0,0) of each channel of the other two kinds of planes, at the same sheet; null: there are no
+  float *transmittance[HL_CHANNELS]; /* pixel (0,0) of each channel's transmittance, in the planes of sheet
+                                      * `sheet`; a part of `memory` */
+  /* pixel (0,0) of each channel of the other two kinds of planes, for sheet `sheet`; null: the buffer has no
    * planes of this kind */
   float *outside[HL_CHANNELS], *second[HL_CHANNELS];
   int sheet;                   /* the sheet for which hl_shadow_buffer_reach() was
@@ -52,14 +52,15 @@ typedef struct shadow_buffer {
                                 * planes][channels][plane] */
   int32_t *changed;            /* a part of `memory`; [tiles]; the last sheet at which the tile's planes
                                 * changed */
-  uint16_t *tile_lit;          /* a part of `memory`; [tiles]; the blocks of the tile that light still
+  uint16_t *tile_lit;          /* a part of `memory`; [tiles]; for each tile, the blocks that light still
                                 * reaches, one bit each */
-  unsigned char *tile_touched; /* a part of `memory`; [2][tiles]; 1 where some transmittance is below 1 */
+  unsigned char *tile_touched; /* a part of `memory`; [tiles]; 1 for tiles in which some transmittance is
+                                * below 1. The second array is the shadow method's own */
   void *memory;    /* owned; the memory of all arrays; kept from frame to frame while it is large enough */
   size_t capacity; /* bytes of `memory` */
 } shadow_buffer;
 
-/* The input that decides a buffer's position and size. */
+/* The facts that decide the position and size of a shadow buffer. */
 typedef struct shadow_extent {
   const vec3 *points; /* corners of the region to cover; frame space */
   int point_count;
@@ -70,8 +71,8 @@ typedef struct shadow_extent {
                            * light, its width at distance 1 */
   const vec3 *content;    /* corners of all content; no margin is needed beyond the content; frame space */
   int content_count;
-  vec3 u; /* unit vector along the buffer's rows; if it is zero, the light's tilt decides the direction of
-           * rows */
+  vec3 u; /* unit vector along the buffer's rows; zero: the direction of the rows follows from the light's
+           * tilt */
 } shadow_extent;
 
 /* Makes the view of a shadow buffer. plane_normal: the normal of the buffer's plane; for hard shadows the
@@ -102,9 +103,10 @@ uint64_t hl_shadow_sheet_bytes(const shadow_buffer_size *size);
 
 /* Pixel (0,0) of a channel, in a sheet's planes of one kind. The buffer must have planes of this kind. */
 float *hl_shadow_plane_at(const shadow_buffer *buffer, int sheet, shadow_plane kind, int channel);
-/* Sets the pointers `transmittance`, `outside` and `second` to the planes of a sheet. */
+/* Sets the buffer's pointers `transmittance`, `outside` and `second` to the planes of the given sheet. */
 void hl_shadow_buffer_reach(shadow_buffer *buffer, int sheet);
-/* Whether a tile must still be copied to a sheet, or to a sheet after it. */
+/* Returns whether a tile's planes of this sheet, or of a sheet after it, still lack the tile's last content,
+ * which must then be copied. */
 static inline bool hl_shadow_is_carried(const shadow_buffer *buffer, size_t tile, int sheet) {
   return buffer->changed[tile] > 0 && buffer->changed[tile] > sheet - buffer->ring;
 }
@@ -112,8 +114,8 @@ static inline bool hl_shadow_is_carried(const shadow_buffer *buffer, size_t tile
  * numbers already. Where hl_shadow_is_carried() is true, call this function for each sheet in turn, before
  * the tile changes at the sheet. */
 void hl_shadow_buffer_carry(shadow_buffer *buffer, size_t tile, int sheet);
-/* Finds the lit blocks of a tile (tile_lit) again after a blur. both: whether blocks count as lit, too, in
- * which only the second planes have light. */
+/* Finds the lit blocks of a tile (tile_lit) again after a blur. both: whether blocks also count as lit if
+ * only the planes SHADOW_SECOND have light in them. */
 void hl_shadow_buffer_find_lit(shadow_buffer *buffer, int x, int y, bool both,
                                lit_blocks_function *lit_blocks);
 void hl_shadow_buffer_release(hl_context *context, shadow_buffer *buffer);
@@ -122,7 +124,8 @@ void hl_shadow_buffer_release(hl_context *context, shadow_buffer *buffer);
 
 /* The map from frame space to a buffer's pixels. */
 typedef struct shadow_map {
-  float rows[3][4]; /* maps frame space to (w, w u, w v), where (u, v) is a continuous pixel of the buffer */
+  float rows[3][4]; /* maps frame space to (w, w u, w v), where w is a divisor and (u, v) is the position in
+                     * the buffer in pixels */
   size_t stride;    /* number of floats from one row of the buffer's pixels to the next */
   int width, height;
 } shadow_map;
@@ -132,14 +135,14 @@ typedef struct shadow_lookup {
   const float *transmittance[HL_CHANNELS]; /* pixel (0,0) of the planes that are looked up */
   const float *outside[HL_CHANNELS];       /* planes of the light at the outside of surfaces, laid out as
                                             * `transmittance`; null: there are none */
-  const float *older[HL_CHANNELS]; /* pixel (0,0) of the earlier transmittance, from which samples fade to
-                                    * `transmittance`; null: none */
-  float young;                     /* how far samples have faded from `older` to `transmittance`: 0 (not
-                                    * yet) to 1 (completely) */
+  const float *older[HL_CHANNELS]; /* pixel (0,0) of each channel of the older light, from which samples fade
+                                    * to `transmittance`; null: there is none */
+  float young;                     /* how far samples have faded from `older` to `transmittance`, from 0 (not
+                                    * at all) to 1 (completely) */
 } shadow_lookup;
 
-/* The transmittance in a sub-light's buffer, in units of 1 / SUBLIGHT_ONE. A number of 16 bits takes half of
- * the memory traffic of a float. */
+/* The transmittance in the buffer of a sub-light (one of the points that stand for a light), in units of 1 /
+ * SUBLIGHT_ONE. A number of 16 bits takes half of the memory traffic of a float. */
 typedef uint16_t sublight_pixel;
 enum { SUBLIGHT_ONE = 65535 };
 

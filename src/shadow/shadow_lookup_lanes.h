@@ -1,5 +1,5 @@
-/* shadow/shadow_lookup_lanes.h - looks up a shadow buffer at sixteen samples: bilinear, cubic or the nearest
- * pixel. */
+/* shadow/shadow_lookup_lanes.h - looks up a shadow buffer at sixteen samples at once: bilinearly, by cubic
+ * convolution or at the nearest pixel. */
 #ifndef HL_SHADOW_SHADOW_LOOKUP_LANES_H
 #define HL_SHADOW_SHADOW_LOOKUP_LANES_H
 
@@ -15,8 +15,8 @@ typedef struct shadow_taps {
   lanes fx, fy;
 } shadow_taps;
 
-/* The taps (shadow_taps) for positions in a shadow buffer, which are given in continuous pixel coordinates.
- * nearest: whether the positions are moved to the middle of the nearest pixel. */
+/* Finds which pixels of a shadow buffer surround each sample (shadow_taps). The samples' positions are given
+ * in pixels, with fractions. nearest: whether each position is moved to the middle of the nearest pixel. */
 LANES_INLINE shadow_taps taps_at_position(const shadow_map *map, int nearest, lanes u, lanes v) {
   shadow_taps taps;
   taps.inside = (u > 0.0f) & (v > 0.0f) & (u < (float)map->width) & (v < (float)map->height);
@@ -32,8 +32,8 @@ LANES_INLINE shadow_taps taps_at_position(const shadow_map *map, int nearest, la
   return taps;
 }
 
-/* Interpolates bilinearly between four pixels: a and b in one row, c and d below them in the next row;
- * lanes outside the buffer get `beyond`. */
+/* Interpolates bilinearly between four pixels: a and b are neighbours in one row, c and d the pixels below
+ * them in the next row. Lanes whose position lies outside the buffer get `beyond`. */
 LANES_INLINE lanes between_taps(const shadow_taps *taps, lanes a, lanes b, lanes c, lanes d, float beyond) {
   lanes top = lanes_fma(b - a, taps->fx, a), bottom = lanes_fma(d - c, taps->fx, c);
   return lanes_select(taps->inside, lanes_fma(bottom - top, taps->fy, top), lanes_set(beyond));
@@ -49,7 +49,7 @@ LANES_INLINE lanes look_up(const shadow_map *map, const shadow_taps *taps, const
 
 /* The weights of cubic convolution with a = -1/2 (Keys, "Cubic convolution interpolation for digital image
  * processing", 1981, eq. 15) for four pixels in a row. way: the distance of the look-up's position from the
- * second pixel's middle, 0 to 1. This convolution keeps second moments, so it does not blur. */
+ * second pixel's middle, 0 to 1. These weights have no variance, so the convolution does not blur. */
 LANES_INLINE void cubic_weights(lanes way, lanes weight[4]) {
   lanes rest = 1.0f - way, both = way * rest * -0.5f;
   weight[0] = both * rest;

@@ -1,8 +1,8 @@
 /* shadow/shadow_method.h - the interface of a shadow method.
  *
- * A method advances the shadow buffer of one light in lock-step with the picture. It is a table of functions
- * in a folder of its own, src/shadow_NAME/; scene/soft_methods.h lists the methods of soft shadows. The sweep
- * calls, for each light that casts shadows:
+ * A method advances the shadow buffer of one light in lock-step with the picture. Each method is a table of
+ * functions in a folder of its own, src/shadow_NAME/. The file scene/soft_methods.h lists the methods of soft
+ * shadows. The sweep calls, for each light that casts shadows:
  *
  *     plan                once: chooses where the buffer lies, how fine it is, how it is read
  *     check               once: refuses buffers that are too large
@@ -15,12 +15,13 @@
  *       advance             brings the buffer to sheet k
  *     end                 once, after a failure too
  *
- * A method without `advance`, or with `advances`, can be run in stretches of slabs: first before_shading and
- * before_slab for all slabs of a stretch, then all slabs of one tile after the other, then advance; the
- * picture's slabs may follow later, from the planes that the buffer keeps. No slab of a stretch but the last
- * is one at which `advance` changes anything.
+ * A method without `advance`, or with `advances`, can be run in stretches of several slabs. First,
+ * before_shading and before_slab are called for all slabs of a stretch. Then each tile is composited through
+ * all slabs of the stretch, one tile after the other. Then `advance` is called. The picture's slabs may be
+ * shaded later, from the planes that the buffer keeps. In a stretch, `advance` changes something at most at
+ * the last slab.
  *
- * Functions that a method has no use for are null. */
+ * A function that a method does not need is null. */
 #ifndef HL_SHADOW_SHADOW_METHOD_H
 #define HL_SHADOW_SHADOW_METHOD_H
 
@@ -32,8 +33,8 @@
 #include "shadow/blur.h"
 #include "shadow/shadow_buffer.h"
 
-/* The functions of shadows that are compiled for each instruction set. A method that has such functions
- * defines their table in its own folder. */
+/* The functions for shadows of which each instruction set has a compiled version. A method that has such
+ * functions defines their table in its own folder. */
 typedef struct shadow_functions {
   attenuate_tile_function *attenuate;
   lit_blocks_function *lit_blocks;
@@ -42,33 +43,36 @@ typedef struct shadow_functions {
   const struct sublight_functions *sublights; /* see shadow_sublights/sublight_field.h */
 } shadow_functions;
 
-/* The context, threads and functions with which a back end makes shadows. */
+/* The context, threads and functions with which a back end (the processors or a device) makes shadows. */
 typedef struct shadow_means {
   hl_pool *pool;
   hl_reserve *reserve; /* lends memory blocks for the time of one sweep */
   const shadow_functions *functions;
 } shadow_means;
 
-/* The input of a method: one light of one sweep. All of it is borrowed, and must outlive the method. */
+/* The input of a shadow method: one light of one sweep. Everything in it is borrowed, and must outlive the
+ * method's shadow. */
 typedef struct shadow_setup {
   hl_context *context;
   const hl_render_settings *settings;
   const light_source *source;
-  light_emission *emission; /* the light's emission image; null: the light is even. The method sets the
-                             * positions of the image's cells */
+  light_emission *emission; /* the light's emission image; null: all points of the light are equally bright.
+                             * The method sets the positions of the image's cells */
   const sheet_stack *sheets;
   const view *eye;
-  const light_exchange *exchange; /* exchanges light with the other parts of a shared picture; null: there are
-                                   * no other parts, or they exchange nothing */
+  const light_exchange *exchange; /* exchanges light with the renderers of the other parts of a shared
+                                   * picture; null: there are no other parts, or the parts exchange nothing */
   bool surfaces;                  /* whether some volume has surfaces; surfaces are lit by the light that
                                    * arrives at their outside */
   int channels;                   /* number of channels of attenuation: 1 (grey) or 3 (R, G, B) */
-  double voxel;                   /* the smallest edge of a voxel, frame units */
-  double pixel;                   /* edge of a picture's pixel where the content is nearest, frame units */
-  double middle_pixel;            /* edge of a picture's pixel at the content's middle, frame units */
+  double voxel;                   /* the shortest edge of a voxel, frame units */
+  double pixel;                   /* the edge of a picture's pixel, projected to the nearest content; frame
+                                   * units */
+  double middle_pixel;            /* the edge of a picture's pixel, projected to the middle of the content;
+                                   * frame units */
   size_t picture_pixels;          /* number of pixels of the picture */
-  const vec3 *
-      seen; /* [seen_count]; corners of the content that the eye sees, frame space; valid in plan and begin */
+  const vec3 *seen; /* [seen_count]; corners of the content that the eye sees; frame space. The array is valid
+                     * only in `plan` and `begin` */
   int seen_count;
   const vec3 *content; /* [content_count]; corners of all content, frame space */
   int content_count;
@@ -77,7 +81,7 @@ typedef struct shadow_setup {
 /* A method's decisions about its buffer. */
 typedef struct shadow_plan {
   shadow_extent extent; /* the region that the buffer covers */
-  sheet_light seen;     /* for soft methods: the light as it is seen from the sheets */
+  sheet_light seen;     /* only for soft shadows: the light as it is seen from the sheets */
   view view;            /* the buffer's view */
   bool cubic;           /* whether the buffer is read by cubic convolution */
   bool outside;         /* whether the buffer also keeps the light at the outside of surfaces */
@@ -87,11 +91,11 @@ typedef struct shadow_plan {
                          * read */
 } shadow_plan;
 
-/* Planes that a method may keep from frame to frame. The renderer owns them. */
+/* Memory that a shadow method may keep from frame to frame. The renderer owns it. */
 typedef struct shadow_memory {
   void *planes;    /* owned; [capacity]; the memory of the planes */
   size_t capacity; /* bytes of `planes` */
-  bool zeros;      /* whether all bytes are zeros; false while a method uses the planes, and after a cancelled
+  bool zeros;      /* whether all bytes are zero; false while a method uses the memory, and after a cancelled
                     * frame */
 } shadow_memory;
 
@@ -99,50 +103,55 @@ typedef struct shadow_method shadow_method;
 
 /* One light's shadows in one sweep. */
 typedef struct light_shadow {
-  const shadow_method *method; /* null: the light casts no shadows, or the eye sees nothing */
+  const shadow_method *method; /* the method that makes the shadows; null: the light casts no shadows, or the
+                                * eye sees nothing */
   shadow_setup setup;
   shadow_means means; /* valid after hl_light_shadow_begin() */
   shadow_plan plan;
   shadow_buffer *buffer;  /* borrowed from the renderer */
-  shadow_lookup *lookups; /* owned; [the buffer's ring]; how the picture reads the light at each sheet */
-  const sublight_lookup *sublights; /* [sublight_count]; if there are any sub-lights, the picture reads the
-                                     * mean of their light */
+  shadow_lookup *lookups; /* owned; [the buffer's ring]; for each kept sheet, how the picture looks up the
+                           * light */
+  const sublight_lookup *sublights; /* [sublight_count]; how the picture looks up each sub-light's buffer; if
+                                     * there are sub-lights, it takes the mean of their light */
   int sublight_count, sublight_tiles_x, sublight_tiles_y; /* set by `plan`; sublight_tiles_x,
                                                            * sublight_tiles_y: size in tiles of each
                                                            * sub-light's buffer */
   void *state;                                            /* owned; [method->state_bytes]; the method's own
                                                            * data */
   shadow_memory *kept;                                    /* borrowed from the renderer */
-  void *passing;                                          /* memory that the reserve has lent until the
-                                                           * sweep ends */
-  /* [tiles]; the last slab at which this part of a shared picture needs a tile, 0: it never needs the tile;
-   * null: it needs all tiles at all slabs. Borrowed; must be set before the first slab */
+  void *passing;                                          /* memory that is lent until the sweep ends; the
+                                                           * setup's reserve lends it */
+  /* [tiles]; for each tile, the last slab at which this part of a shared picture needs the tile; 0: this part
+   * never needs it. Null: this part needs all tiles at all slabs. Borrowed; it must be set before the first
+   * slab */
   const int32_t *needed_until;
-  const int32_t *sublights_until; /* [sublight_count][sublight_tiles_y][sublight_tiles_x]; as needed_until,
-                                   * for the tiles of the sub-lights' buffers; set only if there are
-                                   * sub-lights */
+  const int32_t *sublights_until; /* [sublight_count][sublight_tiles_y][sublight_tiles_x]; the same numbers as
+                                   * in needed_until, but for the tiles of the sub-lights' buffers; set only
+                                   * if there are sub-lights */
   const unsigned char *owned;     /* [tiles]; 1 for tiles whose light this part of a shared picture sends to
                                    * the other parts; null: it sends no light */
 } light_shadow;
 
 /* A method's memory besides the buffer. */
 typedef struct shadow_layouts {
-  hl_layout kept;    /* the memory that is kept from frame to frame, see shadow_memory */
+  hl_layout kept;    /* the memory that is kept from frame to frame (shadow_memory) */
   hl_layout passing; /* the memory that is used until the sweep ends; it is uninitialised */
 } shadow_layouts;
 
 struct shadow_method {
   const char *name;
-  size_t state_bytes; /* bytes of light_shadow.state, which is all zeros before `plan` is called */
-  /* the first slab that casts shadows of a near light, if the light lies within a slab. 0: the slab in which
-   * the light lies, of which only the part beyond the light counts; 1: the slab after it */
+  size_t state_bytes; /* the number of bytes of light_shadow.state; they are all zero before `plan` is
+                       * called */
+  /* the first slab that casts shadows of a near light, if the light lies within a slab. 0: it is the slab in
+   * which the light lies, of which only the part beyond the light counts. 1: it is the next slab */
   int first_slab;
-  /* The delay of surfaces where look-ups are bilinear, in pixels of the buffer: the distance after which a
-   * surface absorbs light (surface/late/lateness.h). Bilinear look-ups read less than a pixel to each side,
-   * so with a delay of 1 pixel a flat surface does not darken itself. Methods that blur by a pixel or more
-   * need a greater delay. */
+  /* The delay of a mesh's surfaces, in pixels of the buffer: a surface absorbs light only at this distance
+   * behind itself (surface/late/lateness.h). The member holds for bilinear look-ups. Bilinear look-ups read
+   * less than a pixel to each side, so with a delay of 1 pixel a flat surface does not darken itself. Methods
+   * that blur by a pixel or more need a greater delay. */
   double surface_delay;
-  double surface_rise; /* number of pixels by which surfaces are moved up in the buffer */
+  double surface_rise; /* the number of pixels of the buffer by which a mesh's surfaces are moved towards the
+                        * light */
   void (*plan)(light_shadow *shadow);
   hl_status (*check)(const light_shadow *shadow, hl_error *error);
   void (*lay_out)(light_shadow *shadow, shadow_layouts *layouts);
@@ -153,37 +162,38 @@ struct shadow_method {
   /* Prepares the job that composites a slab into the buffer: sets the members that are equal for all
    * tiles. */
   void (*before_slab)(light_shadow *shadow, int sheet, attenuate_job *job);
-  /* Finds the lit blocks of a tile (buffer->tile_lit). Null: the sweep finds them itself. Only one task at a
-   * time calls this for a tile. */
+  /* Finds the lit blocks of a tile and stores them in buffer->tile_lit. Null: the sweep finds them itself.
+   * Two calls for the same tile never run at the same time. */
   void (*find_lit)(light_shadow *shadow, size_t tile);
   void (*before_tile)(const light_shadow *shadow, size_t tile, attenuate_job *job);
   void (*after_tile)(light_shadow *shadow, size_t tile);
   void (*advance)(light_shadow *shadow, const occupancy *occupancy, int sheet);
-  /* Whether each part of a shared picture computes only those tiles that it needs, by needed_until or
-   * sublights_until. */
+  /* Whether each part of a shared picture computes only the tiles that it needs (needed_until,
+   * sublights_until). */
   bool divides;
-  /* Raises needed_until, [tiles]: some tiles are needed because the pixels of needed tiles will depend on
-   * their pixels. Null: no tile depends on other tiles. */
+  /* Raises some numbers of needed_until, [tiles], because the pixels of needed tiles will depend on pixels of
+   * other tiles. Null: no tile depends on other tiles. */
   void (*widen_needs)(light_shadow *shadow, int32_t *needed_until);
-  /* Whether each part of a shared picture computes only those tiles that it needs, and gets the light of the
-   * other tiles from the other parts (the setup's exchange, needed_until, owned). Each tile that any brick
+  /* Whether each part of a shared picture computes only the tiles that it needs (needed_until, owned), and
+   * gets the light of the other tiles from the other parts (the setup's exchange). Each tile that any brick
    * touches is owned by one of the parts. This part needs the tile as long as bricks touch it. */
   bool exchanges;
-  /* Whether `advance` changes anything at a sheet. Null: it may change something at every sheet. */
+  /* Returns whether `advance` changes anything at a sheet. Null: `advance` may change something at every
+   * sheet. */
   bool (*advances)(const light_shadow *shadow, int sheet);
   void (*end)(light_shadow *shadow);
 };
 
-/* The method that makes a light's shadows. The light's settings `shadows` and soft_method decide it. Null:
- * the light casts no shadows. */
+/* Returns the method that makes a light's shadows; null: the light casts no shadows. The method follows from
+ * the settings `shadows` and soft_method. */
 const shadow_method *hl_shadow_method(const light_source *source);
 
 /* ---- for the sweep ---- */
 
-/* Chooses a light's shadow method, and lets the method plan. shadow->method is null afterwards if there are
- * no shadows to make. */
+/* Chooses the shadow method of a light, and lets the method plan. Afterwards shadow->method is null if there
+ * are no shadows to make. */
 hl_status hl_light_shadow_plan(light_shadow *shadow, const shadow_setup *setup, hl_error *error);
-/* Whether the planned method can be run in stretches. */
+/* Returns whether the planned method can be run in stretches of several slabs (see the head of this file). */
 static inline bool hl_runs_in_stretches(const shadow_method *method) {
   return method->advance == NULL || method->advances != NULL;
 }
@@ -203,11 +213,11 @@ void hl_light_shadow_end(light_shadow *shadow);
 
 /* ---- for methods ---- */
 
-/* The edge of a buffer's pixel, in frame units, that suits the distance of the sheets. It is larger for cubic
- * convolution. */
+/* The edge of a buffer's pixel, in frame units, that suits the distance between sheets. cubic: whether the
+ * buffer is read by cubic convolution, which allows larger pixels. */
 double hl_shadow_pixel(const shadow_setup *setup, bool cubic);
-/* Whether the light's buffer is best read by cubic convolution: for hard shadows, and for soft shadows of an
- * even light. */
+/* Returns whether cubic convolution is the best way to read the light's buffer. It is for hard shadows, and
+ * for soft shadows of a light without an emission image. */
 bool hl_cubic_is_better(const shadow_setup *setup);
 /* Plans a buffer that is parallel to the sheets. It covers the points that the eye sees, and penumbrae around
  * them. pixel: edge of a pixel; frame units. */
@@ -216,8 +226,8 @@ void hl_plan_soft(light_shadow *shadow, double pixel);
  * up as it is, hl_blurred_pixel() for light that the method blurs. */
 double hl_sharp_pixel(const shadow_setup *setup, bool cubic);
 double hl_blurred_pixel(const shadow_setup *setup, bool cubic);
-/* The extent of a shadow buffer that covers the content that the eye sees. pixel: wanted edge of a buffer's
- * pixel; frame units. */
+/* The region that a shadow buffer covers so that it holds all content that the eye sees. pixel: the wanted
+ * edge of a buffer's pixel; frame units. */
 shadow_extent hl_extent_of_seen(const shadow_setup *setup, double pixel);
 
 /* The height of the last sheet above the first sheet. */

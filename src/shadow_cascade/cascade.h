@@ -1,4 +1,5 @@
-/* shadow_cascade/cascade.h - soft shadows whose penumbrae have the right width (beyond the paper).
+/* shadow_cascade/cascade.h - soft shadows whose penumbrae have the right width, which the paper's method does
+ * not reach.
  *
  * Penumbrae. Positions and widths are measured on a plane parallel to the sheets, onto which everything is
  * projected from the light's centre. On this plane a slab at height o casts a penumbra of width w = omega(r)
@@ -8,8 +9,8 @@
  *
  * Absorbed light. The light that is absorbed on its way to a receiver is the sum of the light that each slab
  * before the receiver has absorbed: 1 - T(r) = sum over o of T(o) (1 - t(o)), each term blurred by its w.
- * T(o) is the light that reached slab o, t(o) the slab's transmittance. Light is counted only where it is
- * absorbed first, so a thick occluder is not counted twice.
+ * T(o) is the light that reached slab o, and t(o) is the slab's transmittance. Light is counted only where it
+ * is absorbed first, so a thick occluder is not counted twice.
  *
  * Groups. The absorbed light of slabs is kept in groups of slabs. Groups are thin near the receiver and thick
  * far from it: a group of level 0 or 1 holds one chunk of slabs, a group of level j > 1 holds 2^(j-1) chunks.
@@ -30,11 +31,12 @@
  * the border between these two chunks, where the filling has its full weight.
  *
  * Haze. The sum above holds for solid matter, which absorbs light at its edges. Thin matter absorbs the
- * fraction F of every ray through it. The light that arrives at r comes along rays with fixed directions. So
- * thin matter absorbs F (1 - s) of the light on its way to r, and not F T(o); s is the sum so far, blurred
- * for o and r. A group therefore turns s into G + F + (1 - F) s, where G = T(o) (1 - t(o)) belongs to its
- * solid matter and F to its thin matter (derived). Two groups can be joined to one with 1 - F = (1 - F1) (1 -
- * F2); G + F follows from applying one group after the other.
+ * fraction F of every ray through it. The light that arrives at a receiver at height r comes along rays with
+ * fixed directions. So thin matter at o absorbs F (1 - s) of the light on its way to r, and not F T(o). Here
+ * s is the sum over the groups before o, blurred for the receiver at r. A group therefore turns s into G + F
+ * + (1 - F) s, where G = T(o) (1 - t(o)) belongs to its solid matter and F to its thin matter (derived). Two
+ * groups can be joined to one with 1 - F = (1 - F1) (1 - F2); G + F follows from applying one group after the
+ * other.
  *
  * Surfaces of meshes that let no light pass count as solid matter in full light and next to their edges. This
  * is right where several edges lie one behind the other. Elsewhere these surfaces have F = 1, so that no
@@ -52,8 +54,8 @@
 #include "shadow_cascade/cascade_field.h"
 #include "shadow_cascade/cascade_reads.h"
 
-/* CASCADE_MARGIN: the number of pixels of zeros between rows, and of rows of zeros between planes. Blurs may
- * read these zeros. */
+/* CASCADE_MARGIN: the number of pixels of zeros between two rows, and of rows of zeros between two planes.
+ * Blurs may read these zeros. */
 enum { CASCADE_LEVELS = 16, CASCADE_GROUPS = 7, CASCADE_FEW_GROUPS = 4, CASCADE_MARGIN = 48 };
 
 /* Absorbed light in the pixels of a level, with a margin of zeros around them. The margin at the end of a row
@@ -73,13 +75,13 @@ typedef struct cascade_group {
   cascade_field absorbed[HL_CHANNELS]; /* the sum G + F of "Haze" at the head of the file */
   cascade_field thin[HL_CHANNELS];     /* the fraction F of every ray that thin matter absorbs ("Haze" at
                                         * the head of the file) */
-  /* the position of the group: omega ("Penumbrae" at the head of the file), in pixels of the buffer */
+  /* the group's position, as omega ("Penumbrae" at the head of this file); pixels of the buffer */
   double omega;
   bool filled; /* whether any pixel of the group is not zero */
 } cascade_group;
 
 /* How a column or a row of tiles is blurred. fraction: the variance of the penumbrae in this column or row,
- * as a fraction of the variance where the light is widest. box: the box of the current blur. */
+ * divided by the variance where the light is widest. box: the box of the current blur. */
 typedef struct cascade_box {
   double fraction;
   blur_box box;
@@ -89,26 +91,27 @@ typedef struct cascade_level {
   int scale; /* edge of this level's pixels, in pixels of the buffer */
   int tiles_x, tiles_y;
   size_t first; /* number of the pixels of all levels before this one */
-  /* four numbers of pixels. stride: from row to row; plane: of one field with its margin; origin: before a
-   * field's pixel (0,0); pixels: of all fields and the margin after them */
+  /* four numbers of pixels. stride: the pixels from row to row. plane: the pixels of one field with its
+   * margin. origin: the pixels before a field's pixel (0,0). pixels: the pixels of all fields and of the
+   * margin after them */
   size_t stride, plane, origin, pixels;
   cascade_group group[CASCADE_GROUPS]; /* the groups of this level, the oldest first */
   int count, capacity;
-  double fraction[2], greatest_fraction; /* from the fractions in `boxes`: the mean along rows and the mean
-                                          * along columns, and the greatest fraction */
-  cascade_field sum[2][HL_CHANNELS];     /* two sums; each is the sum of all groups from the farthest one to a
-                                          * group of this level, made for a recent receiver */
+  double fraction[2], greatest_fraction; /* three numbers from the fractions in `boxes`: their mean along
+                                          * rows, their mean along columns, and the greatest fraction */
+  cascade_field sum[2][HL_CHANNELS];     /* two sums, made for recent receivers; each is the sum of all groups
+                                          * from the farthest one to a group of this level */
   int newest;                            /* the index in `sum` of the sum that includes the newest group */
   /* whether the sum includes a group of this level; if not, the sum of the next farther level is used
    * instead */
   bool filled;
-  double sum_omega; /* the omega of the newest group in the sum */
-  double owed[2];   /* along rows and along columns: the variance by which the sum is blurred too much; in
-                     * squared pixels of the buffer */
+  double sum_omega; /* omega of the newest group in the sum */
+  double owed[2];   /* along rows and along columns: how much greater the variance of the sum's blur is than
+                     * it should be; in squared pixels of the buffer */
   bool renewed;     /* whether the sum must be made again */
-  cascade_field scratch;              /* memory for a sum on its way from farther levels; level 0 has none */
-  cascade_field mean[2][HL_CHANNELS]; /* for lights with an emission image: one group's `absorbed` and `thin`,
-                                       * averaged over the step between taps */
+  cascade_field scratch;              /* a field for a sum that comes from farther levels; level 0 has none */
+  cascade_field mean[2][HL_CHANNELS]; /* only for lights with an emission image: the fields `absorbed` and
+                                       * `thin` of one group, averaged over the step between taps */
   cascade_box *boxes;                 /* owned; [tiles_x + tiles_y]; the blur of each column of tiles, then
                                        * of each row of tiles */
   field_pixel *memory;                /* borrowed from the shadow_memory; null where a device has the
@@ -117,7 +120,7 @@ typedef struct cascade_level {
   unsigned char *flags; /* owned; the arrays `zeros` of the level's fields */
 } cascade_level;
 
-/* The exchange of messages between the renderers that make the parts of one picture. A message holds the
+/* A part's exchange of messages with the renderers of the other parts of one picture. A message holds the
  * light of one tile (cascade_exchange.c). */
 typedef struct cascade_exchange {
   const light_exchange *with; /* the renderers of the other parts; null: there are no other parts */
@@ -130,42 +133,44 @@ typedef struct cascade_exchange {
   unsigned char *sends; /* owned; [tiles]; 1 for tiles whose light of the last chunk this part
                          * sends to the other parts */
   uint32_t count;       /* number of the tiles that are marked in `sends` */
-  size_t tile;          /* the next tile that a message will be about */
+  size_t tile;          /* the tile with which the next message begins the search for marked tiles */
   bool sent;            /* whether a post of the last chunk is under way */
 } cascade_exchange;
 
 typedef struct soft_cascade {
-  bool begun; /* the cascade's memory may hold numbers other than zero */
+  bool begun; /* whether the cascade's memory may hold numbers other than zero */
   bool parallel;
   double rate; /* the rate at which penumbrae widen. For parallel light: omega per frame unit of height. For
-                * near light: L, in units of the edge that the buffer's pixels have at distance 1 */
+                * near light: the light's width L, in units of the edge that the buffer's pixels have at
+                * distance 1 */
   double light_height;
   double widest;                        /* the greater of the light's two widths along the buffer's axes */
   double least_fraction;                /* the smaller of these two widths, as a fraction of the greater */
-  const light_emission *emission;       /* null: the light is even, and blurs use boxes */
-  double slope_start[2], slope_step[2]; /* slope_start: the slope of the light's rays at the buffer's corner;
-                                         * slope_step: the change of the slope from pixel to pixel */
-  double chunk;                         /* length of the current chunk, measured in omega; pixels of the
-                                         * buffer */
+  const light_emission *emission;       /* the light's emission image; null: all points of the light are
+                                         * equally bright, and blurs use boxes */
+  double slope_start[2], slope_step[2]; /* slope_start: the slope of the light's ray through the buffer's
+                                         * corner; slope_step: the change of the slope from pixel to pixel */
+  double chunk;                         /* length of the current chunk of slabs, measured in omega; pixels of
+                                         * the buffer */
   double chunk_start;                   /* omega at the start of the current chunk */
   double shortest_chunk;                /* length of the shortest chunk of the sweep, measured in omega */
-  double shrink; /* the length of a chunk divided by -omega at the chunk's start; 0: all chunks have the same
-                  * length */
-  double evened; /* the omega from which on all chunks have the same length again; pixels */
-  double lookup_variance; /* variance of the blur by look-ups of the buffer, in squared pixels */
+  double shrink;          /* the length of a chunk divided by -omega at its start; 0: all chunks have the same
+                           * length */
+  double evened;          /* from this omega on, all chunks have the same length again; pixels */
+  double lookup_variance; /* the variance by which look-ups of the buffer blur, in squared pixels */
   uint64_t chunks;        /* number of the chunks that have ended */
   int channels;
   int level_count; /* number of the levels that have memory */
   cascade_level level[CASCADE_LEVELS];
   cascade_field absorbed[HL_CHANNELS]; /* the absorbed light from which the buffer was filled last; it is
                                         * one of the sums of level 0 */
-  /* pixel (0,0) of each channel, with the pixels of level 0; 1 minus the light at the start of the current
+  /* pixel (0,0) of each channel, in the memory of level 0; 1 minus the light at the start of the current
    * chunk */
   float *absorbed_at_start[HL_CHANNELS];
-  /* pixel (0,0) of each channel, with the pixels of level 0; the sum, over the current chunk's slabs, of the
+  /* pixel (0,0) of each channel, in the memory of level 0; the sum, over the current chunk's slabs, of the
    * light that a slab absorbed times the slab's position */
   float *moment[HL_CHANNELS];
-  unsigned char *refilled;   /* owned; [tiles]; the bits REFILLED_BEFORE and REFILLED_NOW */
+  unsigned char *refilled;   /* owned; [tiles]; for each tile, the bits REFILLED_BEFORE and REFILLED_NOW */
   unsigned char *touched;    /* owned; [tiles]; 1 where slabs of the current chunk have absorbed light */
   cascade_reads reads;       /* the tiles that slabs of the next chunk read */
   cascade_exchange exchange; /* the exchange of messages with the other parts of a shared picture */
@@ -174,7 +179,7 @@ typedef struct soft_cascade {
 /* The threads and functions for passes over a cascade's fields. */
 typedef struct cascade_crew {
   const struct cascade_works *works; /* the functions that make the passes (cascade_passes.h) */
-  /* where the processors make the passes: */
+  /* set if the processors make the passes: */
   hl_pool *pool;
   const cascade_functions *functions;
   const cascade_reads *reads;
@@ -193,7 +198,7 @@ void hl_cascade_begin_elsewhere(light_shadow *shadow);
 
 /* cascade_method.c */
 
-/* A slab's place among the chunks. */
+/* The place of a slab among the chunks. */
 typedef struct cascade_slab {
   float position; /* the slab's position in its chunk (attenuate_job.position) */
   float young;    /* how far samples have faded to the light of the current chunk (shadow_lookup.young) */
@@ -221,8 +226,8 @@ void hl_cascade_exchange_look(const soft_cascade *cascade);
  * nothing where no messages are under way. */
 void hl_cascade_exchange_receive(soft_cascade *cascade);
 
-/* The omega of a height: the measure in which penumbrae widen evenly ("Penumbrae" at the head of the file);
- * pixels of the buffer. */
+/* Converts a height to omega, the measure in which penumbrae widen evenly ("Penumbrae" at the head of this
+ * file); pixels of the buffer. */
 static inline double hl_cascade_omega(const soft_cascade *cascade, double height) {
   if (cascade->parallel) return cascade->rate * height;
   double distance = height - cascade->light_height;
@@ -230,7 +235,8 @@ static inline double hl_cascade_omega(const soft_cascade *cascade, double height
 }
 
 /* The value of omega after a number of further chunks. Derived: a chunk that begins at omega ends at omega (1
- * - shrink). A chunk that begins beyond `evened` has the same length as a chunk that begins at `evened`. */
+ * - shrink). All chunks that begin beyond the omega `evened` have the length of the chunk that begins at
+ * `evened`. */
 static inline double hl_cascade_chunks_on(const soft_cascade *cascade, double omega, double chunks) {
   if (!(cascade->shrink > 0)) return omega + cascade->chunk * chunks;
   if (omega < cascade->evened) {

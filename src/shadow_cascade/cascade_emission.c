@@ -1,12 +1,13 @@
-/* shadow_cascade/cascade_emission.c - a cascade for lights with an emission image. Each group has a blur
- * kernel of its own.
+/* shadow_cascade/cascade_emission.c - sums the groups of a cascade for lights with an emission image. Each
+ * group is blurred by a kernel of its own.
  *
- * Blurs by boxes can be made step by step, because only their variance matters. But an emission image must
- * appear complete in every penumbra. So the absorbed light of group o is blurred in one step, by the image's
- * taps (light_emission.h), scaled to the width w of the group's penumbra on the receiver. Far groups come
- * first. With a group's kernel K, the sum s becomes K(G + F) + (1 - K(F)) s (derived as in cascade.h; without
- * thin matter it is the sum over groups of K(G), the mean of the shadows of the light's cells). Sums are made
- * anew for each receiver. This is not too slow, because far groups have coarse pixels. */
+ * For a light without an image, groups are blurred by boxes step by step, because only the variance of a blur
+ * matters. An emission image, however, must appear complete in every penumbra. So the absorbed light of group
+ * o is blurred in one step by the image's taps (light_emission.h), scaled to the width w of the group's
+ * penumbra on the receiver. Far groups come first. With a group's kernel K, the sum s becomes K(G + F) + (1 -
+ * K(F)) s (derived as in cascade.h). Without thin matter this is the sum over groups of K(G), the mean of the
+ * shadows of the light's cells. Sums are made anew for each receiver. This is not too slow, because far
+ * groups have coarse pixels. */
 #include "shadow_cascade/cascade_passes.h"
 
 #include <string.h>
@@ -19,7 +20,7 @@ typedef struct emission_pass {
   const cascade_group *group;
   double width; /* width of the group's penumbra on the receiver, in pixels of the level */
   int step[2];
-  bool averaged; /* whether the level's `mean` holds the group's means over `step` pixels */
+  bool averaged; /* whether the level's field `mean` holds the group's means over `step` pixels */
   int reach;     /* the number of tiles around a tile that the taps and the means read */
   const cascade_functions *functions;
 } emission_pass;
@@ -29,7 +30,7 @@ static const cascade_field *sum_of(const soft_cascade *cascade, const cascade_le
   return level == &cascade->level[0] ? &cascade->absorbed[channel] : &level->sum[0][channel];
 }
 
-/* Finds the tiles of a row that are read: by the next slabs, or by the next finer level when it interpolates
+/* Finds the tiles of a row that are read by the next slabs, or by the next finer level when it interpolates
  * between pixels. */
 static read_row row_read(const soft_cascade *cascade, const cascade_level *level, size_t y) {
   return hl_cascade_read_row(&cascade->reads, level->scale, (int)y,
@@ -44,8 +45,8 @@ static bool any_near(const cascade_level *level, const cascade_field *field, int
 
 typedef struct start_task {
   const soft_cascade *cascade;
-  /* level: the level whose sum is started; farther: the nearest farther level that has a filled sum, or null
-   * if there is none */
+  /* level: the level whose sum is started; farther: the nearest of the farther levels that has a sum, or null
+   * if none has */
   const cascade_level *level, *farther;
   const cascade_functions *functions;
 } start_task;

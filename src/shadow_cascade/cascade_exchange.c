@@ -15,14 +15,14 @@
 
 #include "shadow_cascade/cascade_passes.h"
 
-/* The approximate number of bytes that the posts of all parts take together, if the exchange does not set a
+/* The approximate number of bytes of the posts of all parts together, if the exchange does not set a
  * number. */
 enum { MOST_POSTED = 8 << 20 };
 
 /* The head of a post. */
 typedef struct post_head {
   uint32_t count;  /* number of this part's messages in all posts of the chunk */
-  uint32_t unused; /* fills the head up, so that messages begin at a multiple of 8 bytes */
+  uint32_t unused; /* padding, so that messages begin at a multiple of 8 bytes */
 } post_head;
 
 /* The fields of a channel that a chunk changes: `absorbed` and `thin`, of the group at the chunk's start and

@@ -12,7 +12,7 @@
 typedef uint16_t field_pixel;
 enum { FIELD_ONE = 32768 };
 
-/* The rows of a tile that a pass must compute. */
+/* The rows of a tile that a pass over a field must compute. */
 typedef struct tile_rows {
   int first, end;
 } tile_rows;
@@ -21,22 +21,23 @@ static const tile_rows ALL_ROWS = {0, TILE};
 /* An operation on fields, for the functions of cascade_functions. A field is given by its pixel (0,0). The
  * field's rows are `stride` apart, and zeros surround its pixels. */
 typedef struct field_job {
-  const field_pixel *a, *b; /* inputs; cascade_functions tells their resolutions. Null stands for zeros. `b`
-                             * may be null only if it is not coarser than the output; `a` may be null only if
-                             * `b` is coarser */
+  const field_pixel *a, *b; /* inputs; cascade_functions tells their resolutions. Null stands for a field of
+                             * zeros. `b` may be null if it is not coarser than the output. `a` may be null
+                             * only if `b` is coarser than the output */
   field_pixel *to;
-  size_t stride_in, stride; /* stride_in: the stride of inputs of another resolution */
+  size_t stride_in, stride; /* stride: the number of pixels from row to row of the output; stride_in: of the
+                             * inputs that have another resolution */
   const field_pixel *thin;  /* the fraction of b that the thin matter of a absorbs; null: there is no thin
                              * matter */
   tile_rows rows;
 } field_job;
 
-/* The type of an operation on one tile of fields. It returns whether any pixel of the tile's rows is more
- * than zero. */
+/* The type of an operation on one tile of fields. It returns whether any pixel of the tile's computed rows is
+ * above zero. */
 typedef int field_tile_function(const field_job *job, int tile_x, int tile_y);
 
-/* A blurred sum: to = a + (1 - thin) * (from, blurred along rows and columns), in one pass over memory; a
- * and thin may be null, which stands for 0. */
+/* A sum with a blur: to = a + (1 - thin) * (from, blurred along rows and columns), in one pass over memory. a
+ * and thin may be null, which stands for zeros. */
 typedef struct field_blur_job {
   const field_pixel *from, *a; /* pixel (0,0) of the fields; rows are `stride` apart */
   const field_pixel *thin;
@@ -53,15 +54,15 @@ typedef int field_blur_tile_function(const field_blur_job *job, int tile_x, int 
  * that ends, times 1 - absorbed, which is limited to 0 to 1. */
 typedef struct refill_job {
   const field_pixel *absorbed; /* the light that all groups absorb; rows are `stride` apart */
-  /* rows are `stride` apart; before the refill 1 minus the light at the old chunk's start, afterwards 1 minus
-   * the new value of `to` */
+  /* 1 minus the light at the start of a chunk: before the refill, at the start of the old chunk; after the
+   * refill, 1 minus the new value of `to`. Rows are `stride` apart */
   float *absorbed_at_start;
   float *to; /* the pixels of the shadow buffer; rows are stride_to apart */
-  /* rows are stride_to apart; the buffer's second planes. They receive the old value of `to` if `again` is
-   * set, else the new value */
+  /* the buffer's planes SHADOW_SECOND, which receive the old value of `to` if `again` is set, else the new
+   * value; rows are stride_to apart */
   float *older;
-  float *outside; /* rows are stride_to apart; the light at the outside of surfaces. Its difference from `to`
-                   * stays the same. Null: there is none */
+  float *outside; /* the light at the outside of surfaces, whose difference from `to` stays the same; rows are
+                   * stride_to apart; null: there is none */
   size_t stride, stride_to;
   int kept;  /* whether the chunk's slabs absorbed some light */
   int again; /* whether `to` was also refilled at the start of the chunk that ends */
@@ -96,7 +97,7 @@ typedef struct absorbed_job {
   const float *now;
   float *moment; /* sum, over the chunk's slabs, of the light that a slab absorbed times the slab's
                   * position in the chunk; the function clears it */
-  float length;  /* the chunk's length, measured in omega */
+  float length;  /* the length of the chunk, measured in omega */
   const field_pixel *before; /* rows are `stride` apart; the light that the groups before the chunk absorbed;
                               * null: it is not known */
   field_pixel *start_absorbed, *start_thin; /* the group at the chunk's start, to which matter is added;
@@ -104,8 +105,8 @@ typedef struct absorbed_job {
   field_pixel *end_absorbed, *end_thin;     /* the group at the chunk's end, to which matter is written;
                                              * rows are `stride` apart */
   size_t stride, stride_now;
-  int edge; /* along the edges of opaque surfaces, the width in pixels of a strip that does not hide the
-             * matter before it; at most GREATEST_EDGE */
+  int edge; /* the width in pixels of a strip along the edges of opaque surfaces; in this strip, surfaces do
+             * not hide the matter before them. At most GREATEST_EDGE */
 } absorbed_job;
 /* The type of a function that adds matter in one tile. It returns which of the four fields of the two groups
  * have pixels above zero, one bit each in the order of the fields. */
@@ -116,7 +117,7 @@ typedef struct split_job {
   const field_pixel *absorbed, *thin; /* pixel (0,0) of the group that is split; rows are `stride` apart */
   field_pixel *to_absorbed[2], *to_thin[2];
   size_t stride;
-  float late; /* the fraction of the matter that goes to the second group */
+  float late; /* the fraction of the matter that becomes the second group */
 } split_job;
 /* The type of a function that splits one tile. It returns which of the four outputs have a pixel above zero,
  * one bit each: absorbed and thin of the first group, then of the second group. */

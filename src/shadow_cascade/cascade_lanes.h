@@ -24,20 +24,21 @@ LANES_INLINE void fetch_float_tile(const float *field, size_t stride, int tile_x
   for (int i = 0; i < TILE; i++, row += stride) __builtin_prefetch(row, 0);
 }
 
-/* Stores sixteen pixels, rounded. *greatest: raised, lane by lane, to the stored pixels. */
+/* Stores sixteen pixels after rounding them. *greatest: each lane is raised to the stored pixel if it is
+ * less. */
 LANES_INLINE void store_pixels(field_pixel *p, lanes pixels, lanes *greatest) {
   lanes_store_short(p, pixels);
   *greatest = lanes_max(*greatest, pixels);
 }
 LANES_INLINE int is_above_zero(lanes greatest) { return lanes_bits(greatest + 0.5f >= 1.0f) != 0; }
 
-/* The transmittance of thin matter: 1 - thin. */
+/* The transmittance 1 - thin of thin matter. */
 LANES_INLINE lanes transmittance_of(const field_pixel *thin) {
   return lanes_line(lanes_load_short(thin), -1.0f / FIELD_ONE, 1.0f);
 }
 
-/* The transmittance 1 - absorbed, corrected in umbrae: it is 0 below UMBRA, and rises twice as steeply
- * between UMBRA and twice UMBRA. Greater values are unchanged. */
+/* The transmittance 1 - absorbed, corrected where it is nearly dark: it is 0 below UMBRA, and rises twice as
+ * steeply between UMBRA and twice UMBRA. Greater values are unchanged. */
 LANES_INLINE lanes transmittance_outside_umbra(const field_pixel *absorbed) {
   lanes left = transmittance_of(absorbed);
   return lanes_clamp(lanes_min(left, 2.0f * (left - UMBRA)), 0, 1.0f);
@@ -54,7 +55,8 @@ LANES_INLINE lanes blur_field_row(const field_pixel *from, const blur_box *box) 
   return lanes_add_scaled(lanes_from_int(sum), lanes_from_int(ends), box->edge) * box->scale;
 }
 
-/* Computes a + (1 - thin) b at a row of a tile. a and thin may be null, which stands for zeros. */
+/* Computes the sum a + (1 - thin) b for a row of a tile, where a is absorbed light and thin the fraction that
+ * thin matter absorbs of b. a and thin may be null, which stands for zeros. */
 LANES_INLINE lanes left_and_a(lanes b, const field_pixel *thin, const field_pixel *a, size_t at) {
   if (a == NULL) return thin == NULL ? b : b * transmittance_of(thin + at);
   lanes more = lanes_load_short(a + at);
@@ -80,7 +82,8 @@ static int field_blur_tile(const field_blur_job *job, int tile_x, int tile_y) {
   return is_above_zero(greatest);
 }
 
-/* Computes a + (1 - thin) b at sixteen pixels. b and thin may be null, which stands for zeros. */
+/* Computes the sum a + (1 - thin) b for sixteen pixels, where a is absorbed light and thin the fraction that
+ * thin matter absorbs of b. b and thin may be null, which stands for zeros. */
 LANES_INLINE lanes a_and_b(const field_job *job, size_t at) {
   if (job->b == NULL) return lanes_load_short(job->a + at);
   return left_and_a(lanes_load_short(job->b + at), job->thin, job->a, at);
@@ -97,7 +100,7 @@ static int add_tile(const field_job *job, int tile_x, int tile_y) {
   return is_above_zero(greatest);
 }
 
-/* Sums of neighbouring pixels: of each pair among 32 pixels in a row. */
+/* The sixteen sums of two neighbouring pixels each, from 32 pixels in a row. */
 LANES_INLINE lanes sums_of_pairs(lanes first, lanes second) {
   return __builtin_shufflevector(first, second, 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30) +
          __builtin_shufflevector(first, second, 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
@@ -121,8 +124,9 @@ static int add_half_tile(const field_job *job, int tile_x, int tile_y) {
   return is_above_zero(greatest);
 }
 
-/* A row of a tile, interpolated from a field of half the resolution. The centre of pixel 2 i lies a quarter
- * of a coarse pixel before the centre of coarse pixel i, the centre of pixel 2 i + 1 a quarter after it. */
+/* Interpolates a row of a tile from a field of half the resolution. The centre of pixel 2 i lies a quarter of
+ * a coarse pixel before the centre of coarse pixel i, and the centre of pixel 2 i + 1 a quarter of a coarse
+ * pixel after it. */
 LANES_INLINE lanes double_row(const field_pixel *from, size_t stride, int tile_x, int y) {
   const field_pixel *near = from + (ptrdiff_t)(y / 2) * (ptrdiff_t)stride + tile_x * TILE / 2 - 1;
   const field_pixel *far = y & 1 ? near + stride : near - stride;
@@ -203,14 +207,14 @@ static void emission_tile(const emission_job *job, int tile_x, int tile_y) {
   }
 }
 
-/* The fraction of light that surfaces let pass, where the chunk began in the dark. It is 1 where a pixel has
- * no mark (attenuate.h). */
+/* The fraction of light that surfaces let pass in pixels where the chunk began in the dark. It is 1 where a
+ * pixel has no mark (DARK_MARK of shadow/attenuate.h). */
 LANES_INLINE lanes passing_in_dark(lanes end) {
   return lanes_select(end < 0.0f, end * (-1.0f / DARK_MARK), lanes_set(1.0f));
 }
 
 /* The transmittance of the slabs of one chunk. Where hardly any light was left at the chunk's start, it is
- * the transmittance of surfaces alone, because blocks of volumes are not composited there. */
+ * the transmittance of surfaces alone, because volumes are not composited in such dark blocks. */
 LANES_INLINE lanes chunk_transmittance(lanes end, lanes start) {
   lanes least = lanes_set(DARK_AT_START);
   return lanes_select(start < least, passing_in_dark(end),
@@ -277,30 +281,31 @@ static uint32_t split_tile(const split_job *job, int tile_x, int tile_y) {
   return above_zero;
 }
 
-/* The light that surfaces absorb in a chunk that began in the dark. job->before must not be null. */
+/* The light that surfaces absorb in pixels where the chunk began in the dark. job->before must not be
+ * null. */
 LANES_INLINE lanes taken_in_dark(const absorbed_job *job, size_t at, lanes start, lanes end) {
   lanes reaching = transmittance_outside_umbra(job->before + at);
   return lanes_keep(start < DARK_AT_START, reaching * (1.0f - passing_in_dark(end)));
 }
 
-/* The greatest transmittance of pixels that count as opaque. Each slab of an opaque surface absorbs all
- * light. */
+/* Pixels whose transmittance is at most this number count as opaque. Each slab of an opaque surface absorbs
+ * all light. */
 static const float OPAQUE_PASSING = 0x1p-20f;
 
-/* Whether surfaces of the chunk absorb all light of sixteen pixels in a row. */
+/* Finds which of sixteen pixels in a row lie on surfaces of the chunk that absorb all light. */
 LANES_INLINE lanes_int is_opaque(const float *now) {
   lanes end = lanes_load(now);
   return (end < 0.0f) & (passing_in_dark(end) < OPAQUE_PASSING);
 }
 
-/* Whether pixels are hidden: either surfaces of the chunk absorb all light, or the chunk began in the dark
- * there. */
+/* Finds which pixels are hidden: surfaces of the chunk absorb all of their light, or the chunk began in the
+ * dark. */
 LANES_INLINE lanes_int is_hidden(const float *now, const float *absorbed_at_start) {
   return is_opaque(now) | (lanes_load(absorbed_at_start) > 1.0f - DARK_AT_START);
 }
 
-/* Surfaces are made to hide the matter before them only where at most this fraction of the light was left at
- * a chunk's start. Where more is left, the sums are right without this. */
+/* Opaque surfaces are made to hide the matter before them only in pixels where at most this fraction of the
+ * light was left at the chunk's start. Where more light is left, the sums are right without this. */
 static const float HARDLY_HIDDEN = 0.9f;
 
 /* Finds which of sixteen pixels lie inside an opaque surface. Such a pixel is opaque, had at most
@@ -344,8 +349,7 @@ static uint32_t absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {
     lanes taken = lanes_max(before - lanes_max(now, lanes_set(0)), lanes_set(0));
     int marked = lanes_bits(now < 0.0f) != 0;
     lanes in_dark = marked && job->before != NULL ? taken_in_dark(job, at, before, now) : lanes_set(0);
-    if (!marked && lanes_bits(taken > 0.0f) == 0) { /* no matter is added here, because the moment is zero,
-                                                     * too */
+    if (!marked && lanes_bits(taken > 0.0f) == 0) { /* no matter is added, because the moment is zero, too */
       lanes_store_short(job->end_absorbed + at, lanes_set(0));
       lanes_store_short(job->end_thin + at, lanes_set(0));
       continue;

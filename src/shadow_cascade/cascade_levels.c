@@ -15,11 +15,11 @@ static const double ENOUGH_CHUNKS = 32, NEAR_CHUNKS = 64, FAR_CHUNKS = 88, GREAT
 static const double LEAST_CHUNK = 0.15, THICK_CHUNK = 1.3, THICKEST_CHUNK = 2;
 
 /* Divides omega from start to end into chunks of one length. The magnitude of a near light's omega grows
- * without bound towards the light, so there may be more such chunks than allowed. Then the length of a chunk
- * is a fixed fraction of -omega at its start. Derived: at a distance z from the light, a penumbra whose width
- * in omega is w has the width w z in space, and -omega is L / z. So the penumbrae of all chunks have the same
- * width in space. For a lamp within the content, the last chunks would be a small part of a pixel long; so
- * its chunks are not shorter than `thick`. Returns the number of chunks. */
+ * without bound towards the light, so there may be more such chunks than allowed. In that case the length of
+ * a chunk is a fixed fraction of -omega at the chunk's start. Derived: at a distance z from the light, a
+ * penumbra whose width in omega is w has the width w z in space, and -omega is L / z. So the penumbrae of all
+ * chunks have the same width in space. For a lamp within the content, the last chunks would be a small part
+ * of a pixel long; so chunks are at least `thick` long. Returns the number of chunks. */
 static double divide(soft_cascade *cascade, double start, double end, bool within) {
   double length = end - start, few = cascade->parallel ? FAR_CHUNKS : NEAR_CHUNKS;
   double thick = fmin(fmax(length / ENOUGH_CHUNKS, LEAST_CHUNK), THICK_CHUNK);
@@ -28,7 +28,8 @@ static double divide(soft_cascade *cascade, double start, double end, bool withi
   cascade->chunk = cascade->shortest_chunk = fmax(thick, length / most);
   cascade->shrink = 0;
   bool even = cascade->emission == NULL; /* for lights with an emission image all chunks have the same length:
-                                          * the errors over an edge are then 0.024, and not 0.026 */
+                                          * the errors of shadows behind an edge are then 0.024, and not
+                                          * 0.026 */
   if (cascade->parallel || !even || cascade->chunk <= thick) return length / cascade->chunk;
   cascade->shrink = 1 - pow(end / start, 1 / most);
   cascade->chunk = cascade->shrink * -start;
@@ -50,9 +51,8 @@ static double chunks_before(int level) { return level < 2 ? 3 * level : 4 * (pow
 static int level_scale(const soft_cascade *cascade, int level) {
   double penumbra = cascade->shortest_chunk * chunks_before(level) * cascade->least_fraction,
          own = cascade->emission == NULL ? 1.5 : 4;
-  int scale = 1, greatest = level < 2
-                                ? 1 << level
-                                : 1 << (level - 1); /* coarser levels were less exact, and hardly cheaper */
+  int scale = 1, greatest = level < 2 ? 1 << level : 1 << (level - 1); /* coarser pixels were less exact, and
+                                                                        * hardly took less time */
   while (2 * scale * own <= penumbra && scale < greatest) scale *= 2;
   return scale;
 }
@@ -65,13 +65,14 @@ static cascade_field field_of_plane(const cascade_level *level, size_t plane) {
                          .place = level->first + at};
 }
 
-/* Hands out the next plane of a level's memory. *used counts the planes that were handed out. */
+/* Hands out the next plane of a level's memory as a field. *used: the number of planes that were handed out
+ * before. */
 static cascade_field next_field(const cascade_level *level, size_t *used) {
   return field_of_plane(level, (*used)++);
 }
 
-/* Sets, for each column or row of tiles, the light's squared width as it is seen from there, as a fraction of
- * the square of the light's greater width. */
+/* Sets the fraction of variance for each column and row of tiles: the square of the light's width as it is
+ * seen from there, divided by the square of the light's greater width. */
 static void set_parts(const soft_cascade *cascade, const sheet_light *light, int axis, int count, int scale,
                       cascade_box *boxes) {
   for (int tile = 0; tile < count; tile++) {
@@ -81,7 +82,7 @@ static void set_parts(const soft_cascade *cascade, const sheet_light *light, int
   }
 }
 
-/* The number of planes of field_pixel that a plane of floats takes. */
+/* The number of planes of field_pixel that take as much memory as one plane of floats. */
 enum { MOMENT_PLANES = sizeof(float) / sizeof(field_pixel) };
 
 static void plan_level(soft_cascade *cascade, int index, int tiles_x, int tiles_y) {
@@ -149,8 +150,9 @@ static void begin_level(soft_cascade *cascade, int index, const sheet_light *lig
   place_fields(cascade, index);
 }
 
-/* The variance of look-ups. A bilinear look-up weighs two pixels by p and 1 - p, according to their
- * distances: this has a variance of p (1 - p), which is 1/6 on average. Cubic convolution has no variance. */
+/* The variance of the blur by look-ups, in squared pixels. A bilinear look-up weighs two pixels by p and 1 -
+ * p, according to their distances. The variance of these weights is p (1 - p), which is 1/6 on average. Cubic
+ * convolution has no variance. */
 static double lookup_variance(bool cubic) { return cubic ? 0 : 1.0 / 6; }
 
 /* Plans the chunks and levels of a buffer whose view is planned. */
@@ -176,13 +178,13 @@ static void plan_levels(soft_cascade *cascade, const light_shadow *shadow) {
     cascade->slope_step[axis] = vec3_dot(axis == 0 ? view->du : view->dv, along[axis]);
   }
   double start = hl_cascade_omega(cascade, first), end = hl_cascade_omega(cascade, last);
-  /* near a light -omega grows without bound, but penumbrae wider than twice the buffer need no more chunks.
-   * For parallel light this limit is not used: there even the first slabs may be receivers, which would get
-   * shadows without penumbrae */
+  /* towards a near light, -omega grows without bound. But no more chunks are needed for penumbrae that are
+   * wider than twice the buffer. For parallel light this limit is not used: there even the first slabs may be
+   * receivers, which would get shadows without penumbrae */
   if (!cascade->parallel) start = fmax(start, end - 2 * TILE * fmax(tiles_x, tiles_y));
   double chunks = divide(cascade, start, end, shadow->setup.source->sectors != NULL);
-  /* level j > 1 is first used after 5 * 2^(j-1) - 4 chunks (derived: five groups are kept on this level;
-   * levels 0 and 1 together keep five groups, too) */
+  /* derived: level j > 1 is first used after 5 * 2^(j-1) - 4 chunks, because each level keeps five groups;
+   * levels 0 and 1 together also keep five */
   int levels = 2 + (int)floor(log2(fmax(chunks + 7, 5) / 5));
   cascade->level_count = levels < CASCADE_LEVELS ? levels : CASCADE_LEVELS;
   for (int i = 0; i < cascade->level_count; i++) plan_level(cascade, i, tiles_x, tiles_y);
@@ -194,9 +196,9 @@ static bool is_read_cubic(const shadow_setup *setup) {
   return lookup == HL_LOOKUP_AUTO ? setup->emission == NULL : lookup == HL_LOOKUP_CUBIC;
 }
 
-/* The greatest tangent of the angle between a view's rays and the sheets' normal. Infinite where some rays
- * run along the sheets. (The rays of a rectangle of pixels meet a sheet in a quadrangle, whose corners are
- * farthest away.) */
+/* The greatest tangent of the angle between a view's rays and the sheets' normal. It is infinite if some rays
+ * run along the sheets. Only the rays at the corners are looked at: the rays of a rectangle of pixels meet a
+ * sheet in a quadrangle, and its corners are farthest away. */
 static double steepest_tangent(const view *view, vec3 normal) {
   double greatest = 0, first = 0;
   for (int corner = 0; corner < 4; corner++) {
@@ -230,7 +232,8 @@ void hl_cascade_plan(light_shadow *shadow) {
   shadow_plan *plan = &shadow->plan;
   light_source middle = *setup->source;
   plan->cubic = is_read_cubic(setup);
-  plan->second = true; /* the second planes hold the light from which samples fade */
+  plan->second = true; /* the planes SHADOW_SECOND hold the older light from which samples fade to the
+                        * transmittance */
   hl_plan_soft(shadow, hl_blurred_pixel(setup, plan->cubic));
   plan->extent.u = plan->seen.u;
   if (middle.parallel) middle.direction = vec3_normalise(plan->seen.middle);
@@ -266,7 +269,7 @@ void hl_cascade_begin_elsewhere(light_shadow *shadow) {
   memset(cascade->touched, 0, tiles);
   memset(cascade->refilled, 0, tiles);
   for (int i = 0; i < cascade->level_count; i++) begin_level(cascade, i, &shadow->plan.seen);
-  cascade->level[0].count = 1; /* the first group lies at the first chunk's start */
+  cascade->level[0].count = 1; /* the first group lies at the start of the first chunk */
   cascade->level[0].group[0].omega = cascade->chunk_start;
 }
 
@@ -305,8 +308,8 @@ static void clear_moments(const soft_cascade *cascade, hl_pool *pool) {
   }
 }
 
-/* Fills the memory that the cascade keeps from frame to frame with zeros, because the next frame expects
- * zeros. */
+/* Ends a cascade's shadow: fills the memory that the cascade keeps from frame to frame with zeros, because
+ * the next frame expects zeros. */
 void hl_cascade_end(light_shadow *shadow) {
   soft_cascade *cascade = shadow->state;
   hl_pool *pool = shadow->means.pool;

@@ -4,7 +4,7 @@
 
 #include "shadow_cascade/cascade_passes.h"
 
-/* The number of chunks after which a level's sums are made anew. */
+/* The number of chunks after which the sum of a level's groups is made anew. */
 static uint64_t period_of(int level) { return level < 2 ? 1 : (uint64_t)1 << (level - 2); }
 
 /* The difference of the variances of two boxes of different widths, in squared pixels of the buffer. wide,
@@ -22,8 +22,8 @@ static double resampled_by(const cascade_level *level) {
 }
 
 /* The blur that brings a level's sum from its own omega to a given `omega`, on the way to a level that is as
- * fine or finer. If resampling alone blurs by more than this, the excess is remembered (owed) and subtracted
- * from the next blur. */
+ * fine or finer. If resampling alone blurs by a greater variance, the excess is stored in `owed` and
+ * subtracted from the next blur. */
 static cascade_blur blur_towards(const cascade_level *from, double receiver, double omega,
                                  cascade_level *to) {
   double variance = variance_between(receiver - from->sum_omega, receiver - omega),
@@ -37,7 +37,8 @@ static cascade_blur blur_towards(const cascade_level *from, double receiver, dou
   return blur;
 }
 
-/* Removes the `gone` oldest groups of a level. The next groups use the fields of the removed groups. */
+/* Removes the oldest groups of a level. gone: the number of groups that are removed. The next groups use the
+ * fields of the removed groups. */
 static void forget_oldest(cascade_level *level, int gone) {
   cascade_group free[2] = {level->group[0], level->group[1]};
   for (int g = gone; g < level->capacity; g++) level->group[g - gone] = level->group[g];
@@ -132,8 +133,8 @@ static void absorb_tile(const absorb_task *task, size_t tile_x, size_t tile_y, b
   }
 }
 
-/* Adds the light that the chunk's slabs have absorbed to the two groups at the chunk's ends. The marks of
- * tiles in `touched` stay until the buffer is refilled. */
+/* Adds the light that the chunk's slabs have absorbed to the two groups at the chunk's ends. The marks in the
+ * array `touched` are kept until the buffer is refilled. */
 static void absorb_piece(void *data, size_t index, int worker) {
   (void)worker;
   const absorb_task *task = data;
@@ -155,8 +156,8 @@ static bool absorb_chunk(const cascade_crew *crew, const cascade_absorption *abs
 }
 
 /* The width, in pixels, of the strip along the edges of opaque surfaces that does not hide the matter before
- * it. Derived: where two edges lie one behind the other, a chunk apart, as at the rim of a ball, the sum of
- * the light that both absorb is about right. For a receiver that lies w behind the second edge, the sum
+ * it. Derived: at the rim of a ball, two edges lie one behind the other, a chunk apart. There the sum of the
+ * light that both edges absorb is about right. For a receiver that lies w behind the second edge, the sum
  * before this edge has a penumbra of the width sqrt((c + w)^2 - w^2), where c is the chunk's length. In the
  * penumbra's dark half, the second edge must not hide the light that is left. A strip that is half as wide as
  * this dark half is enough. A wider strip would leave light where two pieces of one surface meet that lie in
@@ -193,9 +194,9 @@ static double slab_omega(const soft_cascade *cascade, const sheet_stack *sheets,
   return hl_cascade_omega(cascade, (hl_sheet_height(sheets, sheet - 1) + hl_sheet_height(sheets, sheet)) / 2);
 }
 
-/* The reach, in pixels of the buffer, of a pass whose result, at the scale `scale`, will be doubled until it
- * has the scale of the sum. The pass must compute the pixels within this reach around the tiles that are
- * read. */
+/* The reach of a pass in pixels of the buffer: the pass must compute the pixels within this reach around the
+ * tiles that are read. The pass's result has the scale `scale`, and is doubled afterwards until it has the
+ * scale of the sum. */
 static int reach_at(const cascade_sum *sum, int scale) {
   int doubling = hl_cascade_doubling_reach(scale, sum->level->scale);
   return sum->reach == READ_EVERYWHERE ? sum->reach : sum->reach + doubling;
@@ -251,8 +252,8 @@ static void pass_group(int channels, cascade_level *from, cascade_level *level, 
           blur, crew);
 }
 
-/* Starts the sum of all groups with the farthest group. Look-ups also blur; so their blur is subtracted from
- * the group's blur. */
+/* Starts the sum of all groups with the farthest group. The group is blurred less than its penumbra requires,
+ * because look-ups of the buffer also blur. */
 static void pass_first(const soft_cascade *cascade, cascade_level *level, const cascade_group *group,
                        const cascade_crew *crew) {
   level->owed[0] = level->owed[1] = cascade->lookup_variance;
@@ -262,7 +263,7 @@ static void pass_first(const soft_cascade *cascade, cascade_level *level, const 
 
 /* ---- where the next slabs read ---- */
 
-/* Finds the tiles of the buffer that the sheets up to the end of the next chunk can touch. */
+/* Finds the tiles of the buffer that the light's sheets up to the end of the next chunk can touch. */
 static void find_reads(soft_cascade *cascade, const occupancy *occupancy, const light_shadow *shadow,
                        int sheet) {
   const sheet_stack *sheets = shadow->setup.sheets;
@@ -311,8 +312,8 @@ static cascade_level *pass_all(soft_cascade *cascade, double receiver, const cas
     uint64_t period = period_of(i);
     due = due || level->renewed || cascade->chunks % period == 0;
     if (due) level->filled = false;
-    /* until this level is renewed, the receivers move on by `period` - 1 chunks; the sum is made for a
-     * receiver in the middle of this way */
+    /* the sum of this level is used for `period` - 1 further chunks; so it is made for a receiver in the
+     * middle of these chunks */
     double served = hl_cascade_chunks_on(cascade, receiver, (double)(period - 1) / 2);
     for (int g = 0; g < level->count && due; g++) {
       const cascade_group *group = &level->group[g];
@@ -373,12 +374,12 @@ static void refill_piece(void *data, size_t index, int worker) {
   }
 }
 
-/* The least variance of a blur that is carried out, in squared pixels: a third of the variance of a bilinear
- * look-up. */
+/* The least variance of a blur that is carried out, in squared pixels. It is a third of the variance of a
+ * bilinear look-up; weaker blurs are left out. */
 static const double LEAST_VARIANCE = 0.05;
 
-/* Finds the absorbed light for receivers around omega = receiver, and stores it in cascade->absorbed, in the
- * tiles that are read. Returns false if nothing is in the light's way. */
+/* Finds the light that all groups absorb on the way to receivers around omega = receiver, and stores it in
+ * cascade->absorbed, in the tiles that are read. Returns false if nothing is in the light's way. */
 static bool find_shade(soft_cascade *cascade, double receiver, const cascade_crew *crew) {
   if (cascade->emission != NULL) return hl_cascade_pass_emission(cascade, receiver, crew);
   cascade_level *level = pass_all(cascade, receiver, crew);
@@ -397,7 +398,7 @@ static bool find_shade(soft_cascade *cascade, double receiver, const cascade_cre
   return true;
 }
 
-/* Refills the shadow buffer, which sheets look up, from the absorbed light of all groups. */
+/* Refills the shadow buffer, which the picture looks up, from the absorbed light of all groups. */
 static void refill_buffer(const cascade_crew *crew, const cascade_refilling *of) {
   refill_task task = {of->cascade, of->buffer, crew->functions, of->any};
   hl_pool_run(crew->pool, hl_cascade_row_pieces(&of->cascade->level[0]), refill_piece, &task);
@@ -416,7 +417,7 @@ static void begin_chunk(soft_cascade *cascade) {
     cascade->refilled[tile] = cascade->refilled[tile] & REFILLED_NOW ? REFILLED_BEFORE : 0;
 }
 
-/* Whether the current chunk ends at a sheet. */
+/* Returns whether the current chunk of slabs ends at the given sheet. */
 static bool ends_chunk(const light_shadow *shadow, int sheet) {
   const soft_cascade *cascade = shadow->state;
   double omega = hl_cascade_omega(cascade, hl_sheet_height(shadow->setup.sheets, sheet));
@@ -437,7 +438,7 @@ void hl_cascade_end_chunk(light_shadow *shadow, const occupancy *occupancy, int 
   soft_cascade *cascade = shadow->state;
   double end = start_next(cascade, shadow->setup.sheets, sheet);
   find_reads(cascade, occupancy, shadow, sheet);
-  /* cascade->absorbed is made from the chunks before the chunk that ends here */
+  /* cascade->absorbed is made from all chunks before the chunk that ends at this sheet */
   bool any = find_shade(cascade, end, crew);
   push_chunk(cascade, shadow, cascade->chunk_start, any, crew);
   const cascade_refilling refilling = {cascade, shadow->buffer, sheet, any};
@@ -498,8 +499,8 @@ static void before_slab(light_shadow *shadow, int sheet, attenuate_job *job) {
   job->marks = true;
 }
 
-/* Prepares a tile so that its slab is also composited into the buffer's second planes, and counted in the
- * moments. */
+/* Prepares a tile so that the next slab also attenuates the buffer's planes SHADOW_SECOND, and is counted in
+ * the moments. */
 static void before_tile(const light_shadow *shadow, size_t tile, attenuate_job *job) {
   const soft_cascade *cascade = shadow->state;
   const shadow_buffer *buffer = shadow->buffer;

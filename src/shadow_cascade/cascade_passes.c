@@ -48,7 +48,7 @@ typedef struct add_task {
   cascade_sum sum;
   field_job job;
   field_tile_function *function;
-  bool doubled; /* whether b is coarser than the output; only then may an `a` that is all zeros be left out */
+  bool doubled; /* whether b is coarser than the output; in this case an `a` of zeros may be left out */
 } add_task;
 
 /* Whether a sum is all zeros in the tiles from x0 to x1, both included, of a row of tiles. */
@@ -59,7 +59,7 @@ static bool sum_is_zeros(const add_task *task, int x0, int x1, int y) {
   for (int i = 0; i < 2; i++) {
     if (fields[i] == NULL) continue;
     int scale = levels[i]->scale, own = sum->level->scale, first = x0, last = x1, top = y, bottom = y;
-    if (scale == own && x0 == x1) { /* the usual case is tested without a call of a function */
+    if (scale == own && x0 == x1) { /* the usual case is tested before any other function is called */
       if (!fields[i]->zeros[y * sum->level->tiles_x + x0]) return false;
       continue;
     }
@@ -74,8 +74,8 @@ static bool row_is_zeros(const cascade_level *level, const cascade_field *field,
   return hl_cascade_all_zeros(level, field, piece.first, piece.end - 1, piece.y, piece.y);
 }
 
-/* Computes a sum in a piece of a row of tiles. Most rows are zeros and were zeros before; for such a row the
- * function returns at once. */
+/* Computes a sum in a piece of a row of tiles. In most rows, the inputs are all zeros, and the output was all
+ * zeros before; for such a row the function returns at once. */
 static void add_tiles(const add_task *task, row_piece piece) {
   const cascade_level *level = task->sum.level;
   const cascade_field *a = task->sum.a, *to = task->sum.to;
@@ -202,8 +202,8 @@ void hl_cascade_blur_add(const cascade_crew *crew, const cascade_blurred_sum *su
 
 typedef struct split_task {
   const cascade_level *level;
-  const cascade_field *fields[4]; /* the fields `absorbed` and `thin` of the first output, then of the
-                                   * second */
+  const cascade_field *fields[4]; /* four fields: `absorbed` and `thin` of the first output, then of the
+                                   * second output */
   split_job job;
   split_tile_function *function;
 } split_task;
@@ -247,7 +247,8 @@ void hl_cascade_find_merge_sums(const cascade_merger *merger, cascade_sum sums[M
                       *of_spare[2] = {spare->absorbed, spare->thin};
   const cascade_field *to[2] = {second->absorbed, second->thin}, *old[2] = {first->absorbed, first->thin};
   for (int i = 0; i < 2; i++) {
-    /* the matter that goes to `first` passes through the fields of `second`, which are overwritten at last */
+    /* the matter that goes to `first` passes through the fields of the group `second`, which get their own
+     * matter last */
     const cascade_sum of_kind[3] = {
         {level, of_b[i], of_b[1], level, of_a[i], next, to[i], READ_EVERYWHERE},
         {next, to[i], to[1], next, old[i], next, old[i], READ_EVERYWHERE},

@@ -10,8 +10,8 @@
 enum { ROW_PIECES = 2 };
 typedef struct row_piece {
   int y, first, end;
-  /* numbers of tiles: the row, and the piece's first and last column, of which the last one is not included
-   */
+  /* the row of tiles, and the piece's columns of tiles from the first one to the one before the last
+   * number */
 } row_piece;
 
 static inline size_t hl_cascade_row_pieces(const cascade_level *level) {
@@ -27,20 +27,19 @@ static inline row_piece hl_cascade_row_piece(const cascade_level *level, size_t 
 typedef struct cascade_blur {
   double variance;     /* the variance of the blur where the light is widest, in squared pixels of the level;
                         * columns and rows have fractions of it */
-  double resampled[2]; /* along rows and along columns: the variance of the blur that resampling causes; it is
-                        * subtracted */
+  double resampled[2]; /* the variance, along rows and along columns, by which resampling blurs; it is
+                        * subtracted from `variance` */
 } cascade_blur;
 
-/* A sum of fields: to = a + (1 - thin) b. There are two kinds of sums. In one kind, a and b are both on
- * levels twice as fine as the level of `to`, or on the same level. In the other kind, only b is on a level
- * twice as coarse. */
+/* A sum of fields: to = a + (1 - thin) b. In one kind of sum, a and b are both on the same level as `to`, or
+ * both on a level twice as fine. In the other kind, a is on the level of `to`, and b is on a level twice as
+ * coarse. */
 typedef struct cascade_sum {
   const cascade_level *level_a;  /* the level of the fields a and thin */
-  const cascade_field *a, *thin; /* a: null stands for zeros; it is allowed only where b is coarser than `to`.
-                                  * thin: null stands for zeros */
+  const cascade_field *a, *thin; /* a may be null, which stands for zeros, only if b is coarser than `to`.
+                                  * thin may be null, which stands for zeros */
   const cascade_level *level_b;  /* the level of the field b; null where b is null */
-  const cascade_field *b;        /* null stands for zeros; it is allowed only where a is not coarser than
-                                  * `to` */
+  const cascade_field *b;        /* may be null, which stands for zeros, only if a is not coarser than `to` */
   const cascade_level *level;    /* the level of the field `to` */
   const cascade_field *to;
   int reach; /* `to` is computed in the tiles that are read, and within this many pixels of the buffer around
@@ -53,7 +52,8 @@ typedef struct cascade_blurred_sum {
   const cascade_level *level;
   const cascade_field *from, *a, *thin, *to; /* a and thin may be null, which stands for zeros */
   cascade_blur blur;
-  /* as in cascade_sum: the pixels of the buffer around the tiles that are read in which `to` is computed */
+  /* `to` is computed in the tiles that are read, and within this number of pixels of the buffer around
+   * them */
   int reach;
 } cascade_blurred_sum;
 void hl_cascade_blur_add(const cascade_crew *crew, const cascade_blurred_sum *sum);
@@ -98,8 +98,8 @@ typedef struct cascade_refilling {
   bool any; /* whether any pixel of cascade->absorbed is not zero */
 } cascade_refilling;
 
-/* Bits of cascade->refilled. REFILLED_BEFORE: the tile was refilled at the end of the chunk before.
- * REFILLED_NOW: the tile was refilled at the end of this chunk. */
+/* Bits of cascade->refilled for a tile. REFILLED_BEFORE: the tile was refilled when the current chunk began.
+ * REFILLED_NOW: the tile was refilled at the end of the current chunk. */
 enum { REFILLED_BEFORE = 1, REFILLED_NOW = 2 };
 
 /* The functions that make the passes over a cascade's fields: on the processors, or on a device. */
@@ -113,11 +113,11 @@ typedef struct cascade_works {
   void (*refill)(const cascade_crew *crew, const cascade_refilling *refilling);
 } cascade_works;
 
-/* Finds the boxes of a blur: level->boxes. */
+/* Finds the boxes of a blur for each column and row of tiles, and stores them in level->boxes. */
 void hl_cascade_find_boxes(const cascade_level *level, const cascade_blur *blur, int *reach_x, int *reach_y);
 
-/* How far beyond its output repeated doubling reads, from the scale `from` down to the scale `to`; in pixels
- * of the buffer. */
+/* The number of pixels beyond its output that repeated doubling reads, from the scale `from` down to the
+ * scale `to`; in pixels of the buffer. */
 int hl_cascade_doubling_reach(int from, int to);
 
 /* Whether all tiles of a rectangle are zeros. Tiles outside the level count as zeros. */

@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-/* Writes 1 for each tile that is read. As the summed-area table needs it, the entry of a tile is at the
- * tile's row + 1 and column + 1. */
+/* Writes 1 for each tile that is read. The entry of a tile is one row and one column farther than the tile,
+ * as a summed-area table needs it. */
 static void mark_tiles(cascade_reads *reads, const occupancy *occupancy, const int32_t *needed_until,
                        int first_sheet, int last_sheet) {
   size_t width = (size_t)reads->tiles_x, words = (size_t)occupancy->tile_words;
@@ -35,7 +35,8 @@ void hl_cascade_reads_find(cascade_reads *reads, const occupancy *occupancy, con
   }
 }
 
-/* The band of the tiles that contain any row of the buffer's pixels from `top` to `bottom`, both included. */
+/* Finds the rows of tiles that contain any row of the buffer's pixels from `top` to `bottom`, both
+ * included. */
 static read_band band_of(const cascade_reads *reads, int top, int bottom) {
   int y0 = top < 0 ? 0 : top / TILE, y1 = bottom < reads->tiles_y * TILE ? bottom / TILE + 1 : reads->tiles_y;
   if (y0 > y1) y0 = y1;

@@ -1,5 +1,5 @@
-/* shadow_cascade/cascade_reads.h - where a cascade's buffer is read before it is refilled. This decides which
- * tiles the cascade's passes must compute. */
+/* shadow_cascade/cascade_reads.h - finds where a cascade's buffer is read before it is refilled. This decides
+ * which tiles the cascade's passes must compute. */
 #ifndef HL_SHADOW_CASCADE_CASCADE_READS_H
 #define HL_SHADOW_CASCADE_CASCADE_READS_H
 
@@ -23,24 +23,26 @@ enum { READ_EVERYWHERE = -1 };
 void hl_cascade_reads_find(cascade_reads *reads, const occupancy *occupancy, const int32_t *needed_until,
                            int first_sheet, int last_sheet);
 
-/* The two rows of the summed-area table that lie above and below a band of rows of tiles. */
+/* The two rows of the summed-area table that enclose a band of rows of tiles: one above the band, one below
+ * it. */
 typedef struct read_band {
   const uint32_t *upper, *lower;
 } read_band;
 
-/* Where the buffer is read around a row of tiles of a level, within a given number of pixels of the buffer.
- * scale: edge of the level's pixels. */
+/* The reads around a row of tiles of a level, within a given number of pixels of the buffer. scale: the edge
+ * of the level's pixels, in pixels of the buffer. */
 typedef struct read_row {
   int scale, reach, tiles_x;
-  int around;                     /* the number of tiles within whose distance reading counts */
-  bool any;                       /* whether any tile is read; if not, `blocks` is not set */
+  int around;                     /* the number of tiles to either side in which reads count */
+  bool any;                       /* whether any tile is read; only then is `blocks` set */
   read_band all;                  /* the band around the whole row of tiles */
-  read_band blocks[TILE / BLOCK]; /* one band around each four rows of pixels of the row of tiles */
+  read_band blocks[TILE / BLOCK]; /* four bands, one for each four rows of pixels of the row of tiles */
 } read_row;
 
 read_row hl_cascade_read_row(const cascade_reads *reads, int scale, int y, int reach);
 
-/* Whether anything is read within the reach of tile x. Along rows the reach is rounded up to whole tiles. */
+/* Returns whether anything is read within the reach of the tile x. Along rows the reach is rounded up to
+ * whole tiles. */
 static inline bool hl_cascade_is_read(const read_row *row, const read_band *band, int x) {
   if (row->reach == READ_EVERYWHERE) return true;
   int x0 = x * row->scale - row->around, x1 = (x + 1) * row->scale + row->around;
@@ -49,8 +51,8 @@ static inline bool hl_cascade_is_read(const read_row *row, const read_band *band
   return band->lower[x1] - band->lower[x0] != band->upper[x1] - band->upper[x0];
 }
 
-/* The rows of pixels of tile x that must be computed, in steps of four. Some part of the tile must be
- * read. */
+/* Finds the rows of pixels of the tile x that must be computed, in steps of four rows. At least a part of the
+ * tile must be read. */
 static inline tile_rows hl_cascade_rows_read(const read_row *row, int x) {
   tile_rows rows = ALL_ROWS;
   if (row->reach == READ_EVERYWHERE) return rows;

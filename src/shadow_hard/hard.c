@@ -1,5 +1,5 @@
 /* shadow_hard/hard.c - hard shadows (section 3 of the paper). A light has one shadow buffer, perpendicular to
- * the light's direction. Each slab attenuates the buffer as seen from the light's centre. */
+ * the light's direction. Each slab attenuates the buffer, as seen from the light's centre. */
 #include "shadow/shadow_method.h"
 
 static bool is_read_cubic(const shadow_setup *setup) {

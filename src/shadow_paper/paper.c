@@ -1,12 +1,12 @@
 /* shadow_paper/paper.c - the paper's soft shadows (sections 5.1 and 5.2), unchanged, as the baseline.
  *
- * One buffer is convolved again and again with a box, or with the light's emission image. Eq. (5) gives the
- * width of the box or image for the step from the last convolved sheet to the next one. Convolution adds
- * variances and not widths, so the widths of penumbrae grow with the square root of the distance. This is the
- * error that the other methods avoid.
+ * One shadow buffer goes from sheet to sheet, and is convolved again and again with a box, or with the
+ * light's emission image. Eq. (5) of the paper gives the width of the box or image for the step from the last
+ * convolved sheet to the next one. Convolution adds variances and not widths, so the widths of penumbrae grow
+ * with the square root of the distance. The other methods avoid this error.
  *
- * Each part of a shared picture computes the pixels that it reads itself, and the pixels that the
- * convolutions read to make these pixels. */
+ * In a shared picture, each part computes the pixels of the buffer that its own picture reads, and also the
+ * pixels from which convolutions make these pixels. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -15,26 +15,27 @@
 #include "shadow/shadow_method.h"
 
 typedef struct soft_paper {
-  const light_emission *emission; /* the light's emission image; null: convolutions use boxes */
+  const light_emission *emission; /* the light's emission image; null: convolutions use a box */
   bool parallel;
-  double size;         /* the width L of the virtual light; for parallel light L / Z */
+  double size;         /* the width L of the virtual light (see_light()); for parallel light, L / Z */
   double light_height; /* height of a near light, measured along the sheets' normal */
   double pixel;        /* edge of a buffer's pixel in frame units; for a near light, the edge at distance 1 */
   double last;         /* height of the sheet for which the last convolution was made */
-  double remainder;    /* width, in pixels, that was accumulated but not convolved yet */
-  int reach;           /* number of pixels beyond a tile that blurs may read; also the width of the buffer's
-                        * margin */
-  /* [slabs]; for each slab, the sum of the reaches of all convolutions before it, in pixels; working memory
-   * of widen_needs() */
+  double remainder;    /* the width, in pixels, by which the penumbrae have grown since the last
+                        * convolution */
+  int reach;           /* number of pixels beyond a tile that convolutions may read; the buffer's margin has
+                        * the same width */
+  /* [slabs]; for each slab, the sum of the reaches of all convolutions before the slab, in pixels;
+   * widen_needs() works with it */
   int32_t *reached;
-  int32_t *far; /* [tiles of the buffer]; working memory of widen_needs() */
+  int32_t *far; /* [tiles of the buffer]; widen_needs() works with it */
 } soft_paper;
 
-/* The virtual light is the orthogonal projection of the real one onto a plane parallel to the sheets (section
- * 5.2, (1)), of average size (section 5.2, (3)). A disk of diameter L that is tilted by t becomes an ellipse
- * with the axes L and L cos t. The distance Z from the light is measured along the sheets' normal. So for
- * parallel light L / Z is (L / D) / cos t, where L / D = 2 tan(angle / 2) is measured along the ray
- * (derived). */
+/* Sets the virtual light of section 5.2, (1) and (3). The virtual light is the orthogonal projection of the
+ * real light onto a plane parallel to the sheets, and has the average size of this projection. A disk of
+ * diameter L that is tilted by the angle t becomes an ellipse with the axes L and L cos t. The distance Z
+ * from the light is measured along the sheets' normal. Derived: for parallel light, L / Z is (L / D) / cos t,
+ * where L / D = 2 tan(angle / 2) is measured along the ray. */
 static void see_light(soft_paper *soft, const shadow_setup *setup, const view *view) {
   const light_source *source = setup->source;
   vec3 normal = setup->sheets->normal;
@@ -51,8 +52,9 @@ static void see_light(soft_paper *soft, const shadow_setup *setup, const view *v
 }
 
 /* The width dx, in pixels, by which a penumbra grows from one sheet to another: eq. (5) of the paper, dx = L
- * dZ / Z, where L is the light's width and Z the distance from the light. Seen from the light's centre at
- * distance 1 it is dx / (Z + dZ) = L (1/Z - 1/(Z + dZ)). */
+ * dZ / Z, where L is the light's width, Z the distance of the first sheet from the light, and dZ the distance
+ * between the sheets. Projected to the distance 1 from the light's centre, the width is dx / (Z + dZ) = L
+ * (1/Z - 1/(Z + dZ)). */
 static double width_between(const soft_paper *soft, double from, double to) {
   if (soft->parallel) return soft->size * (to - from) / soft->pixel;
   double near = from - soft->light_height, far = to - soft->light_height;
@@ -75,19 +77,22 @@ static int widest_reach(const soft_paper *soft, const sheet_stack *sheets) {
 typedef struct convolution {
   shadow_buffer *buffer;
   const int32_t *needed_until; /* borrowed from the light_shadow */
-  int sheet, reach;            /* reach: the number of pixels around a tile that the convolution reads */
-  unsigned char *wanted;       /* [tiles]; 1 for tiles that can change */
-  shadow_plane kind;           /* the planes that are convolved now */
-  bool last;                   /* whether these planes are the last ones that are convolved at this sheet */
+  int sheet, reach;            /* reach: the number of pixels around a tile on which the convolved tile
+                                * depends */
+  unsigned char *wanted;       /* [tiles]; 1 for tiles that the convolution can change */
+  shadow_plane kind;           /* the kind of planes that is convolved now */
+  bool last;                   /* whether this kind of planes is the last one that is convolved at this
+                                * sheet */
   const blur_functions *blur;
   blur_box box;
-  /* the next members are used in place of `box` if there is an emission image: */
+  /* the next members are used in place of `box` if the light has an emission image: */
   int count;
   const ptrdiff_t *offset; /* [count]; the offset of each tap, in floats */
   const emission_taps *taps;
 } convolution;
 
-/* The planes of a kind: all channels of the transmittance, or of the light at the outside of surfaces. */
+/* Returns the planes of one kind, one for each channel: the transmittance, or the light at the outside of
+ * surfaces. */
 static float *const *planes_of(const shadow_buffer *buffer, shadow_plane kind) {
   return kind == SHADOW_OUTSIDE ? buffer->outside : buffer->transmittance;
 }
@@ -152,8 +157,8 @@ static void copy_back(void *data, size_t index, int worker) {
   }
 }
 
-/* Convolves the planes of one kind; planes of other kinds stay as they are. last: whether these planes are
- * the last ones that are convolved at the sheet. If so, the lit blocks of tiles are found again. */
+/* Convolves the planes of one kind; planes of other kinds stay as they are. last: whether the sheet has no
+ * further planes to convolve; the lit blocks of the tiles are then found again. */
 static void convolve_planes(const soft_paper *soft, convolution *task, shadow_plane kind, bool last,
                             hl_pool *pool) {
   size_t rows = (size_t)task->buffer->tiles_y;
@@ -185,7 +190,7 @@ static void convolve_with_emission(const soft_paper *soft, convolution *task, in
 
 /* ---- which tiles ---- */
 
-/* Whether light was absorbed in any tile that is at most `around` tiles away from the tile (x, y). */
+/* Returns whether light was absorbed in the tile (x, y), or in a tile that is at most `around` tiles away. */
 static bool any_touched(const shadow_buffer *buffer, int x, int y, int around) {
   int x0 = x < around ? 0 : x - around, y0 = y < around ? 0 : y - around;
   for (int j = y0; j <= y + around && j < buffer->tiles_y; j++)
@@ -210,8 +215,9 @@ static bool any_below_one(const shadow_buffer *buffer, int x, int y, int reach) 
 }
 
 /* Marks the tiles of a row that can change. The marks depend only on pixels within reach, because the parts
- * of a shared picture know only such pixels. So all parts set the same marks. Different marks would change
- * bytes, because the sum of an emission image's weights is not exactly 1. */
+ * of a shared picture know only such pixels. So all parts set the same marks. With different marks, the
+ * parts' pictures would have different bytes, because the sum of an emission image's weights is not exactly
+ * 1. */
 static void find_wanted(void *data, size_t index, int worker) {
   (void)worker;
   const convolution *task = data;
@@ -256,15 +262,16 @@ static void convolve(const soft_paper *soft, const light_shadow *shadow, int she
 }
 
 /* Convolves at a sheet, as section 5.2, (2) of the paper says: the widths dx are added up until the sum
- * exceeds two pixels. The buffer is then convolved by the integer part of the sum, and the rest is carried
- * on. An emission image has one tap per pixel, and along an axis at most as many taps as it has cells; so
- * greater widths take several convolutions. shadow: null: nothing is convolved, only the reach is found.
- * Returns the sum of the reaches of the convolutions at this sheet, in pixels. */
+ * exceeds two pixels. The buffer is then convolved by the integer part of the sum, and the rest is kept for a
+ * later sheet. An emission image has one tap per pixel, and along an axis at most as many taps as it has
+ * cells. So a greater width takes several convolutions. shadow null: nothing is convolved, and only the reach
+ * is found. Returns the sum of the reaches of the convolutions at this sheet, in pixels. */
 static int pass_sheet(soft_paper *soft, const sheet_stack *sheets, int sheet, const light_shadow *shadow) {
   double next = hl_sheet_height(sheets, sheet + 1);
   double width = soft->remainder + width_between(soft, soft->last, next);
   double most = soft->emission == NULL ? 2 * soft->reach
-                                       : EMISSION_SIDE; /* no box reads beyond the buffer's margin */
+                                       : EMISSION_SIDE; /* a convolution with a box reads no pixel beyond the
+                                                         * buffer's margin */
   int reach = 0;
   if (width <= 2) return 0;
   do {
@@ -285,7 +292,7 @@ static void advance_paper(light_shadow *shadow, const occupancy *occupancy, int 
 
 /* ---- what a part needs ---- */
 
-/* Raises a tile's value to the greatest value of four neighbours, each reduced by the edge of a tile. sign: 1
+/* Raises a tile's value to the greatest value of four neighbouring tiles minus the edge of a tile. sign: 1
  * for the neighbours before the tile in the order of rows, -1 for the neighbours after it. */
 static void raise_tile(const shadow_buffer *buffer, int32_t *far, int x, int y, int sign) {
   static const int beside[4][2] = {{-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
@@ -309,8 +316,8 @@ static int32_t greatest_beside(const shadow_buffer *buffer, const int32_t *far, 
   return greatest;
 }
 
-/* The number of the last slab whose entry in `reached` is at most `far`. reached: [slabs]; its numbers never
- * fall. */
+/* Returns the number of the last slab whose entry in `reached` is at most `far`. reached: [slabs]; the
+ * entries are in rising order. */
 static int32_t last_slab(const int32_t *reached, int slabs, int32_t far) {
   int32_t low = 0, high = slabs;
   while (high - low > 1) {
@@ -364,7 +371,8 @@ static void plan_paper(light_shadow *shadow) {
   shadow_plan *plan = &shadow->plan;
   soft_paper *soft = shadow->state;
   plan->cubic = setup->settings->shadow_lookup == HL_LOOKUP_CUBIC;
-  /* the second planes hold a buffer between the two blurs, along rows and along columns */
+  /* the planes SHADOW_SECOND hold the buffer between the convolution along rows and the convolution along
+   * columns */
   plan->second = true;
   hl_plan_soft(shadow, hl_blurred_pixel(setup, plan->cubic));
   hl_shadow_view(setup->source, sheets->normal, &plan->extent, &plan->view);

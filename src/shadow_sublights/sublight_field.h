@@ -1,5 +1,5 @@
-/* shadow_sublights/sublight_field.h - composites a slab, as seen from the light's centre, into the buffer of
- * one sub-light. */
+/* shadow_sublights/sublight_field.h - attenuates the buffer of one sub-light by a slab, which is classified
+ * as seen from the light's centre. */
 #ifndef HL_SHADOW_SUBLIGHTS_SUBLIGHT_FIELD_H
 #define HL_SHADOW_SUBLIGHTS_SUBLIGHT_FIELD_H
 
@@ -7,8 +7,8 @@
 
 /* The number of copies of a slab's transmittance. Copy 0 is not shifted. A copy whose index has bit 0 set is
  * shifted by half a pixel along u; a copy whose index has bit 1 set is shifted by half a pixel along v. A
- * copy is given by its pixel (0,0). Its rows are slab_stride apart, and the margin around its pixels holds
- * ones. */
+ * copy is given by the address of its pixel (0,0). Rows of a copy are slab_stride apart, and the margin
+ * around the copy's pixels holds ones. */
 enum { SLAB_COPIES = 4 };
 
 typedef struct half_pixel_job {
@@ -28,7 +28,7 @@ typedef slab_rows half_pixel_tile_function(const half_pixel_job *job, int tile_x
 
 typedef struct sublight_job {
   const float *slab[HL_CHANNELS][SLAB_COPIES];
-  /* the light at the outside of surfaces that is left after the slab, where full light comes to the slab */
+  /* the light at the outside of surfaces behind the slab, in the case that full light comes to the slab */
   const float *slab_outside[HL_CHANNELS][SLAB_COPIES];
   size_t slab_stride;
   /* [slab_tiles_y][slab_tiles_x]; for each tile of the slab, the rows in which some pixel is below 1 */
@@ -36,8 +36,8 @@ typedef struct sublight_job {
   int slab_tiles_x, slab_tiles_y;
   float slab_width, slab_height; /* size of the slab's image in pixels; around the image are up to 32
                                   * pixels of ones */
-  float scale[2], shift[2];      /* map a continuous pixel (u, v) of the sub-light to the slab: scale *
-                                  * pixel + shift */
+  float scale[2], shift[2];      /* map a position in the sub-light's buffer, in pixels (u, v), to a position
+                                  * in the slab: scale * position + shift */
   int half[2];                   /* `shift` in half pixels, rounded to whole numbers */
   sublight_pixel *transmittance[HL_CHANNELS]; /* pixel (0,0) of the sub-light's buffer; rows are `stride`
                                                * apart */
@@ -46,9 +46,9 @@ typedef struct sublight_job {
   size_t stride;                              /* number of pixels from row to row; a row has a margin of
                                                * one tile on either side */
   int tiles_x;
-  /* a number between 0 and 1 that is added to a pixel's new value before the value is truncated to a whole
-   * number. The number varies from slab to slab. So haze attenuates light by the right amount on average,
-   * even if each slab of it absorbs less than 1 / SUBLIGHT_ONE */
+  /* a number between 0 and 1 that is added to a pixel's new value, before the value is truncated to a whole
+   * number. It changes from slab to slab. So haze attenuates light by the right amount on average, even if
+   * each single slab absorbs less than 1 / SUBLIGHT_ONE of the light */
   float carry;
   int channels;
 } sublight_job;
@@ -64,14 +64,15 @@ typedef int sublight_tile_function(const sublight_job *job, int tile_x, int tile
 typedef void sublight_row_function(const sublight_job *job, int tile_y, int first, int last,
                                    const uint16_t *lit, unsigned char *touched);
 
-/* The type of the function that returns which of the blocks `lit` of a tile still have light, one bit
- * each. */
+/* The type of the function that finds the blocks of a tile that still have light. lit: the blocks that had
+ * light before. Blocks have one bit each. */
 typedef uint32_t sublight_lit_function(const sublight_job *job, int tile_x, int tile_y, uint32_t lit);
 
-/* The functions of this room that are compiled for each instruction set. */
+/* The functions of shadow_sublights of which each instruction set has a compiled version. */
 typedef struct sublight_functions {
   sublight_tile_function *composite;
-  sublight_row_function *composite_row; /* used where the slab's pixels are only shifted, not scaled */
+  sublight_row_function *composite_row; /* the function that is used if the slab's pixels are only shifted,
+                                         * and not scaled */
   sublight_lit_function *lit;
   half_pixel_tile_function *half_pixel;
 } sublight_functions;

@@ -1,11 +1,12 @@
 /* shadow_sublights/sublight_lanes.h - multiplies one tile of one sub-light's buffer by the scaled and shifted
  * slab, a row of sixteen pixels at a time.
  *
- * Each pixel of the sub-light is multiplied by the slab's transmittance at the nearest half pixel. Values at
- * half pixels come from cubic convolution with a = -1 (Keys, "Cubic convolution interpolation for digital
- * image processing", 1981), with weights -1/8, 5/8, 5/8, -1/8. These weights sharpen the slab by about as
- * much as the bilinear look-up of the buffer blurs it: the weights have the variance -1/4 at half pixels and
- * 0 at whole pixels, and the look-up has the variance 1/6 on average. */
+ * Each pixel of the sub-light is multiplied by the slab's transmittance at the nearest half pixel, a pixel's
+ * middle or a place half-way between two middles. Values at half pixels come from cubic convolution with a =
+ * -1 (Keys, "Cubic convolution interpolation for digital image processing", 1981), with weights -1/8, 5/8,
+ * 5/8, -1/8. These weights sharpen the slab by about as much as the bilinear look-up of the buffer blurs it.
+ * The weights have the variance -1/4 half-way between middles, and at the middles there is no weighting. The
+ * look-up has the variance 1/6 on average. */
 #ifndef HL_SHADOW_SUBLIGHTS_SUBLIGHT_LANES_H
 #define HL_SHADOW_SUBLIGHTS_SUBLIGHT_LANES_H
 
@@ -16,7 +17,8 @@
 
 enum { EVERY_ROW = (1 << TILE) - 1 };
 
-/* The value in the middle between b and c, clamped to [0, 1]. a and d are the values before b and after c. */
+/* Interpolates the value half-way between b and c from four successive values a, b, c and d. The result is
+ * clamped to [0, 1]. */
 LANES_INLINE lanes middle_of_four(lanes a, lanes b, lanes c, lanes d) {
   return lanes_clamp(lanes_add_scaled((a + d) * -0.125f, b + c, 0.625f), 0, 1);
 }
@@ -28,9 +30,9 @@ LANES_INLINE lanes middle_along(const float *at, ptrdiff_t step) {
 
 LANES_INLINE slab_rows any_below_one(lanes x) { return lanes_bits(x < 1.0f) != 0; }
 
-/* Finds which rows have a pixel below 1: of a tile's rows and the first row below the tile. For each row, the
- * first pixel to the right of the tile counts, too. Pixels farther away have negative weights for values
- * between the pixels of the tile, so they cannot bring such a value below 1. */
+/* Finds which rows of a tile, and of the first row below the tile, have a pixel below 1. The first pixel to
+ * the right of the tile counts, too. Pixels farther away need not be tested: for values between pixels of the
+ * tile they have negative weights, so they cannot bring such a value below 1. */
 LANES_INLINE uint32_t rows_below_one(const float *corner, ptrdiff_t stride) {
   uint32_t rows = 0;
   for (int row = 0; row <= TILE; row++) {
@@ -63,8 +65,8 @@ static slab_rows half_pixel_tile(const half_pixel_job *job, int tile_x, int tile
 
 static const float LANE_INDICES[LANES] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
-/* Rounds sixteen coordinates scale * i + start, i from 0 to 15, to half pixels. Before that they are clamped
- * to [-2, size + 1]. The results count half pixels. */
+/* Rounds sixteen coordinates scale * i + start, with i from 0 to 15, to half pixels. The coordinates are
+ * first clamped to [-2, size + 1]. The results count half pixels. */
 LANES_INLINE lanes_int nearest_halves(float scale, float start, float size) {
   return lanes_floor(lanes_clamp(lanes_load(LANE_INDICES) * scale + start, -2.0f, size + 1.0f) * 2.0f + 0.5f);
 }
@@ -72,8 +74,9 @@ LANES_INLINE lanes_int nearest_halves(float scale, float start, float size) {
 enum { SUBLIGHT_TAPS = 8 };
 
 /* How sixteen pixels in a row of a sub-light read a row of the slab's copies. If the slab's pixels had the
- * same size as the sub-light's, pixel i would read 2 i half pixels after pixel 0. The slab's pixels are a
- * little larger or smaller. So the half pixel that pixel i reads differs from 2 i by `first` to first + count
+ * same size as the sub-light's pixels, pixel i would read the half pixel that is 2 i after the half pixel of
+ * pixel 0. The slab's pixels are a little larger or smaller. So the half pixel that pixel i reads differs
+ * from 2 i by `first` to first + count
  * - 1. weight[k] is 1 for pixels with the difference first + k, else 0. */
 typedef struct row_taps {
   /* count: the number of different half pixels that pixels read, counted from `first`; 0: there are too many
@@ -122,8 +125,8 @@ LANES_INLINE void tiles_of_row(const sublight_job *job, const row_taps *taps, in
   if (*last >= job->slab_tiles_x) *last = job->slab_tiles_x - 1;
 }
 
-/* The rows that have a pixel below 1 in one of two copies of the slab. between: 1 for the two copies that are
- * shifted along v, 0 for the two copies that are not. */
+/* Finds the rows that have a pixel below 1 in either of two copies of the slab. between: 1: the two copies
+ * that are shifted along v; 0: the other two copies. */
 LANES_INLINE uint32_t rows_of_either(slab_rows rows, int between) {
   rows >>= 2 * TILE * between;
   return (uint32_t)(rows | rows >> TILE) & EVERY_ROW;
@@ -158,8 +161,8 @@ LANES_INLINE uint32_t blocks_of_columns(uint32_t columns) {
   return (any & 1) | (any >> 3 & 2) | (any >> 6 & 4) | (any >> 9 & 8);
 }
 
-/* The columns of pixels with light in a row of four blocks, one bit each. at: the offset of the row's first
- * pixel. */
+/* Finds the columns of pixels that have light in a row of four blocks; one bit each. at: the offset of the
+ * row's first pixel. */
 LANES_INLINE uint32_t lit_columns(const sublight_job *job, size_t at) {
   uint32_t columns = 0;
   for (int row = 0; row < BLOCK; row++)
@@ -189,13 +192,13 @@ LANES_INLINE lanes composite_sublight(const sublight_job *job, int channel, ptrd
   return light;
 }
 
-/* The number k (attenuate.h) is found from the light that a slab absorbs. This is the least absorbed fraction
- * for which it is found: below it, rounding hides which part of the light surfaces keep. */
+/* The least absorbed fraction of light for which the number k of attenuate.h is found from the light that a
+ * slab absorbs. Below this fraction, rounding hides which part of the light surfaces keep. */
 static const float LEAST_TAKEN = 1e-5f;
 
 /* Composites the slab into the light at the outside of surfaces. light: the sub-light's transmittance before
- * the slab. Derived: with k = k' (attenuate.h), Y becomes T t + k (Y - T t). Where full light comes to the
- * slab, Y becomes t + k (1 - t). This number is slab_outside, so k follows from it. */
+ * the slab. Derived: with T, Y, t and k = k' of attenuate.h, Y becomes T t + k (Y - T t). If full light comes
+ * to the slab, Y becomes t + k (1 - t). This number is stored as slab_outside, so k follows from it. */
 LANES_INLINE void composite_outside(const sublight_job *job, int channel, ptrdiff_t offset, lanes light,
                                     lanes slab_transmittance, lanes slab_outside) {
   sublight_pixel *at = job->outside[channel] + offset;
@@ -227,7 +230,7 @@ static int sublight_tile(const sublight_job *job, int tile_x, int tile_y) {
       ptrdiff_t at = (ptrdiff_t)(corner + (size_t)row * job->stride);
       lanes slab_transmittance = slab_row(&taps, rows);
       if (lanes_bits(slab_transmittance < 1.0f) == 0)
-        continue; /* all factors are 1, so the sub-light's pixels need not be loaded */
+        continue; /* all factors are 1, so the sub-light's pixels do not change */
       lanes light = composite_sublight(job, c, at, slab_transmittance);
       touched = 1;
       if (job->outside[c] == NULL) continue;
@@ -242,11 +245,11 @@ static int sublight_tile(const sublight_job *job, int tile_x, int tile_y) {
 /* ---- a slab that is only shifted ----
  *
  * Multiplies a row of tiles of one sub-light's buffer by a slab that is only shifted, not scaled: for a
- * parallel light, or a sub-light as high above the sheets as the light's centre. It goes through the slab's
- * tiles, for which the rows with pixels below 1 are known. Each such row multiplies sixteen of the
- * sub-light's pixels, wherever these begin. */
+ * parallel light, or a sub-light as high above the sheets as the light's centre. The function goes through
+ * the slab's tiles. In each tile, the rows with pixels below 1 are known. Each such row multiplies the
+ * sixteen pixels of the sub-light that lie under it. */
 
-/* The number of the slab's tiles that are prefetched ahead of the tile in use. */
+/* The number of tiles of the slab by which memory is prefetched ahead of the current tile. */
 enum { SHIFTED_TILES = 16 };
 
 /* The index of the copy of the slab from which a job reads if the slab is only shifted. */
@@ -254,8 +257,8 @@ LANES_INLINE int copy_of_shift(const sublight_job *job) {
   return (job->half[0] & 1) + 2 * (job->half[1] & 1);
 }
 
-/* Finds which of sixteen rows of the slab have a pixel below 1 in the columns of tile tile_x: one bit each.
- * top: the first of the rows. copy: the copy of the slab that is read. */
+/* Finds which of sixteen rows of the slab have a pixel below 1 in the columns of the tile with the number
+ * tile_x; one bit each. top: the first of the rows. copy: the copy of the slab that is read. */
 LANES_INLINE uint32_t rows_from(const sublight_job *job, int tile_x, int top, int copy) {
   const slab_rows *tile = job->rows + tile_x;
   int y = top >> 4, down = top & (TILE - 1);
@@ -270,8 +273,9 @@ LANES_INLINE int is_dark_tile(const sublight_job *job, const uint16_t *lit, int 
   return tile_x < 0 || tile_x >= job->tiles_x || lit[tile_x] == 0;
 }
 
-/* The offset, from the sub-light's first pixel, of the pixel in the first row of the sub-light's row of tiles
- * tile_y that lies under the first column of the slab's tile tile_x. */
+/* The offset, from the sub-light's first pixel, of the sub-light's pixel that lies under a corner of the
+ * slab's tile: in the first row of the sub-light's row of tiles tile_y, under the first column of the tile
+ * tile_x. */
 LANES_INLINE ptrdiff_t pixels_under(const sublight_job *job, int tile_x, int tile_y) {
   return (ptrdiff_t)(tile_y * TILE) * (ptrdiff_t)job->stride + tile_x * TILE - (job->half[0] >> 1);
 }

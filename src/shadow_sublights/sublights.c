@@ -1,4 +1,5 @@
-/* shadow_sublights/sublights.c - the sub-lights of a light: their buffers, and the compositing of slabs. */
+/* shadow_sublights/sublights.c - manages the buffers of a light's sub-lights, and attenuates these buffers by
+ * each slab. */
 #include "shadow_sublights/sublights.h"
 
 #include <string.h>
@@ -12,7 +13,8 @@ static const double GREATEST_BYTES = 4294967296.0;
 
 enum { MOVED_COPIES = SLAB_COPIES - 1 };
 
-/* The view of sub-light i. Raises *tiles_x and *tiles_y to at least the view's numbers of tiles. */
+/* Makes the view of sub-light i. Raises *tiles_x and *tiles_y to the view's numbers of tiles if they are
+ * less. */
 static void view_of_sublight(const light_shadow *shadow, int i, view *view, int *tiles_x, int *tiles_y) {
   const shadow_setup *setup = &shadow->setup;
   const light_source *source = setup->source;
@@ -33,7 +35,7 @@ static void view_of_sublight(const light_shadow *shadow, int i, view *view, int 
  * edges. After the last row of a buffer there are ROWS_BEYOND further rows, which look-ups may read. */
 enum { ROWS_BEYOND = 7 };
 static void lay_out_planes(sublights *sublights) {
-  /* rows of pixels fill whole lines of the cache */
+  /* a row of pixels fills whole lines of the cache */
   sublights->stride = (size_t)(sublights->tiles_x + 3) / 2 * 2 * TILE;
   sublights->plane = ((size_t)sublights->tiles_y * TILE + ROWS_BEYOND) * sublights->stride;
 }
@@ -86,8 +88,8 @@ static hl_status weigh_sublights(hl_context *context, sublights *sublights, cons
   return HL_OK;
 }
 
-/* A pointer to pixel (0,0) of one channel of a sub-light: of its transmittance, or of its light at the
- * outside of surfaces. */
+/* Returns a pointer to pixel (0,0) of one channel of a sub-light. kind: the transmittance, or the light at
+ * the outside of surfaces. */
 static sublight_pixel *sublight_plane(const sublights *all, const sublight *one, shadow_plane kind,
                                       int channel) {
   size_t number = (size_t)(kind == SHADOW_OUTSIDE ? all->channels : 0) + (size_t)channel;
@@ -130,8 +132,9 @@ static float *slab_copy(const sublights *sublights, const shadow_buffer *slab, s
   return sublights->moved + (number * MOVED_COPIES + (size_t)copy - 1) * slab->plane + slab->origin;
 }
 
-/* Finds, in the slab's pixels, the point at which the sub-light's ray through its pixel (at, at) reaches a
- * height. Returns false if this point lies behind the sub-light or behind the light's centre. */
+/* Finds the point, in the slab's pixels, at which a ray of the sub-light reaches a height. The ray goes
+ * through the sub-light's pixel (at, at). Returns false if this point lies behind the sub-light or behind the
+ * light's centre. */
 static bool slab_position(const sublight *sublight, const view *slab, vec3 normal, double height, double at,
                           double uv[2]) {
   vec3 start, way;
@@ -141,18 +144,20 @@ static bool slab_position(const sublight *sublight, const view *slab, vec3 norma
   return hl_view_project(slab, vec3_add(start, vec3_scale(way, distance)), uv);
 }
 
-/* The carry for the current slab (sublight_field.h): the fractional part of a multiple of the golden ratio.
- * The numbers of successive slabs are spread evenly between 0 and 1, however many slabs there are. */
+/* Finds the number that is added before values are truncated in the current slab (`carry` of
+ * sublight_field.h): the fractional part of a multiple of the golden ratio. So the numbers of any successive
+ * slabs are spread evenly between 0 and 1. */
 static float carry_of_slab(const sublights *sublights, const sublight *sublight) {
   double turn = sublights->slabs * 0.6180339887498949 +
                 (double)(sublight - sublights->sublight) / sublights->count;
-  return (float)(1.0 / 128 + (turn - floor(turn)) * 63 / 64); /* the carry stays so far from 0 and 1 that a
-                                                               * whole number plus the carry is always
-                                                               * truncated to this whole number */
+  /* The carry keeps a distance from 0 and 1; so a whole number plus the carry is always truncated to the same
+   * whole number. */
+  return (float)(1.0 / 128 + (turn - floor(turn)) * 63 / 64);
 }
 
-/* The greatest shift of the slab, in pixels, for which the functions are used that only shift it. Grazing
- * light may shift the slab farther. Then the general functions are used, which clamp positions. */
+/* The greatest shift of the slab, in pixels, for which the functions are used that shift the slab without
+ * scaling it. Grazing light may shift the slab farther. Then the general functions are used, which clamp
+ * positions. */
 static const double FARTHEST_SHIFT = 1 << 20;
 
 /* Prepares a sub-light's job for a slab. Both views are parallel to the sheets and have the same axes, so the
@@ -198,15 +203,16 @@ typedef struct sublight_task {
   sublights *sublights;
   shadow_buffer *slab;
   const sublight_functions *functions;
-  int x0, x1, y0, y1;          /* bounds of those tiles of the slab in which any pixel is below 1 */
+  int x0, x1, y0, y1;          /* the first and the last column, and the first and the last row, of the slab's
+                                * tiles in which some pixel is below 1 */
   bool ends_run;               /* whether the slab is the last one of its run; if so, the lit blocks are found
                                 * after it */
   const int32_t *needed_until; /* borrowed: sublights_until of the light_shadow */
-  int slab_after;              /* number of the next slab, in the numbering of needed_until */
+  int slab_after;              /* the number of the next slab, counted as in needed_until */
 } sublight_task;
 
-/* Finds, along one axis, the first and the last tile of the slab in which the pixels x to x + TILE of a
- * sub-light lie after scaling and shifting. One more pixel on either side counts, too. */
+/* Finds, along one axis, the first and the last tile of the slab that lie under the pixels x to x + TILE of a
+ * sub-light, after scaling and shifting. One more pixel of the slab on either side counts, too. */
 static void tiles_under(double x, double scale, double shift, int tiles, int *first, int *last) {
   double low = (scale * x + shift - 1) / TILE, high = (scale * (x + TILE) + shift + 1) / TILE;
   *first = low < 0 ? 0 : low > tiles ? tiles : (int)low;
@@ -228,7 +234,7 @@ static bool any_present(const sublight_job *job, int x0, int x1, int y0, int y1)
   return false;
 }
 
-/* Finds bounds of those tiles of the slab in which any pixel is below 1. If there are no such tiles, x1
+/* Finds the rectangle around the slab's tiles in which some pixel is below 1. If there are no such tiles, x1
  * becomes less than 0. */
 static void bound_present(sublight_task *task) {
   const shadow_buffer *slab = task->slab;
@@ -302,8 +308,8 @@ static void composite_row(const sublight_task *task, sublight *sublight, int y) 
   }
 }
 
-/* Marks tiles as dark that this part of a shared picture no longer needs. Dark tiles are skipped; so blocks
- * of the slab are skipped, too, if no sub-light's tile reads them any more. */
+/* Marks those tiles as dark that this part of a shared picture does not need any more. Dark tiles are
+ * skipped. Blocks of the slab are then skipped, too, if only dark tiles of sub-lights would read them. */
 static void forget_tiles(const sublight_task *task, sublight *sublight, int y) {
   const sublights *all = task->sublights;
   const size_t tiles_x = (size_t)all->tiles_x, row = (size_t)y * tiles_x;
@@ -331,7 +337,7 @@ static void advance_row(void *data, size_t index, int worker) {
   const sublights *all = task->sublights;
   sublight *sublight =
       &all->sublight[index % (size_t)all->count]; /* consecutive tasks are all sub-lights for one row of
-                                                   * tiles, then all sub-lights for the next row; so the
+                                                   * tiles, then all sub-lights for the next row. So the
                                                    * slab's pixels for a row stay in the cache */
   int y = (int)(index / (size_t)all->count);
   if (task->ends_run && task->needed_until != NULL) forget_tiles(task, sublight, y);
@@ -342,7 +348,8 @@ static void advance_row(void *data, size_t index, int worker) {
 
 /* ---- the slab ---- */
 
-/* Fills some rows of a tile with ones. rows: one bit for each of the tile's sixteen rows that is filled. */
+/* Fills rows of a tile with ones. rows: has one bit for each of the tile's sixteen rows; rows whose bit is 1
+ * are filled. */
 static void fill_ones(float *pixels, size_t stride, slab_rows of_copies) {
   for (uint32_t rows = of_copies & ((1u << TILE) - 1); rows != 0; rows &= rows - 1)
     for (size_t i = 0, row = (size_t)__builtin_ctz(rows); i < TILE; i++) pixels[row * stride + i] = 1;
@@ -369,7 +376,7 @@ static void move_row(void *data, size_t index, int worker) {
   }
 }
 
-/* Fills a row of the slab's tiles with ones again, for the next slab. */
+/* Fills a row of the slab's tiles with ones again, so that the next slab can be written into them. */
 static void clear_row(void *data, size_t index, int worker) {
   (void)worker;
   const sublight_task *task = data;
@@ -399,7 +406,8 @@ static sublight_map map_of_job(const sublight_job *job) {
                         {(double)job->shift[0], (double)job->shift[1]}};
 }
 
-/* Sets the sub-lights' maps for the first and the last slab of the next run. height: where the run begins. */
+/* Sets the sub-lights' maps for the first and the last slab of the next run. height: the height at which the
+ * run begins. */
 static void map_run(sublights *sublights, const shadow_buffer *slab, vec3 normal, double height,
                     double spacing) {
   for (int i = 0; i < sublights->count; i++) {
@@ -450,8 +458,8 @@ typedef struct blocks_under {
   int first[TILE / BLOCK], last[TILE / BLOCK];
 } blocks_under;
 
-/* The number of the segment that holds a position, where each segment is `length` pixels long; -1 before the
- * first segment, `count` after the last one. */
+/* Divides a line of pixels into `count` segments of `length` pixels. Returns the number of the segment that
+ * holds a position; -1 before the first segment, `count` after the last one. */
 static int segment_of(double position, int length, int count) {
   return position < 0 ? -1 : position >= (double)length * count ? count : (int)position / length;
 }
@@ -504,8 +512,8 @@ static uint32_t lit_by_blocks(const sublights *all, const sublight *sublight, co
   return lit;
 }
 
-/* The blocks of a slab's tile that light of one sub-light reaches. Most tiles are lit everywhere or nowhere,
- * so these cases are tested first. */
+/* Finds the blocks of a slab's tile that the light of one sub-light reaches. Most tiles are lit everywhere or
+ * nowhere, so these two cases are tested first. */
 static uint32_t lit_by_sublight(const sublights *all, const sublight *sublight, int tile_x, int tile_y) {
   blocks_under columns = find_under(sublight, 0, tile_x, all->tiles_x),
                rows = find_under(sublight, 1, tile_y, all->tiles_y);

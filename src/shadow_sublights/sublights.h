@@ -1,11 +1,11 @@
 /* shadow_sublights/sublights.h - soft shadows as the mean of many sharp ones (beyond the paper).
  *
- * M x M sub-lights stand for the light; each is a point (or a direction) with a buffer of its own, parallel
- * to the sheets. A slab is classified once, in the view of the light's centre. Seen from a sub-light, the
- * slab's image is the same image, scaled and shifted. So only the compositing is repeated for each sub-light:
- * its buffer is multiplied by the slab's transmittance at the nearest half pixel. A buffer's pixels have 16
- * bits. The buffers are never resampled. A sample takes the mean over all buffers, each through its own
- * map. */
+ * M x M sub-lights stand for the light. Each sub-light is a point, or a direction, and has a shadow buffer of
+ * its own, parallel to the sheets. A slab is classified once, in the view of the light's centre. Seen from a
+ * sub-light, the slab's image is the same image, only scaled and shifted. So the slab is not classified again
+ * for a sub-light. The sub-light's buffer is multiplied by the slab's transmittance at the nearest half
+ * pixel. A buffer's pixels have 16 bits. Each buffer is looked up at a sample through a map of its own. A
+ * sample takes the mean over all buffers. */
 #ifndef HL_SHADOW_SUBLIGHTS_SUBLIGHTS_H
 #define HL_SHADOW_SUBLIGHTS_SUBLIGHTS_H
 
@@ -14,7 +14,8 @@
 
 enum { SUBLIGHT_REACH = 31 /* number of pixels beyond a tile of the slab's buffer that may be read */ };
 
-/* Maps pixels of the slab to pixels of a sub-light, along u and v: scale * (pixel - shift). */
+/* Maps positions on the slab, in pixels along u and v, to positions in a sub-light's buffer: scale *
+ * (position - shift). */
 typedef struct sublight_map {
   double scale[2], shift[2];
 } sublight_map;
@@ -28,16 +29,16 @@ typedef struct sublight {
   /* [tiles]; the blocks that had light at the end of the last run of slabs, one bit each; a part of
    * `flags` */
   uint16_t *lit;
-  unsigned char *touched; /* [tiles]; 1 where slabs have absorbed light since the lit blocks were found; a
-                           * part of `marks` */
-  sublight_job job;       /* how the current slab is composited into the sub-light's buffer */
+  unsigned char *touched; /* [tiles]; 1 for tiles in which slabs have absorbed light since the lit blocks were
+                           * found last; a part of `marks` */
+  sublight_job job;       /* the job that attenuates the sub-light's buffer by the current slab */
   bool reaches;           /* whether the slab lies beyond the sub-light, so that the sub-light's rays reach
                            * the slab */
   bool shifted;           /* whether the scale of `job` is 1, so that the slab is only shifted */
-  sublight_map near, far; /* near: the sub-light's map for the first slab of the next run; far: its map for
-                           * the last slab of this run */
-  bool comes; /* whether the sub-light lies within the next run: its rays reach the last slab of the run, but
-               * not the first slab */
+  sublight_map near, far; /* near: the sub-light's map for the first slab of the next run of slabs; far: its
+                           * map for the last slab of the same run */
+  bool comes; /* whether the sub-light lies within the next run of slabs: its rays reach the last slab of the
+               * run, but not the first slab */
 } sublight;
 
 typedef struct sublights {
@@ -54,8 +55,8 @@ typedef struct sublights {
   float *moved; /* [kinds][channels][SLAB_COPIES - 1] planes: the slab's copies shifted by half a pixel */
   size_t moved_floats;
   slab_rows *rows; /* [tiles of the slab]; the rows in which some pixel is below 1 */
-  uint32_t *found; /* [tiles of the slab]; the run of slabs for which the tile's lit blocks were found last;
-                    * 0: they were never found */
+  uint32_t *found; /* [tiles of the slab]; for each tile, the run of slabs for which the tile's lit blocks
+                    * were found last; 0: they were never found */
 } sublights;
 
 /* Sets slab->tile_lit of a tile: the blocks of the next slab that light of some sub-light still reaches. Only
