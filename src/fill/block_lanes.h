@@ -1,5 +1,5 @@
-/* fill/block_lanes.h - the points of a volume at which the rays of a 4x4 block of pixels meet a sheet, and
- * whether the cells around these points may show something. */
+/* fill/block_lanes.h - finds the points of a volume at which the rays of a 4x4 block of pixels meet a sheet,
+ * and whether the cells around these points may show something. */
 #ifndef HL_FILL_BLOCK_LANES_H
 #define HL_FILL_BLOCK_LANES_H
 
@@ -16,13 +16,12 @@ typedef struct block_points {
    * along the axis */
   lanes3 position;
   lanes_int cell[3]; /* the cells that hold the points: floor(position), from -1 to n-1 */
-  int32_t low[3];    /* the least coordinates of `cell` along each axis; set only where lowest_of_block()
-                      * is called */
+  int32_t low[3];    /* the least coordinates of `cell` along each axis; lowest_of_block() sets them */
   lanes_int inside;  /* lanes whose point lies in the grid, or at most GRID_MARGIN outside the grid */
 } block_points;
 
-/* The lanes whose density is above all densities that come before the first visible one in the classifier's
- * table. Only these lanes may be visible. */
+/* Finds the lanes that may be visible. Their density is above all densities that stand before the first
+ * visible one in the classifier's table. */
 LANES_INLINE lanes_int may_show(const fill_source *source, lanes density) {
   const classifier *classifier = source->classifier;
   if (classifier == NULL) return lanes_set_int(-1);
@@ -38,8 +37,8 @@ LANES_INLINE block_points find_points(const fill_source *source, int x, int y) {
   for (int a = 0; a < 3; a++) {
     float count = (float)grid->dimension[a];
     points.inside &= (axis[a] > -0.5f - GRID_MARGIN) & (axis[a] < count - 0.5f + GRID_MARGIN);
-    /* outside the grid, the values at the border continue smoothly; where a coordinate is below -1 or above
-     * n, the density is constant */
+    /* outside the grid, the values at the border continue smoothly; beyond -1 or n, the density is
+     * constant */
     axis[a] = lanes_clamp(axis[a], -1.0f, count * (1 - 1e-6f));
     points.cell[a] = lanes_floor(axis[a]);
   }
@@ -48,7 +47,7 @@ LANES_INLINE block_points find_points(const fill_source *source, int x, int y) {
 }
 
 /* Finds the least cell of a block along each axis. Along a row or a column of pixels, cells only rise or only
- * fall, so that the least cell is at a corner, up to rounding. */
+ * fall. So the least cell is at a corner of the block, up to rounding. */
 LANES_INLINE void lowest_of_block(const lanes_int cell[3], int32_t low[3]) {
 #if defined(__AVX512BW__)
   const __m512i of_two = _mm512_set_epi32(0, 0, 0, 0, 15, 12, 3, 0, 31, 28, 19, 16, 15, 12, 3, 0);
@@ -75,9 +74,9 @@ LANES_INLINE void lowest_of_block(const lanes_int cell[3], int32_t low[3]) {
 #endif
 }
 
-/* Whether the taps of all pixels of a tile lie in the grid, with a margin for rounding. The area of the sheet
- * that a tile covers has straight edges. So all of the tile's points lie between the points at its corners,
- * unless some points lie behind the view's origin. */
+/* Returns whether the taps (the voxels that a sample sums) of all pixels of a tile lie in the grid, with a
+ * margin for rounding. The area of the sheet that a tile covers has straight edges. So all of the tile's
+ * points lie between the points at its corners, unless some points lie behind the view's origin. */
 LANES_INLINE int tile_is_inside(const fill_source *source, int x, int y) {
   const sheet_rays *rays = &source->rays;
   const float spare = 1.0f / 64;
@@ -109,8 +108,8 @@ LANES_INLINE lanes_int bit_of_cell(lanes_int x, lanes_int y, lanes_int z) {
   return lanes_set_int(1) << ((x & 3) | (y & 3) << 2 | (z & 1) << 4);
 }
 
-/* Whether the bit of any cell is set, wherever the bricks of the cells lie. It loads one word of bits for
- * each cell. */
+/* Returns whether any of the cells may show something, in whatever bricks they lie. One word of bits is
+ * loaded for each cell. */
 static __attribute__((noinline)) int cells_visible_anywhere(const grid *grid, const lanes_int cell[3]) {
   lanes_int x = cell[0] + 1, y = cell[1] + 1, z = cell[2] + 1;
   lanes_int brick = ((z >> 2) * grid->brick_count[1] + (y >> 2)) * grid->brick_count[0] + (x >> 2);
@@ -119,7 +118,7 @@ static __attribute__((noinline)) int cells_visible_anywhere(const grid *grid, co
 }
 
 #if defined(__AVX2__) && !defined(__AVX512F__)
-/* Whether the bit of any of sixteen cells is set. All of these cells lie in the 2x2x2 bricks from
+/* Returns whether any of sixteen cells may show something. All of these cells lie in the 2x2x2 bricks from
  * `first_brick` on. within: the cells' coordinates counted from the first cell of these bricks, a byte each.
  * The bits of two neighbouring bricks along x are sixteen bytes; each byte holds the bits of four cells along
  * x and two along y. A byte shuffle looks up, for each cell, the byte that holds its bit. */
@@ -136,8 +135,8 @@ LANES_INLINE int cells_visible_in_bricks(const grid *grid, size_t first_brick, c
   for (int i = 0; i < 4; i++)
     found[i] = _mm_shuffle_epi8(_mm_loadu_si128((const __m128i *)(const void *)(bits + bricks_on[i])), byte);
   __m128i below = _mm_slli_epi16(y, 5),
-          behind = _mm_slli_epi16(z, 5); /* the highest bits of their bytes are set where a cell lies in the
-                                          * second brick along y, or along z */
+          behind = _mm_slli_epi16(z, 5); /* a byte's highest bit is set if its cell lies in the second brick
+                                          * along y, or along z */
   __m128i word = _mm_blendv_epi8(_mm_blendv_epi8(found[0], found[1], below),
                                  _mm_blendv_epi8(found[2], found[3], below), behind);
   const __m128i bit_of = _mm_setr_epi8(1, 2, 4, 8, 16, 32, 64, (char)128, 0, 0, 0, 0, 0, 0, 0, 0);
@@ -182,7 +181,7 @@ typedef lanes_int cell_offsets;
 
 /* Whether any of a block's points lies in a cell that may show something. cell: the floors of the points'
  * coordinates, clamped as in find_points(). low: the least of these floors along each axis. Usually all cells
- * lie in 2x2x2 bricks, of which the first holds the cell with the least coordinates. */
+ * lie in 2x2x2 bricks; the first of these bricks holds the cell with the least coordinates. */
 LANES_INLINE int cells_visible(const grid *grid, const lanes_int cell[3], const int32_t low[3]) {
   int32_t first_cell[3];
   cell_offsets within[3];
@@ -200,8 +199,8 @@ LANES_INLINE int cells_visible(const grid *grid, const lanes_int cell[3], const 
 
 /* ---- samples of several blocks in one vector ---- */
 
-/* Removes from the active lanes the lanes of one block: the last block that has active lanes. starts: the
- * first lane of each block, one bit each. */
+/* Removes the lanes of one block from the active lanes: the lanes of the last block that still has active
+ * lanes. starts: the first lane of each block, one bit each. */
 LANES_INLINE uint32_t drop_last_block(uint32_t active, uint32_t starts) {
   /* the bits up to and including the last active lane */
   uint32_t below = (2u << (31 - __builtin_clz(active))) - 1;

@@ -1,7 +1,7 @@
-/* fill/face_skin_lanes.h - how much of the matter that a light's rays reach belongs to a face that cuts the
- * matter. The face is a face of the volume's box, or of a cut. In: a run's rays, box and cuts (fill.h). Out:
- * a number from 0 to 1, the skin. It is 1 at a face and up to a voxel behind the face, and 0 from FACE_VOXELS
- * behind the face on. Only faces through which light comes in count. */
+/* fill/face_skin_lanes.h - finds how much of the matter that a light's rays reach belongs to a face that cuts
+ * the matter. The face is a face of the volume's box, or of a cut. In: a run's rays, box and cuts (fill.h).
+ * Out: a number from 0 to 1, the skin. The skin is 1 at a face and up to a voxel behind the face, and 0 from
+ * FACE_VOXELS behind the face on. Only faces through which light comes in count. */
 #ifndef HL_FILL_FACE_SKIN_LANES_H
 #define HL_FILL_FACE_SKIN_LANES_H
 
@@ -10,17 +10,17 @@
 #include "grid/faces.h"
 #include "view/rays_lanes.h"
 
-/* The skin of one face, in the middle of the part of a ray that lies behind the face in a slab: how much of
- * the matter belongs to the face. before, depth: how deep the ray lies behind the face on the slab's first
- * and last sheet; in voxels. */
+/* The skin of one face: how much of a ray's matter in a slab belongs to the face. It is found in the middle
+ * of the ray's part that lies behind the face. before, depth: the distances, in voxels, by which the ray is
+ * behind the face on the slab's first and last sheet. */
 LANES_INLINE lanes skin_of_depth(lanes before, lanes depth) {
   lanes middle = (lanes_max(before, lanes_set(0)) + depth) * 0.5f;
   return lanes_keep(depth > before, lanes_clamp(FACE_VOXELS - middle, 0, 1));
 }
 
-/* The greater one of the skins of two opposite faces, which lie at the coordinates low and high of an axis.
- * from, to: the coordinates of the rays on the slab's first and last sheet. scale: voxels per unit of the
- * axis. */
+/* The greater one of the skins of two opposite faces. The faces lie at the coordinates low and high of an
+ * axis. from, to: the coordinates of the rays on the slab's first and last sheet. scale: voxels per unit of
+ * the axis. */
 LANES_INLINE lanes skin_of_axis(lanes from, lanes to, lanes low, lanes high, lanes scale) {
   return lanes_max(skin_of_depth((from - low) * scale, (to - low) * scale),
                    skin_of_depth((high - from) * scale, (high - to) * scale));
@@ -31,8 +31,8 @@ LANES_INLINE lanes3 point_in_shape(const run_cut *cut, lanes3 point) {
                   row_of_point(cut->rows[2], point)};
 }
 
-/* How far a point of a cut's own space lies outside of its shape, in voxels; below 0 inside. scale: voxels
- * per unit of each axis of that space. */
+/* The distance of a point from the shape of a cut, in voxels: positive outside the shape, negative inside.
+ * The point is given in the cut's own space. scale: voxels per unit of each axis of that space. */
 LANES_INLINE lanes distance_to_shape(const run_cut *cut, lanes3 at, const float scale[3]) {
   if (cut->shape->type == HL_CUT_PLANE) return at.x * -scale[0];
   if (cut->shape->type == HL_CUT_SPHERE) return (lanes_sqrt(dot3(at, at)) - 1.0f) * scale[0];

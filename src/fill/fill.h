@@ -1,7 +1,7 @@
 /* fill/fill.h - filling a tile of a sheet with densities, by splatting or gathering.
  *
- * Splatting, the paper's way, adds every voxel's footprint to the tile. Gathering sums, for every pixel still
- * needed, the 4x4x4 voxels around its point. Both give the same densities up to rounding. */
+ * Splatting is the paper's way: it adds every voxel's footprint to the tile. Gathering sums the 4x4x4 voxels
+ * around the point of every pixel that is needed. Both give the same densities up to rounding. */
 #ifndef HL_FILL_FILL_H
 #define HL_FILL_FILL_H
 
@@ -13,8 +13,8 @@
 typedef struct fill_source {
   const grid *grid;
   const kernel *kernel;
-  const classifier *classifier; /* tells which blocks show nothing; null if all may show something */
-  sheet_rays rays;              /* maps pixels of the view to the grid's index space */
+  const classifier *classifier; /* tells which blocks show nothing; null: all blocks may show something */
+  sheet_rays rays;              /* map pixels of the view to the grid's index space */
   const voxel_lists *lists;     /* the sorted voxels; only splatting reads them */
   int sheet;
 } fill_source;
@@ -25,13 +25,13 @@ typedef struct filled_blocks {
   uint32_t filled, showing;
 } filled_blocks;
 
-/* The type of the functions that fill a tile of a sheet. They fill density[16][16] (block, lane) for the
- * blocks whose bits are set in `need`. They also fill blocks in `others` whose points lie in cells that may
- * show something (grid/relevant.h). The densities of other blocks stay as they are. */
+/* The type of the functions that fill a tile of a sheet. They fill the array density[16][16] (block, lane)
+ * for the blocks whose bits are set in `need`. They also fill those blocks of `others` whose points lie in
+ * cells that may show something (grid/relevant.h). The densities of other blocks stay as they are. */
 typedef filled_blocks fill_tile_function(const fill_source *source, int tile_x, int tile_y, uint32_t need,
                                          uint32_t others, float *density);
 
-/* A cut of a grid, in the units of a view. */
+/* A cut of a grid, prepared for the rays of a view. */
 typedef struct run_cut {
   const cut_shape *shape;
   float rows[3][4]; /* maps index space to the space of the cut's shape */
@@ -43,11 +43,11 @@ enum { RUN_SLABS = 4 };
 typedef struct slab_run {
   const grid *grid;
   sheet_rays rays[RUN_SLABS + 1]; /* map pixels to index space; one map for each sheet of the run */
-  float low[3], high[3];          /* corners of a box in index space within which the volume's box cuts
+  float low[3], high[3];          /* corners of a box in index space; within it, the volume's own box cuts
                                    * nothing */
   const run_cut *cuts;            /* [cut_count]; the cuts that remove parts of the grid */
   int cut_count;
-  float beside;   /* the distance from the slabs up to which cuts count; frame units */
+  float beside;   /* the distance from the slabs up to which cuts matter; frame units */
   float voxel;    /* the smallest distance between the grid's voxels; frame units */
   float steps[3]; /* the distances between voxels along the axes, in units of `voxel` */
 } slab_run;
@@ -66,7 +66,7 @@ typedef struct relevant_blocks {
 typedef void relevant_blocks_function(const slab_run *run, int tile_x, int tile_y, uint32_t slabs,
                                       uint32_t need, relevant_blocks *found);
 
-/* The functions of this room that are compiled for each instruction set. */
+/* The functions of the folder fill of which each instruction set has a compiled version. */
 typedef struct fill_functions {
   relevant_blocks_function *relevant_blocks;
   fill_tile_function *splat, *gather;

@@ -1,8 +1,8 @@
 /* fill/gather_lanes.h - gathering: each pixel's density is the sum of the 4x4x4 voxels around its point,
  * weighted by the kernel.
  *
- * Four u8 voxels along x are one 32-bit load. The order of the sum is fixed: pairs along x, then
- * y, then z. */
+ * Four u8 voxels along x are loaded as one word of 32 bits. The order of the sum is fixed: pairs along x,
+ * then y, then z. */
 #ifndef HL_FILL_GATHER_LANES_H
 #define HL_FILL_GATHER_LANES_H
 
@@ -14,15 +14,15 @@
 /* The addresses of the 64 taps (the voxels around a point) of every lane. All taps lie in the grid. */
 typedef struct tap_window {
   const unsigned char *voxels;
-  lanes_offsets offsets; /* bytes from `voxels` to each lane's tap (0,0,0) */
+  lanes_offsets offsets; /* for each lane, the number of bytes from `voxels` to the lane's tap (0,0,0) */
 } tap_window;
 
 LANES_INLINE const unsigned char *window_row(const grid *grid, const tap_window *window, int y, int z) {
   return window->voxels + (size_t)z * grid->slice_bytes + (size_t)y * grid->row_bytes;
 }
 
-/* Adds up the weighted taps. The loops are not unrolled: unrolled code would outgrow the instruction cache
- * and take a compiler minutes. */
+/* Adds up the weighted taps. The loops are not unrolled, because unrolled code would not fit the instruction
+ * cache, and would take a compiler minutes. */
 LANES_INLINE lanes sum_taps(const grid *grid, hl_storage storage, const tap_window *window,
                             const lanes weight[3][4]) {
   lanes sum = lanes_set(0);
@@ -82,7 +82,7 @@ static __attribute__((noinline)) lanes sum_in_thin_grid(const grid *grid, const 
 
 /* Moves taps that lie outside the grid into the grid, along one axis. Outside the grid the values at the
  * border continue. So the weights of outside taps are added to the border voxel's weight, and the four taps
- * move inside. The cells -1, 0, n-2 and n-1 have taps outside. Returns the moved cells. */
+ * move inside. Only the cells -1, 0, n-2 and n-1 of n voxels have taps outside. Returns the moved cells. */
 LANES_INLINE lanes_int fold_border(lanes_int cell, int32_t count, lanes weight[4]) {
   lanes zero = lanes_set(0);
   lanes_int first = cell == -1, second = cell == 0, last_but_one = cell == count - 2,
@@ -100,12 +100,12 @@ LANES_INLINE lanes_int fold_border(lanes_int cell, int32_t count, lanes weight[4
   return lanes_select_int(inside > count - 3, lanes_set_int(count - 3), inside);
 }
 
-/* The lanes whose taps lie in the grid along an axis. */
+/* Finds the lanes whose taps all lie in the grid along an axis. */
 LANES_INLINE uint32_t taps_inside(lanes_int cell, int32_t count) {
   return lanes_bits((cell >= 1) & (cell < count - 2));
 }
 
-/* The axes, one bit each, along which any active lane has taps outside the grid. */
+/* Finds the axes along which some active lane has taps outside the grid; one bit for each axis. */
 LANES_INLINE int axes_to_fold(const grid *grid, const lanes_int cell[3], uint32_t active) {
   int axes = 0;
   for (int a = 0; a < 3; a++) axes |= ((taps_inside(cell[a], grid->dimension[a]) & active) != active) << a;
@@ -129,7 +129,7 @@ LANES_INLINE tap_window window_at(const grid *grid, const lanes_int cell[3], uin
 }
 
 /* The weighted sums of the taps, for voxels in memory. cell: tap 0 is at cell - 1; all taps of active lanes
- * lie in the grid. lowest: the parameter of sum_of_windows() with this name. */
+ * lie in the grid. lowest: as in sum_of_windows(). */
 LANES_INLINE lanes sum_in_memory(const grid *grid, const lanes_int cell[3], const int32_t *lowest,
                                  uint32_t active, const lanes weight[3][4]) {
 #ifdef HL_WINDOWS
@@ -144,8 +144,8 @@ LANES_INLINE lanes sum_in_memory(const grid *grid, const lanes_int cell[3], cons
   return sum_f32(grid, &window, weight);
 }
 
-/* Makes *view: a grid of one page, the page that holds the taps of the first active lane. Returns the active
- * lanes whose taps lie in this page, one bit each. cell: tap 0 is at cell - 1. */
+/* Makes *view, a grid that is a single page: the page that holds the taps of the first active lane. Returns
+ * the active lanes whose taps lie in this page, one bit each. cell: tap 0 is at cell - 1. */
 LANES_INLINE uint32_t lanes_in_page(const grid *grid, const lanes_int cell[3], uint32_t active,
                                     struct grid *view, hl_page_reading *reading) {
   int first = __builtin_ctz(active);
@@ -179,16 +179,17 @@ static __attribute__((noinline)) lanes sum_in_pages(const grid *grid, const lane
 
 /* ---- fields in bricks ---- */
 
-/* The lanes whose points lie in one brick of a field in bricks, and the positions of these points in the
+/* The lanes whose points lie in the same brick of a field in bricks, and the positions of these points in the
  * brick. */
 typedef struct brick_lanes {
   const hl_brick_entry *entry;
   uint32_t bits;
-  /* the cells of the brick's level that hold the points; the brick's first cell has the number 1, so that tap
+  /* the cells of the brick's level that hold the points. The brick's first cell has the number 1, so that tap
    * 0 is at cell - 1 of the coefficients that the brick stores */
   lanes_int cell[3];
   lanes part[3]; /* the position of each point between its cell's corners, 0 to 1 */
-  float step;    /* number of cells of the brick's level along a cell of level 0: 1 or less */
+  float step;    /* the edge of a cell of level 0 divided by the edge of a cell of the brick's level: 1 or
+                  * less */
 } brick_lanes;
 
 /* Takes the first of the lanes `left`, and finds the brick that holds its point. Then finds all lanes of
@@ -202,7 +203,8 @@ LANES_INLINE void lanes_in_brick(const hl_bricks *bricks, const lanes_int cell[3
     int32_t at = cell[a][first] >> bricks->shift, last = (int32_t)bricks->directory_size[a] - 1;
     at = at < 0      ? 0
          : at > last ? last
-                     : at; /* clamped so that the entry lies in the directory, whatever a ray's numbers are */
+                     : at; /* clamped so that the entry lies in the directory even if a ray's numbers are
+                            * impossible */
     block = block * bricks->directory_size[a] + (size_t)at;
   }
   found->entry = &bricks->directory[block];
@@ -213,7 +215,7 @@ LANES_INLINE void lanes_in_brick(const hl_bricks *bricks, const lanes_int cell[3
   for (int a = 0; a < 3; a++) {
     same &= ((cell[a] ^ cell[a][first]) >> shift) == 0;
     found->cell[a] = ((cell[a] & ((1 << shift) - 1)) >> level) + 1;
-    /* at level 0 this adds 0 and multiplies by 1, which changes no bit */
+    /* at level 0 the sum adds 0 and the factor is 1, so that no bit changes */
     found->part[a] = (lanes_from_int(cell[a] & below) + part[a]) * found->step;
   }
   found->bits = lanes_bits(same);
@@ -281,7 +283,8 @@ LANES_INLINE lanes gather_block(const fill_source *source, const block_points *p
   const lanes(*weights)[4] = (const lanes(*)[4])weight;
   int outside = inside ? 0 : axes_to_fold(grid, cell, active);
   if (outside != 0) {
-    /* weights are rounded before taps outside the grid are folded into it, as in splatting */
+    /* weights are rounded before the weights of taps outside the grid are added to others; splatting rounds
+     * them in the same order */
     if (has_integer_weights(storage)) round_to_weights(weight[0]);
     if (grid->dimension[0] < 4 || grid->dimension[1] < 4 || grid->dimension[2] < 4)
       return sum_in_thin_grid(grid, cell, active, weights);
@@ -322,9 +325,9 @@ LANES_INLINE block_points points_in_tile(const fill_source *source, int tile_x, 
   return points;
 }
 
-/* Fills the blocks in `need`, and those blocks in `others` whose cells may show something. It tests all cells
- * before it fills any block: if tests and sums alternated, the processor would mispredict branches and begin
- * sums in vain. inside: the result of tile_is_inside(). */
+/* Fills the blocks in `need`, and those blocks in `others` whose cells may show something. All cells are
+ * tested before any block is filled. If tests and sums alternated, the processor would mispredict branches,
+ * and would begin sums in vain. inside: the result of tile_is_inside(). */
 LANES_INLINE filled_blocks gather_blocks(const fill_source *source, int tile_x, int tile_y, uint32_t need,
                                          uint32_t others, int inside, float *density) {
   block_points points[TILE_BLOCKS];

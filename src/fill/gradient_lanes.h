@@ -1,12 +1,13 @@
-/* fill/gradient_lanes.h - the gradient of a volume's density at points of index space: sums over the
- * 4x4x4 voxels that gathering sums, with the kernel's derivative along each axis in turn. */
+/* fill/gradient_lanes.h - finds the gradient of a volume's density at points of index space. Each component
+ * is a sum over the 4x4x4 voxels around the point, weighted by the kernel's derivative along one axis and by
+ * the kernel along the other two. */
 #ifndef HL_FILL_GRADIENT_LANES_H
 #define HL_FILL_GRADIENT_LANES_H
 
 #include "fill/gather_lanes.h"
 
-/* Sums the gradient's three components. The three sums share the loads of voxels: each row is summed once
- * with its weights and once with its slopes. */
+/* Sums the three components of the gradient. The three sums share the loads of voxels. Each row of voxels is
+ * summed twice: once with its weights and once with its slopes, the weights' derivatives. */
 LANES_INLINE lanes3 sum_slopes(const grid *grid, hl_storage storage, const tap_window *window,
                                const tap_slope_weights *w) {
   lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
@@ -55,8 +56,8 @@ static lanes3 slopes_of_taps(const grid *grid, const lanes_int cell[3], uint32_t
   return slopes_f32(grid, &window, w);
 }
 
-/* Whether 32 bits hold the offset between any two voxels of a grid. In larger grids they still hold the
- * offsets between the voxels that the points of one block of pixels need. */
+/* Returns whether 32 bits hold the offset between any two voxels of a grid. In larger grids, 32 bits still
+ * hold the offsets between the voxels that the points of one block of pixels need. */
 LANES_INLINE int fits_offsets(const grid *grid) {
   return (uint64_t)grid->dimension[2] * grid->slice_bytes <= INT32_MAX;
 }
@@ -138,8 +139,8 @@ static __attribute__((noinline)) lanes3 slopes_in_bricks(const grid *grid, const
   return sum;
 }
 
-/* The derivatives along the index axes, in stored units per voxel, for the active lanes. At least one lane is
- * active. starts: the first lane of each block of pixels, one bit each. */
+/* The derivatives of the density along the index axes, in stored units per voxel, for the active lanes. At
+ * least one lane must be active. starts: the first lane of each block of pixels, one bit each. */
 LANES_INLINE lanes3 slopes_of_degree(const grid *grid, const kernel *kernel, int degree, lanes3 point,
                                      uint32_t active, uint32_t starts) {
   tap_slope_weights w;

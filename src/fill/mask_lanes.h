@@ -1,4 +1,5 @@
-/* fill/mask_lanes.h - the factor of a mask on a volume's extinction, at sixteen points. */
+/* fill/mask_lanes.h - finds the factor by which a mask multiplies a volume's extinction, at sixteen
+ * points. */
 #ifndef HL_FILL_MASK_LANES_H
 #define HL_FILL_MASK_LANES_H
 
@@ -12,8 +13,8 @@ typedef struct mask_places {
   lanes part[3];
 } mask_places;
 
-/* Finds the cells of the lattice in which points of frame space lie. Points outside the lattice are moved to
- * its border. */
+/* Finds the cells of the mask's lattice in which points of frame space lie. Points outside the lattice are
+ * moved to its border. */
 LANES_INLINE mask_places places_in_mask(const mask_lattice *lattice, lanes3 point) {
   mask_places p = {.outside = lanes_set_int(0)};
   for (int a = 0; a < 3; a++) {
@@ -45,14 +46,14 @@ LANES_INLINE lanes_int bricks_of_places(const mask_lattice *lattice, const mask_
   return at * (int32_t)sizeof *lattice->bricks;
 }
 
-/* The first 32-bit word of each lane's brick (`word` is 0), or the second one (`word` is 1). bricks: the
+/* Loads the first 32-bit word (`word` is 0) or the second one (`word` is 1) of each lane's brick. bricks: the
  * bricks' offsets in bytes. */
 LANES_INLINE lanes_int words_of_bricks(const mask_lattice *lattice, lanes_int bricks, int word) {
   return lanes_gather_bytes((const unsigned char *)&lattice->bricks[0][word], bricks);
 }
 
-/* Interpolates the mask's factor linearly between the lattice's points. The result is in the units of the
- * stored factors. */
+/* Interpolates the mask's factor linearly between the lattice's points. The result counts the steps in which
+ * factors are stored. */
 LANES_INLINE lanes steps_between_points(const mask_lattice *lattice, const mask_places *p) {
   lanes_int near[3], far[3];
   lanes plane[2];
@@ -73,8 +74,8 @@ LANES_INLINE lanes steps_between_points(const mask_lattice *lattice, const mask_
 }
 
 /* The mask's factor at points of frame space: linear between the lattice's points, `rest` outside the
- * lattice. Only active lanes get a result. In even bricks the brick's own factor is the result, as linear
- * interpolation of equal factors gives the same. */
+ * lattice. Only active lanes get a result. If all factors of a brick are equal, the result is this factor,
+ * because linear interpolation would give the same. */
 LANES_INLINE lanes mask_factor(const mask_lattice *lattice, lanes3 point, uint32_t active) {
   mask_places p = places_in_mask(lattice, point);
   lanes_int words = words_of_bricks(lattice, bricks_of_places(lattice, &p), 0);

@@ -1,4 +1,4 @@
-/* fill/plane_lanes.h - a transfer function of two numbers at sixteen points. */
+/* fill/plane_lanes.h - evaluates a transfer function of two numbers at sixteen points. */
 #ifndef HL_FILL_PLANE_LANES_H
 #define HL_FILL_PLANE_LANES_H
 
@@ -9,8 +9,8 @@
 
 /* ---- another volume's value ---- */
 
-/* The weighted sums of the taps of another volume whose voxels are in memory, for lanes that may belong to
- * several blocks of pixels. The parameters are those of slopes_in_memory(). */
+/* The weighted sums of the taps (the voxels around a point) of another volume whose voxels are in memory, for
+ * lanes that may belong to several blocks of pixels. The parameters are those of slopes_in_memory(). */
 LANES_INLINE lanes values_in_memory(const grid *grid, const lanes_int cell[3], uint32_t active,
                                     uint32_t starts, const lanes weight[3][4]) {
   lanes sum = lanes_set(0);
@@ -60,9 +60,9 @@ static __attribute__((noinline)) lanes values_at(const grid *grid, const kernel 
 
 /* ---- the row of the second number ---- */
 
-/* The row, in the table of a function of two numbers, that belongs to the second number at sixteen points.
- * slope: the volume's gradient at the points, in stored units per frame unit; it is not read if the second
- * number is another volume's value. point: frame space. */
+/* Finds the row of the table of a function of two numbers that belongs to the second number at each of
+ * sixteen points. slope: the volume's gradient at the points, in stored units per frame unit; it is not read
+ * if the second number is the value of another volume. point: frame space. */
 LANES_INLINE lanes row_of_matter(const plane_table *table, const kernel *kernel, lanes3 slope, lanes3 point,
                                  uint32_t active, uint32_t starts) {
   lanes second, scale = lanes_set(table->row_scale);
@@ -78,8 +78,8 @@ LANES_INLINE lanes row_of_matter(const plane_table *table, const kernel *kernel,
 
 /* ---- the function along a row ---- */
 
-/* A row of a table of a function of two numbers, and how far the second number lies between this row and the
- * next. */
+/* A row of the table of a function of two numbers, and the fraction by which the second number lies between
+ * this row and the next. */
 typedef struct plane_row {
   lanes_int start; /* index of the row's first point in the table */
   lanes part;
@@ -94,20 +94,20 @@ LANES_INLINE lanes column_of(const plane_table *table, lanes coordinate) {
   return lanes_line(coordinate, table->column_scale, table->column_offset);
 }
 
-/* The lanes in which the function depends on the second number for some value between two coordinates in the
- * classifier's tables. */
+/* The lanes in which the function depends on the second number for some value of a range. The range is given
+ * by two coordinates in the classifier's tables. */
 LANES_INLINE lanes_int depends_on_row(const plane_table *table, lanes from, lanes to) {
   return lanes_max(column_of(table, from), column_of(table, to)) >= table->even_before;
 }
 
-/* Finds the extinction at a column, sums[0], and the extinction's integral over columns up to this column,
- * sums[1]. Extinction is linear between columns. After the fraction f of a column the integral has therefore
- * grown by f e0 + f^2 (e1 - e0) / 2 (derived). */
+/* Finds two numbers of a row of the table at a column: sums[0] is the extinction, and sums[1] is the
+ * extinction's integral over the columns before. Extinction is linear between columns. After the fraction f
+ * of a column the integral has therefore grown by f e0 + f^2 (e1 - e0) / 2 (derived). */
 LANES_INLINE void sums_at_column(const plane_table *table, plane_row row, lanes column, lanes sums[2]) {
   lanes_int whole = lanes_truncate(column);
   lanes part = column - lanes_from_int(whole), of_row[2][2];
-  /* the extinction and its integral, in the row and then in the next row: `here` at a column, `next` at the
-   * next column */
+  /* two numbers each at the column (`here`) and at the next column (`next`): the extinction and its integral
+   * in the row, and then both in the next row */
   lanes here[4], next[4];
   lanes_gather_quad_pairs(&table->sums[0][0], row.start + whole, here, next);
   for (int r = 0; r < 2; r++) {
@@ -118,8 +118,8 @@ LANES_INLINE void sums_at_column(const plane_table *table, plane_row row, lanes 
   for (int i = 0; i < 2; i++) sums[i] = lanes_fma(of_row[1][i] - of_row[0][i], row.part, of_row[0][i]);
 }
 
-/* Where two coordinates are closer than this many columns, the mean of the values at both is used: a
- * difference of integrals would lose digits, and this mean is as accurate. */
+/* If two coordinates are closer than this number of columns, the mean extinction between them is the mean of
+ * the extinctions at both. A difference of integrals would then lose digits, and the mean is as accurate. */
 static const float CLOSE_COLUMNS = 2;
 
 /* The mean extinction in a row between two coordinates in the classifier's tables. */
@@ -134,7 +134,8 @@ LANES_INLINE lanes extinction_in_row(const plane_table *table, lanes row, lanes 
   return lanes_select(far, lanes_max(mean, lanes_set(0)), (at_a[0] + at_b[0]) * 0.5f);
 }
 
-/* The sums of colour times opacity, and of opacity, over columns from the row's start to a column. */
+/* Finds two sums over the columns of a row from its start to a column: of colour times opacity, and of
+ * opacity. */
 LANES_INLINE void colors_at_column(const plane_table *table, plane_row row, lanes column, lanes sums[4]) {
   lanes_int whole = lanes_truncate(column);
   lanes part = column - lanes_from_int(whole), of_row[2][4];
@@ -148,7 +149,7 @@ LANES_INLINE void colors_at_column(const plane_table *table, plane_row row, lane
   for (int i = 0; i < 4; i++) sums[i] = lanes_fma(of_row[1][i] - of_row[0][i], row.part, of_row[0][i]);
 }
 
-/* The sums of colors_at_column() over the columns between a and b and one column on either side. */
+/* Finds the sums of colors_at_column() over the columns from a to b and one further column on either side. */
 LANES_INLINE void colors_between(const plane_table *table, plane_row row, lanes a, lanes b, lanes sums[4]) {
   lanes low[4], high[4];
   lanes from = lanes_clamp(lanes_min(a, b) - 1.0f, 0, PLANE_COLUMNS - 1),
@@ -158,8 +159,8 @@ LANES_INLINE void colors_between(const plane_table *table, plane_row row, lanes 
   for (int i = 0; i < 4; i++) sums[i] = high[i] - low[i];
 }
 
-/* The least sum of opacities over the columns of the visible part of a way at which this part gets a colour
- * of its own. Where the sum is smaller, the colour is the mean over the whole way. */
+/* The visible part of a way gets a colour of its own if the sum of opacities over its columns is at least
+ * this number. Otherwise the colour is the mean over the whole way. */
 static const float SOME_OPACITY = 1e-4f;
 
 /* The colour in a row where matter is visible, in linear RGB: the mean over the visible part of a way and one

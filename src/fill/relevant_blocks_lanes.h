@@ -14,10 +14,11 @@ typedef struct lanes_box {
   lanes low[3], high[3];
 } lanes_box; /* sixteen boxes, one in each lane; index space */
 
-/* The box of a block's points on a sheet. Derived: a pixel's point is base + P / H (sheet_rays), where P and
- * H are linear functions of the pixel, which change by Pu and Hu. So the next pixel's point lies (Pu - (Hu /
- * H) P) / H further. The pixels' centres are at most 3/2 pixels from the block's middle in either direction.
- * The box is made a little larger than that, because H changes within the block. */
+/* The box around a block's points on a sheet. Derived: a pixel's point is base + P / H (sheet_rays). P and H
+ * are linear functions of the pixel, which change by Pu and Hu from one pixel to the next. So the next
+ * pixel's point lies (Pu - (Hu / H) P) / H further. The pixels' centres are at most 3/2 pixels from the
+ * block's middle in either direction. The box is made a little larger than that, because H changes within the
+ * block. */
 LANES_INLINE lanes_box box_on_sheet(const sheet_rays *rays, lanes u, lanes v) {
   const float reach = 1.5f * 1.02f;
   lanes3 p = rays_linear(rays->p0, rays->pu, rays->pv, u, v);
@@ -35,9 +36,9 @@ LANES_INLINE lanes_box box_on_sheet(const sheet_rays *rays, lanes u, lanes v) {
   return box;
 }
 
-/* The lanes whose box of cells may show something. One look-up answers for each lane. *wide: receives the
- * lanes whose box spans more units than a look-up covers; the result leaves these lanes out. shift: converts
- * cells to units. low, high: the box's first and last cells. */
+/* Finds the lanes whose box of cells may show something, with one look-up for each lane. *wide: receives the
+ * lanes whose box spans more units of cells than a look-up covers; the result leaves these lanes out. shift:
+ * converts cells to units. low, high: the first and the last cells of the boxes. */
 LANES_INLINE lanes_int box_visible(const cell_lookup *lookup, int shift, const lanes_int low[3],
                                    const lanes_int high[3], lanes_int inside, lanes_int *wide) {
   lanes_int first = lanes_set_int(0), bit = first, fits = lanes_set_int(-1);
@@ -75,7 +76,7 @@ LANES_INLINE uint32_t visible_boxes(const grid *grid, const lanes_box *box) {
   lanes_int wide, visible = box_visible(&grid->lookup[0], 1, first, last, inside, &wide);
   if (lanes_bits(wide & inside) == 0) return lanes_bits(visible & inside);
   lanes_int too_wide, visible_coarsely = box_visible(&grid->lookup[1], 2, first, last, inside, &too_wide);
-  /* a box too wide for both look-ups counts as visible */
+  /* a box that is too wide for both look-ups counts as visible */
   return lanes_bits(inside & (visible | (wide & (visible_coarsely | too_wide))));
 }
 
@@ -119,7 +120,7 @@ LANES_INLINE void apply_cuts(const slab_run *run, const lanes_box *box, uint32_t
   }
 }
 
-/* The blocks whose boxes lie where the volume's box does not cut anything. */
+/* The blocks whose boxes lie inside a region in which the volume's box does not cut anything. */
 LANES_INLINE uint32_t uncut_blocks(const slab_run *run, const lanes_box *box) {
   lanes_int uncut = lanes_set_int(-1);
   for (int axis = 0; axis < 3; axis++)
@@ -140,7 +141,7 @@ static void relevant_blocks_tile(const slab_run *run, int tile_x, int tile_y, ui
     lanes_box box = box_of_slab(&on_sheet[slab], &on_sheet[slab + 1]);
     uint32_t visible = visible_boxes(run->grid, &box), whole = uncut_blocks(run, &box);
     apply_cuts(run, &box, &visible, &whole);
-    /* blocks also count as cut where the slab contains the eye, because the rays begin within the slab */
+    /* blocks count as cut, too, if the eye lies in the slab, because their rays begin within the slab */
     int uncut = rays[0].step * rays[1].step > 0 && (visible & ~whole) == 0;
     found->uncut = (uint16_t)((found->uncut & ~(1u << slab)) | (uint32_t)uncut << slab);
     found->blocks[slab] = (uint16_t)(visible & need);

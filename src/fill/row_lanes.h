@@ -1,4 +1,4 @@
-/* fill/row_lanes.h - four neighbouring voxels along x, weighted and added, for sixteen lanes. */
+/* fill/row_lanes.h - weights and adds four neighbouring voxels along x, for each of sixteen lanes. */
 #ifndef HL_FILL_ROW_LANES_H
 #define HL_FILL_ROW_LANES_H
 
@@ -23,16 +23,16 @@ LANES_INLINE lanes_int round_to_units(lanes x, int units) {
   return (lanes_int)lanes_line(x, (float)units, shift) - (lanes_int)lanes_set(shift);
 }
 
-/* Rounds the four weights of a row of voxels to integers: it rounds the sums of weights from the first tap
- * on, and not each weight. The error of a row of voxels is then half a unit times the differences between
- * neighbours, and constant rows are exact. total: the sum of all four weights. */
+/* Rounds the four weights of a row of voxels to integers. The running sums of the weights are rounded, and
+ * not each weight. So the error of a row of voxels is half a unit times the differences between neighbours,
+ * and rows of equal voxels have no error. total: the sum of all four weights. */
 LANES_INLINE integer_weights round_weights(const lanes weight[4], int units, int total) {
   lanes_int first = round_to_units(weight[0], units), two = round_to_units(weight[0] + weight[1], units);
   lanes_int last = round_to_units(weight[3], units);
   return (integer_weights){{first, two - first, total * units - last - two, last}};
 }
 
-/* Rounds weights to integers and converts the integers back to floats. */
+/* Rounds weights to integers, and converts the integers back to floats. */
 LANES_INLINE void round_to_weights(lanes weight[4]) {
   integer_weights integers = round_weights(weight, WEIGHT_UNITS, 1);
   for (int tap = 0; tap < 4; tap++) weight[tap] = lanes_from_int(integers.tap[tap]) * WEIGHT_INVERSE;
@@ -40,8 +40,8 @@ LANES_INLINE void round_to_weights(lanes weight[4]) {
 
 /* ---- u8 voxels ---- */
 
-/* The functions below weight and add four u8 taps, which are packed in a 32-bit word. Weights are split into
- * the parts that the processor's instructions multiply. */
+/* The functions below weight and add four u8 taps, which are packed in a 32-bit word. The weights are split
+ * into parts of a size that the processor's instructions can multiply. */
 #if defined(__AVX512VBMI__) && defined(__AVX512VBMI2__) && defined(__AVX512VNNI__)
 #define HL_PERMUTES_BYTES 1
 
@@ -89,7 +89,7 @@ LANES_INLINE byte_slopes split_slopes(const integer_weights *integers) {
 LANES_INLINE lanes_int taps_with_sign(lanes_int taps) { return taps ^ (int32_t)0x80808080; }
 
 LANES_INLINE lanes_int weigh_signed_bytes(lanes_int less_128, const byte_weights *weights) {
-  /* WEIGHT_UNITS / 2 becomes 128 times the sum of all weights when the sum is shifted left by a byte */
+  /* after a shift to the left by a byte, WEIGHT_UNITS / 2 is 128 times the sum of all weights */
   const __m512i half = _mm512_set1_epi32(WEIGHT_UNITS / 2);
   __m512i sum = _mm512_dpbusd_epi32(half, weights->digit[0], (__m512i)less_128);
   return (lanes_int)_mm512_dpbusd_epi32(_mm512_slli_epi32(sum, 8), weights->digit[1], (__m512i)less_128);
@@ -143,8 +143,8 @@ LANES_INLINE lanes_int slope_of_bytes(lanes_int taps, const byte_slopes *slopes)
 /* The functions below weight and add four u16 taps, which are packed in two 32-bit words. */
 #if defined(__AVX2__)
 /* The weights of taps 0 and 1 share a word, and so do the weights of taps 2 and 3. One instruction multiplies
- * pairs of signed 16-bit numbers and adds the two products. Voxels are signed numbers: 32768 is subtracted
- * from them. */
+ * pairs of signed 16-bit numbers and adds the two products. Because these numbers are signed, 32768 is
+ * subtracted from the voxels. */
 typedef struct short_weights {
   lanes_int pair[2];
 } short_weights;
@@ -237,8 +237,8 @@ LANES_INLINE row_slopes slopes_of_row(hl_storage storage, const lanes slope[4]) 
   return slopes;
 }
 
-/* The weighted sum of four neighbouring voxels along x, for every lane. offsets: bytes from `row`. With
- * integer weights the result is in units of the weights. */
+/* The weighted sum of four neighbouring voxels along x, for every lane. offsets: number of bytes from `row`
+ * to each lane's first voxel. With integer weights the result is in units of the weights. */
 LANES_INLINE lanes row_f32(const unsigned char *row, const lanes_offsets *offsets, const lanes weight[4]) {
   return weigh_floats((lanes)lanes_load_words(row, offsets), (lanes)lanes_load_words(row + 4, offsets),
                       (lanes)lanes_load_words(row + 8, offsets), (lanes)lanes_load_words(row + 12, offsets),
@@ -262,7 +262,7 @@ LANES_INLINE lanes slope_row(hl_storage storage, const unsigned char *row, const
       slope_of_shorts(lanes_load_words(row, offsets), lanes_load_words(row + 4, offsets), &slopes->shorts));
 }
 
-/* Converts sums in units of weights, or of slopes, to stored units. */
+/* Converts sums in units of the integer weights, or of the integer slopes, to stored units. */
 LANES_INLINE lanes from_units(hl_storage storage, lanes sum) {
   return has_integer_weights(storage) ? sum * WEIGHT_INVERSE : sum;
 }

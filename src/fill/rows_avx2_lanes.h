@@ -1,9 +1,10 @@
 /* fill/rows_avx2_lanes.h - sums along y and z with AVX2, and sums over u16 voxels that are read directly from
  * the volume.
  *
- * A register of 256 bits holds the taps of two lanes, lanes k and k + 4 of eight. Weighting the taps along x
- * leaves one number for each row of taps. These numbers are transposed, so that lanes lie side by side, and
- * summed along y and z. */
+ * A tap is one of the 64 voxels that a lane sums. A register of 256 bits holds the taps of two lanes, lanes k
+ * and k + 4 of eight. The taps are weighted and summed along x, which leaves one number for each row of taps.
+ * These numbers are transposed, so that lanes lie side by side. Then they are weighted and summed along y and
+ * z. */
 #ifndef HL_FILL_ROWS_AVX2_LANES_H
 #define HL_FILL_ROWS_AVX2_LANES_H
 
@@ -22,8 +23,8 @@ typedef struct sums_of_rows {
   __m256i of_two[4][4];
 } sums_of_rows;
 
-/* Transposes four registers, each with four rows of two lanes, to four rows of eight lanes; converts them to
- * floats. */
+/* Transposes four registers, which hold four rows of two lanes each, to four rows of eight lanes, and
+ * converts them to floats. */
 LANES_INLINE void turn_rows(const __m256i of_two[4], __m256 row[4]) {
   __m256i a = _mm256_unpacklo_epi32(of_two[0], of_two[1]), b = _mm256_unpacklo_epi32(of_two[2], of_two[3]);
   __m256i c = _mm256_unpackhi_epi32(of_two[0], of_two[1]), d = _mm256_unpackhi_epi32(of_two[2], of_two[3]);
@@ -85,8 +86,8 @@ LANES_INLINE void store_half(half_slope of, int half, lanes3 *slope) {
 
 /* ---- u16 voxels, straight from the volume ---- */
 
-/* Finds the taps of lanes k and k + 4. voxels: address of the voxels. offsets: bytes from this address to
- * each lane's first tap. */
+/* Finds the addresses of the taps of lanes k and k + 4. voxels: address of the volume's voxels. offsets:
+ * number of bytes from this address to each lane's first tap. */
 LANES_INLINE pair_of_taps short_taps_of_pair(const unsigned char *voxels, const lanes_offsets *offsets,
                                              int half, int k) {
   const int32_t *at = offsets->at + 8 * half + k;
@@ -100,7 +101,7 @@ LANES_INLINE __m128i two_short_rows(const unsigned char *first, size_t row_bytes
   memcpy(&row[1], first + row_bytes, sizeof row[1]);
   return _mm_castpd_si128(_mm_set_pd(row[1], row[0]));
 }
-/* Loads two rows of taps for each of two lanes; the voxels are reduced by 32768. */
+/* Loads two rows of taps for each of two lanes, and subtracts 32768 from the voxels. */
 LANES_INLINE __m256i short_rows_of_two(const pair_of_taps *taps, size_t at, size_t row_bytes) {
   __m256i rows = _mm256_castsi128_si256(two_short_rows(taps->first + at, row_bytes));
   rows = _mm256_inserti128_si256(rows, two_short_rows(taps->second + at, row_bytes), 1);
@@ -126,7 +127,7 @@ LANES_INLINE __m256i short_weights_of_pair(const short_weights *weights, int hal
   return k % 2 == 0 ? _mm256_unpacklo_epi64(both, both) : _mm256_unpackhi_epi64(both, both);
 }
 
-/* Sums the rows of a slice, weighted by slopes. */
+/* Sums the rows of a slice of taps, weighted by slopes. */
 LANES_INLINE __m256i slope_short_slice(const short_slice *slice, __m256i weights) {
   return _mm256_hadd_epi32(_mm256_madd_epi16(slice->upper, weights),
                            _mm256_madd_epi16(slice->lower, weights));
@@ -135,8 +136,8 @@ LANES_INLINE __m256i weigh_short_slice(const short_slice *slice, __m256i weights
   return _mm256_add_epi32(slope_short_slice(slice, weights), _mm256_set1_epi32(LESS_BY));
 }
 
-/* The weighted sums of all lanes' 64 taps. voxels: address of the voxels. offsets: bytes from this address to
- * each lane's first tap. */
+/* The weighted sum of each lane's 64 taps. voxels: address of the volume's voxels. offsets: number of bytes
+ * from this address to each lane's first tap. */
 LANES_INLINE lanes sum_short_rows(const grid *grid, const unsigned char *voxels, const lanes_offsets *offsets,
                                   const lanes weight[3][4]) {
   size_t row_bytes = grid->row_bytes, slice_bytes = grid->slice_bytes;

@@ -1,8 +1,8 @@
-/* fill/splat_lanes.h - splatting: the cross-section of each voxel's kernel with the sheet is added to a tile
+/* fill/splat_lanes.h - splatting: adds the cross-section of each voxel's kernel with the sheet to a tile
  * (steps 8 to 11 of the paper).
  *
- * The kernel is evaluated at each pixel's point on the sheet, and not looked up in a table of footprints.
- * This is exact for any orientation, perspective and spacing of sheets. */
+ * The kernel is evaluated at each pixel's point on the sheet, and not looked up in a table of footprints. So
+ * it is exact for any orientation, perspective and spacing of sheets. */
 #ifndef HL_FILL_SPLAT_LANES_H
 #define HL_FILL_SPLAT_LANES_H
 
@@ -17,8 +17,8 @@ typedef struct tile_points {
   lanes3 low, high;
 } tile_points;
 
-/* Clears the member `inside` for points outside relevant bricks, because the voxels of other bricks are not
- * in the lists. */
+/* Clears the member `inside` of points that lie outside relevant bricks, because the lists of voxels leave
+ * out the voxels of other bricks. */
 LANES_INLINE void keep_relevant(const grid *grid, block_points *points) {
   if (lanes_bits(points->inside) == 0) return;
   lanes_int brick = (points->cell[2] + 1) >> 2;
@@ -49,15 +49,15 @@ static void find_tile_points(const fill_source *source, int tile_x, int tile_y, 
   }
 }
 
-/* The blocks of a tile that have points within `reach` of a voxel at (x, y, z), along each axis; one bit
- * each. */
+/* Finds the blocks of a tile that have points within the distance `reach`, along each axis, of a voxel at (x,
+ * y, z); one bit each. */
 LANES_INLINE uint32_t blocks_in_reach(const tile_points *tile, float x, float y, float z, float reach) {
   lanes_int mask = (tile->low.x < x + reach) & (tile->high.x > x - reach) & (tile->low.y < y + reach) &
                    (tile->high.y > y - reach) & (tile->low.z < z + reach) & (tile->high.z > z - reach);
   return lanes_bits(mask);
 }
 
-/* The weights along x, at a block's pixels, of the voxels with the coordinate x. */
+/* The weights along x that voxels with the coordinate x have at a block's pixels. */
 LANES_INLINE lanes weight_along_x(const fill_source *source, const tile_points *tile, int block, int degree,
                                   int32_t x) {
   const block_points *points = &tile->block[block];

@@ -9,8 +9,8 @@
 #include "fill/plane_lanes.h"
 #include "simd/gathers.h"
 
-/* The gradient at a point of frame space, in stored units per frame unit: df/dframe = (dindex/dframe)^T
- * df/dindex. m: frame space to index space. */
+/* The gradient at a point of frame space, in stored units per frame unit. Derived: df/dframe =
+ * (dindex/dframe)^T df/dindex. m: maps frame space to index space. */
 LANES_INLINE lanes3 gradient_in_frame(const grid *grid, const kernel *kernel, const float m[3][4],
                                       lanes3 point, uint32_t active, uint32_t starts) {
   lanes3 at = {row_of_point(m[0], point), row_of_point(m[1], point), row_of_point(m[2], point)};
@@ -18,8 +18,8 @@ LANES_INLINE lanes3 gradient_in_frame(const grid *grid, const kernel *kernel, co
   return add_scaled3(add_scaled3(scale3(set3(m[2]), slope.z), set3(m[1]), slope.y), set3(m[0]), slope.x);
 }
 
-/* The factor on extinction where the gradient is `slope` (stored units per frame unit). The classifier must
- * have gradient opacity. */
+/* The factor by which gradient opacity multiplies extinction if the gradient is `slope` (stored units per
+ * frame unit). The classifier must have gradient opacity. */
 LANES_INLINE lanes factor_of_slope(const classifier *classifier, lanes3 slope) {
   lanes3 scaled = scale3(slope, lanes_set(classifier->steepness_scale));
   lanes x = lanes_clamp(lanes_sqrt(dot3(scaled, scaled)), 0, STEEPNESS_ENTRIES), a, b;
@@ -34,33 +34,32 @@ typedef struct matter_way {
   const kernel *kernel;
   const classifier *classifier;
   const float (*to_index)[4]; /* maps frame space to index space */
-  /* the point at which the matter would be seen if extinction depended on the value alone; frame space */
+  /* the point, in frame space, at which the matter would be seen if its extinction depended on the value
+   * alone */
   lanes3 point;
   lanes from, to;          /* coordinates in the classifier's tables: the values where each way begins
                             * and ends */
-  lanes extinction;        /* the mean extinction on the way, as if extinction depended on the value
-                            * alone */
+  lanes extinction;        /* the mean extinction on the way, without the factor */
   uint32_t active, starts; /* active: the lanes with extinction, of which there is at least one; starts:
                             * the first lane of each block of pixels; both: one bit for each lane */
-  int wants_slope;         /* whether the caller reads the slope, even where the factor does not depend on
-                            * it */
+  int wants_slope;         /* not 0: the caller reads the slope, even if the factor does not depend on it */
 } matter_way;
 
-/* The factor on a volume's extinction. */
+/* The factor by which a volume's extinction is multiplied. */
 typedef struct matter_factor {
   lanes factor;
-  lanes3 slope; /* the gradient at the point, in stored units per frame unit; 0 where the factor does not
-                 * depend on it */
+  lanes3 slope; /* the gradient at the point, in stored units per frame unit; 0 if the factor does not depend
+                 * on it */
   lanes row;    /* the row of the second number in the table of a function of two numbers */
 } matter_factor;
 
-/* The factor for the matter on sixteen ways. This large function is not inlined, so that frames that do not
- * need it do not carry its code. */
+/* The factor for the matter on sixteen ways. This large function is not inlined, so that loops that do not
+ * need it stay small. */
 static __attribute__((noinline)) matter_factor factor_of_matter(const matter_way *way) {
   const classifier *classifier = way->classifier;
   const plane_table *plane = &classifier->plane;
   matter_factor found = {lanes_set(1.0f), {lanes_set(0), lanes_set(0), lanes_set(0)}, lanes_set(0)};
-  /* where the function does not depend on the second number, any row will do */
+  /* if the function does not depend on the second number, every row gives the same result */
   int varies = plane->sums != NULL &&
                (lanes_bits(depends_on_row(plane, way->from, way->to)) & way->active) != 0;
   int needs_slope = classifier->steepness != NULL || (varies && plane->axis == HL_SECOND_GRADIENT);

@@ -1,7 +1,8 @@
-/* fill/voxel_lists.c - a counting sort by (tile, bucket), in three passes: count, write, order.
+/* fill/voxel_lists.c - sorts voxels by tile and by bucket of sheets. It is a counting sort in three passes:
+ * count, write, order.
  *
- * The numbers of voxels count a grid that is padded by two voxels on every side; in the padding, the values
- * at the border continue. Threads write the entries of a bucket in any order; sorting each bucket by index
+ * Voxels are numbered in a grid that is padded by two voxels on every side; in the padding, the values at the
+ * border continue. Threads write the entries of a bucket in any order; sorting each bucket by index
  * afterwards makes the sums, and so the picture, independent of the threads. */
 #include "fill/voxel_lists.h"
 
@@ -25,8 +26,8 @@ static int32_t clamp_brick(int32_t cell, int32_t cells) {
   return (cell < 0 ? 0 : cell > cells ? cells : cell) / HL_BRICK_CELLS;
 }
 
-/* Whether a voxel contributes to a cell of a relevant brick. Along each axis, voxel i contributes to points p
- * with floor(p) from i-2 to i+1, and so to the cells i-1 to i+2. */
+/* Returns whether a voxel contributes to a cell of a relevant brick. Along each axis, voxel i contributes to
+ * points p with floor(p) from i-2 to i+1, and so to the cells i-1 to i+2. */
 static bool voxel_relevant(const grid *grid, const int32_t v[3]) {
   int32_t first[3], last[3];
   for (int axis = 0; axis < 3; axis++) {

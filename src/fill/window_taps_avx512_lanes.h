@@ -1,6 +1,6 @@
-/* fill/window_taps_avx512_lanes.h - one slice of a window of u16 or f32 voxels in registers of 512 bits, and
- * the taps that permutations take from it. The slice has eight voxels of each of seven rows of the volume.
- * For u8 voxels see window_bytes_avx512_vbmi_lanes.h and window_words_avx512_lanes.h. */
+/* fill/window_taps_avx512_lanes.h - holds one slice of a window of u16 or f32 voxels in registers of 512
+ * bits, and takes taps from it by permutations. The slice has eight voxels of each of seven rows of the
+ * volume. For u8 voxels see window_bytes_avx512_vbmi_lanes.h and window_words_avx512_lanes.h. */
 #ifndef HL_FILL_WINDOW_TAPS_AVX512_LANES_H
 #define HL_FILL_WINDOW_TAPS_AVX512_LANES_H
 
@@ -34,7 +34,8 @@ LANES_INLINE __m512i index_u16(__m512i x, __m512i y) {
 
 LANES_INLINE __m128i row_of_shorts(const unsigned char *row) { return _mm_loadu_si128((const __m128i *)row); }
 
-/* Loads a slice of a window of u16 voxels, reduced by 32768: four rows, and the three rows below them. */
+/* Loads a slice of a window of u16 voxels, and subtracts 32768 from the voxels. One register gets four rows,
+ * another the three rows below them. */
 LANES_INLINE window_slice slice_u16(const unsigned char *row, size_t row_bytes) {
   window_slice slice;
   __m512i upper = _mm512_castsi128_si512(row_of_shorts(row)),
@@ -78,7 +79,7 @@ LANES_INLINE window_lanes starting_u16(__m512i start, int slice) {
   return _mm512_cmpeq_epi16_mask(both, _mm512_set1_epi16((short)slice));
 }
 
-/* Replaces the taps of the lanes in `some` by taps from another slice of the window. */
+/* Replaces the taps of some lanes by taps from another slice of the window. some: these lanes. */
 LANES_INLINE void replace_taps_u16(window_taps *taps, window_lanes some, const window_slice *rows,
                                    __m512i index) {
   taps->part[0] = _mm512_mask_permutexvar_epi16(taps->part[0], (__mmask32)some, index, rows->part[0]);

@@ -1,5 +1,5 @@
-/* fill/window_words_avx512_lanes.h - takes taps of u8 voxels by permutations of 32-bit words, for AVX-512
- * without permutations of bytes. */
+/* fill/window_words_avx512_lanes.h - takes taps of u8 voxels out of a window of voxels by permutations of
+ * 32-bit words, for processors with AVX-512 that cannot permute bytes. */
 #ifndef HL_FILL_WINDOW_WORDS_AVX512_LANES_H
 #define HL_FILL_WINDOW_WORDS_AVX512_LANES_H
 
@@ -23,7 +23,7 @@ LANES_INLINE window_slice join_columns(__m512i left, __m512i right, __m512i shif
   const __mmask16 odd = 0xaaaa;
   __m512i rows = _mm512_or_si512(_mm512_srlv_epi64(left, shift),
                                  _mm512_sllv_epi64(right, _mm512_sub_epi64(_mm512_set1_epi64(64), shift)));
-  /* adds 128, because the columns hold voxels reduced by 128 */
+  /* adds 128, because 128 was subtracted from the voxels in the columns */
   rows = _mm512_xor_si512(rows, _mm512_set1_epi8((char)0x80));
   window_slice slice;
   slice.part[0] = _mm512_mask_mov_epi32(rows, odd, _mm512_slli_epi64(rows, 24));
@@ -55,7 +55,7 @@ LANES_INLINE window_lanes starting_u8(__m512i start, int slice) {
   return _mm512_cmpeq_epi32_mask(start, _mm512_set1_epi32(slice));
 }
 
-/* Replaces the taps of the lanes in `some` by taps from another slice of the window. */
+/* Replaces the taps of some lanes by taps from another slice of the window. some: these lanes. */
 LANES_INLINE void replace_taps_u8(window_taps *taps, window_lanes some, const window_slice *slice,
                                   __m512i index) {
   taps->part[0] = _mm512_mask_mov_epi32(taps->part[0], (__mmask16)some, taps_u8(slice, index).part[0]);

@@ -1,8 +1,9 @@
 /* fill/windows_avx2_lanes.h - sums over windows of u8 voxels with AVX2 (windows_lanes.h).
  *
- * A slice of a window has 8x8 voxels from the grid's columns. Three or five copies of it are made, each four
- * voxels wide; each copy begins one voxel further along x than the copy before. So four rows of four taps are
- * sixteen consecutive bytes, which one load takes. Two lanes' taps share a register (rows_avx2_lanes.h). */
+ * A slice of a window has 8x8 voxels from the grid's columns. Three or five copies of a slice are made, each
+ * four voxels wide. Each copy begins one voxel further along x than the copy before. So four rows of four
+ * taps are sixteen consecutive bytes, which one load takes. Two lanes' taps share a register
+ * (rows_avx2_lanes.h). */
 #ifndef HL_FILL_WINDOWS_AVX2_LANES_H
 #define HL_FILL_WINDOWS_AVX2_LANES_H
 
@@ -12,9 +13,10 @@
 
 enum {
   WINDOW_SIDE = GRID_COLUMN,       /* width of a window, in voxels */
-  WINDOW_SPREAD = WINDOW_SIDE - 4, /* the greatest distance, in voxels, between the first taps of lanes */
-  USUAL_SPREAD = 2,                /* the greatest distance between first taps in most blocks; because it is a
-                                    * constant, the compiler unrolls loops */
+  WINDOW_SPREAD = WINDOW_SIDE - 4, /* the greatest distance, in voxels, between the first taps of two lanes of
+                                    * a window */
+  USUAL_SPREAD = 2,                /* the greatest such distance in most blocks; because it is a constant, the
+                                    * compiler unrolls loops */
   USUAL_SLICES = 4 + USUAL_SPREAD
 };
 enum { COPY_BYTES = 4 * WINDOW_SIDE, SLICE_BYTES = (WINDOW_SPREAD + 1) * COPY_BYTES };
@@ -22,13 +24,13 @@ enum { COPY_BYTES = 4 * WINDOW_SIDE, SLICE_BYTES = (WINDOW_SPREAD + 1) * COPY_BY
 typedef struct voxel_window {
   const unsigned char *first; /* the address of the window's first row, in its column */
   size_t slice_bytes;
-  size_t beside;      /* bytes from the column to the next column; 0 where the window lies within one
+  size_t beside;      /* number of bytes from the column to the next column; 0 if the window lies within one
                        * column */
   int shift;          /* bits from the column's first voxel to the window's first voxel, in every row */
   int slices, copies; /* slices: number of slices; copies: number of copies of each slice, which is one more
                        * than the greatest distance along x between the first taps of lanes */
-  __m256i taps;       /* bytes to each lane's first tap in the copies, in the order of lanes in
-                       * simd/narrow.h */
+  __m256i taps;       /* for each lane, the number of bytes to its first tap in the copies, in the order of
+                       * lanes in simd/narrow.h */
 } voxel_window;
 
 typedef struct window_copies {
@@ -40,9 +42,9 @@ LANES_INLINE int has_windows(const grid *grid) {
   return grid->columns != NULL && grid->dimension[2] >= USUAL_SLICES;
 }
 
-/* Opens a window in a grid that has windows. cell: tap 0 is at cell - 1; all taps of active lanes lie in the
- * grid. lowest: the least of the active lanes' cells along each axis. Returns false where the taps do not fit
- * a window. */
+/* Opens a window of voxels in a grid that has windows. cell: tap 0 is at cell - 1; all taps of active lanes
+ * lie in the grid. lowest: the least of the active lanes' cells along each axis. Returns false if the taps do
+ * not fit a window. */
 LANES_INLINE int open_window_at(const grid *grid, const lanes_int cell[3], const int32_t lowest[3],
                                 uint32_t active, voxel_window *window) {
   const int32_t side[3] = {WINDOW_SIDE, WINDOW_SIDE, USUAL_SLICES};
@@ -109,7 +111,7 @@ LANES_INLINE void copy_slice_of(const voxel_window *window, int slice, int count
   for (int i = 0; i < 2; i++) {
     rows[i] = _mm256_or_si256(_mm256_srl_epi64(rows_apart(first + 2 * i * GRID_COLUMN), left),
                               _mm256_sll_epi64(rows_apart(beside + 2 * i * GRID_COLUMN), right));
-    /* adds 128, because the columns hold voxels reduced by 128 */
+    /* adds 128, because 128 was subtracted from the voxels in the columns */
     rows[i] = _mm256_xor_si256(rows[i], _mm256_set1_epi8((char)0x80));
   }
   if (count > 4) store_copy(copy + 4 * COPY_BYTES, rows, 1);
@@ -154,7 +156,8 @@ LANES_INLINE pair_of_taps copied_taps_of_pair(const window_copies *copies, const
   return (pair_of_taps){&copies->slice[0][0] + at[0], &copies->slice[0][0] + at[NARROW_SECOND]};
 }
 
-/* A slice of two lanes' taps, four rows of four taps each, as 16-bit numbers, paired as in byte_weights. */
+/* One slice of two lanes' taps: four rows of four taps each, as 16-bit numbers. The numbers are paired like
+ * the weights in byte_weights. */
 typedef struct taps_of_two {
   __m256i pair[2];
 } taps_of_two;
@@ -232,8 +235,8 @@ static __attribute__((noinline)) lanes3 slopes_of_copies(const window_copies *co
 _Static_assert(LANES * sizeof(window_copies) <= INT16_MAX,
                "signed 16-bit numbers hold offsets in the copies of sixteen windows");
 
-/* Sums gradients over windows. Each window holds as many blocks as fit into it; then one sum takes taps from
- * the copies of all windows. Returns false where a single block does not fit a window. */
+/* Sums gradients over windows. Each window serves as many blocks of pixels as fit into it. Then one sum takes
+ * taps from the copies of all windows. Returns false if a single block does not fit a window. */
 static __attribute__((unused)) int slopes_of_windows(const grid *grid, const lanes_int cell[3],
                                                      uint32_t active, uint32_t starts,
                                                      const tap_slope_weights *w, lanes3 *slope) {

@@ -12,14 +12,16 @@
 
 enum {
   WINDOW_SIDE = GRID_COLUMN,      /* width of a window, in voxels */
-  WINDOW_SPREAD = WINDOW_SIDE - 4 /* the greatest distance, in voxels, between the first taps of lanes */
+  WINDOW_SPREAD = WINDOW_SIDE - 4 /* the greatest distance, in voxels, between the first taps of two lanes of
+                                   * a window */
 };
 
 typedef struct voxel_window {
   const unsigned char *first; /* the address of the window's first row; for u8 voxels, of this row in its
                                * column */
   size_t row_bytes, slice_bytes;
-  /* for u8 voxels: bytes from the column to the next column; 0 where the window lies within one column */
+  /* for u8 voxels: number of bytes from the column to the next column; 0 if the window lies within one
+   * column */
   size_t beside;
   __m512i shift; /* for u8 voxels: bits from the column's first voxel to the window's first voxel, in every
                   * row */
@@ -39,7 +41,8 @@ LANES_INLINE __m512i window_index(hl_storage storage, const __m512i offset[3]) {
                                      : index_f32(offset[0], offset[1]);
 }
 
-/* Sets the members that say where in memory the window begins. low: the window's first voxel. */
+/* Sets the members that tell where the window begins in memory. low: the coordinates of the window's first
+ * voxel. */
 LANES_INLINE void locate_window(const grid *grid, const int32_t low[3], voxel_window *window) {
   if (grid->storage == HL_STORAGE_U8) {
     int32_t within = low[0] % GRID_COLUMN;
@@ -62,9 +65,9 @@ LANES_INLINE int has_windows(const grid *grid) {
   return grid->dimension[0] >= WINDOW_SIDE && grid->dimension[1] >= WINDOW_SIDE;
 }
 
-/* Opens a window in a grid that has windows. cell: tap 0 is at cell - 1; all taps of active lanes lie in the
- * grid. lowest: the least of the active lanes' cells along each axis. Returns false where the taps do not fit
- * a window. */
+/* Opens a window of voxels in a grid that has windows. cell: tap 0 is at cell - 1; all taps of active lanes
+ * lie in the grid. lowest: the least of the active lanes' cells along each axis. Returns false if the taps do
+ * not fit a window. */
 LANES_INLINE int open_window_at(const grid *grid, const lanes_int cell[3], const int32_t lowest[3],
                                 uint32_t active, voxel_window *window) {
   __mmask16 lanes_mask = (__mmask16)active, fits = (__mmask16)active;
@@ -123,7 +126,7 @@ LANES_INLINE void load_own_slices(hl_storage storage, const voxel_window *window
                                                  : starting_u16(window->start, start);
 }
 
-/* Takes the taps (0..3, y, z) of every lane, for z from 0 to 3. */
+/* Takes the taps (0..3, y, z) of every lane out of the lane's own slices, for z from 0 to 3. */
 LANES_INLINE void own_taps(hl_storage storage, const own_slices *own, int spread, __m512i index, int y,
                            window_taps taps[4]) {
   window_slice rows[WINDOW_SIDE];
@@ -280,8 +283,8 @@ static __attribute__((noinline)) lanes3 slopes_of_window_f32(const voxel_window 
   return sum;
 }
 
-/* Sums gradients over windows. Each window holds as many blocks as fit into it. Returns false where a single
- * block does not fit a window. */
+/* Sums gradients over windows. Each window serves as many blocks of pixels as fit into it. Returns false if a
+ * single block does not fit a window. */
 static __attribute__((unused)) int slopes_of_windows(const grid *grid, const lanes_int cell[3],
                                                      uint32_t active, uint32_t starts,
                                                      const tap_slope_weights *w, lanes3 *slope) {

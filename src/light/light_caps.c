@@ -7,12 +7,12 @@
  * means over these points. */
 enum { POINTS_OF_PART = 8 };
 
-/* The greatest apparent size of a light that is not cut into parts, as a fraction of the light's distance.
- * The light's apparent length and width must also be about equal. */
+/* A light is not cut into parts if its apparent size is at most this fraction of its distance, and its
+ * apparent length and width are about equal. */
 static const double NARROW = 0.35;
 
 /* Divides a rectangle into parts whose apparent length and width are about equal. length: the apparent
- * lengths of the rectangle's edges. */
+ * lengths of the rectangle's two edges. parts: receives the number of parts along each edge. */
 static void cut_rect(const double length[2], int parts[2]) {
   int longer = length[1] > length[0], across = 1 - longer;
   double ratio = length[longer] / fmax(length[across], length[longer] / MOST_CAPS);
@@ -21,8 +21,8 @@ static void cut_rect(const double length[2], int parts[2]) {
   parts[across] = 1;
 }
 
-/* Chooses the number of parts along a and b of the unit square (hl_light_point), for a view from the
- * content's middle. */
+/* Chooses the number of a light's parts along the two sides a and b of the unit square, whose points stand
+ * for points of the light (hl_light_point). The light is seen from the content's middle. */
 static void choose_parts(const light_source *source, int parts[2]) {
   const light_kind *kind = source->shape.kind;
   vec3 way = vec3_subtract(source->content, source->position), to = vec3_normalise(way);
@@ -66,7 +66,7 @@ light_caps hl_light_caps(const light_source *source) {
   caps.count = parts[0] * parts[1];
   for (int i = 0; i < caps.count; i++) caps.cap[i] = cap_of_part(source, parts, i);
   if (!source->shape.kind->sphere) return caps;
-  /* a sphere counts as the disk that faces the viewing point, wherever this point is */
+  /* a sphere counts as a disk that faces the viewing point, from every viewing point */
   double radius = source->shape.radius;
   vec3_store(caps.cap[0].middle, source->position);
   for (int i = 0; i < 6; i++) caps.cap[0].spread[i] = i < 3 ? (float)(radius * radius / 2) : 0;

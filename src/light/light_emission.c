@@ -8,7 +8,7 @@
 enum { LEAST_SAMPLES = 4, GREATEST_SAMPLES = 32 };
 
 /* Adds the colour at a point of the emission image to a sum. The colour is interpolated bilinearly between
- * the middles of pixels. s, t: the point's place in the image, to the right and upwards, each from -1 to
+ * the middles of pixels. s, t: the point's position in the image, to the right and upwards, each from -1 to
  * 1. */
 static void add_color(const light_picture *picture, double s, double t, double sum[HL_CHANNELS]) {
   const int size[2] = {picture->width, picture->height};
@@ -29,9 +29,9 @@ static void add_color(const light_picture *picture, double s, double t, double s
   }
 }
 
-/* Finds the mean colour of cell (i, j) of side x side cells. For a parallel light, a point's offset is an
- * offset of the direction in which light travels. The image shows the opposite direction, the one in which
- * the light is seen. So the sign of the offset is reversed. */
+/* Finds the mean colour of the emission image in cell (i, j) of side x side cells. For a parallel light, a
+ * point's offset is an offset of the direction in which light travels. The image shows the directions in
+ * which the light is seen, which are the opposite directions. So the sign of the offset is reversed. */
 static void mean_of_cell(const light_source *source, const emission_plane *plane, int side, int i, int j,
                          double mean[HL_CHANNELS]) {
   const light_picture *picture = &source->emission;
@@ -68,7 +68,7 @@ void hl_light_emission_weights(const light_source *source, int side, float (*wei
       weights[i][c] = mean[c] > 0 ? (float)((double)weights[i][c] / mean[c]) : 1;
 }
 
-/* Sets the weights of all cells, dark ones included, to the fractions of the light that they send. */
+/* Sets the weight of each cell, also of dark cells, to the fraction of the light that the cell sends. */
 static void weigh_cells(const light_source *source, light_emission *emission) {
   float weights[EMISSION_CELLS][HL_CHANNELS];
   hl_light_emission_weights(source, EMISSION_SIDE, weights, emission->mean);
@@ -97,11 +97,11 @@ static vec3 middle_of_cell(const light_source *source, int i) {
                         (i % EMISSION_SIDE + 0.5) / EMISSION_SIDE);
 }
 
-/* The greatest slope of the rays to receivers for which the taps of a tilted light reach to all of its cells.
- * At greater slopes, the outermost cells share taps. */
+/* The greatest slope of rays for which the taps of a light that is tilted against the sheets reach all of the
+ * light's cells. If rays come to receivers at greater slopes, the outermost cells share taps. */
 static const double GREATEST_SLOPE = 0.5;
 
-/* Leaves the dark cells of an emission image out, and bounds the positions of the other cells. */
+/* Removes the dark cells of an emission image, and finds bounds of the positions of the other cells. */
 static void finish(light_emission *emission) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   int count = 0;
@@ -186,7 +186,7 @@ void hl_light_emission_taps(const light_emission *emission, double width, const 
   }
   for (int i = 0; i < emission->count; i++) {
     int x = tap[i][0] - first[0], y = tap[i][1] - first[1];
-    /* a position may lie outside of the grid for slopes beyond GREATEST_SLOPE */
+    /* a cell's position may lie outside the grid of taps if the slope is beyond GREATEST_SLOPE */
     x = x < GRID - 1 ? x : GRID - 2;
     y = y < GRID - 1 ? y : GRID - 2;
     for (int corner = 0; corner < 4; corner++) {

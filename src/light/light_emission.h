@@ -1,9 +1,10 @@
 /* light/light_emission.h - the emission image on a light's surface, as the kernel of its penumbrae.
  *
- * The light is cut into cells of equal area, each with its mean colour. A penumbra is a sum of sharp shadows,
- * one for each cell. The shadow of a cell is shifted in proportion to the cell's offset from the light's
- * middle, and weighted by the cell's red, green and blue (derived: T(x) = mean over the light's points y of
- * colour(y) t(x, y)). These shifts and weights are the penumbra's taps. */
+ * The light is cut into cells of equal area. Each cell has the image's mean colour in it. A penumbra is a sum
+ * of sharp shadows, one for each cell. The shadow of a cell is shifted in proportion to the cell's offset
+ * from the light's middle, and weighted by the cell's red, green and blue. These shifts and weights are the
+ * penumbra's taps. Derived: the light at x is T(x) = mean over the light's points y of colour(y) t(x, y),
+ * where t(x, y) is the transmittance from y to x. */
 #ifndef HL_LIGHT_LIGHT_EMISSION_H
 #define HL_LIGHT_LIGHT_EMISSION_H
 
@@ -14,13 +15,13 @@ enum {
   EMISSION_SIDE = 12,
   EMISSION_CELLS = EMISSION_SIDE * EMISSION_SIDE,
   EMISSION_TAPS = (EMISSION_SIDE + 3) * (EMISSION_SIDE + 3),
-  /* The greatest distance from tap to tap, in pixels: the greatest width of the box blur in
-   * cascade_emission.c. */
+  /* the greatest distance between neighbouring taps, in pixels. It is the greatest width of the box blur in
+   * cascade_emission.c */
   EMISSION_GREATEST_STEP = 88
 };
 
-/* A cell of an emission image: its position (u, v) on the plane on which shadows are measured, in units of
- * the light's width on this plane. z: the cell's position along the sheets' normal, in the same unit. */
+/* A cell of an emission image. u, v: the cell's position on the plane on which shadows are measured, in units
+ * of the light's width on this plane. z: the cell's position along the sheets' normal, in the same unit. */
 typedef struct emission_cell {
   double u, v, z;
   /* the fractions of the light's red, green and blue that the cell sends; the sum of each over all cells is
@@ -30,19 +31,18 @@ typedef struct emission_cell {
 
 typedef struct light_emission {
   double mean[HL_CHANNELS]; /* mean red, green and blue of the image over the light's surface */
-  bool even; /* the whole image has one colour, so that the light's penumbrae are the same as without an
-              * image */
+  bool even; /* whether the whole image has one colour, so that penumbrae are the same as without an image */
   int count; /* number of cells that are not dark */
   emission_cell cells[EMISSION_CELLS];
-  bool tilted;     /* whether cells differ in z, so that the taps depend on the slope of the rays to the
+  bool tilted;     /* whether the cells' z differ, so that the taps depend on the slope of the rays to the
                     * receiver */
-  double reach;    /* the cells' greatest distance from the middle, for any receiver */
-  double range[2]; /* the cells' extent along u and v, for any receiver */
+  double reach;    /* the greatest distance of a cell from the light's middle, as seen from any receiver */
+  double range[2]; /* the extent of the cells along u and v, as seen from any receiver */
 } light_emission;
 
-/* The mean colours of side x side cells of the unit square (hl_light_point), divided by the mean colour of
- * the image, `mean`. In a channel that is dark everywhere, the results are 1. weights: [side * side]; cell
- * (i, j) has the index i * side + j. */
+/* Finds the mean colours of side x side cells of an emission image (cells of the unit square of
+ * hl_light_point). They are divided by `mean`, the mean colour of the whole image. In a channel that is dark
+ * everywhere, the results are 1. weights: [side * side]; cell (i, j) has the index i * side + j. */
 void hl_light_emission_weights(const light_source *source, int side, float (*weights)[HL_CHANNELS],
                                double mean[HL_CHANNELS]);
 
@@ -59,21 +59,23 @@ void hl_light_emission_see(const light_source *source, const sheet_light *seen, 
 void hl_light_emission_project(const light_source *source, const view *view, double size,
                                light_emission *emission);
 
-/* Whether a light's penumbrae have several colours because of its emission image. */
+/* Returns whether a light's penumbrae are coloured, because its emission image has several colours. */
 bool hl_light_emission_colored(const hl_light *light);
 
-/* The kernel of one penumbra: taps at distances of step[0] pixels along u and step[1] pixels along v. Before
- * the taps weigh pixels, the pixels must be averaged over these distances. */
+/* The kernel of one penumbra: taps at distances of step[0] pixels along u and step[1] pixels along v. Pixels
+ * must be averaged over these distances before the taps weigh them. */
 typedef struct emission_taps {
   int count;
-  int32_t x[EMISSION_TAPS], y[EMISSION_TAPS]; /* places of the taps, in pixels from the receiver's pixel */
+  int32_t x[EMISSION_TAPS], y[EMISSION_TAPS]; /* the positions of the taps, in pixels from the receiver's
+                                               * pixel */
   float weight[HL_CHANNELS][EMISSION_TAPS];
 } emission_taps;
 
-/* Chooses the distances of taps along u and v. width: the width of the penumbra, in pixels. */
+/* Chooses the distances between a penumbra's taps along u and v. width: the width of the penumbra, in
+ * pixels. */
 void hl_light_emission_steps(const light_emission *emission, double width, int step[2]);
-/* Finds the taps of a penumbra. slope: the slope of the rays to the receivers, along u and v; the taps of a
- * tilted light depend on it. */
+/* Finds the taps of a penumbra. slope: the slope, along u and v, at which rays come to the receivers. The
+ * taps depend on it if the light is tilted against the sheets. */
 void hl_light_emission_taps(const light_emission *emission, double width, const int step[2],
                             const double slope[2], emission_taps *taps);
 

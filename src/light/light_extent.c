@@ -8,7 +8,7 @@ vec3 hl_light_point(const light_source *source, double a, double b) {
 
 /* ---- the light as seen from the sheets ---- */
 
-/* A symmetric 2x2 matrix along u and v. */
+/* A symmetric 2x2 matrix of variances and covariance along the axes u and v. */
 typedef struct covariance {
   double uu, uv, vv;
 } covariance;
@@ -29,8 +29,8 @@ static vec3 onto_plane(vec3 x, vec3 normal) {
   return vec3_subtract(x, vec3_scale(normal, vec3_dot(x, normal)));
 }
 
-/* A first u axis in the sheets: the projection of an edge of a parallelogram, or for other lights of the
- * light's direction. The axis is turned to the principal axis later. */
+/* Chooses a first axis u within the sheets. It is the projection of the light's direction; for a light that
+ * is a parallelogram, the projection of one of its edges. The axis is turned to the principal axis later. */
 static vec3 first_axis(const light_source *source, vec3 normal) {
   vec3 along = source->shape.kind->parallelogram ? source->shape.edge1 : source->direction;
   vec3 axis = onto_plane(along, normal);
@@ -38,7 +38,7 @@ static vec3 first_axis(const light_source *source, vec3 normal) {
 }
 
 /* Projects a point of the light onto a plane that is parallel to the sheets, along the ray from the content's
- * middle to the point. If the point is nearly as low as the content, it would be moved far away; so its
+ * middle to the point. A point that is nearly as low as the content would be moved far away; so a point's
  * distance from the content is multiplied by at most four. If the light lies beside or below the content's
  * middle, the point is projected along the sheets' normal. */
 static vec3 seen_on_plane(const light_source *source, vec3 normal, vec3 offset) {
@@ -77,8 +77,8 @@ sheet_light hl_light_on_sheets(const light_source *source, vec3 normal) {
   vec3 mean = vec3_scale(sum, 1 / n);
   double u = vec3_dot(mean, seen.u), v = vec3_dot(mean, seen.v);
   c = turn_to_axes((covariance){c.uu / n - u * u, c.uv / n - u * v, c.vv / n - v * v}, &seen.u, &seen.v);
-  /* for parallel light, the plane goes through the end of the direction vector, so that its height is l.h.
-   * The widths are divided by this height, which makes them widths at height 1 */
+  /* For parallel light, the plane goes through the end of the direction vector l. So its height is l.h, where
+   * h is the sheets' normal. Widths divided by this height are the widths at the height 1. */
   double height = source->parallel ? fmax(vec3_dot(source->direction, normal), 0.1) : 1;
   seen.middle = vec3_add(centre, mean);
   seen.width_u = sqrt(12 * fmax(c.uu, 0)) / height;
@@ -113,7 +113,8 @@ double hl_sheet_light_squared_width(const sheet_light *light, int axis, double s
   return 12 * fmax(xx - 2 * slope * xz + slope * slope * zz, 0);
 }
 
-/* The average size is the mean of the extents of the light's projection along its two principal axes. */
+/* The average size is the mean of two extents: the extents of the light's projection along its two principal
+ * axes. */
 double hl_light_average_size(const light_source *source, vec3 normal) {
   vec3 u = vec3_perpendicular(normal), v = vec3_cross(normal, u);
   vec3 su = mat3_apply(source->spread, u), sv = mat3_apply(source->spread, v);

@@ -1,8 +1,8 @@
 /* light/light_source.c - see light_source.h. */
 #include "light/light_source.h"
 
-/* Where the square of a light's size is at most this fraction of the square of its distance, the light counts
- * as a point: its penumbrae are too narrow for any pixel. */
+/* A light counts as a point if the square of its size is at most this fraction of the square of its distance.
+ * The light's penumbrae are then too narrow for any pixel. */
 static const double POINT_LIKE = 1e-12;
 
 static double trace(mat3 m) { return m.row[0].x + m.row[1].y + m.row[2].z; }
@@ -51,11 +51,11 @@ light_source hl_light_in_sector(const light_source *whole, const light_sectors *
 
 /* ---- sectors ---- */
 
-/* Finds the axes of the sectors: three at the angle phi to the eye's direction, and three at this angle to
- * the opposite direction, turned by 60 degrees. For phi = 54.7 degrees they are the axes of an octahedron,
- * seen at a right angle to a face. For phi = 45 degrees every direction lies within 59 degrees of an axis.
- * Wide pictures need axes closer to the eye's direction, so that their corners' rays still cross the
- * sheets. */
+/* Finds the axes of the sectors into which the rays of a light within the content are divided: three at the
+ * angle phi to the eye's direction, and three at this angle to the opposite direction, turned by 60 degrees.
+ * For phi = 54.7 degrees they are the axes of an octahedron, seen at a right angle to a face. For phi = 45
+ * degrees every direction lies within 59 degrees of an axis. Wide pictures need axes closer to the eye's
+ * direction, so that their corners' rays still cross the sheets. */
 light_sectors hl_light_sectors(vec3 eye_direction, double widest) {
   const double usual = 45 * HL_PI / 180, flattest = 75 * HL_PI / 180, closest = 15 * HL_PI / 180;
   double phi = fmax(fmin(usual, flattest - widest), closest);
@@ -67,9 +67,9 @@ light_sectors hl_light_sectors(vec3 eye_direction, double widest) {
     sectors.axis[i] = vec3_add(vec3_scale(eye_direction, along), vec3_scale(across, sin(phi)));
   }
   /* A direction at a right angle to the eye's direction, midway between two axes, has the cosine cos(30
-   * degrees) sin(phi) with these axes. Every direction has, with some axis, a cosine of at least 0.84 times
-   * this number (found over 200,000 directions, phi from 15 to 45 degrees). A sector ends a little farther
-   * from its axis, at 0.7 times this cosine, so that sectors fade into each other. */
+   * degrees) sin(phi) with these axes. For every direction, the cosine of the angle to the nearest axis is at
+   * least 0.84 times this number (tested with 200,000 directions, phi from 15 to 45 degrees). A sector ends a
+   * little farther from its axis, at 0.7 times this cosine, so that sectors fade into each other. */
   sectors.least = 0.7 * cos(HL_PI / 6) * sin(phi);
   return sectors;
 }
@@ -117,10 +117,10 @@ static bool bound_screen(const view *view, const light_source *source, double lo
 
 /* Finds bounds, along both axes of a view, of the part of the view's picture that a light's cone lights.
  * Derived, for one axis: take the planes through the light that contain the view's other axis, and let phi be
- * the angle between such a plane and the view's normal n. Such a plane touches a cone of half angle a where r
- * sin(psi - phi) = +- sin a. Here r and psi are the length and the angle of the cone's axis, projected onto
- * the plane of n and the first axis. The view's corner, du and dv must be n and the two axes, as unit vectors
- * at right angles. */
+ * the angle between such a plane and the view's normal n. Such a plane touches the light's cone of half angle
+ * a where r sin(psi - phi) = +- sin a. Here r and psi are the length and the angle of the cone's axis,
+ * projected onto the plane of n and the first axis. The view's corner, du and dv must be n and the two axes,
+ * as unit vectors at right angles. */
 static bool bound_cone(const view *view, const light_source *source, double low[2], double high[2]) {
   const vec3 axes[2] = {view->du, view->dv};
   vec3 cone = vec3_normalise(source->shape.direction);
@@ -151,8 +151,9 @@ void hl_lit_region(const view *view, const light_source *source, double low[2], 
     cut((double[2]){-reach, -reach}, (double[2]){reach, reach}, low, high);
   }
   if (source->shadows != HL_SHADOWS_HARD)
-    return; /* matter outside the lit region casts penumbrae into it, so the bounds are not cut down to the
-             * light's cone and screen */
+    /* Matter outside the lit region casts penumbrae into it. So the bounds are not reduced to the light's
+     * cone and screen. */
+    return;
   if (source->screen.picture.pixels != NULL && bound_screen(view, source, lit_low, lit_high))
     cut(lit_low, lit_high, low, high);
   if (source->shape.kind->cone && bound_cone(view, source, lit_low, lit_high))

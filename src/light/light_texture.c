@@ -7,10 +7,10 @@
 #include "scene/light/light_kind.h"
 #include "view/view.h"
 
-/* The light's view through its screen; the view's pixels are the pixels of the projected image. Derived: a
- * sample x lies on the ray through c + s R + t U. For a light at P, x - P = w (c - P + s R + t U); for
- * parallel light along d, x = c + s R + t U + k d. These are three linear equations, whose third unknown is w
- * or k. */
+/* The light's view through its screen; the view's pixels are the pixels of the projected image. Derived: let
+ * the screen have the middle c and the half edges R and U. A sample x lies on the ray through the screen's
+ * point c + s R + t U. For a light at P, x - P = w (c - P + s R + t U); for parallel light along d, x = c + s
+ * R + t U + k d. These are three linear equations, whose third unknown is w or k. */
 static view view_of_screen(const light_source *source, int width, int height) {
   vec3 corner = vec3_add(vec3_subtract(source->screen.center, source->screen.right), source->screen.up);
   view view = {.perspective = !source->parallel,
@@ -26,8 +26,8 @@ static view view_of_screen(const light_source *source, int width, int height) {
 }
 
 /* The length of a vector of the screen after the light has projected it to the content's middle. The length
- * is measured at a right angle to the light's ray there. Where the content lies between light and screen, the
- * vector is not magnified. */
+ * is measured at a right angle to the light's ray there. If the content lies between the light and the
+ * screen, the vector keeps its length. */
 static double length_at_content(const light_source *source, const view *view, vec3 step, vec3 content) {
   vec3 way = source->direction;
   double magnified = 1;
@@ -41,7 +41,7 @@ static double length_at_content(const light_source *source, const view *view, ve
 
 /* ---- convolution along one axis ---- */
 
-/* The weights of neighbouring pixels of an image, for each pixel of a result. */
+/* The weights with which pixels of an image are added up, for each pixel of a result along one axis. */
 typedef struct axis_weights {
   int count, taps;
   int *first;     /* owned; [count]; for each pixel of the result, the first weighted pixel of the image. All
@@ -49,12 +49,14 @@ typedef struct axis_weights {
   float *weights; /* owned; [count][taps] */
 } axis_weights;
 
-/* The fraction of a kernel that lies below x. The kernel reaches from -1 to 1. */
+/* The type of a function that gives the fraction of a kernel's area that lies below x. The kernel reaches
+ * from -1 to 1. */
 typedef double kernel_fraction(double x);
 
 static double box_below(double x) { return fmin(fmax((x + 1) / 2, 0), 1); }
 
-/* A disk of radius 1 has the area x sqrt(1 - x^2) + asin x + pi / 2 below x. */
+/* Derived: the part of a disk of radius 1 that lies below x has the area x sqrt(1 - x^2) + asin x + pi /
+ * 2. */
 static double disk_below(double x) {
   if (x <= -1) return 0;
   if (x >= 1) return 1;
@@ -65,7 +67,8 @@ static double disk_below(double x) {
  * kernel lies at start + (i + 1/2) step. */
 typedef struct axis_plan {
   int count;                      /* number of result pixels */
-  double start, step, half_width; /* in pixels of the image that is convolved */
+  double start, step, half_width; /* The middle of the first kernel's pixel, the distance between kernels, and
+                                   * half of a kernel's width; in pixels of the image that is convolved */
 } axis_plan;
 
 /* Finds the weights of a convolution along one axis. length: the number of the image's pixels along the
@@ -96,7 +99,8 @@ static void release_axis(hl_context *context, axis_weights *axis) {
   hl_release(context, axis->weights);
 }
 
-/* Convolves one line of pixels with three channels. from_step, to_step: floats from pixel to pixel. */
+/* Convolves one line of pixels with three channels. from_step, to_step: the number of floats from one pixel
+ * to the next. */
 static void convolve_line(const float *from, size_t from_step, const axis_weights *axis, float *to,
                           size_t to_step) {
   for (int i = 0; i < axis->count; i++) {
@@ -156,9 +160,9 @@ static hl_status make_level(hl_context *context, kernel_fraction *below, const t
 
 /* ---- blur by the light's extent ---- */
 
-/* The standard deviations of the blur along u and v, in pixels of the image: for parallel light at distance 1
- * behind the screen, for near light at infinite distance. They are the light's spread, projected onto the
- * screen along the ray to the content's middle. */
+/* The standard deviations, along u and v, by which the light's extent blurs the image; in pixels of the
+ * image. For parallel light they hold at the distance 1 behind the screen, for near light at an infinite
+ * distance. They are the light's spread, projected onto the screen along the ray to the content's middle. */
 static void spread_on_screen(const light_source *source, const view *view, vec3 content,
                              double deviation[2]) {
   vec3 ray = source->parallel ? source->direction : vec3_normalise(vec3_subtract(content, source->position));
@@ -175,8 +179,9 @@ static void spread_on_screen(const light_source *source, const view *view, vec3 
   }
 }
 
-/* The factor by which the blur at a point is scaled: the point's distance from the screen, or |1 - Zs / Z|
- * for a near light. */
+/* The factor by which the image's blur at a point is scaled. For parallel light it is the point's distance
+ * from the screen; for a near light it is |1 - Zs / Z|, where Zs and Z are the distances of the screen and of
+ * the point from the light. */
 static double blur_at(const light_source *source, const view *view, vec3 point) {
   if (source->parallel) return fabs(mat3_apply(view->inverse, vec3_subtract(point, view->corner)).x);
   double w = mat3_apply(view->inverse, vec3_subtract(point, view->origin)).x;
@@ -223,7 +228,7 @@ static hl_status make_levels(hl_context *context, const light_source *source, co
     widest = fmax(widest, deviation[axis] * (double)texture->sharpness[axis]);
   for (int i = 0; i < use->point_count; i++) reach = fmax(reach, blur_at(source, view, use->points[i]));
   if (!(widest * reach > 0.25))
-    return HL_OK; /* if the blur is below a quarter of a pixel of the picture, levels are not needed */
+    return HL_OK; /* the blur is below a quarter of a pixel of the picture, so the texture needs no levels */
   double first = FIRST_BLUR / widest;
   size_t floats = 0;
   while (texture->level_count < TEXTURE_LEVELS) {
@@ -257,8 +262,8 @@ static hl_status make_levels(hl_context *context, const light_source *source, co
 
 /* ---- the screen ---- */
 
-/* The number of pixels along a side of the averaged image: the length of the projected image's side in pixels
- * of the picture, but at most the number of pixels that the image itself has. */
+/* The number of pixels along a side of the averaged image. It is the length of the projected image's side in
+ * pixels of the picture, but at most the image's own number of pixels. */
 static int resolution(double length, int count, double pixel, float *sharpness) {
   double wanted = ceil(length / pixel);
   int chosen = wanted < 1 ? 1 : wanted < count ? (int)wanted : count;

@@ -4,11 +4,11 @@
  * whatever the resolution of the shadow buffer. An image that is finer than the picture is averaged once a
  * frame, to about the size of the picture's pixels.
  *
- * An extended light with soft shadows blurs the image: at the distance t behind the screen it is convolved
- * with the light's shape, scaled by t (parallel light) or by 1 - Zs / Z, where the screen lies at Zs and the
- * sample at Z from a near light (eq. (5) with the screen as occluder). Blurred levels of the image, each of
- * twice the variance of the one before, are made once a frame; each sample interpolates between two of
- * them. */
+ * An extended light with soft shadows blurs the image: at a sample, it is convolved with the scaled shape of
+ * the light. For parallel light, the scale is the distance of the sample behind the screen. For a near light,
+ * the scale is 1 - Zs / Z, where Zs and Z are the distances of the screen and of the sample from the light
+ * (eq. (5) with the screen as occluder). Blurred levels of the image, each of twice the variance of the one
+ * before, are made once a frame; each sample interpolates between two of them. */
 #ifndef HL_LIGHT_LIGHT_TEXTURE_H
 #define HL_LIGHT_LIGHT_TEXTURE_H
 
@@ -29,25 +29,26 @@ typedef struct light_texture {
   const float *pixels; /* [height][width][3], linear RGB; the averaged image; null: the light has no
                         * texture */
   int width, height;
-  /* maps frame space to (w, w u, w v), where u and v are pixels from the image's top left corner. where w <=
-   * 0, the sample's ray does not pass the screen's plane */
+  /* maps frame space to (w, w u, w v), where u and v are pixels from the image's top left corner. If w <= 0,
+   * the sample's ray does not cross the screen's plane */
   float map[3][4];
   float sharpness[2]; /* along u and v: the edge of a pixel of the image, in pixels of the picture; at least
                        * 1 */
-  float beyond[4];    /* for parallel light: maps frame space to the distance from the screen along the rays.
-                       * For near light, the factor w of `map` is used instead */
+  float beyond[4];    /* for parallel light: maps frame space to the distance behind the screen along the
+                       * rays. For near light, the factor w of `map` is used instead */
   int parallel;
   /* 1 / square of the distance from the screen (near light: of 1 - Zs / Z) at which the blur is that of level
    * 0. At 2^l times this square the blur is the blur of level l, whose variance is 2^l times greater */
   float first;
-  float edge[2];   /* along u and v: width, in pixels of the image, of a box whose variance is that of the
-                    * blur at distance 1 */
-  int level_count; /* number of levels; 0: the light's extent does not matter */
+  float edge[2];   /* along u and v: the width, in pixels of the image, of a box that has the same variance as
+                    * the blur at the distance 1 */
+  int level_count; /* number of levels; 0: the light's extent does not blur the image */
   texture_level level[TEXTURE_LEVELS];
-  float *memory; /* owned; the averaged image and the blurred levels; null where neither is needed */
+  float *memory; /* owned; the memory of the averaged image and the blurred levels; null if neither is
+                  * needed */
 } light_texture;
 
-/* The content that a light texture falls on; frame space. */
+/* The content that a light texture falls on, and the size of the picture's pixels there; frame space. */
 typedef struct texture_use {
   const vec3 *points; /* [point_count]; borrowed; corners of the content, frame space */
   int point_count;
@@ -56,7 +57,7 @@ typedef struct texture_use {
   double pixel; /* the edge of a picture's pixel at the content's middle; frame units */
 } texture_use;
 
-/* Makes the texture of a light. Release it with hl_light_texture_release(), after a failure too. */
+/* Makes the texture of a light. Release it with hl_light_texture_release(), even after a failure. */
 hl_status hl_light_texture_create(hl_context *context, const light_source *source, const texture_use *use,
                                   light_texture *texture, hl_error *error);
 void hl_light_texture_release(hl_context *context, light_texture *texture);

@@ -53,15 +53,16 @@ static double mean_over_cap(double g, double c, double towards, const ring_place
     sum += rings->sine[i] * acos(fmin(fmax(edge, -1), 1)) / HL_PI;
   }
   sum *= (high - low) / 2 * HL_PI / RING_COUNT;
-  if (turn < half) sum += 1 / (1 - g) - high; /* the rings that lie completely within the cap */
+  /* Adds the rings around the cap's middle that lie completely within the cap. */
+  if (turn < half) sum += 1 / (1 - g) - high;
   if (turn + half > HL_PI)
-    sum += low - 1 / (1 + g); /* adds the rings around the opposite direction, which lie completely within the
+    sum += low - 1 / (1 + g); /* adds the rings around the opposite direction that lie completely within the
                                * cap */
   return (1 - g * g) / (g * (1 - c)) * sum;
 }
 
-/* Fills a row of a table with the means over the cap whose edge is at an angle of cosine c to its middle.
- * apart: floats from a number of the row to the next. */
+/* Fills a row of a table with the means of the phase function over a cap. c: the cosine of the angle between
+ * the cap's edge and its middle. apart: the number of floats from one number of the row to the next. */
 static void fill_row(double g, double c, const ring_places *rings, float *row, size_t apart) {
   for (int i = 0; i < PHASE_COLUMNS; i++) {
     double s = 1 - g + 2 * g * i / (PHASE_COLUMNS - 1);
@@ -77,7 +78,8 @@ static bool scatters_unevenly(const hl_scene_volume *volume) {
   return volume->anisotropy != 0 && volume->shading != HL_SHADING_FLAT;
 }
 
-/* Whether some light of a scene is wide. near: only lights that are not parallel are looked at. */
+/* Returns whether some light of a scene is wide: whether its size matters to the phase function. near: only
+ * lights that are not parallel are looked at. */
 static bool has_wide_light(const hl_scene_description *scene, bool near) {
   bool found = false;
   for (size_t i = 0; i < scene->light_count; i++)
@@ -86,14 +88,14 @@ static bool has_wide_light(const hl_scene_description *scene, bool near) {
   return found;
 }
 
-/* Whether the tables need rows for caps of all sizes. They do for lights that are wide and near, and for the
- * sky. */
+/* Returns whether the tables need rows for caps of all sizes. They need them for lights that are wide and
+ * near, and for the sky. */
 static bool needs_caps(const hl_scene_description *scene) {
   return scene->sky.type != HL_SKY_NONE || has_wide_light(scene, true);
 }
 
-/* The number of tables that a scene needs. Each volume that scatters unevenly needs a table for its
- * anisotropy g and, where light is scattered more than once, a table for g^2. */
+/* The number of tables that a scene needs. A volume that scatters unevenly needs a table for its anisotropy
+ * g. If light is scattered more than once in it, it also needs a table for g^2. */
 static size_t wanted_tables(const hl_scene_description *scene) {
   size_t count = 0;
   if (scene->render.compositing != HL_COMPOSITING_LIGHT ||

@@ -1,10 +1,9 @@
-/* light/phase_table.h - the means of Henyey and Greenstein's phase function over wide lights and parts of a
- * sky.
+/* light/phase_table.h - tables of the means of Henyey and Greenstein's phase function over wide lights and
+ * parts of a sky.
  *
  * A table for each anisotropy holds the mean of p over round caps of directions, divided by p in the
  * direction of the cap's middle. It has a row for each size of a cap and a column for each angle to its
  * middle. Angles, and the angles up to which caps reach, are measured by
- *
  *
  *     s(angle) = sqrt(1 + g^2 - 2 g cos(angle)),      p = (1 - g^2) / s^3,
  *
@@ -26,19 +25,19 @@ typedef struct phase_table {
   double g;            /* the anisotropy of the table, 0 < g < 1 */
   float rows_per_log2; /* number of rows of caps for each doubling of s^2 (see the head of the
                         * file) */
-  /* [PHASE_CAPS]; for each size of a cap and each angle: the number [0] of this row, and the number [1] of
-   * the next row; set only where there is a sky, or where some light is wide and not parallel */
+  /* [PHASE_CAPS]; for each size of a cap and each angle, two numbers: [0] is the number of this row, [1] the
+   * number of the next row. Set only if there is a sky, or if some light is wide and not parallel */
   float (*caps)[PHASE_COLUMNS][2];
   /* [lights]; a row for each light; only the rows of wide parallel lights are set */
   float (*parallel)[PHASE_COLUMNS];
 } phase_table;
 
-/* The tables of a scene; kept between frames while anisotropies and lights stay the same. */
+/* The tables of a scene. They are kept between frames while anisotropies and lights stay the same. */
 typedef struct phase_tables {
   void *memory;        /* owned; the memory of `tables` and `numbers` */
   size_t bytes;        /* bytes of `memory` */
   phase_table *tables; /* [count]; in `memory` */
-  size_t count;        /* number of tables; 0: no medium of the scene needs any */
+  size_t count;        /* number of tables; 0: no medium of the scene needs a table */
   float *numbers;      /* the numbers of all tables, one table after the other; in `memory` */
   hl_key key;
 } phase_tables;
@@ -50,7 +49,7 @@ hl_status hl_phase_update(hl_context *context, hl_pool *pool, const hl_scene_des
                           phase_tables *tables, hl_error *error);
 void hl_phase_release(hl_context *context, phase_tables *tables);
 
-/* The table for an anisotropy or for its opposite; null: there is no such table. */
+/* Returns the table for an anisotropy or for its opposite; null if there is no such table. */
 const phase_table *hl_phase_table(const phase_tables *tables, double anisotropy);
 
 #endif
