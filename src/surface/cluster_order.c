@@ -1,5 +1,6 @@
-/* surface/cluster_order.c - see cluster_order.h. Sorts by Morton codes (Morton 1966) of the first corners of
- * triangles and the centres of spheres. Primitives with the same code keep their order. */
+/* surface/cluster_order.c - orders the primitives of a mesh (cluster_order.h) by Morton codes (Morton 1966),
+ * which follow a space-filling curve. The codes are made from the first corners of triangles and from the
+ * centres of spheres. Primitives with the same code keep their order. */
 #include "surface/cluster_order.h"
 
 #include <string.h>
@@ -20,7 +21,7 @@ static const float *place_of(const surfaces *all, uint32_t primitive) {
   return hl_primitive_kind(all, primitive)->point(all, primitive);
 }
 
-/* Spreads the lowest ten bits of a number: two zeros follow after each bit. */
+/* Spreads the lowest ten bits of a number: after each bit two zeros are inserted. */
 static uint32_t spread(uint32_t bits) {
   bits = (bits | bits << 16) & 0x030000ffu;
   bits = (bits | bits << 8) & 0x0300f00fu;
@@ -47,7 +48,7 @@ static void code_task(void *data, size_t task, int worker) {
     ordering->codes[i] = code_of(ordering, place_of(ordering->all, ordering->first + (uint32_t)i));
 }
 
-/* Finds a cube around the points by which the primitives are ordered. */
+/* Finds a cube around the points from which the primitives' Morton codes are made. */
 static void find_cube(ordering *ordering) {
   float high[3], size = 0;
   for (int axis = 0; axis < 3; axis++) ordering->low[axis] = INFINITY, high[axis] = -INFINITY;

@@ -5,7 +5,7 @@
 
 #include "surface/surfaces.h"
 
-/* The number of elements of `spare`, for each primitive, that hl_cluster_order_fill() needs. */
+/* The number of elements of `spare` that hl_cluster_order_fill() needs for each primitive. */
 enum { ORDER_SPARE = 3 };
 
 /* Orders the primitives `first` to first + count - 1 along a space-filling curve, and writes their numbers to

@@ -19,9 +19,9 @@ static uint16_t filled_up(uint32_t vertices) { return (uint16_t)((vertices + 15)
 
 /* ---- memory ---- */
 
-/* Numbers of the clusters and primitives of a scene's meshes. */
+/* The numbers of clusters and of primitives of a scene's meshes. */
 typedef struct cluster_counts {
-  size_t all, with_corners; /* all: number of all clusters; with_corners: number of the clusters whose
+  size_t all, with_corners; /* all: the number of all clusters; with_corners: the number of the clusters whose
                              * primitives have corners */
   size_t primitives;
   uint64_t most; /* the greatest number of primitives of one kind in one mesh */
@@ -83,8 +83,8 @@ static void find_box(const surfaces *all, surface_cluster *cluster) {
 /* ---- cones ---- */
 
 /* Finds the cone of a cluster's normals: the mean of the normals, and the greatest angle between a normal and
- * the mean. Triangles without an area have no normal. They do not count, because they are never seen.
- * Primitives without corners have normals in all directions. */
+ * the mean. Triangles without an area have no normal. Such triangles do not count, because they are never
+ * seen. Primitives without corners have normals in all directions. */
 static void find_cone(const surfaces *all, surface_cluster *cluster) {
   vec3 normals[CLUSTER_SIZE], sum = {0, 0, 0};
   double least = 1;
@@ -104,7 +104,7 @@ static void find_cone(const surfaces *all, surface_cluster *cluster) {
 
 /* ---- vertices ---- */
 
-/* A set of the vertices of a cluster, as a hash table. */
+/* A set of the vertices of a cluster. It is a hash table. */
 enum { SLOTS = 512 };
 typedef struct vertex_set {
   uint32_t slot[SLOTS]; /* the vertex's index in `vertex`, plus 1; 0: the slot is free */
@@ -242,10 +242,10 @@ void hl_clusters_release(hl_context *context, surfaces *all) {
  * turned away by more than this angle. */
 static const double AWAY = 0.02;
 
-/* Whether all triangles of a cluster surely turn their backs to a view. Derived: let v be the vector from the
- * eye to the middle of the box, t the angle between v and the cone's axis n, and m a normal that differs from
- * n by at most the angle a. Then m.v >= |v| cos(t + a). Let r be half the box's diagonal. Another point of
- * the box lies at v + w with |w| <= r, so m.(v + w) >= |v| cos(t + a) - r. */
+/* Returns whether all triangles of a cluster surely turn their backs to a view. Derived: let v be the vector
+ * from the eye to the middle of the box, t the angle between v and the cone's axis n, and m a normal that
+ * differs from n by at most the angle a. Then m.v >= |v| cos(t + a). Let r be half the box's diagonal.
+ * Another point of the box lies at v + w with |w| <= r, so m.(v + w) >= |v| cos(t + a) - r. */
 bool hl_cluster_faces_away(const surface_cluster *cluster, const view *view) {
   vec3 low = hl_surface_vector(cluster->low), high = hl_surface_vector(cluster->high), way = view->direction;
   double reach = 0, a = cluster->cosine;

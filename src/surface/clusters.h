@@ -1,7 +1,7 @@
 /* surface/clusters.h - clusters of a mesh. A cluster is up to 64 triangles, or up to 64 spheres, that lie
  * close together. It has a box around its primitives, and a cone that holds their normals.
  *
- * Where possible, tests of what a view sees are made once for a whole cluster. A cluster of triangles has its
+ * A cluster that a view does not see at all is left out after a single test. A cluster of triangles has its
  * own copy of the triangles' vertices, so that these vertices lie side by side in memory. */
 #ifndef HL_SURFACE_CLUSTERS_H
 #define HL_SURFACE_CLUSTERS_H
@@ -21,14 +21,14 @@ struct surface_cluster {
   uint32_t first; /* the index, in all->order, of the cluster's first primitive. All primitives of a cluster
                    * are of the same kind, because the order keeps primitives of one kind together */
   uint16_t count, mesh;
-  /* the number of the vertices in the cluster's own copy, for clusters of triangles; a multiple of 16, as in
-   * cluster_shape */
+  /* the number of the vertices in the cluster's own copy, for clusters of triangles; a multiple of 16, which
+   * cluster_shape requires */
   uint16_t vertices;
   size_t first_vertex; /* the index, in all->cluster_positions, of the cluster's first vertex */
 };
 
-/* Counts the greatest amount of memory that hl_clusters_create() can take: the amount if triangles share
- * hardly any vertices. */
+/* Counts the greatest amount of memory that hl_clusters_create() can take. It takes this amount if the
+ * triangles share hardly any vertices. */
 void hl_clusters_count(const hl_scene_description *scene, hl_layout *layout);
 
 /* Makes the clusters of all meshes, in the order of the meshes. Clusters of triangles come before clusters
@@ -47,7 +47,8 @@ static inline cluster_shape hl_cluster_shape(const surfaces *all, const surface_
 /* The least height of a cluster's box above the first sheet of a view. */
 double hl_lowest_height(const sheet_stack *sheets, const surface_cluster *cluster);
 
-/* Whether every triangle of a cluster surely turns its back to the view, by at least a small angle. */
+/* Returns whether every triangle of a cluster surely turns its back to the view, by more than a small
+ * angle. */
 bool hl_cluster_faces_away(const surface_cluster *cluster, const view *view);
 
 #endif

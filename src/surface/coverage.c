@@ -9,19 +9,19 @@
 enum { SAMPLES = 16 };
 
 /* An edge of a polygon, as an edge function. The function is value + x * across + y * down, where x and y are
- * the column and the row of a pixel, counted from the tile's corner. It is at least 0 on the polygon's side
- * of the edge. */
+ * the column and the row of a pixel, counted from the tile's corner. The function is at least 0 on the side
+ * of the edge on which the polygon lies. */
 typedef struct edge {
   int64_t value, across, down;
   int64_t offset[SAMPLES]; /* for each sample of a pixel, the difference of the edge function from its value
                             * at the pixel's corner */
-  int64_t least, greatest; /* the least and the greatest offset */
+  int64_t least, greatest; /* the least and the greatest of these offsets */
 } edge;
 
-/* Sets the edge from a to b. Which side of the edge is the inside depends on the order of the corners, which
- * the caller chooses. A sample that lies on an edge must belong to only one of the two triangles of the edge.
- * The edge has opposite directions in these triangles. So the function is reduced by 1 for edges in one half
- * of all directions. */
+/* Sets the edge from a to b. The caller chooses the order of the corners, and by it the side of the edge that
+ * is the inside. A sample that lies on an edge must belong to only one of the two triangles of the edge. The
+ * edge has opposite directions in these triangles. So the function is reduced by 1 for edges in one half of
+ * all directions. */
 static void set_edge(edge *e, int64_t ax, int64_t ay, int64_t bx, int64_t by) {
   int64_t dx = bx - ax, dy = by - ay;
   bool owns = dy > 0 || (dy == 0 && dx < 0);

@@ -6,8 +6,8 @@
 #include "surface/sample_rows.h"
 #include "surface/shown_surface.h"
 
-/* The greatest number of fragments that a pixel may have if its fragments are cut into parts where they
- * cross. Where a pixel has more fragments, nobody sees the order of its surfaces. */
+/* Fragments are cut into parts where they cross only in pixels with at most this number of fragments. In
+ * pixels with more fragments, nobody sees the order of the surfaces. */
 enum { MOST_FRAGMENTS = 32 };
 
 /* The fragments of a pixel, with the surfaces of those fragments that may cross others. */
@@ -19,11 +19,12 @@ typedef struct pixel_fragments {
                                       * part was cut */
   size_t given, count;
   shown_surface surfaces[MOST_FRAGMENTS];
-  uint32_t has_surface, changed; /* one bit for each fragment that the caller gave */
+  uint32_t has_surface, changed; /* One bit for each fragment that the caller gave. has_surface: the fragments
+                                  * whose surface is known; changed: the fragments that were cut */
   int x, y;                      /* column and row of the pixel in the view */
 } pixel_fragments;
 
-/* The depth of a height: a number that grows along the view's rays. */
+/* Converts a height to a depth, a number that grows along the view's rays. */
 static double depth_of(const pixel_fragments *pixel, double height) {
   return pixel->tile->order->falling ? -height : height;
 }
@@ -59,8 +60,8 @@ static uint32_t samples_before(pixel_fragments *pixel, size_t i, size_t j, uint3
   return before;
 }
 
-/* Whether two fragments may cross within samples that both of them cover. first: the fragment that comes
- * before the other one. */
+/* Returns whether two fragments may cross within samples that both of them cover. first: the fragment that
+ * comes before the other fragment. */
 static bool may_cross(const pixel_fragments *pixel, const fragment *first, const fragment *second) {
   double apart = depth_of(pixel, (double)second->height) - depth_of(pixel, (double)first->height);
   return (first->samples & second->samples) != 0 &&

@@ -1,8 +1,8 @@
-/* surface/crossings.h - treats fragments of a pixel whose surfaces cross within the pixel.
+/* surface/crossings.h - cuts fragments of a pixel into parts where their surfaces cross within the pixel.
  *
- * Each fragment is composited at one height. But where two surfaces cross within a pixel, their order differs
- * from sample to sample. So such fragments are cut into parts. Then the line where the surfaces cross is as
- * smooth as edges of surfaces are. */
+ * Each fragment is composited at one height. But if two surfaces cross within a pixel, their order differs
+ * from sample to sample. So such fragments are cut into parts. The line on which the surfaces cross then
+ * looks as smooth as the edges of surfaces. */
 #ifndef HL_SURFACE_CROSSINGS_H
 #define HL_SURFACE_CROSSINGS_H
 
@@ -20,7 +20,7 @@ typedef struct crossing_tile {
 
 /* Cuts the fragments of a tile into parts where their surfaces cross. The fragments must be sorted by pixels,
  * and within a pixel in the view's order. If three surfaces cross in one pixel, and two or more of them let
- * light through, the order of their parts may be wrong. A pixel of more than 32 fragments is left as it is.
+ * light through, the order of their parts may be wrong. A pixel with more than 32 fragments is not changed.
  * to: [2 count]; receives the fragments and their parts, sorted like the input. *parted: set if any fragment
  * changed; a changed fragment may lie in another slab than before. Returns the number of fragments in
  * `to`. */

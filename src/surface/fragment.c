@@ -12,8 +12,8 @@ static uint64_t count_bits(uint64_t words) {
   return (words + (words >> 8)) & 0x00ff00ff00ff00ffu;
 }
 
-/* The sum of the column numbers, or of the row numbers, of some samples. Word b of `set` holds the samples in
- * whose column or row number bit b is set. */
+/* Adds up the column numbers, or the row numbers, of some samples of a pixel. Word b of `set` holds the
+ * samples in whose column or row number bit b is set. */
 static int sum_places(uint16_t samples, uint64_t set) {
   uint64_t count = count_bits(samples * 0x0001000100010001u & set);
   return (int)((count & 255) + 2 * (count >> 16 & 255) + 4 * (count >> 32 & 255) + 8 * (count >> 48));

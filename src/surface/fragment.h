@@ -7,10 +7,10 @@
  *
  * Opacity. Fragments of one pixel may cover the same samples or different samples. They are composited one
  * after the other. So the opacity of a fragment is relative to the light that the fragments before it let
- * pass: it is the fraction of this light that the fragment absorbs, averaged over the pixel's samples.
- * (Derived: let t[i] be the transmittance of sample i before the fragment, and a the fragment's own opacity.
- * The fraction is the sum of t[i] a over the fragment's samples, divided by the sum of t[i] over all
- * samples.) With such opacities triangles that share an edge leave no seam. */
+ * pass. It is the fraction of this light that the fragment absorbs, averaged over the pixel's samples.
+ * Derived: let t[i] be the transmittance of sample i before the fragment, and a the fragment's own opacity.
+ * The fraction is the sum of t[i] a over the fragment's samples, divided by the sum of t[i] over all samples.
+ * With such opacities, triangles that share an edge leave no seam. */
 #ifndef HL_SURFACE_FRAGMENT_H
 #define HL_SURFACE_FRAGMENT_H
 
@@ -27,10 +27,12 @@ typedef struct fragment {
   uint32_t primitive;
   int32_t slab;     /* number k of the slab that lies between the sheets k-1 and k */
   uint16_t samples; /* covered samples, one bit each */
-  uint16_t seen; /* in the eye's view: the covered samples that no opaque fragment before this one covers */
+  uint16_t seen; /* only in the eye's view: the covered samples that no opaque fragment before this fragment
+                  * covers */
   uint16_t mesh; /* index of the mesh to which the primitive belongs */
   uint8_t pixel; /* the pixel's number in its tile, block after block: 16 * block + lane */
-  uint8_t reach; /* in the eye's view: the fragment's reach, in the units of REACH_PARTS */
+  uint8_t reach; /* only in the eye's view: the fragment's reach (see REACH_PARTS), in units of 1 /
+                  * REACH_PARTS of the distance of sheets */
 } fragment;
 
 /* The mean position of the covered samples in their pixel, 0 to 1. */
@@ -41,7 +43,7 @@ void hl_fragment_middle(uint16_t samples, double *u, double *v);
  * FARTHEST stands for an unlimited reach. */
 enum { REACH_PARTS = 16, FARTHEST = UINT8_MAX };
 
-/* Turns a reach into the number that is stored for it. reach: in units of the distance of sheets. */
+/* Converts a reach, in units of the distance between sheets, to the number that is stored for it. */
 static inline uint8_t hl_told_reach(double reach) {
   double parts = reach * REACH_PARTS;
   /* a reach that is NaN counts as unlimited */

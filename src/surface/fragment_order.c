@@ -53,8 +53,8 @@ void hl_sort_keys(order_key *list, order_key *spare, size_t count) {
   if (from != list) memcpy(list, from, count * sizeof *list);
 }
 
-/* Whether two surfaces may cross. apart: the difference of their heights. reach, other: the reaches of the
- * two surfaces (fragment.h). */
+/* Returns whether two surfaces may cross. apart: the difference of their heights. reach, other: the reaches
+ * of the two surfaces, the greatest distances from these heights (fragment.h). */
 static bool may_meet(const fragment_order *order, float apart, uint8_t reach, uint8_t other) {
   return fabs((double)apart) <= hl_reach_of(reach, order->spacing) + hl_reach_of(other, order->spacing);
 }
@@ -95,7 +95,7 @@ size_t hl_sort_by_pixel(const fragment *list, size_t count, const fragment_order
   for (size_t i = 0; i < count; i++)
     keys[places[list[i].pixel]++] = (order_key){
         (uint64_t)hl_ordered_bits(list[i].height, order->falling) << 32 | list[i].primitive, (uint32_t)i};
-  /* places[p] is now the index where pixel p's fragments end */
+  /* places[p] is now the index of the fragment that follows pixel p's last fragment */
   for (size_t p = 0, first = 0; p < TILE_PIXELS; first = places[p++]) {
     size_t own = places[p] - first;
     hl_sort_keys(keys + first, keys + count, own);
@@ -139,9 +139,9 @@ static int count_samples(uint32_t samples) {
 }
 
 /* Finds the opacities of the opaque fragments with which a pixel's fragments begin, and returns the number of
- * these fragments, which may be 0. The opacity of such a fragment is the fraction that it covers of the
- * samples which the fragments before it leave open. *open: receives the samples that all of them leave
- * open. */
+ * these fragments, which may be 0. The fragments before such a fragment leave some samples open. The opacity
+ * of the fragment is the fraction of these open samples that it covers. *open: receives the samples that all
+ * of these fragments leave open. */
 static size_t resolve_opaque(fragment *list, size_t count, const float *least, uint32_t *open) {
   size_t i = 0;
   *open = 0xffff;
@@ -178,25 +178,25 @@ static void resolve_pixel(fragment *list, size_t count, const float *least) {
   }
 }
 
-/* Does the work of resolve_pixel() for a light's view whose buffer is also used for rays of other directions.
- * A pixel that opaque surfaces cover in a slab, or in a slab and the slab before it, is opaque there. This
- * holds even where surfaces before this slab have absorbed all light of the view's own ray, because other
- * rays pass beside these surfaces. The previous slab counts as well, for the following reason. Two triangles
- * of a surface may share a pixel and lie in neighbouring slabs. If each of them absorbed its part of the
- * light, one after the other, some light would be left and come through the surface. The fragments of one
- * slab become one fragment. Returns the number of fragments that are left. */
+/* Finds the opacities of one pixel's fragments, like resolve_pixel(), but for a light's view whose buffer is
+ * also used for rays of other directions. A pixel that opaque surfaces cover in a slab, or in a slab and the
+ * slab before it, is opaque there. This holds even where surfaces before this slab have absorbed all light of
+ * the view's own ray, because other rays pass beside these surfaces. The previous slab counts as well, for
+ * the following reason. Two triangles of a surface may share a pixel and lie in neighbouring slabs. If each
+ * of them absorbed its part of the light, one after the other, some light would be left and come through the
+ * surface. The fragments of one slab become one fragment. Returns the number of fragments that are left. */
 static size_t resolve_slabs(fragment *list, size_t count, const float *least) {
   size_t kept = 0;
-  uint32_t before = 0, covered = 0; /* before: samples covered in the slab before; covered: samples covered in
-                                     * this slab */
+  uint32_t before = 0, covered = 0; /* before: the samples that opaque fragments cover in the slab before;
+                                     * covered: the samples that they cover in this slab */
   for (size_t i = 0; i < count; i++) {
     if (i == 0 || list[i].slab != list[i - 1].slab) {
       before = i > 0 && list[i].slab == list[i - 1].slab + 1 ? covered : 0;
       covered = 0;
     }
     if (hl_is_opaque(&list[i], least)) covered |= list[i].samples;
-    /* from here on, `primitive` tells whether opaque surfaces cover the pixel; the number of the primitive is
-     * not needed any more in a light's view */
+    /* from here on, `primitive` tells whether opaque surfaces cover the whole pixel; a light's view does not
+     * need the primitive's number any more */
     list[i].primitive = covered != 0 && (before | covered) == 0xffff;
   }
   resolve_pixel(list, count, least);

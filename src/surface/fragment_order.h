@@ -11,19 +11,19 @@
 
 /* How the fragments of a view are ordered and composited. */
 typedef struct fragment_order {
-  const float *least; /* [mesh_count]; borrowed; a mesh's opacity has a factor each for red, green and blue
-                       * light; this is the least of the three factors */
-  bool falling;       /* whether the view meets great heights first */
-  bool slabs;         /* the view is a light's, and its buffer also serves rays of other directions than the
-                       * directions of the view's rays */
+  const float *least; /* [mesh_count]; borrowed; a mesh's opacity has one factor each for red, green and blue
+                       * light. This is the least of the three factors */
+  bool falling;       /* whether the view meets greater heights first */
+  bool slabs;         /* whether the view is a light's, and its buffer also serves rays in other directions
+                       * than the view's own rays */
   bool apart;         /* whether fragments are composited as if no fragment hid another */
   double spacing;     /* distance of the sheets; frame units */
 } fragment_order;
 
 /* The key of a fragment for sorting a pixel's fragments. Keys are sorted in place of fragments. */
 typedef struct order_key {
-  uint64_t key;   /* the upper half is made from the height, the lower half is the number of the primitive.
-                   * The fragment with the least key comes first */
+  uint64_t key;   /* The fragment with the least key comes first. The upper half of the key is made from the
+                   * fragment's height, the lower half is the number of its primitive */
   uint32_t index; /* index in the list */
 } order_key;
 

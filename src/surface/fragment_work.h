@@ -12,15 +12,14 @@
 typedef struct fragment_block {
   struct fragment_block *before; /* the block that was filled before this one; owned */
   size_t count, room;
-  fragment list[]; /* [room]; the first `count` fragments are in use */
+  fragment list[]; /* [room]; only the first `count` fragments are in use */
 } fragment_block;
 
 /* The fragments of one tile, sorted by slab, then by pixel, then by height. */
 typedef struct tile_list {
   const fragment *list; /* [count]; borrowed from a fragment_block */
   uint32_t count;
-  uint32_t reached; /* number of the tile's fragments that lie in slabs for which the sweep has already
-                     * asked */
+  uint32_t reached; /* number of the tile's fragments that lie in the slabs that the sweep has reached */
 } tile_list;
 
 /* The input of hl_fragments_create(); borrowed. */
@@ -37,8 +36,8 @@ typedef struct fragments_source {
   bool unseen;   /* if set, the view is the eye's, and sees only meshes that cast shadows and are not visible.
                   * Then no fragment hides another one, and opacities are fractions of the pixel's light */
   double delay;  /* the delay of fragments, in pixels of the view. A fragment absorbs light only from a
-                  * delayed height on: the height that its surface's plane has at this distance. So a surface
-                  * does not darken itself where look-ups interpolate */
+                  * delayed height on: the height of its surface's plane at this distance from the fragment.
+                  * So a surface does not darken itself when look-ups interpolate between pixels */
   /* A distance in pixels. In a light's view, a fragment fills all slabs that its surface's plane crosses
    * within this distance from the fragment. So rays of other directions than the view's find no gap between
    * the pixels of a slanted surface. 0: each fragment fills one slab. */
@@ -47,15 +46,16 @@ typedef struct fragments_source {
    * casts shadows lies in the tile, or beside it, in the slab that ends at the sheet */
   uint64_t *marks;
   int tile_words;
-  const int32_t *needed; /* [tiles]; 0: nobody needs the fragments of this tile; null: all tiles are needed */
+  const int32_t *needed; /* [tiles]; 0: nobody needs the fragments of this tile. Null: the fragments of all
+                          * tiles are needed */
 } fragments_source;
 
 /* The opaque fragments that were added last to a pixel of a tile in a light's view: one fragment for each of
  * several slabs. */
 typedef struct latest_fragments {
-  uint32_t end; /* index, in the worker's scratch, of the first of these fragments, plus 1; 0: there are no
-                 * such fragments */
-  int32_t last; /* the slab of the last of them */
+  uint32_t end; /* the index, in the worker's array scratch, of the first of these fragments, plus 1; 0: there
+                 * are no such fragments */
+  int32_t last; /* the slab of the last of these fragments */
 } latest_fragments;
 
 /* The samples of a pixel that opaque fragments of a light's view cover. */
@@ -66,8 +66,8 @@ typedef struct covered_so_far {
 
 /* One thread's memory; all arrays are owned. */
 typedef struct fragment_worker {
-  _Alignas(64) fragment *scratch; /* [2][room]; the first half holds a tile's fragments, the second half
-                                   * the same fragments after sorting */
+  _Alignas(64) fragment *scratch; /* [2][room]; the first half holds the fragments of a tile, the second half
+                                   * receives the same fragments in sorted order */
   order_key *keys;                /* [2][room]; the keys by which a tile's fragments are sorted, and memory
                                    * for sorting them */
   size_t count, room;
@@ -77,10 +77,10 @@ typedef struct fragment_worker {
                     * heights */
   size_t run_room;
   uint32_t *places; /* [sheets + 2]; memory for sorting fragments by slabs */
-  /* [sheets]; for each slab, which of the 3x3 tiles around the current tile must be marked: the tile that
-   * lies `across` columns and `down` rows away, -1 to 1, has the bit 3 (1 + down) + 1 + across */
+  /* [sheets]; for each slab, the tiles among the 3x3 tiles around the current tile that must be marked: the
+   * tile that lies `across` columns and `down` rows away, -1 to 1, has the bit 3 (1 + down) + 1 + across */
   uint16_t *near;
-  int32_t nearest, farthest; /* the first and the last slab for which `near` is not 0 */
+  int32_t nearest, farthest; /* the first and the last slab for which `near` has a bit */
   fragment_block *out;       /* the fragments of the tiles that the thread has finished; null: there are none
                               * yet */
   bool failed;
@@ -91,15 +91,16 @@ typedef struct fragment_work {
   const fragments_source *source;
   const seen_surfaces *seen;
   const primitive_bins *bins;
-  binned *wanted;           /* [mesh_count]; for each mesh, which of its primitives are made into fragments */
+  binned *wanted;           /* [mesh_count]; for each mesh, the primitives that are made into fragments: all,
+                             * only fronts, or none */
   small_view small;         /* a template for all tiles and meshes: the members that depend on a mesh are not
                              * set */
   fragment_worker *workers; /* [threads]; the memory of each thread */
   /* [mesh_count]; for each mesh, the least of the factors that its opacity has for red, green and blue
    * light */
   float *least;
-  bool *dark_backs; /* [mesh_count]; in a light's view: whether the mesh's back sides get no light of this
-                     * light */
+  bool *dark_backs; /* [mesh_count]; only in a light's view: whether the light does not light the back sides
+                     * of the mesh */
   tile_list *tiles; /* [tiles]; the finished fragments of each tile */
   int tiles_x, tiles_y;
   uint16_t near[TILE_PIXELS]; /* for each pixel of a tile, block after block: the tiles that look-ups

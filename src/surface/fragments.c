@@ -19,7 +19,8 @@ void hl_fragments_count(const surfaces *all, const view *view, int threads, hl_l
   hl_layout_give_back(layout, kept);
 }
 
-/* Takes over the memory blocks of a worker that hold the fragments of the tiles which it finished. */
+/* Takes over, from a worker, the memory blocks with the fragments of the tiles that the worker has
+ * finished. */
 static void keep_blocks(fragment_worker *worker, fragments *made) {
   fragment_block *first = worker->out;
   if (first == NULL) return;
@@ -50,8 +51,8 @@ static hl_status rasterise(fragment_work *work, fragments *made, hl_error *error
   return status;
 }
 
-/* Whether the origin of a view's rays lies outside of a mesh. If the rays begin at a point, the function
- * returns true only if this point lies outside of the mesh's box. */
+/* Returns whether the origin of a view's rays surely lies outside of a mesh. If the rays begin at a point, it
+ * does if this point lies outside of the mesh's box. */
 static bool is_outside(const view *view, const surface_mesh *mesh) {
   return !view->perspective || hl_surface_is_outside(mesh, view->origin, 0);
 }

@@ -1,8 +1,7 @@
-/* surface/fragments.h - where the rays of one view meet surfaces.
+/* surface/fragments.h - makes the fragments of one view: the places where the view's rays meet surfaces.
  *
- * Heights grow along every ray of a light, and grow or fall along every ray of the eye: fragments sorted by
- * height are sorted by depth.
- */
+ * Heights grow along every ray of a light. Along the eye's rays, they either grow on all rays or fall on all
+ * rays. So fragments that are sorted by height are also sorted by depth. */
 #ifndef HL_SURFACE_FRAGMENTS_H
 #define HL_SURFACE_FRAGMENTS_H
 

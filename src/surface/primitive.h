@@ -1,9 +1,9 @@
-/* surface/primitive.h - the interface of a kind of primitive: triangles or spheres. (Tubes are triangles
- * and spheres: mesh/tubes.c.) primitive_kinds.h lists the kinds.
+/* surface/primitive.h - the interface of a kind of primitive: triangles or spheres. (Tubes are triangles and
+ * spheres: mesh/tubes.c.) primitive_kinds.h lists the kinds.
  *
  * Each kind has a table in a file of its own. Other code calls the functions of the table, and does not name
- * kinds. There are functions for sixteen primitives at a time (small_triangles.h, small_spheres_lanes.h),
- * each for one kind; the kind's raster (primitive_raster.h) calls them. */
+ * kinds. Some functions work on sixteen primitives of one kind at a time (small_triangles.h,
+ * small_spheres_lanes.h). The kind's raster (primitive_raster.h) calls them. */
 #ifndef HL_SURFACE_PRIMITIVE_H
 #define HL_SURFACE_PRIMITIVE_H
 
@@ -19,7 +19,7 @@ typedef struct surface_ray {
   double first, last;
 } surface_ray;
 
-/* A ball: one of the balls whose convex hull is compared with a primitive (primitive_kind.parts). */
+/* One of the balls whose convex hull is compared with a primitive (primitive_kind.parts). */
 typedef struct hull_ball {
   vec3 at;
   double radius;
@@ -30,16 +30,17 @@ typedef struct primitive_kind {
   /* Whether primitives of the kind are flat, and lie between three corners, which all->triangles lists. Such
    * a primitive has one normal and one plane, and its cluster keeps a copy of its vertices. */
   bool has_corners;
-  const primitive_raster *raster;   /* what views see of the kind's primitives */
-  const primitive_lattice *lattice; /* finds where lines through a lattice meet primitives of the kind */
-  /* The number of primitives of the kind in a mesh. */
+  const primitive_raster *raster;   /* the functions that find how views see the kind's primitives */
+  const primitive_lattice *lattice; /* the functions that find where lines through a lattice meet the kind's
+                                     * primitives */
+  /* Returns the number of primitives of the kind in a mesh. */
   size_t (*count)(const hl_mesh_description *mesh);
   /* Lays out the arrays that hold this kind's primitives of all meshes. */
   void (*lay_out)(surfaces *made, hl_layout *layout);
   /* Brings the primitives of a mesh to frame space. */
   void (*place)(hl_pool *pool, surfaces *made, const surface_mesh *mesh);
-  /* The coordinates of a point of a primitive, an array [3] in frame space. Primitives are ordered by these
-   * points. */
+  /* Returns the coordinates of a point of a primitive, an array [3] in frame space. Primitives are ordered by
+   * these points. */
   const float *(*point)(const surfaces *all, uint32_t primitive);
   /* Finds a box around a primitive. The box is so large that the primitive lies within it despite
    * rounding. */
@@ -57,16 +58,16 @@ typedef struct primitive_kind {
    * primitive's own unit normal, on the side of *normal. */
   vec3 (*look)(const surfaces *all, const surface_mesh *mesh, uint32_t primitive, vec3 at, vec3 *normal,
                double color[3]);
-  /* How much the surface is bent in a direction: how far the normal on the eye's side turns, per length,
-   * along `along`, a unit vector on the surface. It is above 0 in a hollow, and 0 where the surface is flat
-   * or rough or lets light pass. */
+  /* Finds the bend of the surface in a direction: the change, per length, of the normal on the eye's side.
+   * along: the direction, a unit vector on the surface. The bend is above 0 in a hollow. It is 0 for a
+   * surface that is flat, rough or lets light pass. */
   double (*bend)(const surfaces *all, const surface_mesh *mesh, uint32_t primitive, vec3 at, vec3 normal,
                  vec3 along);
   /* Finds where a ray meets a primitive, as values of s on the ray. Returns the number of places that were
    * stored. */
   int (*intersect)(const surfaces *all, uint32_t primitive, const surface_ray *ray, double distance[2]);
-  /* Whether the convex hull of some balls has points on both sides of a primitive. Points that lie beyond the
-   * primitive by less than `least` count as lying on it. */
+  /* Returns whether the convex hull of some balls has points on both sides of a primitive. Points that lie
+   * beyond the primitive by less than `least` count as lying on it. */
   bool (*parts)(const surfaces *all, uint32_t primitive, const hull_ball *balls, int count, double least);
 } primitive_kind;
 
@@ -77,7 +78,7 @@ HL_PRIMITIVES
 static const primitive_kind *const hl_primitive_kinds[PRIMITIVE_KINDS] = {HL_PRIMITIVES};
 #undef HL_PRIMITIVE
 
-/* The number, in the list of kinds, of the kind of a primitive. */
+/* Returns the number of a primitive's kind in the list of kinds (primitive_kinds.h). */
 static inline int hl_primitive_number(const surfaces *all, uint32_t primitive) {
   int kind = 0;
   while (kind + 1 < PRIMITIVE_KINDS && primitive >= all->first[kind + 1]) kind++;
@@ -98,7 +99,8 @@ static inline const float *hl_sphere_of(const surfaces *all, uint32_t primitive)
   return all->spheres[primitive - all->first[PRIMITIVE_sphere]];
 }
 
-/* The index of the mesh to which a primitive belongs. This function is slow; a fragment knows its mesh. */
+/* Finds the index of the mesh to which a primitive belongs. The search is slow; a fragment stores its mesh
+ * instead. */
 size_t hl_surface_mesh_of(const surfaces *all, uint32_t primitive);
 
 /* The fraction of light that a primitive absorbs, at its middle. */

@@ -39,7 +39,7 @@ static uint16_t clamp_tile(int32_t tile, int tiles) {
 }
 
 static void set_bounds_span(const bin_work *work, const seen_bounds *bounds, tile_span *span) {
-  const double limit = 1 << 20; /* in tiles; a bound that 32-bit whole numbers surely hold */
+  const double limit = 1 << 20; /* limits tiles to numbers that 32-bit whole numbers surely hold */
   int32_t at[4];
   const double ends[4] = {bounds->u0, bounds->v0, bounds->u1, bounds->v1};
   for (int i = 0; i < 4; i++) at[i] = (int32_t)floor(fmin(fmax(ends[i] / TILE, -limit), limit));

@@ -19,9 +19,9 @@ bool hl_tile_make_room(hl_context *context, fragment_worker *worker, size_t more
   return true;
 }
 
-/* Joins an opaque fragment to the fragments that were added last to its pixel, if they belong to the same
- * mesh and fill the same slabs. After joining, the fragments absorb as much light as one surface does.
- * Returns whether the fragments were joined. */
+/* Joins an opaque fragment to the last fragments of its pixel, if they belong to the same mesh and fill the
+ * same slabs. The joined fragments absorb as much light as one surface does. Returns whether the fragments
+ * were joined. */
 static bool join_latest(fragment_worker *worker, const fragment *f, int32_t first, int32_t last) {
   latest_fragments *latest = &worker->latest[f->pixel];
   fragment *own = worker->scratch + latest->end - 1;
@@ -62,8 +62,9 @@ void hl_add_to_slabs(const fragment_work *work, fragment_worker *worker, fragmen
 }
 
 /* Adds a fragment of a light's view to slabs. The first slab is the slab at the fragment's delayed height.
- * The last slab is the last one that the plane crosses within the pixel; or, near a corner, the slab in which
- * the corner's other triangle begins. Fragments of back sides that get no light have no delay. */
+ * The last slab is the last slab that the fragment's plane crosses within the pixel. Near an edge at which
+ * two triangles meet, it is the slab in which the other triangle begins. Fragments of back sides that get no
+ * light have no delay. */
 static void add_of_light(const fragment_work *work, fragment_worker *worker, const surface_plane *plane,
                          fragment f, double slope, const covered_pixel *at, const seen_seams *seams) {
   const fragments_source *source = work->source;

@@ -33,8 +33,8 @@ static inline void hl_mark_slab(const fragment_work *work, fragment_worker *work
   worker->farthest = slab > worker->farthest ? slab : worker->farthest;
 }
 
-/* Makes a fragment of a primitive; its pixel, height and slab are not set yet. Its opacity is 0 if the
- * fragment only serves to mark slabs. */
+/* Makes a fragment of a primitive. The caller sets the fragment's pixel, height and slab. Its opacity is 0 if
+ * the fragment only serves to mark slabs. */
 fragment hl_fragment_of(const fragment_work *work, size_t mesh_index, uint32_t primitive);
 
 /* Adds a fragment to slabs `first` to `last` of a light's view. Light meets the fragment at

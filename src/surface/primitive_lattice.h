@@ -26,7 +26,7 @@ typedef struct lattice_lines {
 typedef void lines_meet_function(const void *data, int32_t column, int32_t row, double height,
                                  double opacity);
 
-/* The function that is called for each point; `at` is in frame space. */
+/* The function that is called for each point on a primitive; `at` is in frame space. */
 typedef void point_function(void *data, const double at[3]);
 
 struct primitive_lattice {
@@ -49,7 +49,7 @@ static inline double hl_lattice_place(const lattice_lines *lines, int axis, doub
   return (at - lines->low[axis]) * lines->inverse_cell - lines->middle[axis];
 }
 
-/* The whole numbers between two places: from `first` to `last`, both included. */
+/* All whole numbers from `first` to `last`, both included. */
 typedef struct whole_numbers {
   int32_t first, last; /* there are no such whole numbers if last < first */
 } whole_numbers;

@@ -1,9 +1,10 @@
-/* surface/primitive_raster.h - finds what a view sees of primitives of a kind, and makes fragments of them.
+/* surface/primitive_raster.h - the interface by which views see a kind of primitive, and by which its
+ * primitives become fragments.
  *
- * Each kind of primitive (primitive.h) has one such table. The files of this room that sort primitives into
- * tiles, rasterise them and cut crossing fragments call the functions of the table. A kind is rasterised in
- * two ways: a small primitive together with up to fifteen others of its mesh (collect, cover_small), any
- * other primitive by itself (cover). */
+ * Each kind of primitive (primitive.h) has one such table. Files of the folder surface call the functions of
+ * the table: to sort primitives into tiles, to rasterise them and to cut crossing fragments. A kind is
+ * rasterised in two ways. A small primitive is rasterised together with up to fifteen others of its mesh
+ * (collect, cover_small). Any other primitive is rasterised by itself (cover). */
 #ifndef HL_SURFACE_PRIMITIVE_RASTER_H
 #define HL_SURFACE_PRIMITIVE_RASTER_H
 
@@ -32,8 +33,8 @@ struct primitive_raster {
   /* Adds one primitive's fragments in a tile. f: a fragment in which the members are set that all these
    * fragments share. The worker must have room for them. */
   void (*cover)(const fragment_work *work, fragment_worker *worker, tile_part *part, const fragment *f);
-  /* Finds the surface that a fragment shows. (u, v): the mean position of the fragment's samples, as a
-   * continuous pixel. */
+  /* Finds the surface that a fragment shows. (u, v): the mean position of the fragment's samples in the view,
+   * in pixels. */
   void (*show)(const seen_surfaces *seen, const sheet_stack *sheets, const fragment *f, double u, double v,
                shown_surface *shown);
   /* The height of a shown surface above the first sheet at a continuous pixel. */

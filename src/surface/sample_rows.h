@@ -1,6 +1,7 @@
-/* surface/sample_rows.h - the places of the sixteen samples of a pixel.
+/* surface/sample_rows.h - the positions of the sixteen samples of a pixel.
  *
- * Sample i lies at ((i + 1/2) / 16, (SAMPLE_ROWS[i] + 1/2) / 16). No two samples share a row or a column. */
+ * Sample i lies at ((i + 1/2) / 16, (SAMPLE_ROWS[i] + 1/2) / 16) of the pixel. No two samples share a row or
+ * a column. */
 #ifndef HL_SURFACE_SAMPLE_ROWS_H
 #define HL_SURFACE_SAMPLE_ROWS_H
 

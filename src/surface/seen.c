@@ -1,7 +1,8 @@
 /* surface/seen.c - see seen.h. */
 #include "surface/seen.h"
 
-/* The width of a frame around the view, in pixels. A triangle that stays within this frame is not cut. */
+/* The width, in pixels, of the frame around the view to which triangles are cut. A triangle within this frame
+ * is not cut. */
 static const double FRAME_AROUND = 4096;
 /* In a perspective view, the least distance from the eye at which points are seen. The unit is the distance
  * at which rays have the length 1. */
@@ -98,10 +99,10 @@ bool hl_faces_view(const seen_surfaces *seen, uint32_t triangle) {
 
 /* ---- spheres ---- */
 
-/* Finds the least and greatest u of the points of a sphere. w u and w are linear functions of the point. At
- * the sphere's centre they have the values a and w; their gradients are ga and gw. w must be above 0 on the
- * sphere. Derived: the plane a - w u = 0 touches the sphere where (a - w u)^2 = r^2 |ga - u gw|^2, a
- * quadratic equation for u. */
+/* Finds the least and the greatest u of the points of a sphere, where u is a coordinate in the picture. w u
+ * and w are linear functions of the point. At the sphere's centre they have the values a and w; their
+ * gradients are ga and gw. w must be above 0 on the sphere. Derived: the plane a - w u = 0 touches the sphere
+ * if (a - w u)^2 = r^2 |ga - u gw|^2, a quadratic equation for u. */
 static void find_extent(double a, double w, vec3 ga, vec3 gw, double radius, double *least,
                         double *greatest) {
   double rr = radius * radius, p = w * w - rr * vec3_dot(gw, gw), q = a * w - rr * vec3_dot(ga, gw),
@@ -141,7 +142,7 @@ seen_box hl_see_box(const view *view, const float low[3], const float high[3], s
   for (int side = 0; side < 5; side++)
     if (outside[side] == 8) return BOX_UNSEEN;
   if (!whole) return BOX_CUT;
-  const double rounded = 4.0 / SUBPIXELS; /* as corners of triangles are rounded */
+  const double rounded = 4.0 / SUBPIXELS; /* the bounds allow for the rounding of triangles' corners */
   bounds->u0 -= rounded, bounds->v0 -= rounded;
   bounds->u1 += rounded, bounds->v1 += rounded;
   return bounds->u1 >= 0 && bounds->v1 >= 0 && bounds->u0 < view->width && bounds->v0 < view->height

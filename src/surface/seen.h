@@ -38,8 +38,8 @@ static inline int64_t hl_polygon_area(const int32_t *x, const int32_t *y) {
 /* Whether a triangle faces the view. A triangle that is seen from its edge counts as facing the view. */
 bool hl_faces_view(const seen_surfaces *seen, uint32_t triangle);
 
-/* A rectangle, in continuous pixels, around everything that a view sees of a sphere or of a box. The
- * functions return false if nothing is seen. */
+/* A rectangle, in pixels with fractions, around the part of a sphere or of a box that a view sees. The
+ * functions below return false if the view sees nothing. */
 typedef struct seen_bounds {
   double u0, v0, u1, v1;
 } seen_bounds;

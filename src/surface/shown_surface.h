@@ -1,5 +1,5 @@
-/* surface/shown_surface.h - the surface that a fragment of the eye's view shows, and the surface's heights
- * there. */
+/* surface/shown_surface.h - the surface that a fragment of the eye's view shows, and the heights of this
+ * surface. */
 #ifndef HL_SURFACE_SHOWN_SURFACE_H
 #define HL_SURFACE_SHOWN_SURFACE_H
 
@@ -7,7 +7,7 @@
 #include "surface/sphere_coverage.h"
 
 struct shown_surface {
-  const primitive_raster *raster; /* the table of the primitive's kind. The members below that belong to other
+  const primitive_raster *raster; /* the table of the primitive's kind; members below that belong to other
                                    * kinds are not set */
   double lowest, highest;         /* the least and the greatest height of the primitive above the first
                                    * sheet */
@@ -16,7 +16,7 @@ struct shown_surface {
   /* for a triangle: whether the view cut no corner of it; if so, the surface's height is rise / part */
   bool by_corners;
   double rise[3], part[3]; /* linear functions of the pixel, like those of surface_plane */
-  /* for a sphere: the rays relative to its centre */
+  /* for a sphere: the view's rays, relative to the sphere's centre */
   sphere_rays rays;
   bool leaving; /* for a sphere: whether the fragment lies on the side where rays leave the sphere */
 };

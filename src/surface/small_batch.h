@@ -15,8 +15,8 @@ struct small_batch {
   int count;
   const primitive_kind *kind; /* the kind of the batch's primitives */
   size_t mesh;
-  bool may_be_covered; /* in a light's view: whether clusters may lie behind fragments that cover all of their
-                        * pixels */
+  bool may_be_covered; /* only in a light's view: whether some clusters may lie behind fragments that cover
+                        * all of their pixels */
 };
 
 #endif

@@ -23,8 +23,8 @@ LANES_INLINE doubles3 less(doubles3 a, doubles3 b) { return (doubles3){a.x - b.x
 LANES_INLINE eight_doubles choose(eight_longs mask, eight_doubles a, eight_doubles b) {
   return (eight_doubles)(((eight_longs)a & mask) | ((eight_longs)b & ~mask));
 }
-/* The greater and the lesser number, as fmax() and fmin() give them: where one argument is NaN, the result is
- * the other argument. */
+/* Return the greater and the lesser of two numbers, as fmax() and fmin() do: if one argument is NaN, the
+ * result is the other argument. */
 LANES_INLINE eight_doubles at_least(eight_doubles a, double least) {
   return choose(a > least, a, (eight_doubles){0} + least);
 }
@@ -52,7 +52,7 @@ LANES_INLINE uint32_t bits_of(eight_longs mask) {
   return bits;
 }
 
-/* The greatest whole number that is not above a number. It must fit into 32 bits. */
+/* Rounds numbers down to whole numbers. The results must fit into 32 bits. */
 LANES_INLINE eight_doubles floors(eight_doubles x) {
   eight_doubles whole = __builtin_convertvector(__builtin_convertvector(x, eight_ints), eight_doubles);
   return choose(whole > x, whole - 1.0, whole);
@@ -87,7 +87,8 @@ LANES_INLINE eight_doubles discriminants(const eight_rays *rays, eight_doubles u
   return along * along - dots(b, b) * (dots(a, a) - rays->radius * rays->radius);
 }
 
-/* The pixels of the tile that each sphere touches; and which spheres are small and seen from outside. */
+/* The pixels of the tile that each sphere touches. Also the spheres that are small and seen from outside, one
+ * bit each. */
 typedef struct eight_boxes {
   eight_doubles x0, y0, x1, y1;
   eight_longs small, seen;
@@ -124,7 +125,8 @@ LANES_INLINE void find_boxes(const small_view *small, const eight_rays *rays, do
                     (dots(rays->start, rays->start) > rays->radius * rays->radius * 1.05);
 }
 
-/* Finds the coefficients c of the quadratic functions of sphere_coverage.c, in offsets from (u, v). */
+/* Finds the coefficients c of the quadratic functions of sphere_coverage.c, as functions of the offset from
+ * the position (u, v). */
 LANES_INLINE void find_quadratics(const eight_rays *rays, eight_doubles u, eight_doubles v,
                                   eight_doubles c[6]) {
   eight_doubles m = discriminants(rays, u, v), e = discriminants(rays, u + 1.0, v),

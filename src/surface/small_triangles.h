@@ -1,9 +1,9 @@
 /* surface/small_triangles.h - finds the samples that small triangles cover, and their heights there, for
  * sixteen triangles at a time.
  *
- * A triangle is small where its box touches at most four by four pixels of a view and its height changes by
- * at most four distances of sheets. The height between its corners is then nearly linear in the pixel, even
- * in perspective views. For other triangles coverage.h and surface_plane.h are used. */
+ * A triangle is small if its box touches at most four by four pixels of a view, and its height changes by at
+ * most four distances of sheets. The height between its corners is then nearly linear in the pixel, even in
+ * perspective views. For other triangles coverage.h and surface_plane.h are used. */
 #ifndef HL_SURFACE_SMALL_TRIANGLES_H
 #define HL_SURFACE_SMALL_TRIANGLES_H
 
@@ -19,23 +19,23 @@ enum { SMALL_TRIANGLES = 16, SMALL_SIDE = 4, SMALL_PIXELS = SMALL_SIDE * SMALL_S
 typedef struct small_view {
   float normal[3], first; /* the sheets' normal; a point's height is normal.X - first */
   float spacing, last_slab;
-  int32_t columns, rows; /* the number of the tile's columns and rows that lie within the view */
-  int of_light;          /* a light's view; in other views the members from `perspective` to `rise` are not
-                          * used */
-  int perspective;       /* if set, the rays come from the point `from`; else they run along the vector
+  int32_t columns, rows; /* number of the tile's columns and rows that lie within the view */
+  int of_light;          /* not 0: the view is a light's; in other views the members from `perspective` to
+                          * `rise` are not used */
+  int perspective;       /* not 0: the rays come from the point `from`; else they run along the vector
                           * `from` */
   float from[3], du[3], dv[3];
-  float depth[3];    /* in a perspective view: the distance of a point X from the eye is depth.(X - from); the
-                      * unit is the length of the ray's direction vector */
-  float delay, rise; /* the members of the same names of fragments_source, in pixels */
+  float depth[3];    /* in a perspective view: the vector that gives the distance of a point X from the eye,
+                      * depth.(X - from). The unit is the length of the ray's direction vector */
+  float delay, rise; /* the members delay and rise of fragments_source, in pixels */
   double inverse[3][3], origin[3]; /* for clusters: the rows of `inverse`, multiplied by (point - origin),
                                     * give w, w u and w v; in a parallel view w is 1 instead */
-  int32_t left, top;               /* for clusters: the tile's corner; 1/256 pixels */
+  int32_t left, top;               /* for clusters: the coordinates of the tile's corner; 1/256 pixels */
   const view *view;                /* the view, used for spheres only; borrowed */
   const sheet_stack *sheets;       /* the sheets, used for spheres only; borrowed */
-  int fronts;                      /* whether only triangles that face the view are covered */
-  /* in a light's view: whether fragments at which the light's rays leave the mesh have no delay, because the
-   * mesh's back sides get no light */
+  int fronts;                      /* whether only triangles whose fronts face the view are covered */
+  /* only in a light's view: whether the mesh's back sides get no light. Fragments at which the light's rays
+   * leave the mesh then have no delay */
   int dark_backs;
 } small_view;
 
@@ -63,7 +63,7 @@ static inline void hl_corner_product(const float *const corner[3], float normal[
   }
 }
 
-/* The triangles of a cluster, as arrays in which each triangle has a column. */
+/* The triangles of a cluster. Each array has one column for each triangle. */
 enum { CLUSTER_TRIANGLES = 64, CLUSTER_VERTICES = 3 * CLUSTER_TRIANGLES };
 typedef struct cluster_shape {
   const float *positions; /* [3][vertices]; the positions of the vertices, axis by axis; frame space */
@@ -110,8 +110,8 @@ typedef uint32_t cover_small_function(const small_view *view, const small_triang
 
 typedef void see_cluster_function(const small_view *view, const cluster_shape *shape, seen_cluster *seen);
 
-/* Does the work of cover_small_function for sixteen triangles of a cluster, `first` to first + 15. wanted:
- * which of these triangles are looked at, one bit each. */
+/* The type of the function that does the work of cover_small_function for sixteen triangles of a cluster,
+ * `first` to first + 15. wanted: the triangles that are looked at, one bit each. */
 typedef uint32_t cover_cluster_function(const small_view *view, const cluster_shape *shape,
                                         const seen_cluster *seen, int first, uint32_t wanted,
                                         small_cover *cover);
@@ -122,13 +122,13 @@ typedef struct small_spheres {
                                                                            * space */
 } small_spheres;
 
-/* Does the work of cover_small_function for sixteen spheres. A sphere is small if its box touches at most
- * four by four pixels of the tile and the view sees it from outside. The function must not be used for
- * lights' views whose fragments fill several slabs. */
+/* The type of the function that does the work of cover_small_function for sixteen spheres. A sphere is small
+ * if its box touches at most four by four pixels of the tile, and if the view sees it from outside. The
+ * function must not be used for views of lights whose fragments fill several slabs. */
 typedef uint32_t cover_spheres_function(const small_view *view, const small_spheres *spheres,
                                         small_cover *cover);
 
-/* The functions of this room that are compiled for each instruction set. */
+/* The functions of the folder surface of which each instruction set has a compiled version. */
 typedef struct surface_functions {
   cover_small_function *cover_small;
   see_cluster_function *see_cluster;

@@ -1,4 +1,5 @@
-/* surface/small_triangles_lanes.h - sixteen small triangles, one in each lane (small_triangles.h).
+/* surface/small_triangles_lanes.h - finds the samples that sixteen small triangles cover, one triangle in
+ * each lane (small_triangles.h).
  *
  * Coordinates of corners and samples are whole numbers below 1024, counted from a triangle's first pixel. So
  * the edge functions of coverage.c are exact in floats. */
@@ -13,14 +14,14 @@
 
 /* SMALL_STEP: the distance, in 1/256 pixels, between neighbouring columns, or rows, of samples. */
 enum { SMALL_SUBPIXELS = 256, SMALL_STEP = SMALL_SUBPIXELS / 16, SMALL_TILE = 16 };
-/* The least distance from the eye at which points are seen, as NEAREST in seen.c. The unit is the distance at
- * which rays have the length 1. */
+/* The least distance from the eye at which points are seen; it is the number NEAREST of seen.c. The unit is
+ * the distance at which rays have the length 1. */
 static const double SMALL_NEAREST = 1e-4;
 /* The greatest difference of heights within a small triangle, in distances of sheets. */
 static const float SMALL_RISE = 4;
 
-/* Corners in 1/256 pixels from the first pixel. For each edge, `value` + x * `down` - y * `across` is
- * above 0 inside the triangle. */
+/* A triangle's corners, in 1/256 pixels from its first pixel, and its edges. For each edge, `value` + x *
+ * `down` - y * `across` is above 0 inside the triangle. */
 typedef struct small_shape {
   lanes x[3], y[3];
   lanes across[3], down[3], value[3];
@@ -91,10 +92,10 @@ LANES_INLINE void find_heights(const small_triangles *t, const small_shape *shap
   heights->highest = lanes_max(lanes_max(height[0], height[1]), height[2]);
 }
 
-/* How much the height of the triangle's plane changes from pixel to pixel. *leaving: receives whether the
- * rays leave the mesh at the triangle. Derived: let the ray A + s B meet the plane with the normal n. The ray
- * of the next pixel, whose vector differs by D, meets the plane s D - B s (n.D) / (n.B) farther. The height
- * there differs by s (h.D - (h.B) (n.D) / (n.B)). */
+/* Finds the change of the height of a triangle's plane from one pixel to the next. *leaving: receives whether
+ * the rays leave the mesh at the triangle. Derived: let the ray A + s B meet the plane with the normal n. The
+ * vector of the next pixel's ray differs from B by D. This ray meets the plane s D - B s (n.D) / (n.B) away.
+ * The height there differs by s (h.D - (h.B) (n.D) / (n.B)), where h is the sheets' normal. */
 LANES_INLINE lanes find_slope(const small_view *view, const small_triangles *t, lanes_int *leaving) {
   lanes normal[3], way[3], depth = lanes_set(1.0f);
   for (int axis = 0; axis < 3; axis++) {
@@ -116,7 +117,7 @@ LANES_INLINE lanes find_slope(const small_view *view, const small_triangles *t, 
   return lanes_min(slope, lanes_set(STEEPEST_SLOPE)); /* a slope that is NaN counts as the steepest slope */
 }
 
-/* The slab that ends at or above a height. */
+/* Finds the slab whose end is the first sheet at or above a height. */
 LANES_INLINE lanes_int slab_at(const small_view *view, lanes height) {
   lanes sheet = lanes_clamp(height / lanes_set(view->spacing), 1.0f, view->last_slab);
   return lanes_floor(sheet * -1.0f) * -1;
@@ -152,8 +153,9 @@ LANES_INLINE void cover_samples(const small_shape *shape, int x, int y, small_sa
 
 /* Finds the number of samples in each lane's bits, and the sums of their columns and rows. Derived: fields of
  * neighbouring samples are joined in pairs, until one field is left. For each field two numbers are kept: the
- * number of its samples, and the sum of their columns, counted from the field's first column. Column c has
- * the row 3 - c + 8 (c odd) + 16 (c in SECOND_TURN), which is (3 + 7 c) modulo 16. */
+ * number of its samples, and the sum of their columns, counted from the field's first column. The sample in
+ * column c has the row (3 + 7 c) modulo 16, which is 3 - c, plus 8 if c is odd, plus 16 if c is in
+ * SECOND_TURN. */
 LANES_INLINE void count_samples(lanes_int bits, small_samples *samples) {
   enum { PAIRS = 0x5555, FOURS = 0x3333, EIGHTS = 0x0f0f, SECOND_TURN = 0xf550 };
   lanes_int odd = (bits >> 1) & PAIRS, turn = bits & SECOND_TURN;
@@ -172,9 +174,9 @@ LANES_INLINE void count_samples(lanes_int bits, small_samples *samples) {
   *samples = (small_samples){bits, count, sum, 3 * count - sum + 8 * ((rows + (rows >> 8)) & 255)};
 }
 
-/* Finds the first column (or row) of samples that does not lie before the least of three coordinates; a
- * column lies at its middle. *count: receives the number of columns from there up to the greatest coordinate.
- * Coordinates are in 1/256 pixels. */
+/* Finds the columns of samples between three coordinates; the function serves rows in the same way. The
+ * result is the first column whose middle does not lie before the least coordinate. *count: receives the
+ * number of columns from there up to the greatest coordinate. Coordinates are in 1/256 pixels. */
 LANES_INLINE lanes_int sample_range(const lanes at[3], lanes_int *count) {
   lanes least = lanes_min(lanes_min(at[0], at[1]), at[2]),
         greatest = lanes_max(lanes_max(at[0], at[1]), at[2]);
@@ -194,8 +196,8 @@ typedef uint32_t small_words __attribute__((vector_size(64)));
 
 /* Finds the samples that very small triangles cover: triangles that are at most a pixel high and two pixels
  * wide. In each column of samples, only one sample can lie within the rows of such a triangle, and only this
- * sample is tested. bits: for each of two rows of pixels, the samples of two pixels, 16 bits each. Returns
- * whether all triangles of the lanes in `of` are as small as that. */
+ * sample is tested. of: the lanes that are looked at. bits: for each of two rows of pixels, the samples of
+ * two pixels, 16 bits each. Returns whether all triangles in `of` are very small. */
 LANES_INLINE int cover_columns(const small_shape *shape, lanes_int of, lanes_int bits[2]) {
   lanes_int columns, rows, column = sample_range(shape->x, &columns), row = sample_range(shape->y, &rows);
   if (lanes_bits(of & ((rows > 16) | (column + columns > 32) | (row + rows > 32))) != 0) return 0;
@@ -205,8 +207,8 @@ LANES_INLINE int cover_columns(const small_shape *shape, lanes_int of, lanes_int
     at[i] = shape->value[i] + shape->down[i] * x;
     step[i] = shape->down[i] * (float)SMALL_STEP;
   }
-  lanes_int ahead = column * 7 + 3 - row; /* the row of the column's sample, counted from the first row,
-                                           * modulo 16 */
+  lanes_int ahead = column * 7 + 3 - row; /* the row of the column's only possible sample, counted from the
+                                           * triangle's first row, modulo 16 */
   small_words bit = (small_words)(1 << (column & 31)); /* 0 for columns after the last one */
   bits[0] = bits[1] = lanes_set_int(0);
   for (int n = greatest_of(columns, of); n > 0; n--) {

@@ -1,4 +1,4 @@
-/* surface/sphere.c - the table of the kind of primitives: spheres. */
+/* surface/sphere.c - the table of functions for primitives that are spheres (primitive.h). */
 #include "mesh/mesh.h"
 #include "surface/primitive_lattice.h"
 #include "surface/primitive_raster.h"
@@ -27,9 +27,9 @@ static double greater(double a, double b) { return a > b ? a : b; }
 static void bound(const surfaces *all, uint32_t primitive, float low[3], float high[3]) {
   const float *sphere = hl_sphere_of(all, primitive);
   for (int a = 0; a < 3; a++) {
-    float reach = sphere[3] + 1e-6f * (fabsf(sphere[a]) + sphere[3]); /* half the edge of a box around the
-                                                                       * sphere, a little enlarged for
-                                                                       * rounding */
+    float reach = sphere[3] + 1e-6f * (fabsf(sphere[a]) + sphere[3]); /* half of the edge of a box around the
+                                                                       * sphere; it is a little too large, to
+                                                                       * allow for rounding */
     low[a] = sphere[a] - reach, high[a] = sphere[a] + reach;
   }
 }
@@ -92,9 +92,10 @@ static int intersect(const surfaces *all, uint32_t primitive, const surface_ray 
   return count;
 }
 
-/* Whether a hull may have points on both sides of a sphere's surface. It may, unless the hull lies completely
- * within the sphere, or completely beyond a plane: the plane that touches the sphere at the point nearest to
- * the first ball (derived: both sides of the plane are convex, and so is the inside of the sphere). */
+/* Returns whether the convex hull of balls may have points on both sides of a sphere's surface. The result is
+ * false if the hull lies completely within the sphere, or completely beyond a plane: the plane that touches
+ * the sphere at the point nearest to the first ball. Derived: the inside of the sphere is convex, and so is
+ * each side of the plane; a hull lies in a convex region if its balls do. */
 static bool parts(const surfaces *all, uint32_t primitive, const hull_ball *balls, int count, double least) {
   const float *sphere = hl_sphere_of(all, primitive);
   const vec3 centre = hl_surface_vector(sphere), up = vec3_normalise(vec3_subtract(balls[0].at, centre));

@@ -37,9 +37,10 @@ static double discriminant(const sphere_rays *rays, double u, double v) {
 
 static int clamp_pixel(double pixel) { return pixel < 0 ? 0 : pixel > TILE - 1 ? TILE - 1 : (int)pixel; }
 
-/* The discriminant as a quadratic function of the pixel: c0 + c1 u + c2 v + c3 uu + c4 uv + c5 vv. It is
- * found from the discriminant's values around a point, and is exact for both kinds of views (derived: A is
- * constant in a perspective view, and B in a parallel view, so that the discriminant has degree 2). */
+/* The discriminant as a quadratic function of the pixel: c0 + c1 u + c2 v + c3 uu + c4 uv + c5 vv. The
+ * coefficients are found from the discriminant's values around a point. Derived: they are exact for both
+ * kinds of views, because A is constant in a perspective view, and B in a parallel view, so that the
+ * discriminant has degree 2. */
 typedef struct quadratic {
   double c[6];
 } quadratic;

@@ -17,7 +17,7 @@ static void meet(const surfaces *all, const surface_mesh *mesh, uint32_t primiti
                       rows = hl_whole_between(down - reach[1], down + reach[1], lines->farthest);
   for (int32_t row = rows.first; row <= rows.last; row++)
     for (int32_t column = columns.first; column <= columns.last; column++) {
-      /* (x - a h)^2 + (y - b h)^2 + h^2 = r^2, from the sphere's middle */
+      /* the ray's equation with the sphere's middle as origin: (x - a h)^2 + (y - b h)^2 + h^2 = r^2 */
       const double x = column - across, y = row - down, square = 1 + a * a + b * b, half = a * x + b * y,
                    left = half * half - square * (x * x + y * y - radius * radius);
       if (!(left > 0)) continue;

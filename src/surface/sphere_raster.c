@@ -1,4 +1,5 @@
-/* surface/sphere_raster.c - what views see of spheres, and how spheres become fragments. */
+/* surface/sphere_raster.c - finds how views see spheres, and makes fragments of spheres
+ * (primitive_raster.h). */
 #include "surface/primitive_fragments.h"
 #include "surface/shown_surface.h"
 #include "surface/small_batch.h"
@@ -50,10 +51,10 @@ static bool has_dark_inside(const fragment_work *work, const float sphere[4], co
   return !view->perspective || vec3_length(away) > (double)sphere[3];
 }
 
-/* One side of a sphere as a view sees it. */
+/* One of the two sides of a sphere as a view sees it. */
 typedef struct seen_side {
   const sphere_rays *rays;
-  bool leaving; /* the side where rays leave the sphere */
+  bool leaving; /* whether it is the side where rays leave the sphere */
 } seen_side;
 
 static vec3 point_of(const void *shape, double u, double v) {

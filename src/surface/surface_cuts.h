@@ -8,10 +8,11 @@
 
 /* The part of a primitive that a view sees: a triangle, or one side of a sphere. All members are borrowed. */
 typedef struct seen_part {
-  const surfaces *all;                                  /* the surfaces, with the cuts; null: cuts leave
-                                                         * the whole part */
-  vec3 (*point)(const void *shape, double u, double v); /* finds the part's point at a continuous pixel (u,
-                                                         * v); frame space */
+  const surfaces *all;                                  /* the surfaces, whose cuts are applied; null: no cut
+                                                         * removes anything of the part */
+  vec3 (*point)(const void *shape, double u, double v); /* a function that finds the part's point at the
+                                                         * position (u, v) of the view, in pixels; frame
+                                                         * space */
   const void *shape;                                    /* the first argument of `point`: the plane or the
                                                          * sphere */
 } seen_part;

@@ -15,8 +15,8 @@ typedef struct surface_plane {
                                                * (above) and h.B (climb) */
   double lowest, highest;                     /* the least and the greatest height of the primitive above
                                                * the first sheet */
-  bool leaving; /* whether the light's rays leave the mesh here, and the inside of the mesh is not lit by
-                 * them */
+  bool leaving; /* whether the light's rays leave the mesh at this plane, and do not light the inside of the
+                 * mesh */
 } surface_plane;
 
 /* The value of one of a surface_plane's linear functions at a continuous pixel (u, v). */

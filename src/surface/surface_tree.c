@@ -1,4 +1,5 @@
-/* surface/surface_tree.c - makes the tree of boxes, and finds where rays meet its primitives. */
+/* surface/surface_tree.c - makes a tree of boxes around primitives, and finds where rays meet the primitives
+ * (surface_tree.h). */
 #include "surface/surface_tree.h"
 
 #include "core/memory.h"
@@ -32,7 +33,8 @@ static float middle_of(const boxed_primitive *p, int axis) {
 
 /* ---- the tree ---- */
 
-/* Moves the primitives whose middle lies below `at` to the front of the list; returns their number. */
+/* Moves the primitives whose middle lies below the coordinate `at` to the front of the list. Returns the
+ * number of these primitives. */
 static uint32_t part(boxed_primitive *list, uint32_t count, int axis, float at) {
   uint32_t below = 0;
   for (uint32_t i = 0; i < count; i++) {
@@ -69,16 +71,16 @@ static void make(surface_tree *tree, boxed_primitive *list, uint32_t first, uint
   make(tree, list, first + below, count - below, depth + 1);
 }
 
-/* Which primitives of a mesh a tree holds if it is created for a distance. */
+/* Finds which primitives of a mesh a tree holds that is created for a given distance. */
 static mesh_held held_of(const surface_mesh *mesh, double distance) {
   if (!hl_mesh_takes_light(mesh)) return HELD_NOT;
   if (mesh->is_cut) return HELD_CUT;
   return isinf(distance) || !mesh->mesh->closed ? HELD_WHOLE : HELD_NOT;
 }
 
-/* Whether a tree holds primitive number i of a kind, counted from the mesh's first primitive of this kind.
- * near: for each primitive with corners, whether the tree holds it; of primitives without corners, the tree
- * holds those that are cut. near may be null: then the tree holds all primitives. */
+/* Returns whether a tree holds primitive number i of a kind, counted from the mesh's first primitive of this
+ * kind. near: for each primitive with corners, whether the tree holds it. A primitive without corners is held
+ * if a cut cuts it. near null: the tree holds all primitives. */
 static bool takes(const surfaces *all, const surface_mesh *mesh, int kind, uint32_t i, const bool *near) {
   if (near == NULL) return true;
   if (hl_primitive_kinds[kind]->has_corners) return near[i];
@@ -288,7 +290,7 @@ bool hl_surface_tree_reaches(const surface_tree *tree, const hull_ball *balls, i
 
 /* ---- rays ---- */
 
-/* A ray, or a bundle of rays around a middle ray, in the form that is tested against boxes. */
+/* A ray, or a bundle of rays around a middle ray, prepared for tests against boxes. */
 typedef struct box_ray {
   double origin[3], way[3], inverse[3];
   double first, last;
@@ -318,8 +320,8 @@ static bool meets_box(const surface_box *box, const box_ray *ray) {
     double from = low * ray->inverse[a], to = high * ray->inverse[a];
     nearest = greater(nearest, lesser(from, to)), farthest = lesser(farthest, greater(from, to));
   }
-  return nearest <= farthest + 1e-9 * fabs(farthest); /* the sum allows for rounding, because the box of a
-                                                       * flat triangle is flat */
+  /* The added term allows for rounding, because the box of a flat triangle has no thickness. */
+  return nearest <= farthest + 1e-9 * fabs(farthest);
 }
 
 /* Finds where a ray meets the primitives of a leaf. number: number of the ray in its bundle. */
@@ -363,8 +365,9 @@ void hl_surface_tree_cast(const surface_tree *tree, const surface_ray *ray, surf
 }
 
 /* Makes a bundle of rays from one point. The middle ray leads to the middle of the box around the rays' ends.
- * Along each axis, no ray is farther from the middle ray anywhere than the rays' ends are (derived: the rays
- * share their origin, and at the fraction t of its length a ray's point is origin + t (end - origin)). */
+ * Along each axis, no point of a ray is farther from the middle ray than the rays' ends are. Derived: the
+ * rays share their origin, and at the fraction t of its length, a ray's point is origin + t (end -
+ * origin). */
 static box_ray bundle_of_rays(const surface_ray *rays, int count) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, middle[3];
   for (int k = 0; k < count; k++) vec3_bound_ball(vec3_scale(rays[k].way, rays[k].last), 0, low, high);

@@ -12,19 +12,19 @@
 
 typedef struct surface_box {
   float low[3], high[3];
-  uint32_t first, count; /* for a leaf: the range of its primitives among the tree's primitives. For any other
-                          * node: count is 0, and `first` is the index of the node's second child; the first
-                          * child is the next node after this node */
+  uint32_t first, count; /* for a leaf: the first index and the number of its primitives in `primitives`. For
+                          * any other node: count is 0, and `first` is the index of the node's second child;
+                          * the first child is the next node after this node */
 } surface_box;
 
-/* What a tree holds of a mesh. HELD_NOT: nothing. HELD_WHOLE: primitives of a mesh that no cut cuts.
- * HELD_CUT: primitives of a mesh that cuts cut. */
+/* The parts of a mesh that a tree can hold. HELD_NOT: nothing. HELD_WHOLE: primitives of a mesh that no cut
+ * cuts. HELD_CUT: primitives of a mesh that cuts cut. */
 typedef enum mesh_held { HELD_NOT, HELD_WHOLE, HELD_CUT } mesh_held;
 
 typedef struct surface_tree {
   const surfaces *all;  /* the surfaces whose primitives the tree holds; borrowed */
   uint32_t *primitives; /* [count]; in the order of leaves; owned, as one block with the next two arrays */
-  mesh_held *holds;     /* [mesh_count of all]; what the tree holds of each mesh */
+  mesh_held *holds;     /* [mesh_count of all]; the part of each mesh that the tree holds */
   cut_shape *cuts;      /* [cut_count]; the cuts that `all` had when the tree was created */
   size_t cut_count;
   double distance;    /* the distance for which the tree was created */
@@ -38,11 +38,11 @@ typedef struct surface_tree {
  * corner (late/surface_rims.h), and the spheres that cuts cut. */
 #define ALL_SURFACES INFINITY
 
-/* Creates a tree. all: the surfaces; null: there are none. A tree of zeros that was not created may be
- * released, too. */
+/* Creates a tree. all: the surfaces; null: there are no surfaces. The tree may be released even if it was not
+ * created, but is all zeros. */
 hl_status hl_surface_tree_create(hl_context *context, const surfaces *all, double distance,
                                  surface_tree *tree, hl_error *error);
-/* Whether a tree that is kept equals the tree that would be created now. */
+/* Returns whether a tree that was kept is the same as a tree that would be created now. */
 bool hl_surface_tree_current(const surface_tree *tree, const surfaces *all, double distance);
 void hl_surface_tree_release(hl_context *context, surface_tree *tree);
 
@@ -69,13 +69,13 @@ typedef struct surface_hit {
 /* The function that is called for each place where a ray meets a surface, in any order. */
 typedef void surface_met(void *data, const surface_hit *hit);
 
-/* Whether the box of some primitive meets a box. */
+/* Returns whether the box of any primitive in the tree overlaps the given box. */
 bool hl_surface_tree_overlaps(const surface_tree *tree, const double low[3], const double high[3]);
 
-/* Whether some primitive may meet the convex hull of balls. A triangle does not meet the hull if the hull
- * lies on one side of the triangle's plane. A sphere does not meet the hull if the hull lies within the
+/* Returns whether some primitive may meet the convex hull of balls. A triangle does not meet the hull if the
+ * hull lies on one side of the triangle's plane. A sphere does not meet the hull if the hull lies within the
  * sphere, or beyond a plane that touches the sphere. Points that lie beyond a surface by less than `least`
- * count as lying on the surface. */
+ * count as lying on it. */
 bool hl_surface_tree_reaches(const surface_tree *tree, const hull_ball *balls, int count, double least);
 
 void hl_surface_tree_cast(const surface_tree *tree, const surface_ray *ray, surface_met *met, void *data);

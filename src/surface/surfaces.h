@@ -18,8 +18,8 @@
 typedef struct surface_look {
   double color[3];             /* linear RGB; the colour of the mesh's material */
   double opacity;              /* a factor on the opacities of the mesh's vertices */
-  double attenuation_color[3]; /* R, G, B: factors on `opacity`; the products are the fractions of red, green
-                                * and blue light that the mesh absorbs */
+  double attenuation_color[3]; /* factors on `opacity` for red, green and blue: the products are the fractions
+                                * of light of these colours that the mesh absorbs */
   hl_material material;
   bool smooth;    /* whether normals are interpolated between vertices */
   bool two_sided; /* whether the side that faces away from the eye is lit like the front */
@@ -32,7 +32,7 @@ typedef struct surface_mesh {
   surface_look look;               /* the look of the mesh in the current frame */
   hl_mesh *mesh;                   /* retained, because its arrays are borrowed */
   affine3 placement;               /* maps the mesh to frame space */
-  double scale;                    /* length in frame space of 1 in the mesh */
+  double scale;                    /* the length, in frame units, of the mesh's own unit of length */
   const float (*colors)[4];        /* borrowed; [vertices of the mesh]; null: the vertices have no colours
                                     * of their own */
   const float (*face_colors)[4];   /* borrowed; [triangles of the mesh]; null: the triangles have no
@@ -79,8 +79,7 @@ typedef struct surfaces {
                                         * element is the number of all primitives */
 } surfaces;
 
-/* Adds to a key everything on which the light that surfaces absorb depends. all: null if there are no
- * surfaces. */
+/* Adds to a key everything that decides how much light surfaces absorb. all null: there are no surfaces. */
 void hl_surfaces_key_add(hl_key *key, const surfaces *all);
 
 /* The number of primitives. */
@@ -95,24 +94,24 @@ static inline bool hl_surface_left(const surfaces *all, const surface_mesh *mesh
  * `least`. */
 void hl_surface_corners(const surface_mesh *mesh, double least, vec3 corners[8]);
 
-/* Whether a mesh is closed, cannot lose a part to cuts, and has the opacity 1 if the colours of its vertices
- * and triangles are ignored. */
+/* Returns whether a mesh is closed, has the opacity 1 (colours of its vertices and triangles are ignored),
+ * and no cut can remove a part of it. */
 bool hl_surface_is_closed(const surface_mesh *mesh);
 
-/* Whether the part of a mesh that cuts leave lets no light pass. */
+/* Returns whether a mesh lets no light pass, except where cuts have removed it. */
 bool hl_surface_takes_all(const surface_mesh *mesh);
 
-/* Whether no cut removes a part of a mesh, and the mesh lets no light pass. */
+/* Returns whether a mesh lets no light pass, and no cut removes a part of it. */
 bool hl_surface_is_opaque(const surface_mesh *mesh);
 
-/* Whether a ball lies outside of a mesh's box, at a distance of at least a hundredth of the box's edges;
- * frame space. */
+/* Returns whether a ball lies outside of a mesh's box, at a distance of at least a hundredth of the box's
+ * edges; frame space. */
 bool hl_surface_is_outside(const surface_mesh *mesh, vec3 centre, double radius);
 
 /* Reads a position from surfaces->positions, or a normal from surfaces->normals. */
 static inline vec3 hl_surface_vector(const float v[3]) { return (vec3){v[0], v[1], v[2]}; }
 
-/* A triangle's unit normal; 0 where it has no area. */
+/* Finds a triangle's unit normal. It is 0 for a triangle without an area. */
 static inline vec3 hl_surface_normal(const surfaces *all, uint32_t triangle) {
   vec3 at[3];
   for (int i = 0; i < 3; i++) at[i] = hl_surface_vector(all->positions[all->triangles[triangle][i]]);

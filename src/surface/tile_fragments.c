@@ -45,8 +45,8 @@ static void mark_tile(const fragment_work *work, int x, int y, int32_t slab) {
   if ((__atomic_load_n(word, __ATOMIC_RELAXED) & bit) == 0) __atomic_fetch_or(word, bit, __ATOMIC_RELAXED);
 }
 
-/* Adds a worker's marks, which are for the tiles around its current tile, to the view's marks, and clears
- * them in the worker. */
+/* Adds a worker's marks of slabs to the view's marks, and clears them in the worker. The marks are for the
+ * tiles around the worker's current tile. */
 static void write_marks(const fragment_work *work, fragment_worker *worker, int tile_x, int tile_y) {
   for (int32_t slab = worker->nearest; slab <= worker->farthest; slab++) {
     uint32_t near = work->source->marks != NULL ? worker->near[slab] : 0;
@@ -88,7 +88,8 @@ static void add_small_pixel(const fragment_work *work, fragment_worker *worker, 
   worker->scratch[worker->count++] = f;
 }
 
-/* Finds the opacities of some primitives of a batch. lanes: one bit for each of these primitives. */
+/* Finds the opacities of some primitives of a batch. lanes: one bit for each primitive of the batch; only
+ * primitives whose bit is set are looked at. */
 static void find_opacities(const fragment_work *work, small_batch *batch, uint32_t lanes) {
   for (; lanes != 0; lanes &= lanes - 1) {
     int lane = __builtin_ctz(lanes);
@@ -122,9 +123,9 @@ static void add_batch(const fragment_work *work, fragment_worker *worker, tile_p
   batch->count = 0;
 }
 
-/* Whether opaque fragments of a light's view, all of which lie before a cluster, cover all pixels that the
- * cluster touches in a tile. If so, each of the cluster's fragments would be left out when fragments are
- * sorted. */
+/* Returns whether fragments cover a cluster: in all pixels that the cluster touches in a tile of a light's
+ * view, opaque fragments lie before the cluster. If so, the cluster's fragments need not be made, because
+ * each of them would be left out when fragments are sorted. */
 static bool is_covered(const fragment_work *work, const fragment_worker *worker, const tile_part *part,
                        const cluster_shape *shape, const seen_cluster *seen) {
   const view *view = work->source->view;
@@ -187,7 +188,7 @@ static void begin_mesh(const fragment_work *work, small_batch *batch, uint32_t p
   *own = all->meshes[batch->mesh].primitives[kind];
 }
 
-/* Adds the fragments of a run of primitives, of which cuts may remove parts. */
+/* Adds the fragments of a run of primitives; cuts may remove parts of these primitives. */
 static void add_run(const fragment_work *work, fragment_worker *worker, tile_part *part, small_batch *batch,
                     primitive_run run) {
   const surfaces *all = work->source->surfaces;
@@ -302,9 +303,8 @@ void hl_make_tile_fragments(void *data, size_t tile, int worker_index) {
   memset(worker->covered, 0, sizeof worker->covered);
   if (worker->failed || (source->needed != NULL && source->needed[tile] == 0)) return;
   add_primitives(work, worker, &part, tile);
-  if (!worker->failed && hl_tile_make_room(source->context, worker, worker->count)) /* room for the parts into
-                                                                                     * which crossing
-                                                                                     * fragments are cut */
+  /* Makes room for the parts into which crossing fragments are cut. */
+  if (!worker->failed && hl_tile_make_room(source->context, worker, worker->count))
     kept = order_fragments(work, worker, &order, &part, &sorted);
   write_marks(work, worker, part.tile_x, part.tile_y);
   kept = hl_resolve_fragments(sorted, kept, &order);

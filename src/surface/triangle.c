@@ -1,4 +1,4 @@
-/* surface/triangle.c - the table of the kind of primitives: triangles. */
+/* surface/triangle.c - the table of functions for primitives that are triangles (primitive.h). */
 #include "surface/triangle.h"
 #include "surface/primitive_lattice.h"
 #include "surface/primitive_raster.h"
@@ -54,7 +54,7 @@ static void plane(const view *view, const sheet_stack *sheets, const surfaces *a
   hl_plane_of_triangle(view, sheets, all, primitive, plane);
 }
 
-/* Whether some ball lies, at least in part, on either side of a triangle's plane. */
+/* Returns whether balls lie, at least in part, on both sides of a triangle's plane. */
 static bool parts(const surfaces *all, uint32_t primitive, const hull_ball *balls, int count, double least) {
   double first;
   vec3 normal = hl_triangle_normal(all, primitive, balls[0].at, &first);

@@ -1,4 +1,5 @@
-/* surface/triangle_lattice.c - see primitive_lattice.h: the table of triangles.
+/* surface/triangle_lattice.c - the table of functions by which lines through a lattice meet triangles
+ * (primitive_lattice.h).
  *
  * The points of a triangle are sheared, so that the lines become upright and have whole numbers as columns
  * and rows. Derived: a line that goes through column c at the height 0 goes through column c - slope h at the
@@ -40,9 +41,9 @@ static bool see(const surfaces *all, uint32_t triangle, const lattice_lines *lin
   return t->columns.first <= t->columns.last && fabs(t->area) > 0;
 }
 
-/* Whether a line meets the triangle. For each corner, twice the area of the triangle between the opposite
- * edge and the line is compared with 0; the area has a sign. A line on an edge belongs to the triangle on one
- * of the edge's sides. */
+/* Returns whether a line meets the triangle. For each corner, the area of the triangle between the opposite
+ * edge and the line is compared with 0; the area has a sign. If a line goes through an edge, it meets only
+ * the triangle on one side of the edge. */
 static bool meets(const seen_triangle *t, double across, double down, double weight[3]) {
   for (int corner = 0; corner < 3; corner++) {
     int a = (corner + 1) % 3, b = (corner + 2) % 3;

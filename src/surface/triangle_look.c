@@ -1,7 +1,7 @@
-/* surface/triangle_look.c - see triangle.h: the normal and the colour at a point of a triangle.
+/* surface/triangle_look.c - finds the normal and the colour at a point of a triangle (triangle.h).
  *
- * In: a triangle, and a point of its plane. Out: the normal and the colour there, interpolated between the
- *     triangle's corners. */
+ * In: a triangle, and a point of its plane. Out: the normal and the colour at this point, interpolated
+ * between the triangle's corners. */
 #include "surface/triangle.h"
 
 /* The weights of a triangle's corners at a point of its plane. */

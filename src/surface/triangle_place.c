@@ -1,5 +1,5 @@
-/* surface/triangle_place.c - see triangle.h: the triangles of a mesh in frame space, with their vertices and
- * normals. */
+/* surface/triangle_place.c - brings the triangles of a mesh, with their vertices and normals, to frame space
+ * (triangle.h). */
 #include <string.h>
 
 #include "surface/triangle.h"

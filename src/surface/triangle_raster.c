@@ -1,4 +1,5 @@
-/* surface/triangle_raster.c - what views see of triangles, and how triangles become fragments. */
+/* surface/triangle_raster.c - finds how views see triangles, and makes fragments of triangles
+ * (primitive_raster.h). */
 #include "surface/primitive_fragments.h"
 #include "surface/shown_surface.h"
 #include "surface/small_batch.h"

@@ -1,14 +1,15 @@
-/* surface/late/lateness.h - constants, each with its reason. Shadow buffers take surfaces into account late.
- * The constants say how late, and how the errors that follow from this are corrected.
+/* surface/late/lateness.h - constants that say how late shadow buffers take surfaces into account, and how
+ * the errors of this lateness are corrected. Each constant has its reason beside it.
  *
  * A look-up for a sample of a surface also reads pixels beside the sample, and the surface must not darken
- * itself there. So a shadow buffer takes a surface into account only some pixels behind the surface's place.
- * So light leaks right behind the surface. The folders surface/late/ and render/late/ correct these leaks,
- * and use the constants of this file. docs/experiments.md tells how they were found ("Meshes").
+ * itself in these pixels. So a shadow buffer takes a surface into account only some pixels behind the
+ * surface's place. Light then leaks right behind the surface. The folders surface/late/ and render/late/
+ * correct these leaks, and use the constants of this file. docs/experiments.md ("Meshes") tells how the
+ * constants were found.
  *
- * Two kinds of constants stand elsewhere. The table of each method of shadows says by how many pixels
- * surfaces are delayed and rise (shadow/shadow_method.h). The marks of dark pixels belong to the cascade
- * (shadow/attenuate.h). */
+ * Two kinds of constants are in other files. The table of each method of shadows has the number of pixels by
+ * which surfaces are delayed, and the number by which they are moved towards the light
+ * (shadow/shadow_method.h). The marks of dark pixels belong to the cascade (shadow/attenuate.h). */
 #ifndef HL_SURFACE_LATE_LATENESS_H
 #define HL_SURFACE_LATE_LATENESS_H
 
@@ -23,9 +24,9 @@ enum { MOST_SLABS = 16 };
  * hardly lit. */
 #define STEEPEST_SLOPE 12
 
-/* How far above its triangle a fragment's slabs may lie, in distances of sheets. A pixel on the edge between
- * two triangles has a fragment of each of them. The two fragments must have a slab in common, so that there
- * the whole pixel is covered. */
+/* The greatest distance, in distances of sheets, at which a fragment's slabs may lie above its triangle. A
+ * pixel on the edge between two triangles has a fragment of each triangle. The two fragments must have a slab
+ * in common, so that they cover the whole pixel in this slab. */
 #define SEAM 2
 
 /* The least delay, in distances of sheets. Without it, rounding could put a surface that runs along the
@@ -38,7 +39,8 @@ enum { MOST_SLABS = 16 };
  * box around all clusters. Between smaller triangles, light that leaks at corners makes only specks. */
 static const double LARGE_EDGE = 1.0 / 64;
 
-/* Two ends of edges count as one place if they are closer together than this number of the same units. */
+/* Two ends of edges count as one place if the distance between them is smaller than this number of the units
+ * of LARGE_EDGE. */
 static const double SAME_PLACE = 1e-5;
 
 /* Limits of memory and time. MOST_SEAMED: the greatest number of triangles whose edges are looked at; the
@@ -50,13 +52,13 @@ enum { MOST_SEAMED = 1 << 14, MOST_AT_EDGE = 4, MOST_SEAMS_ASKED = 64 };
 /* The greatest number of seams of a triangle that a light's view looks at: MOST_AT_EDGE for each edge. */
 enum { MOST_SEEN_SEAMS = 12 };
 
-/* A fragment that is closer to a corner than this number of pixels fills all slabs up to the corner's other
- * triangle. */
+/* A fragment beside a corner (an edge at which two large triangles meet) fills all slabs up to the other
+ * triangle. It is beside the corner if its distance from the corner is less than this number of pixels. */
 static const double BESIDE_SEAM = 1.5;
 
-/* How far a fragment beside a corner overlaps the corner's other triangle. The unit is the height by which
- * the other triangle's plane rises over a pixel, because the height at a pixel's middle may differ by that
- * much from the height at the corner. */
+/* How far a fragment beside a corner overlaps the other triangle of the corner. The unit is the height by
+ * which the other triangle's plane rises over a pixel, because the height at a pixel's middle may differ by
+ * that much from the height at the corner. */
 static const double SEAM_OVERLAP = 1;
 
 /* ---- rims: triangles near boundary edges and corners (surface_rims.h) ---- */
@@ -83,10 +85,10 @@ static const float LOOKUP_OFFSET = 1.25f;
  * reach. */
 static const double CUBIC_DELAY = 1.75;
 
-/* How far around a volume's sample its look-up reads, in pixels of the buffer. For a sample behind an opaque
- * surface, the surface may enter the neighbouring pixels later than the sample's own pixel. So for volumes,
- * the delay of an opaque surface counts as larger by this number of pixels. The delay of a translucent
- * surface does not, because it would absorb light twice. */
+/* The distance, in pixels of the buffer, up to which the look-up of a volume's sample reads around the
+ * sample. For a sample behind an opaque surface, the surface may enter the neighbouring pixels later than the
+ * sample's own pixel. So for volumes, the delay of an opaque surface counts as larger by this number of
+ * pixels. The delay of a translucent surface does not, because it would absorb light twice. */
 static const double READ_BESIDE = 1.25;
 
 /* The number of slabs before the current slab whose fragments may be missing in the shadow buffers. */
@@ -94,9 +96,9 @@ enum { NEAR_SLABS = 2 };
 
 /* ---- rays to what is close (render/late/contact.c) ---- */
 
-/* Limits of the search for close surfaces. The unit is the length by which a buffer is late: one pixel of
- * the buffer plus one distance of sheets. A surface is close to a point where its plane is at most CLOSE
- * units away. A ray ends after FARTHEST_CLOSE units. */
+/* Limits of the search for close surfaces. The unit is the length by which a buffer is late: one pixel of the
+ * buffer plus one distance of sheets. A surface is close to a point if its plane is at most CLOSE units away
+ * from the point. A ray that searches for close surfaces ends after FARTHEST_CLOSE units. */
 static const double CLOSE = 3, FARTHEST_CLOSE = 10;
 
 /* The distance from a point at which its ray begins, in pixels of the buffer. It is greater than the errors
@@ -104,7 +106,7 @@ static const double CLOSE = 3, FARTHEST_CLOSE = 10;
 static const double RAY_START = 0.0005;
 
 /* The greatest distance from a sample's place to the middle of the visible part of its pixel, in pixels of
- * the picture at the content. Without this limit, the middle could be arbitrarily far away where the eye
+ * the picture at the content. Without this limit, the middle could be arbitrarily far away if the eye's ray
  * grazes a surface. */
 static const double MOST_PIXELS_ASIDE = 8;
 

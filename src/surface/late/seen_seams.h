@@ -1,4 +1,5 @@
-/* surface/late/seen_seams.h - how far fragments of a light's view reach where triangles meet at a corner.
+/* surface/late/seen_seams.h - finds how far fragments of a light's view reach beside a corner, an edge at
+ * which two triangles meet.
  *
  * A fragment absorbs light from a delayed height on (fragment_work.h: delay). The steeper its triangle is,
  * the longer is the delay. So two triangles that meet at a corner have different delays. Slanted rays could

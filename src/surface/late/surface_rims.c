@@ -8,8 +8,9 @@
 #include "surface/late/lateness.h"
 #include "surface/surface_cuts.h"
 
-/* Adds each edge's hash to the sums of its two vertices, with the sign of the edge's direction (derived as in
- * mesh.c: a vertex whose edges are all used equally often in both directions has the sum 0). */
+/* Adds a hash of each edge to the sums of its two vertices, with a sign that tells the edge's direction.
+ * Derived as in mesh.c: a vertex has the sum 0 if all of its edges are used equally often in both
+ * directions. */
 static void sum_edges(const surfaces *all, const surface_mesh *mesh, uint64_t *sum) {
   for (uint32_t t = 0; t < mesh->primitives[PRIMITIVE_triangle].count; t++) {
     const uint32_t *corner = all->triangles[mesh->primitives[PRIMITIVE_triangle].first + t];

@@ -95,7 +95,7 @@ static bool is_near(const seam_search *search, uint32_t a, uint32_t b) {
   return vec3_length(apart) <= search->same;
 }
 
-/* Whether two edges lie in one place, and the normals of their triangles differ by much. */
+/* Returns whether two edges lie in one place, and the normals of their triangles differ by a large angle. */
 static bool is_corner(const seam_search *search, const large_edge *a, const large_edge *b) {
   if (a->triangle == b->triangle) return false;
   if (!(is_near(search, a->ends[0], b->ends[0]) && is_near(search, a->ends[1], b->ends[1])) &&

@@ -1,9 +1,9 @@
-/* surface/late/surface_seams.h - corners: where large triangles of meshes that are not closed meet at an edge
- * and bend.
+/* surface/late/surface_seams.h - finds corners: edges at which large triangles of meshes that are not closed
+ * meet and bend.
  *
  * Two edges count as the same edge if their ends lie in the same places. So triangles that meet need not
  * share vertices, nor belong to one mesh. In: triangles in frame space. Out: the neighbours of each triangle
- * at corners. Fragments of a light's view need these (seen_seams.h). */
+ * at corners, which the fragments of a light's view need (seen_seams.h). */
 #ifndef HL_SURFACE_LATE_SURFACE_SEAMS_H
 #define HL_SURFACE_LATE_SURFACE_SEAMS_H
 
@@ -11,7 +11,7 @@
 #include "surface/late/lateness.h"
 #include "surface/surfaces.h"
 
-/* An edge at which a triangle meets another one, at an angle of more than 40 degrees. */
+/* An edge at which a triangle meets another triangle at an angle of more than 40 degrees. */
 struct surface_seam {
   uint32_t triangle, other; /* indices in surfaces->triangles: the triangle, and the other triangle that it
                              * meets */

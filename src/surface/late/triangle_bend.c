@@ -1,7 +1,7 @@
-/* surface/late/triangle_bend.c - see triangle.h: how the interpolated normal turns within a triangle.
+/* surface/late/triangle_bend.c - finds how the interpolated normal turns within a triangle (triangle.h).
  *
- * In: a triangle of a smooth mesh, and a direction along it. Out: how much the surface bends in this
- * direction. A hollow surface may shade itself (render/late/contact.c). */
+ * In: a triangle of a smooth mesh, and a direction along the triangle. Out: how much the surface bends in
+ * this direction. A surface that bends inwards may shade itself (render/late/contact.c). */
 #include "surface/late/lateness.h"
 #include "surface/triangle.h"
 
@@ -23,9 +23,9 @@ static bent_triangle bent_triangle_of(const surfaces *all, const surface_mesh *m
   return bent;
 }
 
-/* How much the normal turns, per length, along a direction on the triangle. Derived: the gradient of corner
- * i's weight is cross x edge / cross^2, where `edge` is the edge opposite to the corner. The normal is the
- * weighted sum of the corners' normals. */
+/* Finds how much the normal turns, per length, along a direction on the triangle. Derived: the gradient of
+ * corner i's weight is cross x edge / cross^2, where `edge` is the edge opposite to the corner. The normal is
+ * the weighted sum of the corners' normals. */
 static double bend_along(const bent_triangle *bent, vec3 along) {
   vec3 turn = {0, 0, 0};
   double square = vec3_dot(bent->cross, bent->cross);
