@@ -14,8 +14,8 @@
 enum { BEFORE = BRICK_BEFORE, AFTER = BRICK_AFTER, WINDOW = BEFORE + AFTER + 1 };
 _Static_assert((int)HL_BRICK_CELLS == (int)BRICK_SIDE, "volumes and grids have the same bricks");
 
-/* The number of bytes that may be read after the last element of an array whose bytes are read four at a
- * time. */
+/* The number of bytes that must be readable after the last element of an array. Vector code reads such arrays
+ * four bytes at a time. */
 enum { READ_BEYOND = 4 };
 
 static int32_t clamp_index(int64_t i, int32_t count) {
@@ -25,13 +25,13 @@ static int32_t clamp_index(int64_t i, int32_t count) {
 typedef struct brick_job {
   const grid *grid;
   bound_rows_function *bound_rows;
-  /* [threads][2][dimension 0]; for each x, the least and the greatest value of the voxels of a row of
-   * bricks */
+  /* [threads][2][dimension 0]; for each x, the least and the greatest value of the voxels on which a row of
+   * bricks depends */
   float *columns;
   unsigned char *copies; /* [threads][WINDOW * WINDOW][copy_bytes]; copies of rows, for grids with pages */
   size_t copy_bytes;
-  /* number of the first layer of bricks that this job bounds. Over ranks, other ranks bound the layers before
-   * it */
+  /* number of the first layer of bricks that this job bounds; over ranks, other ranks bound the layers before
+   * this layer */
   size_t first;
 } brick_job;
 
@@ -241,7 +241,7 @@ static void round_bounds(const grid *grid, const float *low, const float *high, 
   for (size_t i = 0; i < count; i++) {
     float a = floorf((low[i] - grid->cell_base) * inverse + 1e-4f),
           b = ceilf((high[i] - grid->cell_base) * inverse - 1e-4f);
-    /* the bound `a` is NaN if the voxels' owner has changed voxels to NaN */
+    /* the bound `a` is NaN if the caller, who owns borrowed voxels, has changed some of them to NaN */
     to_low[i] = (unsigned char)(a > 255 ? 255 : a > 0 ? a : 0);
     to_high[i] = (unsigned char)(b < 0 ? 0 : b < 255 ? b : 255);
   }
@@ -325,7 +325,7 @@ typedef struct bound_slices {
   float *out;              /* [2][plane]; bounds of cells along all axes */
   float *rows, *padded;    /* scratch memory of bound_slice() */
   unsigned char *bounds;   /* [CELL_LAYERS][2][plane]; bounds of a layer of bricks */
-  unsigned char *packed;   /* the numbers of `bounds` after packing */
+  unsigned char *packed;   /* the packed numbers of `bounds` */
   int32_t held[CELL_TAPS]; /* for each element of `slices`, the number of the volume's slice that the element
                             * holds; -1: it holds no slice */
 } bound_slices;
@@ -373,8 +373,8 @@ static size_t cells_of(const cell_lookup *lookup) {
   return (size_t)lookup->count[0] * (size_t)lookup->count[1] * (size_t)lookup->count[2];
 }
 
-/* Whether groups of 2x2x2 cells have bounds of their own: they do if 32 bits can number the groups and the
- * voxels are in memory. The look-ups' counts must be set. */
+/* Returns whether groups of 2x2x2 cells have bounds of their own. They have if 32 bits can number the groups
+ * and the voxels are in memory. The counts of the look-ups must be set before. */
 static bool cells_have_bounds(const grid *grid) {
   return grid->pages == NULL && grid->bricks == NULL && cells_of(&grid->lookup[0]) < INT32_MAX;
 }

@@ -1,12 +1,13 @@
 /* grid/bounds.h - the least and the greatest value that samples in each brick, and in each group of 2x2x2
  * cells, can have. The bounds are found once for each volume.
  *
- * A brick is bounded by the voxels that its cells and the cells around it depend on. Cells are bounded more
- * tightly: in a cell, a cubic B-spline lies between the least and the greatest of its Bezier points. For the
- * cell between the voxels b and c of four voxels a b c d along an axis, these points are (a + 4 b + c) / 6,
- * (2 b + c) / 3, (b + 2 c) / 3 and (b + 4 c + d) / 6. All weights are non-negative, so bounds found along one
- * axis can serve as input along the next. In noise around a threshold, these bounds mark half as many cells
- * as the least and greatest voxel would. The other kernels use the least and greatest voxel. */
+ * The bounds of a brick are the least and the greatest of the voxels on which its cells and the cells around
+ * it depend. Cells are bounded more tightly: in a cell, a cubic B-spline lies between the least and the
+ * greatest of its Bezier points. For the cell between the voxels b and c of four voxels a b c d along an
+ * axis, these points are (a + 4 b + c) / 6, (2 b + c) / 3, (b + 2 c) / 3 and (b + 4 c + d) / 6. All weights
+ * are non-negative, so bounds found along one axis can serve as input along the next. In noise around a
+ * threshold, half as many cells may be visible by these bounds as by the bounds of the least and the greatest
+ * voxel. The other kernels use the least and greatest voxel. */
 #ifndef HL_GRID_BOUNDS_H
 #define HL_GRID_BOUNDS_H
 
@@ -27,7 +28,7 @@ void hl_bounds_of_brick(const grid *grid, size_t brick, float bounds[2]);
 /* ---- cells ---- */
 
 /* Lays out the grid's look-ups and the array cell_bounds, and sets the counts of the look-ups. The grid's
- * dimension and brick_count must be set. Lays out nothing where 32 bits cannot number the cells. */
+ * dimension and brick_count must be set. If 32 bits cannot number the cells, nothing is laid out. */
 void hl_cells_lay_out(grid *grid, hl_layout *layout);
 /* Fills the grid's array cell_bounds, whose elements must be null: each layer is allocated when packing has
  * found the layer's size. smooth: whether the kernel is the B-spline. */
@@ -40,15 +41,15 @@ void hl_cell_bounds_release(hl_context *context, grid *grid);
  * released at the function's end. */
 void hl_bounds_count(const grid *grid, int threads, hl_layout *layout);
 
-/* The bounds of the group of 2x2x2 cells with the coordinates `cell`, in stored units. This is slow, because
- * it walks through the packed bounds of a layer. */
+/* Finds the bounds of the group of 2x2x2 cells with the coordinates `cell`, in stored units. The function is
+ * slow, because it walks through the packed bounds of a layer. */
 void hl_cell_bounds_at(const grid *grid, const int32_t cell[3], float *low, float *high);
 
-/* The form of the packed bounds of a layer of bricks. They begin with a bit for each brick; each row of
- * bricks starts a new byte. The bit is 1 where the brick is even: all eight of its groups of 2x2x2 cells have
- * the same bounds. The bricks' bounds follow, brick after brick: two bounds (lower, upper) for an even brick,
- * else eight lower and eight upper bounds. The bounds of group (i, j, k) have the number i + 2 j + 4 k.
- * Groups beyond the grid have the bounds of their neighbours. */
+/* The form of the packed bounds of a layer of bricks. The packed bounds begin with a bit for each brick; each
+ * row of bricks starts a new byte. The bit is 1 if the brick is even: if all eight of its groups of 2x2x2
+ * cells have the same bounds. The bricks' bounds follow, brick after brick: two bounds (lower, upper) for an
+ * even brick, else eight lower and eight upper bounds. The bounds of group (i, j, k) have the number i + 2 j
+ * + 4 k. Groups beyond the grid have the bounds of their neighbours. */
 enum { BRICK_CELLS = 8, EVEN_BYTES = 2, UNEVEN_BYTES = 2 * BRICK_CELLS };
 
 static inline size_t hl_even_row_bytes(const grid *grid) { return ((size_t)grid->brick_count[0] + 7) / 8; }

@@ -14,7 +14,7 @@ LANES_INLINE int32_t bits_voxel_at(int32_t i, int32_t count) {
   return i < 0 ? 0 : i >= count ? count - 1 : i;
 }
 
-/* Loads eight voxels of each of two rows. */
+/* Loads eight voxels of each of two rows that lie within the grid. */
 LANES_INLINE lanes bits_two_rows(hl_storage storage, const unsigned char *const row[2]) {
   if (storage == HL_STORAGE_U8) {
     typedef uint8_t bytes __attribute__((vector_size(LANES)));
@@ -35,8 +35,8 @@ LANES_INLINE lanes bits_two_rows(hl_storage storage, const unsigned char *const 
   return both;
 }
 
-/* Loads eight voxels of each of two rows that cross the grid's faces, beyond which the values at the border
- * continue. */
+/* Loads eight voxels of each of two rows that reach beyond the grid's faces. Beyond the faces, the values at
+ * the border continue. */
 LANES_INLINE lanes bits_two_held_rows(const grid *grid, int32_t x, int32_t y, int32_t z) {
   float both[LANES];
   for (int i = 0; i < LANES; i++) both[i] = hl_stored_value(grid, x + i % BITS_ROW, y + i / BITS_ROW, z);
@@ -77,8 +77,8 @@ LANES_INLINE void greatest_of_four(const lanes v[CELL_BIT_TAPS], lanes greatest[
 
 /* ---- a brick ---- */
 
-/* Finds bounds of a brick's cells along z, as [cell z][y][x]. A layer has seven rows; an eighth row only
- * fills the lanes. */
+/* Finds bounds of a brick's cells along z. The result has the order [cell z][y][x]. A layer has seven rows;
+ * an eighth row only fills the lanes. */
 LANES_INLINE void bits_along_z(const grid *grid, hl_storage storage, const int32_t brick[3], float sign,
                                float bounds[HL_BRICK_CELLS][BITS_ROWS][BITS_ROW]) {
   const int32_t *count = grid->dimension;
@@ -102,8 +102,8 @@ LANES_INLINE void bits_along_z(const grid *grid, hl_storage storage, const int32
   }
 }
 
-/* Finds the bounds along y from the bounds along z, as [cell z][cell y][x], for two layers of cells at a
- * time. */
+/* Finds the bounds along y from the bounds along z, for two layers of cells at a time. The result has the
+ * order [cell z][cell y][x]. */
 LANES_INLINE void bits_along_y(float from[HL_BRICK_CELLS][BITS_ROWS][BITS_ROW],
                                float bounds[HL_BRICK_CELLS][HL_BRICK_CELLS][BITS_ROW]) {
   for (int layer = 0; layer < HL_BRICK_CELLS; layer += 2) {

@@ -52,12 +52,12 @@ static void integrate_colors(classifier *classifier) {
   }
 }
 
-/* Fills the table of colours. Also stores, in classifier->bent, the change of the colours' slope at each
- * entry. */
+/* Fills the table of colours. Also stores in classifier->bent how much the slope of the colours changes at
+ * each entry. */
 static void fill_colors(const hl_transfer_function *function, double low, double high,
                         classifier *classifier) {
-  double last[3][3]; /* a ring of colours: those of entries n, n - 1 and n - 2; the colour of entry n is
-                      * stored at n % 3 */
+  double last[3][3]; /* the colours of the entries n, n - 1 and n - 2; the colour of entry n is stored at n %
+                      * 3 */
   classifier->bent[0] = classifier->bent[CLASSIFIER_ENTRIES] = classifier->bent[CLASSIFIER_ENTRIES + 1] = 0;
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES; entry++) {
     const double *second = last[(entry + 1) % 3], *before = last[(entry + 2) % 3];
@@ -87,9 +87,9 @@ static void sum_bends(classifier *classifier) {
   if (sum * CLASSIFIER_ENTRIES <= CLASSIFIER_LEAST_BENDING) classifier->bent = NULL;
 }
 
-/* A second surface begins where extinction rises by the factor SECOND_RISE after a level stretch. On a level
- * stretch extinction does not rise; the stretch is at least the fraction LEVEL_PART of the way from the first
- * surface's foot. */
+/* A second surface begins at a value where extinction rises by the factor SECOND_RISE after a level stretch
+ * of values. On a level stretch, extinction does not rise. The stretch takes at least the fraction LEVEL_PART
+ * of the values from the beginning of the first surface on. */
 static const double SECOND_RISE = 1.5, LEVEL_PART = 0.05;
 
 /* Finds where surfaces begin, for the values on one side of the empty value. It looks at the table's entries
@@ -190,7 +190,7 @@ static float normal_edge(const hl_scene_volume *volume, double entries_per_value
                     ? 0
                     : function->opacity[function->opacity_count - 1].value - function->opacity[0].value;
   if (!(span > 0)) span = 1;
-  /* the map's rotation is left out, because a rotation keeps lengths */
+  /* the map's rotation is left out, because it does not change lengths */
   mat3 placed = volume->volume->index_to_world.linear;
   for (int axis = 0; axis < 3; axis++)
     placed.row[axis] = vec3_scale(placed.row[axis], volume->axis_scale[axis]);
@@ -243,7 +243,7 @@ hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volum
   memset(layout.base, 0, layout.bytes);
   double empty = grid->empty * grid->value_scale + grid->value_offset;
   double low = fmin(volume->volume->minimum, empty), high = fmax(volume->volume->maximum, empty);
-  /* the factor is needed because adding 1 to 1e30 changes nothing */
+  /* the range is widened by a part of |low|, because adding 1 to 1e30 changes nothing */
   if (!(high > low)) high = low + fmax(1, 1e-12 * fabs(low));
   high = fmax(high, low + NARROWEST_RANGE * fabs(grid->value_scale));
   classifier->scale = (float)(grid->value_scale * CLASSIFIER_ENTRIES / (high - low));

@@ -50,7 +50,7 @@ typedef struct classifier {
   float normal_edge; /* the least gradient (table entries per frame unit) that counts as a surface */
 } classifier;
 
-/* Whether extinction depends on more than the value, so that a factor multiplies it. */
+/* Returns whether extinction depends on more than the value, so that a factor multiplies it. */
 static inline bool hl_classifier_is_weighed(const classifier *classifier) {
   return classifier->steepness != NULL || classifier->mask.factors != NULL || classifier->plane.sums != NULL;
 }

@@ -76,16 +76,17 @@ LANES_INLINE lanes integral_to(const classifier *classifier, lanes x) {
 }
 
 typedef struct second_surface {
-  lanes kept;  /* the fraction of the light absorbed by the first surface that counts as absorbed by the
-                * second */
-  lanes ahead; /* the optical depth on the light's way from `start` to the second surface's foot */
+  lanes kept;  /* Of the light that the first surface absorbs, the fraction that counts as absorbed by the
+                * second surface */
+  lanes ahead; /* the optical depth on the light's way from the place where the light is known to the
+                * beginning of the second surface */
 } second_surface;
 
-/* Finds how a first surface on the light's way affects a second one. first, foot: the values at which the
- * first and the second surface begin. start: the value at the place where the light is known. light, outside:
- * the light there, and the light at the outside of the first surface. rise: the change of values per unit of
- * the light's way, above 0. Derived: a straight ramp from the value a to the value b has the optical depth
- * |P(b) - P(a)| / rise, where P is the integral of extinction. */
+/* Finds how a first surface on the light's way affects a second surface behind it. first, foot: the values at
+ * which the first and the second surface begin. start: the value at the place where the light is known.
+ * light, outside: the light at this place, and the light at the outside of the first surface. rise: the
+ * change of values per unit of the light's way, above 0. Derived: a straight ramp from the value a to the
+ * value b has the optical depth |P(b) - P(a)| / rise, where P is the integral of extinction. */
 LANES_INLINE second_surface kept_at_foot(const classifier *classifier, lanes first, lanes start, lanes foot,
                                          lanes rise, lanes light, lanes outside) {
   lanes at_foot = integral_to(classifier, foot), ramp = lanes_abs(at_foot - integral_to(classifier, first)),
@@ -97,8 +98,9 @@ LANES_INLINE second_surface kept_at_foot(const classifier *classifier, lanes fir
                           ahead / lanes_max(rise, lanes_set(1e-9f))};
 }
 
-/* The mean distances of the densities on a way from the way's two ends a and b, weighted by extinction; in
- * entries. Both distances are 1 where a and b are close, or where nothing between them has extinction. */
+/* The mean distances, in entries of the table, from the two ends a and b of a way to the densities on the
+ * way. Densities are weighted by their extinction. Both distances are 1 if a and b are close, or if nothing
+ * between them has extinction. */
 typedef struct way_means {
   lanes from_a, from_b;
 } way_means;

@@ -7,7 +7,7 @@
 #include "grid/field.h"
 #include "grid/relevant.h"
 
-/* The two axes that run along a face of a box; the face is perpendicular to `axis`. */
+/* The two axes along a face of a box whose normal is `axis`. */
 static int row_axis(int axis) { return axis == 0 ? 1 : 0; }
 static int column_axis(int axis) { return axis == 2 ? 1 : 2; }
 
@@ -18,7 +18,7 @@ typedef struct face_job {
   int axis;
   int32_t last_cell; /* the last cell of the grid along the axis */
   field_taps across; /* the four voxels on which the field depends across the face, and their weights */
-  int visible;       /* whether any point of the face is visible */
+  int visible;       /* whether some point of the face is visible */
 } face_job;
 
 /* The value of the volume's field at a point of the face. */
@@ -37,8 +37,8 @@ static float value_at(const face_job *job, const field_taps *column, const field
   return (float)sum;
 }
 
-/* Whether the brick that holds a point of the face may be visible. row, column: the voxel coordinates of the
- * point along the face. */
+/* Returns whether the brick that holds a point of the face may be visible. row, column: the coordinates of
+ * the point on the face, in voxels. */
 static bool may_be_visible(const face_job *job, int32_t row, int32_t column) {
   int32_t at[3];
   /* the lower voxel of the cell that holds the point; a point at the end of the last cell belongs to the last

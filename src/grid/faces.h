@@ -6,9 +6,9 @@
 #include "core/pool.h"
 #include "grid/classifier.h"
 
-/* Finds grid->face_shows: whether something is visible on each face of the box. Call it after
- * hl_grid_mark_relevant(). It looks at one point for each voxel of the faces, where relevant bricks reach the
- * faces. */
+/* Finds grid->face_shows: for each face of the box, whether something is visible on it. One point for each
+ * voxel of a face is tested, as far as relevant bricks reach the face. Call this function after
+ * hl_grid_mark_relevant(). */
 void hl_faces_find(hl_pool *pool, const kernel *kernel, const classifier *classifier, grid *grid);
 
 #endif

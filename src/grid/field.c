@@ -3,7 +3,7 @@
 
 #include "bricks/evaluate.h"
 
-/* The kernel's value at a distance, and the value's derivative with respect to the coordinate. */
+/* Finds the kernel's value at a distance, and the derivative of this value with respect to the coordinate. */
 static void kernel_at(const kernel *kernel, double distance, double *value, double *slope) {
   double a = fabs(distance), sum = 0, rise = 0;
   *value = *slope = 0;
@@ -11,7 +11,7 @@ static void kernel_at(const kernel *kernel, double distance, double *value, doub
   const float *piece = a < 1 ? kernel->inner : kernel->outer;
   if (a >= 1) a -= 1;
   for (int power = kernel->degree; power >= 0; power--) {
-    rise = rise * a + sum; /* the derivative by Horner's scheme */
+    rise = rise * a + sum; /* Horner's scheme gives the derivative */
     sum = sum * a + (double)piece[power];
   }
   *value = sum;

@@ -27,8 +27,8 @@ enum {
 
 /* A table that tells which small boxes of the grid show something. There are two tables: the unit of one is a
  * group of 2x2x2 cells, the unit of the other a brick. Eight boxes begin at each unit; each is two or three
- * units long along each axis. Each unit has a byte, which has a bit for each of the eight boxes: bit i + 2 j
- * + 4 k tells whether the box of 2 + i by 2 + j by 2 + k units shows something. */
+ * units long along each axis. Each unit has a byte, with a bit for each of the eight boxes: bit i + 2 j + 4 k
+ * tells whether the box of 2 + i by 2 + j by 2 + k units shows something. */
 enum { LOOKUP_SIZES = 2, LOOKUP_REACH = 3 /* units along an axis that one look-up covers */ };
 typedef struct cell_lookup {
   int32_t count[3];
@@ -39,22 +39,22 @@ typedef struct cell_lookup {
 typedef struct grid {
   void *memory;          /* owned; holds all arrays except the volume's voxels and the layers of
                           * cell_bounds */
-  const void *voxels;    /* [dimension[2]][dimension[1]][dimension[0]]; stored values: the volume's own or
-                          * finite_voxels; rows are packed. Null with pages or bricks */
+  const void *voxels;    /* [dimension[2]][dimension[1]][dimension[0]]; stored values; the volume's own voxels
+                          * or finite_voxels; rows are packed. Null for a grid with pages or bricks */
   const hl_pages *pages; /* the volume's pages (volume/store/pages.h), or value_pages; null if the voxels are
-                          * in memory. Where a grid has pages, only its bricks tell where something is
-                          * visible */
-  /* The field in bricks; borrowed from the volume; null if there are voxels. The lattice's coordinate is one
-   * more than the grid's, so that cells of the grid (floor(p) + 1) are cells of the lattice. The grid's
-   * "voxels" are the field's coefficients of level 0. A grid with a field in bricks has no look-ups of 2x2x2
-   * cells: only its bricks tell where something is visible */
+                          * in memory. In a grid with pages, bricks tell where something is visible, and no
+                          * cells do */
+  /* The field in bricks; borrowed from the volume; null if there are voxels. A coordinate in the field's
+   * lattice is one more than the coordinate in the grid, so that cells of the grid (floor(p) + 1) are cells
+   * of the lattice. The grid's "voxels" are the field's coefficients of level 0. A grid with a field in
+   * bricks has no look-ups of 2x2x2 cells: only its bricks tell where something is visible */
   const hl_bricks *bricks;
-  hl_bricks *finite_bricks; /* in the grid's memory; a copy of the field that has the empty value where the
-                             * field has no data; null if the field has data everywhere */
+  hl_bricks *finite_bricks; /* in the grid's memory; a copy of the field, with the empty value at places
+                             * without data; null if the field has data everywhere */
   double shift[3];          /* grid coordinate = voxel index + shift; shift is 0 if the grid has no field in
                              * bricks */
-  hl_pages *value_pages;    /* owned (value_pages.h); the values that sampling needs where these are not the
-                             * stored values; else null */
+  hl_pages *value_pages;    /* owned (value_pages.h); pages with the values that sampling needs; null if
+                             * sampling uses the stored values */
   size_t row_bytes, slice_bytes; /* bytes of the voxels from each row to the next, and from each slice to the
                                   * next */
   /* A second copy of u8 voxels, in columns eight voxels wide. Eight rows of a column are 64 consecutive
@@ -63,8 +63,8 @@ typedef struct grid {
    * signed numbers. [column][dimension[2]][dimension[1]][GRID_COLUMN]; null where nothing reads the
    * columns. */
   unsigned char *columns;
-  size_t column_slice_bytes, column_bytes; /* bytes from slice to slice of a column, and from column to
-                                            * column */
+  size_t column_slice_bytes, column_bytes; /* number of bytes from one slice of a column to the next, and from
+                                            * one column to the next */
   hl_storage storage;
   int32_t dimension[3];
   float empty;                      /* the empty value, in stored units */
@@ -72,15 +72,16 @@ typedef struct grid {
   affine3 index_to_frame, frame_to_index;
   double box_low[3], box_high[3]; /* corners of the box within which the volume exists; index space */
   /* The places of the box's faces along each axis, in index space. A face that cuts nothing visible gets a
-   * place far outside. So does, in a frame, a face beyond which another volume goes on. */
+   * place far outside. In a frame, a face beyond which another volume continues the matter also gets such a
+   * place. */
   float face_low[3], face_high[3];
   bool face_shows[3][2]; /* [axis][low, high]: whether something is visible on the face itself */
   int32_t brick_count[3];
   void *brick_bounds;      /* [bricks z][y][x][2], of the voxels' type; the least and the greatest stored
                             * value among the voxels on which the brick's cells and the cells around the brick
                             * depend */
-  unsigned char *relevant; /* [bricks z][y][x]; 1 where the transfer function may show something in the
-                            * brick */
+  unsigned char *relevant; /* [bricks z][y][x]; 1 for bricks in which the transfer function may show
+                            * something */
   cell_lookup lookup[LOOKUP_SIZES]; /* two look-ups: of groups of 2x2x2 cells, and of bricks */
   /* [bricks z]; for each layer of bricks, the packed bounds of all groups of 2x2x2 cells in the layer
    * (bounds.h). Each layer is owned, and has the size that packing finds. A bound stands for the stored value
@@ -90,21 +91,23 @@ typedef struct grid {
                                * stored units */
   uint64_t *cell_bits;        /* [bricks z][y][x]; bit x + 4 y + 16 z tells whether the cell (x, y, z) of the
                                * brick may show something; may be null */
-  bool cell_bits_tell;        /* whether so many cells show nothing that it pays to read their bits */
+  bool cell_bits_tell;        /* whether so large a part of the cells shows nothing that reading the bits of
+                               * cells saves time */
   uint32_t *relevant_list;    /* [relevant_count]; relevant bricks with a visible cell, in rising order */
   uint32_t relevant_count;
-  int32_t relevant_low[3], relevant_high[3]; /* the least and greatest coordinates of relevant bricks */
+  int32_t relevant_low[3], relevant_high[3]; /* the least and the greatest coordinates of the relevant
+                                              * bricks */
   int32_t content_low[3],
       content_high[3]; /* the least and greatest coordinates of relevant bricks and of bricks that only a mask
                         * hides. The geometry of a frame follows from these coordinates, so that no mask moves
                         * the frame's sheets */
-  bool cut; /* whether relevant bricks reach the box's faces, or there are cuts: rays must then know where
-             * they cross faces */
+  bool cut; /* whether relevant bricks reach the box's faces, or there are cuts. If so, the places where rays
+             * cross faces are needed */
   const cut_shape *cuts; /* borrowed; [cut_count]; the shapes that are removed from the box */
   size_t cut_count;
   bool cut_casts_shadow; /* whether the matter that cuts remove still casts shadows */
-  /* in the grid's memory; a copy of the voxels in which the empty value replaces non-finite ones; or, for an
-   * interpolating kernel, the kernel's coefficients (prefilter.h). May be null */
+  /* in the grid's memory; a copy of the voxels in which the empty value replaces values that are not finite.
+   * For an interpolating kernel, the kernel's coefficients (prefilter.h) instead. May be null */
   float *finite_voxels;
   uint64_t kept_voxels; /* number of voxels of the relevant bricks: 64 for each brick, fewer for bricks at
                          * the borders */
@@ -117,7 +120,7 @@ typedef struct grid {
 typedef void bound_rows_function(const void *const *rows, int row_count, size_t count, float *least,
                                  float *greatest);
 
-enum { CELL_TAPS = 5 /* voxels along an axis on which two neighbouring cells depend */ };
+enum { CELL_TAPS = 5 /* number of voxels along an axis on which a pair of neighbouring cells depends */ };
 
 /* The type of the function that finds the bounds of pairs of cells along x. Pair f depends on the voxels 2f-2
  * .. 2f+2; beyond the row's ends the last voxel repeats. row: count stored values. padded: scratch memory of
@@ -139,7 +142,7 @@ typedef struct grid_functions {
   bound_along_function *along;
   bound_across_function *across;
   brick_bits_function *brick_bits;
-  bool reads_columns; /* whether gathering, in this instruction set, reads the columns of u8 voxels */
+  bool reads_columns; /* whether this instruction set's code for gathering reads the columns of u8 voxels */
 } grid_functions;
 
 /* ---- bricks and voxels ---- */
@@ -164,7 +167,8 @@ static inline size_t hl_brick_index(const grid *grid, const int32_t b[3]) {
          (size_t)b[0];
 }
 
-/* Whether any brick in a box is relevant. first, last: the box's corners, both included. */
+/* Returns whether any brick in a box of bricks is relevant. first, last: the coordinates of the box's
+ * corners, both included. */
 static inline bool hl_any_brick_relevant(const grid *grid, const int32_t first[3], const int32_t last[3]) {
   int32_t b[3];
   for (b[2] = first[2]; b[2] <= last[2]; b[2]++)
@@ -187,7 +191,7 @@ static inline const unsigned char *hl_grid_row(const grid *grid, int64_t y, int6
 }
 
 /* Makes a grid that shows one page of another grid: its voxels are the page's voxels, at the same places.
- * Only the page's voxels may be read. What was read counts only if the page has stayed in memory
+ * Only the page's voxels may be read. Voxels that were read are valid only if the page has stayed in memory
  * (hl_page_stayed()). */
 static inline void hl_grid_of_page(const grid *grid, const size_t page[3], struct grid *view,
                                    hl_page_reading *reading) {

@@ -27,9 +27,9 @@ static const kernel interpolating = {
 };
 
 /* The Gaussian exp(-2 d^2), cut at 2. It is divided by the sum of its values at the four voxels around a
- * point, so that these values sum to 1 (derived: the sum of the four depends only on the fractional part of
- * d). The coefficients are a least-squares fit of degree 5, constrained to sum to 1, to be continuous and to
- * end at 0; the error is at most 2.7e-4. */
+ * point, so that the four weights add up to 1. Derived: this sum depends only on the fractional part of d.
+ * The coefficients are a least-squares fit of degree 5, constrained to sum to 1, to be continuous and to end
+ * at 0; the error is at most 2.7e-4. */
 static const kernel gaussian = {
     .name = "gaussian",
     .support = 2,

@@ -5,7 +5,7 @@
 #include "grid/kernel.h"
 #include "simd/lanes.h"
 
-/* A piece of the kernel (kernel.h): a polynomial in a. */
+/* Evaluates one polynomial piece of the kernel (kernel.h) at `a`. */
 LANES_INLINE lanes kernel_piece(const float *piece, int degree, lanes a) {
   lanes sum = lanes_set(piece[degree]);
   for (int power = degree - 1; power >= 0; power--) sum = lanes_fma(sum, a, lanes_set(piece[power]));

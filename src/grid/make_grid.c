@@ -69,8 +69,8 @@ static hl_status replace_voxels(hl_pool *pool, const hl_volume *volume, const ke
   return HL_OK;
 }
 
-/* Rounds the size of slices and columns up to an odd number of cache lines. With sizes that are powers of
- * two, all slices would share few of the cache's sets. */
+/* Rounds the size of slices and columns up to an odd number of cache lines. If sizes were powers of two, all
+ * slices would fall into a few sets of the cache. */
 static size_t odd_lines(size_t bytes) {
   enum { LINE = 64 };
   return ((bytes + LINE - 1) / LINE | 1) * LINE;
@@ -112,15 +112,15 @@ static void copy_slice(void *data, size_t index, int worker) {
 
 /* ---- the grid ---- */
 
-/* Whether sampling needs other values than the stored values: because some are not finite, or because the
- * kernel needs coefficients. */
+/* Returns whether sampling needs other values than the stored ones. It does if some values are not finite, or
+ * if the kernel needs coefficients. */
 static bool needs_other_values(const hl_volume *volume, const kernel *kernel) {
   return volume->bricks == NULL && (volume->nonfinite_count > 0 || kernel->interpolates);
 }
 
-/* The greatest number that a cell can have along an axis. In a grid of voxels it is the number of voxels
- * along the axis. In a grid of bricks it is the number of the cell that holds the box's end, but at most that
- * of the lattice's last cell; the lattice's first cell has the number 0. */
+/* The greatest number of a cell along an axis. For a grid of voxels it is the number of voxels along the
+ * axis. For a grid of bricks it is the number of the cell in which the box ends, but at most the number of
+ * the lattice's last cell; the lattice's first cell has the number 0. */
 static int32_t greatest_cell(const hl_volume *volume, int axis) {
   if (volume->bricks == NULL) return (int32_t)volume->dimension[axis];
   double end = ceil(volume->bricks->origin[axis] + (double)volume->dimension[axis] - 1.5);
@@ -204,7 +204,7 @@ static hl_status allocate(hl_context *context, const grid_functions *functions, 
   if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the grid of a volume");
   grid->memory = layout.base;
   for (int32_t layer = 0; grid->cell_bounds != NULL && layer < grid->brick_count[2]; layer++)
-    grid->cell_bounds[layer] = NULL; /* the packed bounds of the layer are not made yet */
+    grid->cell_bounds[layer] = NULL; /* the packed bounds of this layer have not been made yet */
   return HL_OK;
 }
 

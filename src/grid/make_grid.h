@@ -1,4 +1,4 @@
-/* grid/make_grid.h - making a grid from a volume, once for each volume and kernel. */
+/* grid/make_grid.h - makes a grid of a volume, once for each volume and kernel. */
 #ifndef HL_GRID_MAKE_GRID_H
 #define HL_GRID_MAKE_GRID_H
 
@@ -7,7 +7,8 @@
 
 typedef struct grid_source {
   const hl_scene_volume *volume; /* the volume; the caller keeps it alive as long as the grid */
-  const kernel *kernel;          /* the kernel for which cells are bounded */
+  const kernel *kernel;          /* the kernel with which the volume is reconstructed, and for which bounds of
+                                  * cells are found */
   affine3 index_to_frame;        /* maps the volume's index space to frame space */
   double empty;                  /* the data value of empty space */
 } grid_source;

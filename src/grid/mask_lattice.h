@@ -1,5 +1,5 @@
-/* grid/mask_lattice.h - a volume's mask, prepared for frames: factors of extinction, and colours, on a
- * lattice of points. Between the points they are interpolated linearly. */
+/* grid/mask_lattice.h - a volume's mask, prepared for frames: factors of extinction, and colours, at the
+ * points of a lattice. Between the points they are interpolated linearly. */
 #ifndef HL_GRID_MASK_LATTICE_H
 #define HL_GRID_MASK_LATTICE_H
 
@@ -21,10 +21,11 @@ typedef struct mask_lattice {
   float rest;                  /* the factor outside the lattice */
 } mask_lattice;
 
-/* Prepares the lattice of a volume's mask. volume: in frame space. Without a mask the lattice is empty. */
+/* Prepares the lattice of a volume's mask. volume: the volume in frame space. If the volume has no mask, the
+ * lattice is empty. */
 void hl_mask_lattice_set_up(mask_lattice *lattice, const hl_scene_volume *volume);
 
-/* The points of the lattice around a position, and where the position lies between them. */
+/* The points of the lattice around a position, and where the position lies between these points. */
 typedef struct mask_cell {
   int32_t near[3], far[3]; /* for each axis, the offsets in `factors` of the points before and after the
                             * position */
@@ -58,7 +59,7 @@ static inline size_t hl_mask_corner(const mask_cell *cell, int corner, float *sh
   return at;
 }
 
-/* The factor of extinction at a position in frame space. */
+/* Finds the factor of extinction at a position in frame space. */
 static inline float hl_mask_factor(const mask_lattice *lattice, const float point[3]) {
   mask_cell cell;
   float sum = 0, share;
@@ -74,7 +75,7 @@ static inline float hl_mask_factor(const mask_lattice *lattice, const float poin
  * half[2], each t from -1 to 1. */
 bool hl_mask_hides_box(const mask_lattice *lattice, vec3 middle, const vec3 half[3]);
 
-/* Moves a colour towards the mask's colour at a position in frame space. */
+/* Mixes a colour with the mask's colour at a position in frame space. */
 void hl_mask_tint(const mask_lattice *lattice, const float point[3], float color[3]);
 
 #endif

@@ -1,8 +1,8 @@
 /* grid/plane_table.c - see plane_table.h.
  *
- * A point of the table holds the function's mean over a part of the plane: the part that is nearer to this
- * point than to others, and that lies within the range of the data. So a box of the function that ends where
- * this range ends has its full weight there. */
+ * A point of the table holds the function's mean over a part of the plane. The part is nearer to this point
+ * than to other points, and lies within the range of the data. So a box of the function that ends at the end
+ * of this range has its full weight there. */
 #include "grid/plane_table.h"
 
 #include <math.h>
@@ -20,8 +20,8 @@ void hl_plane_table_lay_out(const hl_transfer_function *function, plane_table *t
 
 /* ---- the part of the plane that the table covers ---- */
 
-/* The greatest possible length of a gradient. Such a gradient has, along each axis, a component of the whole
- * range of values per voxel edge. */
+/* The greatest possible length of a gradient. Along each axis, the values of neighbouring voxels differ by at
+ * most the whole range of values. */
 static double longest_gradient(const hl_scene_volume *volume, double range) {
   mat3 placed = hl_scene_volume_index_to_world(volume).linear;
   double sum = 0;
@@ -32,7 +32,8 @@ static double longest_gradient(const hl_scene_volume *volume, double range) {
   return range * sqrt(sum);
 }
 
-/* The rectangle of the plane that the data's ranges cover. Second numbers are in the function's units. */
+/* The rectangle of the plane in which the data's pairs of numbers lie. Second numbers are in the function's
+ * units. */
 static plane_box reach_of_data(const hl_scene_volume *volume, const hl_scene_volume *second,
                                const plane_values *values) {
   double scale = hl_plane_second_scale(&volume->transfer_function.plane), low = 0,
@@ -101,8 +102,8 @@ static void fill_row(const hl_transfer_function *function, const table_axis axes
   }
 }
 
-/* Repeats the last column and row, because a look-up reads a point and the next one. width: number of floats
- * of a point. */
+/* Repeats the last column and the last row of the table, because a look-up reads a point and the next one.
+ * width: number of floats of a point. */
 static void repeat_last(float *table, size_t width) {
   for (int row = 0; row < PLANE_ROWS; row++)
     memcpy(table + width * place_of(row, PLANE_COLUMNS), table + width * place_of(row, PLANE_COLUMNS - 1),
@@ -137,7 +138,7 @@ static void find_greatest(const plane_table *table, int entries, float (*greates
   }
 }
 
-/* The number of columns beyond a position that are read from a table. */
+/* The number of columns that a look-up reads beyond its position. */
 enum { BEYOND = 3 };
 
 /* The first column that differs between rows. In the columns before it all rows hold the same numbers, so
@@ -189,7 +190,7 @@ void hl_plane_table_set_second(plane_table *table, const hl_volume *volume, cons
 /* ---- looking up one point ---- */
 
 /* A position along an axis of a table: the table's point before the position, and the distance from this
- * point. */
+ * point to the position. */
 typedef struct table_place {
   int at;
   float part;

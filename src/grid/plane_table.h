@@ -1,4 +1,4 @@
-/* grid/plane_table.h - a transfer function of two numbers as tables over its plane.
+/* grid/plane_table.h - tables of a transfer function of two numbers, over the plane of these numbers.
  *
  * A column stands for a value, a row for a second number: the gradient's length or another volume's value.
  * Between the table's points the function is bilinear. A ray's way through a slab runs along a row, from one
@@ -28,8 +28,8 @@ typedef struct plane_table {
   float even_before; /* the first column that differs between rows; the columns before are the same in all
                       * rows */
   hl_second_axis axis;
-  /* The volume whose values are the second number; borrowed from the frame; null where the second number is
-   * the gradient. */
+  /* The volume whose values are the second number. It is borrowed from the frame. It is null if the second
+   * number is the gradient. */
   const hl_volume *second_volume;
   const grid *second;
   float to_second[3][4]; /* maps frame space to the second volume's index space */
@@ -47,8 +47,8 @@ typedef struct plane_values {
 /* Fills the tables of a function of two numbers. volume: the function's volume, in frame space. second: the
  * other volume; null where the second number is the gradient. entries: the number of entries of the
  * classifier's tables, less one. greatest: [entries + 1]; element [0] of each entry receives a bound: the
- * greatest extinction that values around the entry have with any second number. The bound is 0 where nothing
- * shows. */
+ * greatest extinction that values around the entry have with any second number. The bound is 0 if no such
+ * value is visible. */
 void hl_plane_table_fill(const hl_scene_volume *volume, const hl_scene_volume *second, const grid *grid,
                          const plane_values *values, int entries, plane_table *table, float (*greatest)[4]);
 

@@ -61,7 +61,7 @@ static bool overlaps_box(const grid *grid, const int32_t b[3]) {
  * radius plus one cell. If cuts or a mask leave any matter within this distance, the brick is needed. */
 enum { BESIDE_CUT = 3 };
 
-/* Whether cuts remove brick b and its surroundings, both for the eye and for lights. */
+/* Returns whether cuts remove brick b and its surroundings, both for the eye and for lights. */
 static bool is_cut_away(const grid *grid, const int32_t b[3]) {
   double low[3], high[3];
   if (grid->cut_count == 0 || grid->cut_casts_shadow) return false;
@@ -110,7 +110,7 @@ static void widen_to_brick(const int32_t b[3], bool first, int32_t low[3], int32
   }
 }
 
-/* Finds the bounds of the content. Afterwards hidden bricks count as not relevant. */
+/* Finds the bounds of the content. Afterwards, bricks that only a mask hides count as not relevant. */
 static void find_content(grid *grid) {
   bool first = true;
   for (size_t at = 0; at < hl_grid_bricks(grid); at++) {
@@ -161,8 +161,8 @@ static size_t packed_row_bytes(const grid *grid, const unsigned char *even) {
   return alike * EVEN_BYTES + (count - alike) * UNEVEN_BYTES;
 }
 
-/* Writes 1 for each of a brick's groups of 2x2x2 cells that shows something. Returns whether any group
- * does. */
+/* Writes 1 for each of a brick's groups of 2x2x2 cells that shows something. Returns whether any group shows
+ * something. */
 static unsigned char mark_cells_of_brick(const cell_job *job, const int32_t brick[3],
                                          const unsigned char *bounds, bool even) {
   const cell_lookup *lookup = &job->grid->lookup[0];
@@ -219,7 +219,8 @@ static void mark_cells(grid *grid, const classifier *classifier, hl_pool *pool) 
  * z. */
 enum { THREE_ALONG_X = 0xaa, THREE_ALONG_Y = 0xcc, THREE_ALONG_Z = 0xf0 };
 
-/* Converts a row's marks (1: the unit is visible) into the bytes of look-ups (grid.h) along x. */
+/* Converts the marks of a row of units (1: the unit is visible) into the bytes of look-ups (grid.h). The
+ * boxes of these look-ups are two or three units long along x. */
 static void look_up_row(unsigned char *cells, size_t width) {
   for (size_t x = 0; x + 2 < width; x++)
     cells[x] = (unsigned char)(-(cells[x] | cells[x + 1]) | (-cells[x + 2] & THREE_ALONG_X));
@@ -271,11 +272,10 @@ static void fill_lookups(grid *grid, hl_pool *pool) {
 /* ---- a bit for each cell ---- */
 
 /* The greatest number of bytes that the bits of cells (grid->cell_bits) may take; volumes that would need
- * more have no bits. The bits take an eighth of a byte per voxel, which would be much beside the other memory
- * that a large volume takes. */
+ * more have no bits. The bits take an eighth of a byte per voxel. For a large volume, this would be a great
+ * part of the memory that the volume takes. */
 static const uint64_t GREATEST_BYTES = 8 << 20;
-/* Bits are read only if they tell that at least this fraction of the cells in visible bricks shows
- * nothing. */
+/* The bits of cells are read only if at least this fraction of the cells in visible bricks shows nothing. */
 static const double LEAST_LEFT_OUT = 1.0 / 8;
 
 void hl_cell_bits_lay_out(grid *grid, hl_layout *layout) {
@@ -306,7 +306,7 @@ static bool find_threshold(const grid *grid, const classifier *classifier, bits_
                  (double)grid->empty;
   job->sign = scale > 0 ? 1 : -1;
   job->threshold = (float)(value * (double)job->sign - 8e-6 * greatest - 2e-3 / fabs(scale));
-  /* a sum of zeros is exactly zero, so the threshold need not be below zero */
+  /* a sum of zeros is exactly zero, so the threshold is not lowered below zero */
   float at_zero = -grid->empty * classifier->scale + classifier->offset;
   if (scale > 0 && grid->cell_base >= 0 && at_zero <= classifier->first_visible)
     job->threshold = fmaxf(job->threshold, 0);

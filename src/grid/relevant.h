@@ -1,12 +1,12 @@
-/* grid/relevant.h - which bricks and cells the transfer function shows. Both are found once for each transfer
- * function.
+/* grid/relevant.h - finds the bricks and cells in which the transfer function shows something. They are found
+ * once for each transfer function.
  *
  * A voxel can be left out only if every point to which it contributes is transparent, whichever other voxels
- * are left out. Kernels are non-negative and sum to 1. So a point's density lies between the least and the
- * greatest of the 64 voxels around the point. Where some of the 64 voxels are left out, the density lies in
- * this range widened to include the empty value. So a brick is relevant if any value is visible in the range
- * of its bounds, widened in the same way (derived). The bounds include one more cell on each side, because
- * slabs across the brick's faces read these neighbours. */
+ * are left out. Kernels are not negative, and their weights add up to 1. So a point's density lies between
+ * the least and the greatest of the 64 voxels around the point. If some of the 64 voxels are left out, the
+ * density lies in this range widened to include the empty value. Derived: a brick is relevant if any value is
+ * visible in the range of its bounds, widened in the same way. The bounds include one more cell on each side,
+ * because slabs across the brick's faces read these neighbours. */
 #ifndef HL_GRID_RELEVANT_H
 #define HL_GRID_RELEVANT_H
 
@@ -21,7 +21,7 @@ void hl_grid_mark_relevant(grid *grid, const grid_functions *functions, const cl
 /* Finds the box, in index space, of the points in a brick's cells. At the grid's borders the box is larger by
  * `margin` voxels. */
 void hl_brick_bounds(const grid *grid, const int32_t b[3], double margin, double centre[3], double half[3]);
-/* Finds the box around all relevant bricks; false if there are none. */
+/* Finds the box around all relevant bricks. Returns false if no brick is relevant. */
 bool hl_relevant_bounds(const grid *grid, double margin, double low[3], double high[3]);
 
 /* Finds the box around the content: relevant bricks, and bricks that only a mask hides. There must be at
@@ -31,15 +31,15 @@ void hl_content_bounds(const grid *grid, double margin, double low[3], double hi
 /* The place, in voxels, to which faces that cut nothing visible are moved: far outside of the grid. */
 #define FACE_FAR_OUT 1e9f
 
-/* Opens faces of a grid that touch another grid's box: matter goes on beyond these faces, so they are moved
- * far outside, where they cut nothing off. Most often both grids are parts of one volume. */
+/* Opens those faces of a grid that touch another grid's box. Matter goes on beyond these faces, so they are
+ * moved far outside, where they cut nothing. Most often both grids are parts of one volume. */
 void hl_open_faces(grid *grid, const struct grid *other);
 
-/* The bits of cells. A pixel samples a sheet at one point. A block of pixels is therefore empty if no pixel's
- * point lies in a cell that may show something, even if cells between the points do. With a bit for each
- * cell, a quarter of the blocks that pass the test by boxes (fill/relevant_blocks_lanes.h) turn out to be
- * empty. In a cell, a cubic B-spline lies below the greatest of its Bezier points (bounds.h); grids for other
- * kernels get no bits. */
+/* Functions for the bits of cells. A pixel samples a sheet at one point. So a block of pixels is empty if no
+ * pixel's point lies in a cell that may show something; cells between the points do not matter. With a bit
+ * for each cell, a quarter of the blocks that pass the test by boxes (fill/relevant_blocks_lanes.h) turn out
+ * to be empty. In a cell, a cubic B-spline lies below the greatest of its Bezier points (bounds.h); grids for
+ * other kernels get no bits. */
 enum {
   CELL_BIT_TAPS = HL_BRICK_CELLS + 3 /* voxels along an axis on which a brick's cells depend: 4b-2 .. 4b+4 */
 };

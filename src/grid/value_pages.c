@@ -23,7 +23,7 @@ typedef struct value_job {
   float empty, greatest; /* the parameters `empty` and `greatest` of hl_grid_value() */
   bool filters;
   size_t width, height, slice; /* width: voxels of a row; height: rows of a slice; slice: voxels of a slice */
-  size_t first;                /* number of the slice that is loaded in slices[0] */
+  size_t first;                /* number of the slice that slices[0] holds */
   float *slices;               /* [slices loaded at once][slice]; the loaded slices */
   float *beside;               /* [slice]; in the forward run, the slice before the loaded slices; in the run
                                 * back, the slice after them */
@@ -103,7 +103,7 @@ static hl_status fail_cancelled(const value_job *job, hl_error *error) {
              : HL_OK;
 }
 
-/* Loads all slices, at most `most` at a time. Where `file` is below 0, stores the slices in pages; else
+/* Loads all slices, at most `most` at a time. If `file` is below 0, stores the slices in pages. Otherwise
  * filters them forward along z and stores them in the file. */
 static hl_status run_forward(value_job *job, size_t most, int file, hl_pages *pages, hl_error *error) {
   const size_t depth = job->volume->dimension[2];
@@ -173,8 +173,8 @@ static hl_status make_file(value_job *job, hl_pages **made, hl_error *error) {
                          ? hl_pages_create(context, folder, &grid, volume->pages->shift, made, error)
                          : hl_fail_memory(error, most * job->slice * sizeof(float), subject);
   if (status == HL_OK) {
-    hl_glimpse_release((*made)->glimpse); /* these pages need no glimpse: automatic choices are made from the
-                                           * volume's own glimpse */
+    hl_glimpse_release((*made)->glimpse); /* these pages need no glimpse (voxels kept for automatic choices),
+                                           * because automatic choices use the volume's own glimpse */
     (*made)->glimpse = NULL;
   }
   bool along_z = job->filters && volume->dimension[2] > 1;

@@ -51,7 +51,7 @@ bool hl_brick_bounds_create(hl_context *context, const size_t dimension[3], hl_s
     made->dimension[a] = dimension[a];
     made->count[a] = dimension[a] / BRICK_SIDE + 1;
   }
-  pthread_mutex_init(&made->lock, NULL); /* a mutex without attributes cannot fail to be made */
+  pthread_mutex_init(&made->lock, NULL); /* making a mutex without attributes cannot fail */
   made->bounds = hl_allocate(context, bricks_of(made), 2 * hl_storage_bytes(storage));
   if (made->bounds == NULL) {
     hl_brick_bounds_release(made);

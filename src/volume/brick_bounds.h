@@ -22,7 +22,8 @@ typedef struct hl_brick_bounds {
   pthread_mutex_t lock;          /* held while bounds change */
 } hl_brick_bounds;
 
-/* Makes empty bounds. *bounds is owned by the caller. False if memory is short. */
+/* Makes bounds to which no slice has been added yet. *bounds is owned by the caller. Returns false if memory
+ * is short. */
 bool hl_brick_bounds_create(hl_context *context, const size_t dimension[3], hl_storage storage,
                             hl_brick_bounds **bounds);
 void hl_brick_bounds_release(hl_brick_bounds *bounds); /* null is allowed */

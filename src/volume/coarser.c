@@ -9,8 +9,8 @@
 #include "core/memory.h"
 #include "volume/in_bricks.h"
 
-static const double ALIKE = 1.5; /* an axis is halved if its step is less than the shortest step times this
-                                  * number */
+static const double ALIKE = 1.5; /* an axis is halved only if its step is shorter than this number times the
+                                  * shortest step */
 
 enum {
   MOST_ROWS = 4,
@@ -58,14 +58,14 @@ static void read_row(const hl_volume *volume, size_t j, size_t k, void *stored, 
   }
 }
 
-/* The mean of the values; NAN if there are none. */
+/* The mean of the values; NAN if there are no values. */
 static double mean_of(const float *values, size_t count) {
   double sum = 0;
   for (size_t n = 0; n < count; n++) sum += (double)values[n];
   return count > 0 ? sum / (double)count : (double)NAN;
 }
 
-/* The most common value. If several are equally common, the first one of them; NAN if there are none. */
+/* The most frequent value; of several equally frequent values, the first one. NAN if there are no values. */
 static double commonest_of(const float *values, size_t count) {
   size_t best = 0, most = 0;
   for (size_t n = 0; n + most < count; n++) {
@@ -116,8 +116,9 @@ static void make_slice(void *data, size_t k, int worker) {
   for (size_t j = 0; j < c->dimension[1]; j++) make_row(c, j, k, worker);
 }
 
-/* Sets the place of the coarser grid. Each voxel lies in the middle of the voxels that are merged in it. At
- * the volume's end some of them may be missing; the voxel lies where it would if all were there. */
+/* Sets the place of the coarser grid. Each voxel of the coarser grid lies in the middle of the voxels that
+ * are merged in it. At the volume's end some of these voxels may be missing; the merged voxel lies where it
+ * would lie if none were missing. */
 static void place(const coarsening *c, hl_volume_description *d) {
   static const hl_voxel_type types[] = {
       [HL_STORAGE_U8] = HL_VOXEL_U8, [HL_STORAGE_U16] = HL_VOXEL_U16, [HL_STORAGE_F32] = HL_VOXEL_F32};

@@ -1,4 +1,4 @@
-/* volume/coarser.h - a volume at half its resolution. */
+/* volume/coarser.h - makes a volume at half the resolution of another volume. */
 #ifndef HL_VOLUME_COARSER_H
 #define HL_VOLUME_COARSER_H
 
@@ -9,10 +9,10 @@
  * first one of them. */
 typedef enum hl_coarser_kind { HL_COARSER_MEANS, HL_COARSER_LABELS } hl_coarser_kind;
 
-/* Makes a volume by merging two voxels along each axis whose voxels are less than 1.5 times as long as those
- * of the axis with the shortest voxels. In a field in bricks, the finest level is left out, which halves all
- * axes (bricks/coarser.h). Such a field cannot have labels. Refuses volumes of colours, volumes over ranks,
- * and label maps whose numbers floats round (volume/exact.h). */
+/* Makes a volume by merging two voxels along axes. Only axes whose step is less than 1.5 times the shortest
+ * step are halved. In a field in bricks, the finest level is left out, which halves all axes
+ * (bricks/coarser.h). Such a field cannot have labels. Refuses volumes of colours, volumes over ranks, and
+ * label maps whose numbers floats round (volume/exact.h). */
 hl_status hl_volume_make_coarser(const hl_volume *volume, hl_coarser_kind kind, hl_volume **coarser,
                                  hl_error *error);
 

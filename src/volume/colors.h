@@ -14,7 +14,8 @@ enum { HL_COLOR_BYTES = 4 };
  * bits. */
 bool hl_can_be_colors(hl_voxel_type type, size_t components);
 
-/* Whether a chosen component stands for all components: HL_COMPONENT_COLOR or HL_COMPONENT_LUMINANCE. */
+/* Returns whether a chosen component stands for colours of all components: HL_COMPONENT_COLOR or
+ * HL_COMPONENT_LUMINANCE. */
 bool hl_component_is_colors(int component);
 
 /* Stores component 0 to 3 of the colours of `count` voxels. stored: values of type u8 or u16; every `step`-th

@@ -13,14 +13,14 @@
 size_t hl_voxel_type_bytes(hl_voxel_type type); /* 0 for an unknown type */
 hl_storage hl_voxel_type_storage(hl_voxel_type type);
 
-/* What is added to a value of this type when it is stored: 128 for i8, 32768 for i16, else 0. */
+/* The number that is added to a value of this type when it is stored: 128 for i8, 32768 for i16, else 0. */
 double hl_voxel_type_bias(hl_voxel_type type);
 
 /* Converts `count` packed voxels to stored values. swap: whether the source has the other byte order. source:
  * of any alignment; may be the destination if both types have the same size. */
 void hl_voxels_store(hl_voxel_type type, bool swap, const void *source, size_t count, void *destination);
 
-/* Gathers one row of `count` voxels of the given size that lie stride_bytes apart. */
+/* Copies a row of `count` voxels that lie stride_bytes apart into adjacent memory. */
 void hl_voxels_gather(const unsigned char *source, ptrdiff_t stride_bytes, size_t voxel_bytes, size_t count,
                       unsigned char *row);
 

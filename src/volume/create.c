@@ -1,7 +1,7 @@
-/* volume/create.c - volumes from memory, their life and their numbers.
+/* volume/create.c - makes volumes of voxels in memory, counts their users, and answers for their numbers.
  *
  * In: a description from the caller, or decoded voxels from the readers of files. Out: an hl_volume with its
- * statistics, which is immutable and counts its users. */
+ * statistics. It never changes, and counts its users. */
 #include "volume/volume.h"
 
 #include <math.h>
@@ -69,10 +69,12 @@ static hl_status check_size(const hl_volume_description *description, const char
   return HL_OK;
 }
 
-/* The greatest coordinate without its sign, for checks of lengths: unlike a length, it cannot overflow. */
+/* The greatest magnitude of a vector's coordinates. Checks of lengths use it, because unlike a length it
+ * cannot overflow. */
 static double greatest_part(const double v[3]) { return fmax(fmax(fabs(v[0]), fabs(v[1])), fabs(v[2])); }
 
-/* The limits of a step's length. For lengths beyond them, squares or cubes leave the range of doubles. */
+/* The least and the greatest allowed length of a step. Beyond them, squares or cubes of lengths leave the
+ * range of doubles. */
 static const double SHORTEST_STEP = 1e-100, LONGEST_STEP = 1e100;
 
 static hl_status check_step(const double axis[3], int number, const char *subject, hl_error *error) {
@@ -305,7 +307,7 @@ static void choose_strides(const hl_volume_description *description, ptrdiff_t s
   memcpy(stride, is_packed ? packed : given, sizeof packed);
 }
 
-/* The greatest number of bytes from slice to slice of borrowed voxels. Samplers hold the distance to the next
+/* The greatest number of bytes from one slice to the next of borrowed voxels. Samplers hold distances of a
  * few slices in 32 bits. */
 #define LARGEST_GAP ((ptrdiff_t)1 << 26)
 
@@ -338,8 +340,8 @@ hl_status hl_volume_create(hl_context *context, const hl_volume_description *des
   hl_status status = hl_volume_check_grid(description, subject, error);
   if (status != HL_OK) {
     if (error != NULL)
-      error->code = HL_ERROR_ARGUMENT; /* the grid comes from the caller, not from a file, so that the code is
-                                        * the one for arguments */
+      error->code = HL_ERROR_ARGUMENT; /* the grid comes from the caller, not from a file, so the error is
+                                        * HL_ERROR_ARGUMENT */
     return HL_ERROR_ARGUMENT;
   }
   ptrdiff_t stride[3];

@@ -41,15 +41,15 @@ static bool rounds_whole(uint64_t magnitude) {
 }
 
 static bool rounds_double(double value) {
-  /* The comparison is also false for NaN. */
+  /* the comparison is false for NaN, too */
   return fabs(value) >= HELD_BELOW && (double)(float)value != value;
 }
 
 /* The magnitude of a signed number. */
 static uint64_t magnitude_of(int64_t value) { return value < 0 ? 0 - (uint64_t)value : (uint64_t)value; }
 
-/* Whether any number may lie beyond 2^24 or -2^24. In most files there is none, so that this quick test
- * replaces slower ones. Compilers vectorise the loop. */
+/* Whether any number may lie beyond 2^24 or -2^24. Most files have no such number. For them, this quick test
+ * saves slower tests. Compilers vectorise the loop. */
 static bool any_great_32(bool is_signed, bool swap, const unsigned char *from, size_t count) {
   uint32_t bits = 0;
   for (size_t n = 0; n < count; n++) {
@@ -168,8 +168,8 @@ void hl_exact_note(hl_exact *exact, bool swap, const void *source, size_t first,
   else note_in_memory(exact, swap, from, first, count);
 }
 
-/* Sets the number of voxel n to the value of the voxel's float `stored`. It is for voxels whose number was
- * not noted, because the float holds it exactly. */
+/* Sets the number of voxel n to the value of its float `stored`. This is right for voxels whose number was
+ * not recorded, because the float holds such a number exactly. */
 static void fill_number(hl_voxel_type type, double stored, size_t n, void *numbers) {
   switch (type) {
     case HL_VOXEL_U32:
@@ -188,8 +188,8 @@ static void fill_number(hl_voxel_type type, double stored, size_t n, void *numbe
   }
 }
 
-/* Finds the numbers that were not noted: they are still zero, and their floats differ from the voxels' stored
- * values. These numbers are set to the stored values. */
+/* Sets the numbers that were not recorded to the voxels' stored values. A number was not recorded if it is
+ * zero, and the stored value is not. */
 void hl_exact_fill(hl_voxel_type type, const float *stored, size_t count, void *numbers) {
   for (size_t n = 0; n < count; n++)
     if (!((float)hl_exact_number(type, numbers, n) == stored[n]))
@@ -221,7 +221,7 @@ bool hl_exact_read(int file, hl_voxel_type type, size_t first, size_t count, con
     ssize_t got = pread(file, (unsigned char *)numbers + done, wanted - done, (off_t)(first * bytes + done));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return false;
-    if (got == 0) break; /* the rest of the file was never written, which stands for zeros */
+    if (got == 0) break; /* the rest of the file was never written, and reads as zeros */
     done += (size_t)got;
   }
   memset((unsigned char *)numbers + done, 0, wanted - done);

@@ -25,8 +25,9 @@ typedef struct hl_exact {
   size_t first, count; /* the voxels whose numbers are kept: the number of the first voxel, which is 0 except
                         * over ranks, and the number of voxels */
   hl_exact_place place;
-  atomic_bool rounds;      /* whether floats round any of the noted numbers */
-  atomic_int failure;      /* the system's error number if there was no room for the numbers, else 0 */
+  atomic_bool rounds;      /* whether floats round any of the recorded numbers */
+  atomic_int failure;      /* the system's error number if memory or disk had no room for the numbers, else
+                            * 0 */
   _Atomic(void *) numbers; /* owned; [count], of the file's type; a number is 0 until it is noted. Null until
                             * the first number comes that a float rounds */
   atomic_int file; /* owned; the file that holds the numbers, if they are not in memory; -1 if there is none.

@@ -48,7 +48,7 @@ hl_status hl_volume_check_bricks(const hl_bricks *bricks, const hl_volume_descri
 
 /* ---- voxels ---- */
 
-/* Whether all voxels' centres are lattice points. */
+/* Returns whether the centres of all voxels are points of the field's lattice. */
 static bool stand_on_points(const hl_bricks *bricks) {
   bool whole = true;
   for (int axis = 0; axis < 3; axis++) whole = whole && bricks->origin[axis] == floor(bricks->origin[axis]);
@@ -90,7 +90,8 @@ typedef struct brick_tally {
   const hl_volume *volume;
   double low, high, sum;
   double counted;   /* cells of level 0 */
-  double nonfinite; /* number of voxels whose coefficient is not finite; each is a cell of level 0 */
+  double nonfinite; /* the number of voxels whose coefficient is not finite; each voxel counts as one cell of
+                     * level 0 */
   bool binned;      /* false in the first pass, which finds the range; true in the second, which counts the
                      * values in the histogram */
 } brick_tally;

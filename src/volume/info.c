@@ -1,4 +1,5 @@
-/* volume/info.c - what a volume tells of itself: its grid, its type and range, and what its file held. */
+/* volume/info.c - tells the facts that are known about a volume: its grid, its type and range, and the facts
+ * that its file states. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
-/* volume/load.c - hl_volume_load: recognises the format by a name that proves it, else by content, else by
- * name. */
+/* volume/load.c - hl_volume_load: finds the format of a volume's file, and reads the file. The format is
+ * found by the file's name if the name proves it, else by the content, else by the name. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -54,8 +54,9 @@ static hl_status take_byte_order_mark(hl_stream *stream, const unsigned char **b
   return hl_stream_peek(stream, HL_FORMAT_SNIFFED_BYTES, bytes, length, error);
 }
 
-/* Advice for a file of a well-known format that Halflight does not read, found by the first bytes; null for
- * all other files. Sources: the formats' own descriptions, and the list of marks of file(1). */
+/* Finds advice for a file of a well-known format that Halflight does not read. The file's first bytes tell
+ * its format. Returns null for all other files. Sources: the formats' own descriptions, and the list of marks
+ * of file(1). */
 static const char *known_but_unsupported(const unsigned char *bytes, size_t length) {
 #define MICROSCOPE "convert it to OME-TIFF or OME-Zarr (bfconvert, bioformats2raw)"
   static const struct {
@@ -171,7 +172,7 @@ static hl_status load_packed(const hl_bundle *bundle, const hl_bundle_entry *ent
   return status;
 }
 
-/* Reads a folder or a zip archive: asks every format. */
+/* Reads a folder or a zip archive: asks the formats one by one whether they read it. */
 static hl_status load_bundle(hl_bundle *bundle, hl_load_request *request, hl_volume **volume,
                              hl_error *error) {
   bool claimed = false;
@@ -195,8 +196,8 @@ static hl_status load_folder(const char *path, hl_load_request *request, hl_volu
   return status;
 }
 
-/* Reads a store on a server. If the caller names no level, a level is read that is fine enough for the
- * caller's picture, or for a picture of PIXELS pixels if the caller gives no size. */
+/* Reads a store on a server. If the caller names no level of resolution, a level is read that is fine enough
+ * for a picture of the size that the caller gives, or of PIXELS pixels if the caller gives none. */
 static hl_status load_from_server(const char *url, hl_load_request *request, hl_volume **volume,
                                   hl_error *error) {
   enum { PIXELS = 512 };
@@ -285,7 +286,8 @@ static hl_status check_options(const hl_volume_load_options *options, hl_error *
   return HL_OK;
 }
 
-/* Changes a volume's world to another anatomical space by changing the signs of x, y or both, and logs it. */
+/* Converts a volume's world to another anatomical space: changes the signs of x, of y or of both. Logs the
+ * conversion. */
 static void turn_into(hl_context *context, const char *path, hl_space wanted, hl_volume *volume) {
   static const double signs[][2] = {
       [HL_SPACE_RAS] = {1, 1}, [HL_SPACE_LPS] = {-1, -1}, [HL_SPACE_LAS] = {-1, 1}};
@@ -338,7 +340,7 @@ static hl_status finish(hl_load_request *request, const char *path, hl_status st
   (*volume)->is_anatomical = request->is_anatomical;
   (*volume)->says_labels = request->says_labels;
   (*volume)->says_fog = request->says_fog;
-  /* A spacing that the caller gives has no unit. */
+  /* if the caller gives the spacing, its unit is not known */
   (*volume)->unit = request->spacing[0] > 0 ? NULL : request->unit;
   (*volume)->absence = request->absence;
   (*volume)->selection = request->selection;

@@ -1,7 +1,7 @@
-/* volume/reslice.c - planes of voxels out of a volume: rows of samples, each of one or more layers.
+/* volume/reslice.c - computes planes of samples of a volume: rows of samples, in one or more layers.
  *
- * In: a volume, and a grid of samples in its indices. Out: a data value for each sample. Rows are shared out
- * among threads where there are many samples. */
+ * In: a volume, and a grid of samples in the volume's indices. Out: a data value for each sample. If there
+ * are many samples, rows are divided among threads. */
 #include <halflight/reslice.h>
 #include <math.h>
 
@@ -12,7 +12,7 @@
 
 /* The least number of samples that are computed on several threads. */
 static const double MANY_SAMPLES = 1 << 20;
-static const double MOST_VOXELS = 1e9; /* of any number of a plane */
+static const double MOST_VOXELS = 1e9; /* The greatest magnitude of a number that describes a plane */
 
 void hl_reslice_options_defaults(hl_reslice_options *options) {
   if (options == NULL) return;

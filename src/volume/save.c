@@ -31,7 +31,7 @@ typedef struct saving {
   const hl_volume *volume;
   const hl_writer *writer;
   size_t begin[3], end[3], shrink; /* the box in voxels; each written voxel is made of shrink^3 voxels */
-  bool labels;                /* whether merged voxels become the most common of their values, instead of the
+  bool labels;                /* whether a merged voxel gets the most frequent of its values, instead of their
                                * mean */
   hl_volume_description grid; /* the grid that is written */
   const char *unit;           /* unit of the grid's lengths, static; null if unknown */
@@ -61,7 +61,8 @@ static bool whole_range(hl_voxel_type type, double *low, double *high) {
   double span = ldexp(1, 8 * (int)hl_voxel_type_bytes(type));
   *low = is_signed ? -span / 2 : 0;
   *high = *low + span - 1;
-  if (*high == *low + span) *high = nextafter(*high, 0); /* 64 bits: the greatest double in range */
+  /* For 64 bits: the greatest double in the type's range. */
+  if (*high == *low + span) *high = nextafter(*high, 0);
   return true;
 }
 
@@ -160,8 +161,8 @@ static bool keeps_numbers(const saving *s) {
          volume->value_scale == 1 && volume->value_offset == 0;
 }
 
-/* The bits that identify a label: those of the file's own number if it is kept, else those of the value.
- * Equal labels have equal bits. */
+/* The bits that identify a label: the bits of the file's own number if it is kept, else the bits of the
+ * value. Equal labels have equal bits. */
 static uint64_t bits_of(const saving *s, hl_number_row row, size_t i, double value) {
   uint64_t bits = 0;
   const size_t bytes = hl_voxel_type_bytes(row.type);
@@ -187,8 +188,8 @@ static void add_row(saving *s, size_t j, size_t k) {
     }
 }
 
-/* The most common value. If several are equally common, the first one of them. The occurrences of a value are
- * counted at its first place; this is fast because a box has few different values. */
+/* The most frequent value; of several equally frequent values, the first one. Occurrences of a value are
+ * counted at the value's first place. This is fast, because a box has few different values. */
 static uint64_t commonest(const uint64_t *values, size_t count) {
   uint64_t best = values[0];
   size_t most = 0;
@@ -245,15 +246,15 @@ static uint16_t half_of(double value) {
                            * bits of a half is therefore worth 2^(exponent - 11) */
   int last = exponent - 11 > -24 ? exponent - 11 : -24;
   double units = nearbyint(ldexp(size, -last)); /* from 1024 to 2048, or less for subnormals */
-  /* The exponent field of the half, less 1; it is used for numbers that are not subnormal, which have 1024
-   * units or more. */
+  /* The exponent field of the half, less 1. It is used for numbers of 1024 units or more, which are not
+   * subnormal. */
   int biased = last + 24;
   return (uint16_t)(sign | (units < 1024 ? (unsigned)units
                                          : ((unsigned)(biased + 1) << 10) + (unsigned)(units - 1024)));
 }
 
-/* A value for a type of whole numbers: the nearest within the type's range, 0 for values that are not
- * finite. */
+/* Converts a value to a type of whole numbers: to the nearest number within the type's range; a value that is
+ * not finite becomes 0. */
 static double whole_value(saving *s, double value, double low, double high) {
   if (!isfinite(value)) s->holes++;
   if (!isfinite(value)) return 0;
@@ -411,8 +412,8 @@ static bool has_place(const hl_volume_description *grid) {
          memcmp(grid->origin, plain.origin, sizeof plain.origin) != 0;
 }
 
-/* Warns that the file gets more voxels than the field has coefficients. It is called before the evaluation,
- * which takes long. */
+/* Warns that the file gets more voxels than the field has coefficients. The warning comes before the field is
+ * evaluated, which takes long. */
 static void tell_evaluation(const saving *s, const char *path) {
   const size_t *n = s->grid.dimensions, size = hl_voxel_type_bytes(s->grid.type);
   if (s->volume->bricks == NULL) return;

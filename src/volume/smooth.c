@@ -1,4 +1,5 @@
-/* volume/smooth.c - see smooth.h. Three passes, one along each axis, over a block of floats. */
+/* volume/smooth.c - convolves a volume with a Gaussian (smooth.h) in three passes over a block of floats, one
+ * pass along each axis. */
 #include "volume/smooth.h"
 
 #include <math.h>
@@ -43,7 +44,7 @@ static void convolve_lines(const gaussian *kernel, float *numbers, size_t length
   }
 }
 
-/* Convolves a row. line: [length + 2 LONGEST] floats of scratch memory. */
+/* Convolves a row. line: scratch memory, [length + 2 LONGEST]. */
 static void convolve_row(const gaussian *kernel, float *numbers, size_t length, float *line) {
   float *middle = line + LONGEST;
   memcpy(middle, numbers, length * sizeof *line);

@@ -2,9 +2,9 @@
  *
  * Of u8 and u16 voxels, the occurrences of each stored value are counted, from which all statistics follow
  * exactly. f32 voxels take one pass for range, sum and finiteness, and one for the histogram. Percentiles are
- * exact, too. They need the value at a given rank in ascending order. For floats it is found by counting
- * first the upper halves of the values' bits and then the lower halves. For the file's own numbers (exact.h)
- * there are four such steps of 16 bits. */
+ * exact, too. They need the value at a given rank in ascending order. For floats this value is found by
+ * counting first the upper halves of the values' bits and then the lower halves. For the file's own numbers
+ * (exact.h) there are four such steps of 16 bits. */
 #include "volume/statistics.h"
 
 #include <float.h>
@@ -110,8 +110,8 @@ static bool next_piece(walk *w) {
   w->piece = w->count - w->first < most ? w->count - w->first : most;
   w->cancelled = w->piece > 0 && hl_cancelled(w->volume->context);
   if (w->piece == 0 || w->cancelled) return false;
-  /* the buffer holds the piece before this one, which is the same if both have the one value of sparse pages
-   */
+  /* the buffer holds the piece before this piece. Both pieces have the same content if both have the one
+   * value of sparse pages */
   const hl_pages *pages = w->volume->pages;
   const bool had = w->has_one_value;
   w->has_one_value = pages != NULL && hl_pages_have_one_value(pages, w->first, w->piece);
@@ -195,7 +195,8 @@ static bool tally_f32(const hl_volume *volume, void *buffer, tally *total) {
     const float *voxels = w.voxels;
     size_t whole = w.piece - w.piece % LANES;
     for (size_t start = 0; start < whole; start += LANES) tally_group(voxels + start, &lanes);
-    memcpy(rest, voxels + whole, (w.piece - whole) * sizeof *rest); /* only the last piece has a rest */
+    memcpy(rest, voxels + whole, (w.piece - whole) * sizeof *rest); /* only the last piece has a remainder of
+                                                                     * voxels */
   }
   tally_group(rest, &lanes);
   *total = (tally){INFINITY, -INFINITY, 0, 0};
@@ -226,7 +227,7 @@ static hl_status record(hl_volume *volume, tally total, const char *subject, hl_
   volume->minimum = fmin(first, last);
   volume->maximum = fmax(first, last);
   const double mean = volume->value_scale * (total.sum / (double)total.finite) + volume->value_offset;
-  volume->mean = fmin(fmax(mean, volume->minimum), volume->maximum); /* a sum of great numbers is rounded */
+  volume->mean = fmin(fmax(mean, volume->minimum), volume->maximum); /* a sum of large numbers was rounded */
   if (!isfinite(volume->maximum - volume->minimum))
     return hl_fail(error, HL_ERROR_INPUT,
                    "%s: values scaled by %g and shifted by %g leave the range of numbers", subject,
@@ -327,9 +328,10 @@ typedef struct ranking {
   void *buffer;                   /* the buffer of `walk` */
   uint64_t upper[HALVES], finite; /* number of keys for each upper half; number of all keys, one for each
                                    * finite voxel */
-  uint64_t lower[HALVES];         /* number of keys for each lower half, among those keys whose upper half is
+  uint64_t lower[HALVES];         /* number of keys for each lower half, of the keys whose upper half is
                                    * `opened` */
-  uint32_t opened;                /* HALVES if there is none yet */
+  uint32_t opened;                /* the upper half whose lower halves were counted; HALVES if none was
+                                   * counted yet */
 } ranking;
 
 /* The key of a float. If the float is negative, all of its bits are inverted, else its highest bit is set. */

@@ -7,7 +7,7 @@
 #include "volume/store/glimpse.h"
 #include "volume/store/pages.h"
 
-/* The number of slices that are stored between two questions whether the call was cancelled. */
+/* The number of slices that are stored before the next check for cancellation. */
 enum { SLICES_AT_ONCE = 8 };
 
 /* Stores all voxels of a volume whose rows and slices have no gaps. Returns false if cancelled. */
@@ -45,7 +45,7 @@ static hl_status copy_to_pages(const hl_volume *volume, hl_volume **copy) {
   hl_status status = hl_pages_create(context, context->options.scratch_folder, &grid, PAGE_SHIFT, &pages,
                                      NULL);
   if (status != HL_OK) return status;
-  /* The glimpse is for automatic choices, which were made of the volume itself. */
+  /* the copy needs no glimpse, because automatic choices use the glimpse of the volume itself */
   hl_glimpse_release(pages->glimpse);
   pages->glimpse = NULL;
   if (!store_voxels(volume, pages)) status = HL_ERROR_CANCELLED;

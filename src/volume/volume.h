@@ -1,7 +1,7 @@
 /* volume/volume.h - the members of hl_volume, and functions for the library's own use.
  *
- * Voxels are kept as u8, u16 or f32 in native byte order, and never widened further. Signed integers of 8 and
- * 16 bits are stored with their sign bit flipped, which an offset undoes. All other types become f32. */
+ * Voxels are kept as u8, u16 or f32 in native byte order. Signed integers of 8 and 16 bits are stored with
+ * their sign bit flipped, which an offset undoes. All other types become f32. */
 #ifndef HL_VOLUME_VOLUME_H
 #define HL_VOLUME_VOLUME_H
 
@@ -24,16 +24,17 @@ typedef struct hl_array_entry {
   bool of_cells;
 } hl_array_entry;
 
-/* How many time steps, channels and resolutions a file has, each at least 1, and which of them are read. */
+/* The numbers of time steps, channels and resolutions of a file, each at least 1, and the indices of the ones
+ * that are read. */
 typedef struct hl_selection {
   size_t times, channels, levels;
   int time, channel, level;
-  int aim; /* the resolution that is read where no coarser one is wanted for a first picture */
+  int aim; /* the resolution that would be read if no coarser one were wanted for a first picture */
 } hl_selection;
 
-/* Of how many chunks of a store a server has no file. */
+/* How many chunks a store on a server has, and how many of them the server has no file for. */
 typedef struct hl_absence {
-  size_t absent, chunks; /* 0 where the file is no store on a server */
+  size_t absent, chunks; /* 0 if the file is not a store on a server */
 } hl_absence;
 
 /* One of the DICOM series in the input of a volume. All texts are printable. */
@@ -71,7 +72,8 @@ struct hl_volume {
   const void *voxels; /* [k][j][i]; stored values; owned unless borrowed; null with pages or bricks. The
                        * voxels of a row are adjacent; rows and slices of borrowed voxels may have gaps
                        * between them */
-  size_t row_bytes, slice_bytes; /* bytes from row to row, and from slice to slice */
+  size_t row_bytes, slice_bytes; /* number of bytes from one row to the next, and from one slice to the
+                                  * next */
   void *exact; /* owned; [k][j][i]; the file's own numbers, of `type`, if the stored floats round any of them
                 * (exact.h); null if the stored values are these numbers */
   unsigned char *colors;      /* owned; [k][j][i][4] (colors.h); null if colours come from the transfer
@@ -98,11 +100,12 @@ struct hl_volume {
   hl_space space;
   const char *unit; /* unit of lengths in the world, static; null if unknown */
   hl_absence absence;
-  bool is_anatomical; /* whether the file states `space` on purpose, as DICOM and NIfTI do; other programs
-                       * write left-posterior-superior for any data */
+  bool is_anatomical; /* whether the file's `space` can be trusted, as in DICOM and NIfTI files. Programs that
+                       * write other formats often state left-posterior-superior for any data */
   bool says_labels;   /* whether the file says that its values are labels */
   bool says_fog;      /* whether the file says that its values are the density of a fog */
-  double window[2];   /* data values that the file asks to show black and white; NAN if it does not */
+  double window[2];   /* the data values that the file asks to show black and white; NAN if the file asks for
+                       * none */
   double minimum, maximum; /* data values over finite voxels */
   uint64_t whole_range[2]; /* range of the file's numbers, as 64-bit integers of `type`; set if doubles would
                             * round the numbers (hl_volume_is_exact()) */
@@ -127,12 +130,14 @@ struct hl_volume {
                                  * smoothed (guess/smoothing.c) */
   struct hl_volume *unsmoothed; /* owned (unsmoothed.h); the volume before it was smoothed; null if it is not
                                  * kept, and for volumes that were not smoothed */
-  atomic_bool smoothing_chosen; /* whether the volume is a result of hl_volume_smooth(), even if that was no
-                                 * change */
-  double surface_slope;         /* if values are an occupancy: its slope, per voxel, where it passes 1/2 */
-  _Atomic(struct hl_data_analysis *)
-      analysis; /* owned, in one block; what guess/analysis.h has found; null until it is needed */
-  /* Data of other parts of the library, kept with the volume, owned by it and released with it. */
+  atomic_bool smoothing_chosen; /* whether the volume was made by hl_volume_smooth(), even if its voxels did
+                                 * not change */
+  double surface_slope;         /* for values that are an occupancy: how steeply the values pass 1/2, per
+                                 * voxel; else 0 */
+  _Atomic(struct hl_data_analysis *) analysis; /* owned, in one block; the facts that guess/analysis.h has
+                                                * found; null until they are needed */
+  /* Data that other parts of the library keep with the volume. The volume owns the data, and releases
+   * them. */
   atomic_flag shelf_lock; /* held while the shelf is accessed */
   void *shelf;
   void (*release_shelf)(hl_context *context, void *shelf);
@@ -205,7 +210,7 @@ static inline bool hl_row_repeats(hl_number_row row, size_t a, size_t b) {
  * false if it is not a whole number that int64_t holds. */
 bool hl_row_whole(const hl_volume *volume, hl_number_row row, size_t i, int64_t *whole);
 
-/* The result of hl_volume_whole(): whether the voxel's data value is a whole number. */
+/* The result of hl_volume_whole() for a voxel. */
 typedef enum hl_whole {
   HL_WHOLE_ABSENT, /* the voxel is outside the grid, or its value is not finite */
   HL_WHOLE_FRACTION,
@@ -219,9 +224,9 @@ hl_whole hl_volume_whole(const hl_volume *volume, size_t i, size_t j, size_t k, 
  * defaults. */
 hl_volume_description hl_volume_own_grid(const hl_volume *volume);
 
-/* Gives a volume on the grid of another one what a description does not hold: the exact place of its voxels,
- * and what the file tells of them and of its channels. Arrays and segments are not copied. Fails only for
- * lack of memory. */
+/* Copies properties that a description does not hold to a volume on the grid of another volume: the exact
+ * place of the voxels, and the facts that the file states about the voxels and the channels. Arrays and
+ * segments are not copied. Fails only for lack of memory. */
 hl_status hl_volume_take_about(hl_volume *volume, const hl_volume *from, hl_error *error);
 
 /* Makes a volume of packed voxels that are already in stored form (hl_voxels_store()), in a block of

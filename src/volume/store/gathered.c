@@ -20,8 +20,8 @@ typedef struct gathering {
                         * own numbers if `exact` */
 } gathering;
 
-/* Whether this rank has the file's own numbers of its block: beside the stored values, or as the caller's
- * voxels. */
+/* Returns whether this rank has the file's own numbers of its block: either beside the stored values, or as
+ * the caller's voxels. */
 static bool has_numbers(const hl_own_voxels *own) { return own->exact != NULL || own->type != own->stored; }
 
 static void pack_numbers(const gathering *g, const hl_box *slice, unsigned char *to) {
@@ -99,7 +99,7 @@ static hl_status finish(gathering *g, hl_volume **whole, hl_error *error) {
   return hl_fail_memory(error, count * sizeof *voxels, "a label map, which each process holds whole");
 }
 
-/* Whether `own` is true on at least one rank. All ranks must call it. */
+/* Returns whether `own` is true on at least one rank. All ranks must call this function. */
 static bool any_rank(hl_ranks *ranks, bool own) {
   uint64_t count = own;
   hl_ranks_sum_counts(ranks, &count, 1);
@@ -137,7 +137,8 @@ static hl_status spread(const hl_volume *map, hl_volume **whole, hl_error *error
   return adopt(map, voxels, NULL, whole, error);
 }
 
-/* Makes the copy, unless there is one. Several threads may draw labels of one map. */
+/* Makes the copy, unless it has been made already. Several threads may call this function, because they may
+ * draw labels of one map. */
 static hl_status spread_once(hl_volume *map, hl_error *error) {
   pthread_mutex_lock(&map->pages->lock);
   hl_status status = map->gathered != NULL ? HL_OK : spread(map, &map->gathered, error);

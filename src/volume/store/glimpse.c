@@ -50,22 +50,22 @@ struct hl_glimpse {
   lattice lattices[LATTICES];
 };
 
-/* Which indices along an axis a lattice keeps. */
+/* The indices along an axis that a lattice keeps. */
 typedef struct series {
   size_t first, step; /* kept indices form runs of neighbours; the runs begin at first, first + step, first +
                        * 2 step and so on */
   size_t run;         /* number of consecutive indices in each run */
-  bool last;          /* whether the axis's last index is kept, too */
+  bool last;          /* whether the last index of the axis is kept, too */
 } series;
 
 static bool keeps(const series *s, size_t index, size_t dimension) {
   return (index >= s->first && (index - s->first) % s->step < s->run) || (s->last && index + 1 == dimension);
 }
 
-/* Lists which indices the lattices keep for guess/. Lattice 0: samples, of which the first lies half a step
- * inside the grid, and the next neighbour of each sample along each axis. Lattice 1: samples, of which the
- * first is voxel 0, and the next two neighbours of each. Lattice 2: whole rows along x. Lattices 3 to 5:
- * samples on the three pairs of opposite faces. */
+/* Lists the indices that each lattice of voxels keeps for the automatic choices of guess/. Lattice 0:
+ * samples, of which the first lies half a step inside the grid, and the next neighbour of each sample along
+ * each axis. Lattice 1: samples, of which the first is voxel 0, and the next two neighbours of each. Lattice
+ * 2: whole rows along x. Lattices 3 to 5: samples on the three pairs of opposite faces. */
 static void list_series(const size_t dimension[3], series all[LATTICES][3]) {
   size_t step = hl_lattice_step(dimension, HL_LATTICE_PLACES), border = hl_border_step(dimension),
          rows = hl_row_step(dimension);
@@ -127,13 +127,14 @@ void hl_glimpse_release(hl_glimpse *glimpse) {
                                             * block */
 }
 
-/* The memory in which a lattice keeps voxels of the row (j, k); null if it keeps none of the row. */
+/* Returns the memory in which a lattice keeps voxels of the row (j, k); null if the lattice keeps no voxels
+ * of this row. */
 static unsigned char *row_of(const hl_glimpse *g, const lattice *l, size_t j, size_t k) {
   uint32_t y = l->place[1][j], z = l->place[2][k];
   return y == NOT_KEPT || z == NOT_KEPT ? NULL : l->voxels + (z * l->count[1] + y) * l->count[0] * g->bytes;
 }
 
-/* Keeps those of the voxels i0 to i1 - 1 of a row that the lattice keeps. values: the stored values of these
+/* Stores those of the voxels i0 to i1 - 1 of a row that the lattice keeps. values: the stored values of these
  * voxels. */
 static void store_row(const hl_glimpse *g, const lattice *l, size_t i0, size_t i1,
                       const unsigned char *values, unsigned char *row) {

@@ -1,13 +1,14 @@
-/* volume/store/glimpse.h - the voxels that automatic choices (guess/) need of a volume larger than memory.
+/* volume/store/glimpse.h - the glimpse of a volume larger than memory: the voxels that automatic choices
+ * (guess/) need.
  *
- * They are few voxels, which lie far apart, on lattices. To read them from a scratch file would take a pass
- * over the whole file each time. Therefore copies of them are kept in memory when the volume is stored. */
+ * The glimpse has few voxels, which lie far apart, on lattices. Reading them from a scratch file would take a
+ * pass over the whole file each time. So they are copied to memory when the volume is stored. */
 #ifndef HL_VOLUME_GLIMPSE_H
 #define HL_VOLUME_GLIMPSE_H
 
 #include "volume/volume.h"
 
-/* The greatest number of voxels of a lattice, and of a lattice on one face of the grid. */
+/* The greatest number of voxels of a lattice, and of a lattice that lies on one face of the grid. */
 #define HL_LATTICE_PLACES 5e5
 #define HL_BORDER_PLACES  (HL_LATTICE_PLACES / 12)
 /* Limits for lattices of whole rows along x, which have one row for each cell that is examined.
@@ -17,11 +18,11 @@
 #define HL_ROW_VOXELS  6e6
 
 /* The distance between a lattice's voxels along each axis, at least 1. It is chosen so that the lattice has
- * at most `most` voxels of a grid. */
+ * at most `most` of the grid's voxels. */
 size_t hl_lattice_step(const size_t dimension[3], double most);
 
-/* The distance between the voxels of lattices on the grid's faces: the greatest distance that any of the
- * faces needs. */
+/* The distance between the voxels of lattices on the grid's faces. It is the same for all faces: the greatest
+ * distance that any face requires. */
 size_t hl_border_step(const size_t dimension[3]);
 
 /* The distance, along y and z, between the rows that are examined. */

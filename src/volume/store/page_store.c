@@ -56,7 +56,7 @@ static void store_in_row(hl_pages *pages, const size_t at[3], size_t count, cons
 enum {
   PAGE_SIDE = (1 << PAGE_SHIFT) + PAGE_OVERLAP,
   PAGE_SLICE_BYTES = PAGE_SIDE * PAGE_SIDE * 4,
-  SLICES_AT_ONCE = 8 /* slices written to a page at once */
+  SLICES_AT_ONCE = 8 /* number of slices that are written to a page at once */
 };
 
 /* A block of voxels to write: rows j0 to j1 - 1 of slices k0 to k1 - 1. Of several slices, it must have all
@@ -166,7 +166,7 @@ void hl_pages_store(hl_pages *pages, size_t first, size_t count, const void *val
 
 /* ---- sparse pages ---- */
 
-/* Whether all voxels have the value of voxels that are not stored. */
+/* Returns whether all given voxels have the value that voxels have before they are stored. */
 static bool all_unstored(const hl_pages *pages, const unsigned char *values, size_t count) {
   const size_t bytes = hl_storage_bytes(pages->storage);
   return memcmp(values, pages->value, bytes) == 0 && memcmp(values, values + bytes, (count - 1) * bytes) == 0;
@@ -210,7 +210,7 @@ bool hl_pages_have_one_value(const hl_pages *pages, size_t first, size_t count) 
   if (!hl_pages_are_sparse(pages)) return false;
   const size_t width = pages->dimension[0], rows = pages->dimension[1], end = (first + count - 1) / width + 1;
   for (size_t row = first / width, next; row < end; row = next) {
-    /* the next row whose pages are others: at the next page along y, or at the next slice */
+    /* the next row that lies in other pages: the first row of the next page along y, or of the next slice */
     const size_t y = hl_page_of(pages, 1, row % rows), z = hl_page_of(pages, 2, row / rows);
     const size_t after = y + 1 < pages->count[1] ? (y + 1) << pages->shift : rows;
     const uint32_t *place = pages->place + (z * pages->count[1] + y) * pages->count[0];

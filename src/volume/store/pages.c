@@ -32,7 +32,8 @@ static bool multiply_all(const size_t *factors, int count, size_t *product) {
   return true;
 }
 
-/* Sets all sizes. in_units: whether all pages begin at a unit of memory. False if sizes overflow. */
+/* Sets all sizes of the pages and the mapping. in_units: whether each page begins at one of the system's
+ * units of memory. Returns false if sizes overflow. */
 static bool plan(const hl_volume_description *grid, int shift, bool in_units, hl_pages *pages) {
   size_t side = (size_t)1 << shift, voxels[3];
   *pages = (hl_pages){.storage = hl_voxel_type_storage(grid->type), .shift = shift};
@@ -72,8 +73,8 @@ static hl_status map_scratch(hl_context *context, const char *folder, hl_pages *
   return HL_OK;
 }
 
-/* Allocates what is collected while voxels are stored: counts, bounds and a glimpse. The glimpse takes at
- * most an eighth of the free memory. */
+/* Allocates the arrays that are filled while voxels are stored: counts, bounds and a glimpse. The glimpse
+ * takes at most an eighth of the free memory. */
 static hl_status allocate_findings(hl_context *context, hl_pages *pages, hl_error *error) {
   size_t values = hl_values_of(pages->storage);
   uint64_t taken = atomic_load(&context->whole->held) + atomic_load(&context->whole->paged),
@@ -95,7 +96,7 @@ hl_status hl_pages_create(hl_context *context, const char *folder, const hl_volu
   bool possible = plan(grid, shift, false, made);
   made->context = context;
   made->file = made->exact_file = -1;
-  pthread_mutex_init(&made->lock, NULL); /* a mutex without attributes cannot fail to be made */
+  pthread_mutex_init(&made->lock, NULL); /* making a mutex without attributes cannot fail */
   pthread_cond_init(&made->came, NULL);
   if (!possible) status = hl_fail(error, HL_ERROR_INPUT, "%s: a volume too large for a file", folder);
   if (status == HL_OK) status = map_scratch(context, folder, made, error);
@@ -149,7 +150,7 @@ static hl_status map_nothing(hl_pages *pages, hl_error *error) {
   if (mapping == MAP_FAILED)
     return hl_fail(error, HL_ERROR_MEMORY, "out of memory: no addresses for %.1f MiB of voxels: %s",
                    (double)pages->mapping_bytes / (1 << 20), strerror(errno));
-  /* otherwise the system could join several pages in one large page of its own */
+  /* without this, the system could join several pages to one large page of its own */
   madvise(mapping, pages->mapping_bytes, MADV_NOHUGEPAGE);
   pages->mapping = mapping;
   pages->first = pages->mapping + round_up(SLICES_AROUND * pages->slice_bytes, UNIT);
@@ -274,8 +275,8 @@ bool hl_pages_wanted(const hl_context *context, const hl_volume_description *gri
  * (Linux, fault_around_bytes). */
 enum { FAULT_WINDOW = 1 << 16 };
 
-/* Tells the system that it may take back the memory of a page, and of all units that page faults in this page
- * may have mapped. */
+/* Tells the system that it may take back the memory of a page. This includes all units of memory that page
+ * faults in the page may have mapped. */
 static void drop(const hl_pages *pages, size_t number) {
   uintptr_t first = (uintptr_t)pages->first + number * pages->page_bytes;
   if (pages->blocks != NULL) {
@@ -303,8 +304,8 @@ static void forget_if(hl_pages *pages, size_t number, unsigned char state) {
   count_held(pages, false);
 }
 
-/* Moves the clock's hand past one page. The page is forgotten if it was not needed since the hand moved past
- * it the last time. */
+/* Moves the clock's hand past one page. If the page was not needed since the hand moved past it the last
+ * time, the page is forgotten. */
 static void move_hand(hl_pages *pages, size_t count) {
   size_t number = __atomic_fetch_add(&pages->hand, 1, __ATOMIC_RELAXED) % count;
   unsigned char state = __atomic_load_n(&pages->state[number], __ATOMIC_RELAXED);
@@ -343,8 +344,8 @@ void hl_pages_finish(hl_pages *pages) {
   if (pages->blocks != NULL || hl_pages_are_sparse(pages)) return;
   close(pages->file);
   pages->file = -1;
-  madvise(pages->mapping, pages->mapping_bytes, MADV_RANDOM); /* from now on the system reads ahead only what
-                                                               * fetch() asks for */
+  madvise(pages->mapping, pages->mapping_bytes, MADV_RANDOM); /* from now on the system reads no further than
+                                                               * fetch() asks */
 }
 
 /* Asks the system to read a whole page at once. Otherwise the system reads small parts of it, each when it is
@@ -384,7 +385,7 @@ static void hold_over_ranks(hl_pages *pages, size_t number) {
     __atomic_store_n(&pages->state[number], (unsigned char)PAGE_COMING, __ATOMIC_RELAXED);
     count_held(pages, true);
     make_room(pages, 0);
-    pthread_mutex_unlock(&pages->lock); /* other threads can fetch other pages during this time */
+    pthread_mutex_unlock(&pages->lock); /* while this thread waits, other threads can fetch other pages */
     fetch_from_ranks(pages, number);
     pthread_mutex_lock(&pages->lock);
     pthread_cond_broadcast(&pages->came);
@@ -427,7 +428,7 @@ void hl_pages_forget(const hl_pages *pages) {
   pthread_mutex_unlock(lock);
 }
 
-/* Gives the memory of all sparse pages at one place along z back. */
+/* Gives back the memory of all sparse pages that have the same index along z. */
 static void drop_layer(hl_pages *pages, size_t z) {
   const size_t layer = pages->count[0] * pages->count[1];
   for (size_t number = z * layer; number < (z + 1) * layer; number++)

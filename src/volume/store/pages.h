@@ -13,8 +13,9 @@
  * is reading such a page, the system reads it from the file again.
  *
  * Pages over ranks do not lie in a file: a page is copied from the ranks whose blocks hold it
- * (ranks/blocks.h), and forgotten as a whole. Each page has a version. By it, a thread that reads a page can
- * tell that the page was forgotten meanwhile, and then reads once more: see hl_page_begin().
+ * (ranks/blocks.h), and forgotten as a whole. Each page has a version. By the version, a thread that has read
+ * a page can tell whether the page was forgotten meanwhile. If so, the thread reads the page once more: see
+ * hl_page_begin().
  *
  * Sparse pages lie in memory, in the order in which their first voxels were stored. All pages in which
  * nothing was stored are one page, whose voxels have one value. Sparse pages are never forgotten. */
@@ -42,7 +43,7 @@ typedef struct hl_pages {
   size_t mapping_bytes;
   int file;             /* owned; the mapped file; -1 after hl_pages_finish() has closed it */
   unsigned char *first; /* the first page in the mapping */
-  hl_context *context;  /* its count and limit of memory include the pages */
+  hl_context *context;  /* the context, whose count and limit of memory include the pages */
   hl_storage storage;
   size_t dimension[3];  /* voxels of the volume */
   size_t count[3];      /* number of pages along each axis; page (x, y, z) has the number (z * count[1] + y) *
@@ -51,7 +52,7 @@ typedef struct hl_pages {
   uint64_t held_bytes;  /* bytes of this volume's pages that are in memory; atomic */
   size_t hand;          /* the clock's hand: modulo the number of pages, the number of the page that it
                          * reaches next; atomic */
-  bool filled;          /* whether hl_pages_finish() was called */
+  bool filled;          /* whether hl_pages_finish() has been called */
   bool in_use;          /* whether the pages belong to a volume; over ranks, other ranks may then ask for
                          * voxels */
   hl_blocks *blocks;    /* owned; null for a scratch file */
@@ -60,7 +61,7 @@ typedef struct hl_pages {
                          * the page is forgotten; atomic */
   uint32_t *place;      /* owned; [pages] of sparse pages, else null; the place of each page in the mapping,
                          * counted in pages; 0 for pages in which nothing was stored; atomic */
-  size_t places;        /* number of places that are taken, with place 0; atomic */
+  size_t places;        /* number of places in the mapping that are taken, including place 0; atomic */
   unsigned char value[4]; /* of sparse pages: the stored value of voxels that were not stored */
   pthread_cond_t came;    /* over ranks: signalled when a page that was being fetched is complete */
   pthread_mutex_t lock; /* held while values are counted; over ranks, also while the states of pages change */
@@ -94,10 +95,10 @@ hl_status hl_pages_create_sparse(hl_context *context, const hl_volume_descriptio
                                  const void *value, hl_pages **pages, hl_error *error);
 static inline bool hl_pages_are_sparse(const hl_pages *pages) { return pages->place != NULL; }
 
-/* The part of all sparse pages in which voxels were stored, 0 to 1. */
+/* The fraction of all sparse pages in which voxels were stored, 0 to 1. */
 double hl_pages_share(const hl_pages *pages);
 
-/* Gives memory to a sparse page, unless it has some. Several threads may call it. */
+/* Gives memory to a sparse page, unless the page has some already. Several threads may call this function. */
 void hl_pages_own(hl_pages *pages, size_t number);
 
 /* Stores a box of voxels in sparse pages. values: [count[2]][count[1]][count[0]]; stored values. Several
@@ -112,8 +113,8 @@ void hl_pages_spread(hl_pages *pages, void *voxels);
  * were stored. False for pages of another kind. */
 bool hl_pages_have_one_value(const hl_pages *pages, size_t first, size_t count);
 
-/* Whether a volume should be put into a scratch file: whether its voxels and a renderer's tables for them
- * exceed the memory limit, and there is a scratch folder. */
+/* Returns whether a volume should be put into a scratch file. It should if its voxels, together with a
+ * renderer's tables for them, exceed the memory limit, and if the context has a scratch folder. */
 bool hl_pages_wanted(const hl_context *context, const hl_volume_description *grid);
 
 /* Stores `count` values from number `first` on ([k][j][i]) in all pages that hold these voxels. Each voxel
@@ -125,8 +126,8 @@ void hl_pages_store(hl_pages *pages, size_t first, size_t count, const void *val
 bool hl_pages_take_counts(hl_pages *pages, uint64_t *counts);
 
 /* Must be called after the last voxel was stored. From then on, a page that is needed is read as a whole, and
- * without its neighbours. By itself the system would read farther, and would map more memory than the pages'
- * bytes that are counted. */
+ * without its neighbours. Without this call, the system would read farther than the page, and would map more
+ * memory than is counted. */
 void hl_pages_finish(hl_pages *pages);
 
 /* Makes a volume over ranks. own: taken over, also on failure. shift: PAGE_SHIFT; less for smaller pages.
@@ -145,8 +146,8 @@ void hl_pages_forget(const hl_pages *pages);
  * exceeded until the next page is needed. Other threads may read pages at the same time. */
 void hl_pages_leave_room(const hl_pages *pages, uint64_t bytes);
 
-/* Makes sure that a page is in memory, and notes that it was needed. If the limit is reached, forgets other
- * pages. */
+/* Makes sure that a page is in memory, and notes that the page was needed now. Forgets other pages if the
+ * memory limit is reached. */
 void hl_pages_hold(const hl_pages *pages, size_t number);
 
 /* The index, along an axis, of the page of a voxel. A voxel at the end of the grid may belong to the last
@@ -156,9 +157,9 @@ static inline size_t hl_page_of(const hl_pages *pages, int axis, size_t voxel) {
   return page < pages->count[axis] ? page : pages->count[axis] - 1;
 }
 
-/* The place of a page while it is read. */
+/* A page while it is being read. */
 typedef struct hl_page_reading {
-  const unsigned char *first; /* the page's first voxel, as stored */
+  const unsigned char *first; /* the page's first voxel, as it is stored */
   size_t number;
   uint32_t version; /* set over ranks */
 } hl_page_reading;
@@ -169,8 +170,9 @@ static inline unsigned char *hl_page_first(const hl_pages *pages, size_t number)
   return pages->first + place * pages->page_bytes;
 }
 
-/* Begins to read a page. What was read is valid only if hl_page_stayed() is true afterwards; otherwise, begin
- * again (H.-J. Boehm, Can Seqlocks Get Along with Programming Language Memory Models?, 2012). */
+/* Begins to read a page. Voxels that were read are valid only if hl_page_stayed() is true afterwards;
+ * otherwise, begin again (H.-J. Boehm, Can Seqlocks Get Along with Programming Language Memory Models?,
+ * 2012). */
 static inline hl_page_reading hl_page_begin(const hl_pages *pages, const size_t page[3]) {
   size_t number = (page[2] * pages->count[1] + page[1]) * pages->count[0] + page[0];
   uint32_t version = pages->version != NULL ? __atomic_load_n(&pages->version[number], __ATOMIC_ACQUIRE) : 0;
@@ -178,7 +180,8 @@ static inline hl_page_reading hl_page_begin(const hl_pages *pages, const size_t 
   return (hl_page_reading){hl_page_first(pages, number), number, version};
 }
 
-/* Whether a page has kept its voxels since hl_page_begin(). This is always true for pages in a file. */
+/* Returns whether a page has kept its voxels since hl_page_begin(). For pages in a file the result is always
+ * true. */
 static inline bool hl_page_stayed(const hl_pages *pages, const hl_page_reading *reading) {
   if (pages->version == NULL) return true;
   __atomic_thread_fence(__ATOMIC_ACQUIRE);

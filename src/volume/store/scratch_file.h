@@ -1,5 +1,5 @@
-/* volume/store/scratch_file.h - files without a name, for data for which memory has no room. A file is gone
- * when it is closed, or when the process ends. */
+/* volume/store/scratch_file.h - makes files without a name for data that do not fit into memory. A file is
+ * gone when it is closed, or when the process ends. */
 #ifndef HL_VOLUME_SCRATCH_FILE_H
 #define HL_VOLUME_SCRATCH_FILE_H
 
