@@ -19,7 +19,7 @@ typedef struct backend {
   hl_status (*run)(hl_renderer *renderer, const frame_plan *plan, int sweep, frame_target *target,
                    hl_render_statistics *statistics, hl_error *error);
   /* Brings all pixels of the picture to the target after the last sweep. Null: the sweeps themselves bring
-   * them there. */
+   * the pixels to the target. */
   hl_status (*read)(hl_renderer *renderer, const frame_plan *plan, frame_target *target,
                     hl_render_statistics *statistics, hl_error *error);
 } backend;

@@ -1,6 +1,6 @@
-/* render/before_slab_lanes.h - near a face of a volume's box: the length of the light's way within the box
- * before the light reaches a slab. The length is found at a sample and at the shadow buffer's pixels around
- * the sample.
+/* render/before_slab_lanes.h - finds the length of the light's way within a volume's box before the light
+ * reaches a slab, for samples near a face of the box. The length is found at a sample and at the shadow
+ * buffer's pixels around the sample.
  *
  * On one side of a face, a shadow buffer's pixel holds light that the box's matter has partly absorbed; on
  * the other side it holds light that has passed beside the box. Interpolating between the two would be wrong.
@@ -19,20 +19,21 @@
 typedef struct near_pixels {
   /* The distances, along u and along v, from the sample to each near pixel; in pixels. */
   lanes u[NEAR_PIXELS], v[NEAR_PIXELS];
-  lanes3 along_u, along_v; /* along_u: the step on the sheet by which u grows by one pixel and v stays;
-                            * along_v: likewise for v; frame space */
+  lanes3 along_u, along_v; /* along_u: the step on the sheet by which u grows by one pixel and v does not
+                            * change; along_v: the step by which v grows by one pixel and u does not change;
+                            * frame space */
 } near_pixels;
 
-/* A light as a slab's samples see it. */
+/* The facts about a light that a slab's samples need. */
 typedef struct seen_light {
   lanes3 towards;          /* unit direction to the light */
   lanes path;              /* length of the light's way through the slab */
-  const near_pixels *near; /* the pixels of the light's buffer around the sample; null: no face of a box is
-                            * near, or look-ups read only the nearest pixel */
+  const near_pixels *near; /* the four pixels of the light's buffer around the sample; null: no face of a box
+                            * is near, or look-ups read only the nearest pixel */
 } seen_light;
 
-/* The root of 1/6. The weights of bilinear look-ups, averaged over all positions between pixels, form a tent
- * function of variance 1/6 (derived). */
+/* The square root of 1/6. Derived: the weights of bilinear look-ups, averaged over all positions between
+ * pixels, form a tent function with the variance 1/6. */
 static const float SUBLIGHT_SPREAD = 0.408248f;
 
 LANES_INLINE lanes3 cross3(lanes3 a, lanes3 b) {
@@ -40,9 +41,9 @@ LANES_INLINE lanes3 cross3(lanes3 a, lanes3 b) {
 }
 
 /* Finds the steps of one pixel along u and v on a sheet. Derived: u = (row 1 . x) / (row 0 . x) has the
- * gradient (row 1 - u row 0) / (row 0 . x), and v likewise. The step on the sheet that raises u by one and
- * does not change v is (grad v x h) / (grad u . (grad v x h)). For the step that raises v, exchange u and
- * v. */
+ * gradient (row 1 - u row 0) / (row 0 . x), and v has the gradient (row 2 - v row 0) / (row 0 . x). The step
+ * on the sheet that raises u by one and does not change v is (grad v x h) / (grad u . (grad v x h)). For the
+ * step that raises v, exchange u and v. */
 LANES_INLINE void find_steps(const shadow_map *map, int parallel, lanes3 normal, lanes3 position,
                              near_pixels *near) {
   lanes3 gradient_u = set3(map->rows[1]), gradient_v = set3(map->rows[2]);
@@ -79,8 +80,8 @@ LANES_INLINE near_pixels pixels_of_sublights(void) {
   return near;
 }
 
-/* Shortens a way from a point towards the light: keeps the part that begins closest to the point and that no
- * cut removes. enter, leave: distances from the point to the two ends of the way. */
+/* Shortens a way from a point towards the light to the first part that no cut removes. enter, leave:
+ * distances from the point to the two ends of the way. */
 LANES_INLINE void shorten_way(const shade_volume *volume, lanes3 from, lanes3 towards, lanes *enter,
                               lanes *leave) {
   for (int i = 0; i < volume->light_cut_count; i++) {
@@ -129,8 +130,9 @@ typedef struct faces_of_axis {
   lanes ahead, behind, u, v, along;
 } faces_of_axis;
 
-/* Does for a cut what find_faces() does for a box, and returns the same kind of number. The face ahead counts
- * as flat: as the plane that touches the cut's shape where the light's ray meets it. */
+/* Finds the distances of a cut's face from the lit position, as find_faces() does for a box, and returns the
+ * same kind of number. The face ahead counts as flat: it is replaced by the plane that touches the cut's
+ * shape where the light's ray meets it. */
 LANES_INLINE lanes face_of_cut(const shade_cut *cut, lanes3 position, lanes3 towards, const near_pixels *near,
                                lanes through) {
   ray_section way = cross_cut(cut, position, towards);
@@ -149,9 +151,9 @@ LANES_INLINE lanes face_of_cut(const shade_cut *cut, lanes3 position, lanes3 tow
 
 /* Finds the distances of a box's faces from the lit position. Derived (slab method): if a point moves
  * sideways by s, its distance to the face along the light's way changes by -row.s / row.l, where l is the
- * light's direction. Returns how likely light to some near pixel passes beside a face through which the light
- * to this position comes. The number is 1 near such a face, and falls to 0 where the face is twice as far
- * away as the near pixels. */
+ * light's direction. Returns a number from 0 to 1 that tells how much the correction for the face counts. It
+ * is 1 near a face through which the light comes, because light to some near pixel then passes beside the
+ * face. It falls to 0 at twice the distance of the near pixels. */
 LANES_INLINE lanes find_faces(const shade_volume *volume, const block_geometry *g, lanes3 towards,
                               const near_pixels *near, faces_of_axis faces[3]) {
   lanes close[3], reach[3], longest = lanes_set(1e30f), likely = lanes_set(0);

@@ -1,5 +1,5 @@
-/* render/cut_lanes.h - the cuts of a volume at samples: where rays cross their shapes, and how deep a sample
- * lies behind their faces. */
+/* render/cut_lanes.h - tests the cuts of a volume at samples: finds where rays cross the cuts' shapes, and
+ * how deep a sample lies behind their faces. */
 #ifndef HL_RENDER_CUT_LANES_H
 #define HL_RENDER_CUT_LANES_H
 
@@ -12,14 +12,14 @@ LANES_INLINE lanes3 point_in_cut(const shade_cut *cut, lanes3 p) {
                   row_of_point(cut->rows[2], p)};
 }
 
-/* The speed at which a ray moves across a face, with a tiny number in place of 0. So a ray that is parallel
- * to a face meets it far away, on the right side. */
+/* The speed at which a ray moves across a face, but a tiny number in place of 0. So a ray that is parallel to
+ * a face meets the face far away, on the right side. */
 LANES_INLINE lanes some_speed(lanes speed) {
   return lanes_select(lanes_abs(speed) < 1e-12f, lanes_set(1e-12f), speed);
 }
 
-/* Finds the section of a ray within a cut's shape, as distances along the ray; first > last where the ray
- * misses the shape. */
+/* Finds the section of a ray within a cut's shape, as two distances along the ray. The first distance is
+ * greater than the last one if the ray misses the shape. */
 LANES_INLINE ray_section cross_cut(const shade_cut *cut, lanes3 from, lanes3 along) {
   lanes3 at = point_in_cut(cut, from);
   lanes3 speed = {row_of_vector(cut->rows[0], along), row_of_vector(cut->rows[1], along),
@@ -53,7 +53,8 @@ LANES_INLINE lanes row_size(const float row[4]) {
   return lanes_sqrt(lanes_set(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]));
 }
 
-/* The height over a plane is -x, over a sphere |q| - 1, over a box the height over its highest face. */
+/* The height over a plane is -x, over a sphere |q| - 1, and over a box the height over the face that is the
+ * highest. */
 LANES_INLINE cut_height height_over_cut(const shade_cut *cut, lanes3 point) {
   lanes3 q = point_in_cut(cut, point);
   if (cut->type == HL_CUT_PLANE) return (cut_height){-q.x, scale3(set3(cut->rows[0]), lanes_set(-1.0f))};

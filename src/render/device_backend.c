@@ -27,7 +27,7 @@ static void give_up(hl_renderer *renderer, const char *reason) {
   snprintf(renderer->device.problem, sizeof renderer->device.problem, "%.390s", reason);
 }
 
-/* The name of the device that is to make the renderer's frames. Null: the processors make them. */
+/* The name of the device that should make the renderer's frames. Null: the processors make them. */
 static const char *wanted_device(const hl_renderer *renderer) {
   return renderer->device.wanted[0] != '\0' ? renderer->device.wanted : renderer->context->options.device;
 }
@@ -58,7 +58,7 @@ static void open_device(hl_renderer *renderer) {
            renderer->device.problem);
 }
 
-/* Whether a device is to make the renderer's frames. */
+/* Returns whether a device should make the renderer's frames. */
 static bool wants_device(const hl_renderer *renderer) {
   const char *wanted = wanted_device(renderer);
   return wanted != NULL && strcmp(wanted, "cpu") != 0;
@@ -99,8 +99,7 @@ static hl_status run(hl_renderer *renderer, const frame_plan *plan, int index, f
                              hl_hot_functions(context->options.instruction_set)};
   const sweep_plan *of = &plan->sweeps.list[index];
   float *pixels = hl_frame_target_pixels(target, plan, index);
-  /* The processors search for hidden matter. The samples of this search are not counted as samples of the
-   * device. */
+  /* The processors search for hidden matter. Samples of this search do not count as samples of the device. */
   const uint64_t samples = statistics->samples_shaded;
   planned_sweep planned = {0};
   int32_t *shown_from = NULL;

@@ -1,4 +1,4 @@
-/* render/device_backend.h - choosing and releasing the device that makes a renderer's frames. */
+/* render/device_backend.h - chooses and releases the device that makes a renderer's frames. */
 #ifndef HL_RENDER_DEVICE_BACKEND_H
 #define HL_RENDER_DEVICE_BACKEND_H
 

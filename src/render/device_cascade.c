@@ -13,7 +13,7 @@ bool hl_is_chunked(const light_shadow *shadow) { return shadow->method == &hl_sh
 
 /* ---- recording ---- */
 
-/* The light that a crew works for. */
+/* The light for whose shadows a crew records passes. */
 typedef struct device_crew {
   device_cascades *cascades;
   device_soft_light *of;
@@ -21,7 +21,7 @@ typedef struct device_crew {
   const gpu_sweep *sweep;
 } device_crew;
 
-/* Makes room for more members of an array. Returns false where no memory is left. */
+/* Makes room for more members of an array. Returns false if memory is short. */
 static bool make_room(hl_context *context, void *array, size_t count, size_t more, size_t size,
                       size_t *capacity) {
   void *old;
@@ -47,7 +47,7 @@ static void record(const device_crew *crew, plan_pass pass) {
   passes->list[passes->count++] = pass;
 }
 
-/* Where a field's pixel (0, 0) lies among the pixels of all fields. */
+/* The index of a field's pixel (0, 0) among the pixels of all fields. */
 static unsigned place_of(const device_crew *crew, const cascade_field *field) {
   return field == NULL ? PASS_NOTHING : (unsigned)(crew->of->first_pixel + field->place);
 }
@@ -76,7 +76,7 @@ static void record_add(const cascade_crew *crew, const cascade_sum *sum) {
   record(own, pass);
 }
 
-/* Records the boxes of a level's columns and rows of tiles. Returns the number of the first. */
+/* Records the boxes of a level's columns and rows of tiles. Returns the number of the first recorded box. */
 static unsigned record_boxes(const device_crew *crew, const cascade_level *level) {
   device_passes *passes = &crew->cascades->passes;
   const size_t first = passes->box_count, count = (size_t)level->tiles_x + (size_t)level->tiles_y;
@@ -121,7 +121,7 @@ static void record_merge(const cascade_crew *crew, const cascade_merger *merger)
   for (int i = 0; i < MERGE_SUMS; i++) record_add(crew, &sums[i]);
 }
 
-/* Whether a chunk's slabs absorbed any light. */
+/* Returns whether any slab of a chunk absorbed light. */
 static bool any_touched(const device_crew *crew, int chunk) {
   const plan_light *light = &crew->sweep->plan->lights[crew->of->light];
   device_passes *passes = &crew->cascades->passes;
@@ -152,7 +152,7 @@ static bool record_absorb(const cascade_crew *crew, const cascade_absorption *ab
   return any_touched(own, (int)cascade->chunks + 1);
 }
 
-/* Records the marks of a light's tiles. Returns the number of the first. */
+/* Records the marks of a light's tiles. Returns the number of the first recorded mark. */
 static unsigned record_marks(const device_crew *crew, const soft_cascade *cascade) {
   device_passes *passes = &crew->cascades->passes;
   const cascade_level *level = &cascade->level[0];
@@ -201,7 +201,7 @@ static const cascade_works device_works = {.add = record_add,
                                            .absorb = record_absorb,
                                            .refill = record_refill};
 
-/* Ends the chunks that end at a sheet. */
+/* Ends the chunks of all lights that end at a given sheet. */
 static bool end_chunks(void *data, hl_gpu *gpu, const gpu_sweep *sweep, int sheet) {
   device_cascades *cascades = data;
   device_passes *passes = &cascades->passes;
@@ -219,7 +219,7 @@ static bool end_chunks(void *data, hl_gpu *gpu, const gpu_sweep *sweep, int shee
 
 /* ---- begin and end ---- */
 
-/* memory: of the method, as planned. */
+/* memory: the amount of memory that the shadow method was planned to take. */
 static hl_status copy_shadow(hl_context *context, const light_shadow *planned, const shadow_layouts *memory,
                              device_soft_light *of, hl_error *error) {
   const size_t bytes = planned->method->state_bytes;
@@ -234,14 +234,14 @@ static hl_status copy_shadow(hl_context *context, const light_shadow *planned, c
   return HL_OK;
 }
 
-/* The first sheet at which the light's buffer may change as a whole. */
+/* Finds the first sheet at which the light's buffer may change as a whole. */
 static int first_end(const sheet_stack *sheets, const light_source *source) {
   int sheet = 1;
   while (sheet < sheets->count && !hl_is_beyond(sheets, source, sheet)) sheet++;
   return sheet;
 }
 
-/* Notes the chunks of a light. rays: of the light, in frame space. */
+/* Describes the chunks of a light. rays: the light's rays, in frame space. */
 static void note_chunks(const sheet_stack *sheets, const device_soft_light *of, plan_rays *rays,
                         unsigned char *ends) {
   for (int sheet = 1; sheet < sheets->count; sheet++) {

@@ -38,8 +38,8 @@ static int storage_of(const grid *grid) {
   return grid->storage == HL_STORAGE_U8 ? 0 : grid->storage == HL_STORAGE_U16 ? 1 : 2;
 }
 
-/* The grid's bits that tell which cells are visible. Null where all cells are visible; then the processors do
- * not read the bits, either. */
+/* Returns the grid's bits that tell which cells are visible. Returns null if all cells count as visible; the
+ * processors do not read the bits then, either. */
 static const uint64_t *bits_of_cells(const grid *grid) {
   return grid->cell_bits_tell ? grid->cell_bits : NULL;
 }
@@ -242,7 +242,7 @@ typedef struct sweep_task {
   const sweep_constants *constants;
 } sweep_task;
 
-/* The first slab that a light's shadows reach. */
+/* Finds the first slab that a light's shadows reach. */
 static int first_reached(const sheet_stack *sheets, const light_shadow *shadow) {
   int slab = 1;
   while (slab < sheets->count && !hl_is_reached(sheets, shadow, slab)) slab++;
@@ -273,13 +273,14 @@ static void plan_content(const view *view, const sweep_task *task, plan_box *box
   memcpy(box, &rays, sizeof *box);
 }
 
-/* Finds a margin: samples that are closer than this to a face count as near the face. The margin is measured
- * along an axis of the box or of a cut's shape. row: the gradient of the coordinate along this axis, in frame
- * space. Derived: on the sheet, one pixel of a parallel light's buffer along u is (grad v x h) / (grad u .
- * (grad v x h)), where h is the sheets' normal; the step along v has the same form. The pixels around a
- * sample are at most one such step away. A face counts where it is up to twice as far away. The light's way
- * through the slab is as long as its path. The margin is a little larger because of rounding. The pixels of a
- * near light grow with distance; for such a light all samples count as near a face. */
+/* Finds a margin. Samples that are closer to a face than the margin count as near the face. The margin is
+ * measured along an axis of the box or of a cut's shape. row: the gradient of the coordinate along this axis,
+ * in frame space. Derived: on the sheet, one pixel of a parallel light's buffer along u is (grad v x h) /
+ * (grad u . (grad v x h)), where h is the sheets' normal. The step along v has the same form, with u and v
+ * exchanged. The pixels around a sample are at most one such step away, and a face matters up to twice this
+ * distance. The light's way through the slab is as long as its path. The margin is a little larger because of
+ * rounding. The pixels of a near light grow with distance, so for such a light all samples count as near a
+ * face. */
 static float margin_along(const sweep_task *task, int index, double way, vec3 row) {
   const sheet_stack *sheets = &task->plan->geometry->sheets;
   const light_source *source = task->plan->lights[index].source;
@@ -348,22 +349,23 @@ static hl_status plan_cuts(hl_context *context, const sweep_task *task, planned_
   return HL_OK;
 }
 
-/* Whether any light's shadows are made in chunks. */
+/* Returns whether the shadows of any light are made in chunks. */
 static bool has_soft_lights(const sweep_task *task) {
   for (int i = 0; i < task->plan->geometry->light_count; i++)
     if (hl_is_chunked(&task->plan->lights[i].shadow)) return true;
   return false;
 }
 
-/* The number of planes of one sheet: one per channel for the transmittance, as many for the light at the
- * outside of surfaces, where it is kept, and as many for the light from which samples of soft lights fade. */
+/* The number of planes of one sheet of a light's buffer. The transmittance has one plane for each channel.
+ * The light at the outside of surfaces has as many, if it is kept. The older light from which samples of soft
+ * lights fade also has as many. */
 static size_t planes_of_sheet(const sweep_task *task, const light_shadow *shadow) {
   const size_t kinds = 1 + (shadow->plan.outside ? 1u : 0) + (has_soft_lights(task) ? 1u : 0);
   return (size_t)task->frame_plan->channels * kinds;
 }
 
-/* Sets a light's buffer. *floats: where the buffer's planes begin; raised by the number of floats of these
- * planes. */
+/* Describes a light's buffer. *floats: the number of floats before the buffer's planes; it is raised by the
+ * number of floats of these planes. */
 static void plan_buffer(const sweep_task *task, int index, int ring, size_t *floats, int *tiles,
                         plan_light *light) {
   const light_shadow *shadow = &task->plan->lights[index].shadow;

@@ -14,17 +14,17 @@ gpu_volume hl_volume_for_device(const frame_plan *plan);
 /* A sweep for a device. */
 typedef struct planned_sweep {
   sweep_constants constants;
-  void *memory; /* owned; holds the arrays of the constants */
+  void *memory; /* owned; the block of memory with the arrays of the constants */
   device_sweep plan;
   gpu_sweep sweep;
   plan_rays *rays; /* owned */
-  plan_cut *cuts;  /* owned; null where the volume has no cuts */
+  plan_cut *cuts;  /* owned; null if the volume has no cuts */
   device_cascades cascades;
 } planned_sweep;
 
-/* Describes a sweep of a plan by the numbers that a device reads. shown_from: the first visible slabs, as in
- * a sweep's target; borrowed. planned: release it after a failure, too. Its address must not change, because
- * its members point to each other. */
+/* Describes a sweep of a plan by the numbers that a device reads. shown_from: the first visible slab of each
+ * block, as in a sweep's target; borrowed. planned: release it after a failure, too. Its address must not
+ * change, because its members point to each other. */
 hl_status hl_plan_sweep(const sweep_means *means, const frame_plan *frame_plan, const sweep_plan *plan,
                         const int32_t *shown_from, planned_sweep *planned, hl_error *error);
 void hl_plan_release(hl_context *context, planned_sweep *planned);

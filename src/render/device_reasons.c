@@ -40,10 +40,10 @@ static bool is_soft_otherwise(const frame_plan *plan) {
 static bool is_masked(const frame_plan *plan) { return volume_of(plan)->classifier->mask.factors != NULL; }
 
 /* Whether the frame has soft shadows on surfaces. If a factor multiplies extinction, matter that the factor
- * hides ends surfaces for all pixels of a block (shadow/attenuate_lanes.h). Where everything lies behind a
- * cut or is hidden by a mask, the processors skip whole blocks, and a pixel of a device does not know which
- * blocks are skipped. Hard shadows do not depend on the skipped blocks, because surfaces have ended before
- * them. Blurs bring light there that surfaces have absorbed. */
+ * hides ends surfaces for all pixels of a block (shadow/attenuate_lanes.h). If everything in a block lies
+ * behind a cut or is hidden by a mask, the processors skip the block, and a pixel of a device does not know
+ * which blocks are skipped. Hard shadows do not depend on the skipped blocks, because surfaces have ended
+ * before them. Soft shadows do: blurs move absorbed light of surfaces into these blocks. */
 static bool has_soft_surfaces(const frame_plan *plan) {
   bool soft = false;
   for (int i = 0; i < plan->frame.light_count; i++)

@@ -1,11 +1,11 @@
-/* render/device_reasons.h - which frames a device does not make. */
+/* render/device_reasons.h - finds the reason why a device cannot make a frame. */
 #ifndef HL_RENDER_DEVICE_REASONS_H
 #define HL_RENDER_DEVICE_REASONS_H
 
 #include "plan/frame_plan.h"
 
-/* The reason why a device does not make a frame, as a part of a sentence: "meshes or isosurfaces". Null: a
- * device can make the frame. */
+/* Returns the reason why a device cannot make a frame, as a part of a sentence, such as "meshes or
+ * isosurfaces". Returns null if a device can make the frame. */
 const char *hl_reason_for_processors(const frame_plan *plan);
 
 #endif

@@ -33,7 +33,7 @@ static float next_number(uint64_t *state, int index) {
   return number;
 }
 
-/* NaN has no bits to compare. */
+/* two NaN count as equal, whatever their bits are */
 static bool same_number(float a, float b) { return memcmp(&a, &b, sizeof a) == 0 || (a != a && b != b); }
 
 static bool compare_numbers(const float *numbers, const float *results, char *problem, const char *name) {
@@ -111,7 +111,7 @@ static hl_status make_scene(hl_context *context, hl_volume *volume, bool surface
   return hl_scene_create(context, &description, scene, error);
 }
 
-/* Renders a picture of the trial, on the owner's device (on_device) or else on the processors. */
+/* Renders a picture for the trial, on the owner's device if on_device is set, else on the processors. */
 static hl_status render(hl_renderer *owner, bool on_device, const hl_scene *scene, int frames, float *pixels,
                         hl_render_statistics *statistics, hl_error *error) {
   hl_renderer *renderer = NULL;

@@ -1,5 +1,5 @@
-/* render/estimate.h - the memory that a frame will take. A frame that cannot fit is refused before it
- * begins. */
+/* render/estimate.h - estimates the memory that a frame will take. A frame that cannot fit into memory is
+ * refused before it begins. */
 #ifndef HL_RENDER_ESTIMATE_H
 #define HL_RENDER_ESTIMATE_H
 
@@ -8,8 +8,7 @@
 #include "render/prepare.h"
 #include "render/sweep.h"
 
-/* Counts the bytes that those volumes take that are not prepared yet. Call hl_prepared_release_stale()
- * before. */
+/* Counts the bytes of the volumes that are not prepared yet. Call hl_prepared_release_stale() before. */
 void hl_prepare_count(const hl_scene_description *scene, const prepared_volume *prepared,
                       const grid_functions *functions, int threads, hl_layout *layout);
 

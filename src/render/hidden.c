@@ -15,12 +15,12 @@ static sweep_sheets turned_round(const sheet_stack *sheets) {
   return turned;
 }
 
-/* The first visible slab of a block that has become opaque in the preparatory sweep. The result is counted
- * from the light. slab: the slab after which the block was opaque, counted from the eye. Derived: between n
- * sheets there are n - 1 slabs; the k slabs nearest to the eye are the last k, from slab n - k on. */
+/* Finds the first visible slab, counted from the light, of a block that has become opaque in the preparatory
+ * sweep. slab: the slab, counted from the eye, after which the block was opaque. Derived: between n sheets
+ * there are n - 1 slabs; the k slabs nearest to the eye are the last k slabs, from slab n - k on. */
 static int32_t first_shown(const sweep *sweep, int slab) { return sweep->geometry->sheets.count - slab; }
 
-/* The data of the tile action. */
+/* The data of the function that the search calls for each tile. */
 typedef struct hidden_search {
   int32_t *shown_from; /* [tiles][16]; the number of the first visible slab of each block; 0: no opaque matter
                         * covers the block yet */
@@ -34,7 +34,7 @@ static uint32_t uncovered_blocks(const int32_t shown_from[TILE_BLOCKS]) {
   return blocks;
 }
 
-/* The tile action: composites opacity alone. */
+/* The function that the search calls for each tile of a slab. It composites opacity alone. */
 static uint32_t cover_tile(const sweep *sweep, const tile_slab *slab) {
   const hidden_search *search = sweep->act.data;
   sweep_counts *counts = &sweep->arrays.counts[slab->worker];
@@ -51,7 +51,8 @@ static uint32_t cover_tile(const sweep *sweep, const tile_slab *slab) {
   return search->trying ? slab->blocks : open;
 }
 
-/* Whether a tile is searched first. These are one tile in 32, and no two of them are neighbours. */
+/* Returns whether a tile is searched first. One tile in 32 is searched first, and no two of these tiles are
+ * neighbours. */
 static bool is_tried(const sweep *sweep, size_t tile) {
   return (hl_tile_x(sweep, tile) + hl_tile_y(sweep, tile) * 11) % 32 == 0;
 }
@@ -98,8 +99,8 @@ static hl_status go_through(sweep *front, hidden_search *search, bool trying, hl
 /* Searches the tiles that are tried first, and the other tiles if the result promises a gain. front: a sweep
  * that has begun. */
 static hl_status search_tiles(sweep *front, hidden_search *search, hl_error *error) {
-  /* If the tried tiles depended on the part, bytes would change. So parts that exchange nothing all try tiles
-   * of the whole picture. */
+  /* If the tiles that are searched first depended on the part, the picture's bytes would depend on it, too.
+   * So parts that exchange nothing all search first tiles of the whole picture */
   const picture_share *own = front->share, whole = {.parts = 1};
   bool worth = false;
   if (own->exchange == NULL) front->share = &whole;

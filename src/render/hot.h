@@ -1,7 +1,7 @@
-/* render/hot.h - one table of all rooms' hot functions for each instruction set.
+/* render/hot.h - the tables of all hot functions, one table for each instruction set.
  *
- * Each function is written once, in a *_lanes.h of its room, and compiled for every instruction set by
- * src/hot; all give the same bytes. A room gets only the table of its own functions. */
+ * Each function is written once, in a file *_lanes.h, and src/hot compiles it for every instruction set; all
+ * versions give the same bytes. The code of a folder gets only the table of its own functions. */
 #ifndef HL_RENDER_HOT_H
 #define HL_RENDER_HOT_H
 

@@ -1,4 +1,4 @@
-/* render/layers.c - see layers.h: the layers' pixels, and the caller's buffers. */
+/* render/layers.c - keeps the pixels of the layers, and writes them to the caller's buffers (layers.h). */
 #include "render/layers.h"
 
 #include <math.h>
@@ -103,8 +103,9 @@ static float sum_of(const layer_grid *grid, const float *pixels, int floats, int
   return sum;
 }
 
-/* Writes three channels of a row. divide: whether the colours are divided by alpha (0 where alpha is 0);
- * otherwise they stay premultiplied. add: whether the colours are added to the numbers in `to`. */
+/* Writes three channels of a row. divide: whether the colours are divided by alpha, with 0 in place of the
+ * quotient if alpha is 0; otherwise they stay premultiplied. add: whether the colours are added to the
+ * numbers in `to`. */
 static void write_colors(const layer_grid *grid, int row, const float *pixels, bool divide, bool add,
                          float *to) {
   float area = (float)(grid->oversampling * grid->oversampling);

@@ -1,11 +1,11 @@
 /* render/layers.h - layers of a picture. For each layer, a sweep shades each tile once more.
  *
  * A light's picture is shaded with this light alone, without ambient light and emission. A light's shadow is
- * the picture of white matter that sends on light from any angle, lit by this light in white. The sky's
- * shadow is the quotient of two pictures of white matter: one is lit by the sky, the other by a sky that
- * nothing hides. The function that shades the picture makes all of these from the same densities, for each
- * tile after the picture's own tile. Depth, objects and normals are measured in a sweep that goes from front
- * to back for the eye. Without layers, none of this is done. */
+ * the picture of white matter, lit by this light in white; the matter sends on light from any angle. The
+ * sky's shadow is the quotient of two pictures of white matter: one picture is lit by the sky, the other by a
+ * sky that nothing hides. The function that shades the picture makes all of these from the same densities,
+ * for each tile after the picture's own tile. Depth, objects and normals are measured in a sweep that goes
+ * from front to back for the eye. Without layers, none of this is done. */
 #ifndef HL_RENDER_LAYERS_H
 #define HL_RENDER_LAYERS_H
 
@@ -16,8 +16,8 @@
 #include "plan/frame_plan.h"
 #include "render/hot.h"
 
-/* The pixels of a light's layers, in the picture's order: [tiles][16][floats per pixel][16]. Null where a
- * layer is not wanted. */
+/* The pixels of a light's layers, in the picture's order: [tiles][16][floats per pixel][16]. An array is null
+ * if its layer is not wanted. */
 typedef struct light_pixels {
   float *picture, *shadow; /* R G B A */
   size_t light_index;      /* the light's index in the scene; a light in sectors has an entry for each
@@ -49,7 +49,7 @@ hl_status hl_layer_pixels_create(hl_context *context, hl_pool *pool, const hl_la
 void hl_layer_pixels_count(const hl_layers *wanted, const frame *frame, size_t tiles, hl_layout *layout);
 void hl_layer_pixels_release(hl_context *context, layer_pixels *pixels);
 
-/* Those of the wanted layers to which a light of the frame adds. */
+/* Returns the layers, among the wanted ones, to which a light of the frame adds. */
 hl_light_layers hl_layers_of_light(const hl_layers *wanted, const light_source *light);
 
 /* The map from the frame's pixels to the picture's pixels: the mean of oversampling x oversampling of the

@@ -1,5 +1,5 @@
-/* render/light_depth_lanes.h - how much of the light a slab's own matter absorbs before the light reaches a
- * medium at the lit position (step 15, derived).
+/* render/light_depth_lanes.h - finds how much light the matter of a slab absorbs before the light reaches a
+ * medium in the same slab (step 15, derived).
  *
  * The shadow buffer holds the light that reaches the slab's first sheet. From there on, the sample's own
  * densities and gradient tell how much light is absorbed. */
@@ -29,7 +29,7 @@ LANES_INLINE mean_transmittance transmittance_within(lanes x, lanes left) {
 }
 
 /* The light's transmittance within the slab, averaged over the slab's matter with the weights with which the
- * eye sees it. e: the slab's optical depth for the eye; left: exp(-e). enter: the light's optical depth where
+ * eye sees it. e: the slab's optical depth for the eye. left: exp(-e). enter: the light's optical depth where
  * the eye's ray enters the matter; more: how much this depth grows until the eye's ray leaves the matter.
  * Derived; exact for extinction that varies along one direction only: int e exp(-e s) exp(-enter - more s) ds
  * / (1 - exp(-e)) = exp(-enter) phi(e + more) / phi(e), with phi(-x) = exp(x) phi(x). */
@@ -96,9 +96,9 @@ LANES_INLINE lanes extinction_towards(const block_density *d, lanes3 towards, la
   return lanes_select(d->sloped, late * sums.extinction, d->sums.extinction);
 }
 
-/* The lengths of the light's ways through all volumes, to where the slab's covered part begins and ends.
- * Where several volumes share a slab, each volume absorbs light on the part of the way that lies in the slab
- * and in the volume's box, wherever the eye's ray passes. */
+/* The lengths of the light's ways through all volumes, to the places where the slab's covered part begins and
+ * ends. If several volumes share a slab, each volume absorbs light on the part of the way that lies in the
+ * slab and in the volume's box, wherever the eye's ray passes. */
 LANES_INLINE ways_in_box find_ways(const block_slab *slab, block_density *densities, int count,
                                    lanes3 towards, lanes path) {
   const block_geometry *g = &slab->geometry;
@@ -124,12 +124,13 @@ typedef struct light_depths {
   /* enter: the optical depth to the point where the eye's ray enters the matter. more: how much the depth
    * grows until the eye's ray leaves the matter. */
   lanes enter[HL_CHANNELS], more[HL_CHANNELS];
-  /* Near a face: the optical depths from the face to each near pixel on the first sheet. */
+  /* near a face: the optical depths of the light's ways from the face to each near pixel on the first
+   * sheet */
   lanes near[HL_CHANNELS][NEAR_PIXELS];
   lanes_int face; /* lanes near a face of a box */
   lanes beside;   /* near a face: how much the correction for the face counts, 0 to 1 */
-  /* Near a face: `enter` and `more` for the light's way before the slab, in place of its way within the
-   * slab. */
+  /* near a face: the depths `enter` and `more` for the light's way before the slab; the other members are for
+   * its way within the slab */
   lanes before_enter[HL_CHANNELS], before_more[HL_CHANNELS];
 } light_depths;
 
@@ -146,7 +147,7 @@ LANES_INLINE void add_face(const shade_job *job, const block_slab *slab, const b
   ways_before ways = find_ways_before(volume, faces, slab, light);
   depths->face |= there;
   depths->beside = lanes_max(depths->beside, lanes_keep(there, likely));
-  /* where several boxes meet in the slab, each volume fills a part of it */
+  /* if several boxes meet in the slab, each volume fills only a part of it */
   lanes filled = lanes_min(d->way.part.length / lanes_max(slab->part.length, lanes_set(1e-6f)),
                            lanes_set(1.0f));
   lanes extinction = lanes_keep(there, d->sums.extinction * likely * filled);

@@ -1,10 +1,11 @@
-/* render/light_reads.c - see light_reads.h.
+/* render/light_reads.c - finds which tiles of a light's shadow buffer the picture reads, and for how long
+ * (light_reads.h).
  *
  * The samples of a picture's tile in a run of slabs lie between rays through the tile's corners and between
- * two sheets. So the samples lie in the convex hull of eight points. Where all points lie ahead of the light,
- * the light sees the samples in the convex hull of the points' images (derived: a projection takes lines to
- * lines). The tiles of the buffer around the images are needed until the run's last slab. For a light of many
- * sub-lights, the picture reads the sub-lights' buffers, each of which has its own tiles. */
+ * two sheets. So the samples lie in the convex hull of eight points. If all eight points lie ahead of the
+ * light, the light sees the samples in the convex hull of the points' images. Derived: a projection takes
+ * lines to lines. The tiles of the buffer around the images are needed until the run's last slab. For a light
+ * of many sub-lights, the picture reads the sub-lights' buffers, each of which has tiles of its own. */
 #include "render/light_reads.h"
 
 #include <string.h>
@@ -13,24 +14,24 @@
 #include "render/surface_point.h"
 #include "surface/late/lateness.h"
 
-/* Allowances for rounding: SHEET_SPARE is the number of sheets by which a sample may lie outside of its slab,
- * PIXEL_SPARE the number of pixels by which it may lie outside of its tile. */
+/* Allowances for rounding. SHEET_SPARE: the number of sheets by which a sample may lie outside of its slab.
+ * PIXEL_SPARE: the number of pixels by which it may lie outside of its tile. */
 static const double SHEET_SPARE = 0.5, PIXEL_SPARE = 1;
 
 /* Slabs of a run. */
 enum { READ_RUN = 8 };
 
-/* How far from a look-up's position pixels of a buffer are read: cubic convolution reads two pixels to each
- * side, and one more is for rounding. */
+/* The distance, in pixels of a buffer, up to which a look-up reads around its position. Cubic convolution
+ * reads two pixels to each side, and one more allows for rounding. */
 enum { READ_TAPS = 3 };
 
 /* The difference of cosines by which a sector's edge is moved outwards, to allow for rounding. */
 static const double SECTOR_SPARE = 1e-3;
 
-/* A buffer that the picture reads: a light's, or a sub-light's. */
+/* A buffer that the picture reads: the buffer of a light or of a sub-light. */
 typedef struct read_buffer {
   const light_source *source;
-  double rows[3][4]; /* frame space -> (w, w u, w v) of the buffer */
+  double rows[3][4]; /* maps frame space to (w, w u, w v), where (u, v) is the position in the buffer */
   double length[3];  /* the length of each row of the map as a vector, without its constant */
   int32_t *until;    /* [tiles_y][tiles_x] */
   int tiles_x, tiles_y;
@@ -54,8 +55,8 @@ typedef struct read_bounds {
   double nearest; /* the least w */
 } read_bounds;
 
-/* Finds the rectangle of a buffer's pixels that holds the images of some points. False where a point does
- * not lie ahead of the light. */
+/* Finds the rectangle of a buffer's pixels that holds the images of some points. Returns false if a point
+ * does not lie ahead of the light. */
 static bool bound_points(const read_buffer *buffer, const vec3 *points, int count, read_bounds *bounds) {
   *bounds = (read_bounds){{INFINITY, INFINITY}, {-INFINITY, -INFINITY}, INFINITY};
   for (int i = 0; i < count; i++) {
@@ -159,7 +160,7 @@ static void read_slabs(const reads_task *task, size_t tile, int first, int last)
   for (int i = 0; i < task->buffer_count; i++) read_hull(&task->buffers[i], points, count, last);
 }
 
-/* Marks the tiles that a tile of the picture reads, run by run of slabs. */
+/* Marks the tiles that a tile of the picture reads, for one run of slabs after the other. */
 static void read_tile(const reads_task *task, size_t tile) {
   const occupancy *occupancy = &task->sweep->image.occupancy;
   int sheets = task->sweep->geometry->sheets.count, first = 0, last = 0;
@@ -198,8 +199,8 @@ static bool is_exchanged(const sweep *sweep, const light_shadow *shadow) {
          shadow->setup.exchange != NULL;
 }
 
-/* Whether a light is a sector of a light within the content, and the scene holds meshes only. Such a light is
- * read only at points of meshes that the eye sees. */
+/* Returns whether a light is a sector of a light within the content, and the scene holds only meshes. Such a
+ * light is read only at points of meshes that the eye sees. */
 static bool is_sector_of_meshes(const sweep *sweep, const light_shadow *shadow) {
   return shadow->setup.source->sectors != NULL && sweep->content.volume_count == 0;
 }
@@ -236,8 +237,8 @@ static void lay_out_light(const sweep *sweep, sweep_light *light, hl_layout *lay
   if (is_exchanged(sweep, &light->shadow)) light->owned = hl_layout_take(layout, tiles, sizeof *light->owned);
 }
 
-/* Lists the buffers of lights whose pixels are made only where samples may read them, and lays the list out.
- */
+/* Lays out and fills the list of the buffers of lights whose pixels are made only where samples may read
+ * them. */
 static read_buffer *lay_out_buffers(const sweep *sweep, hl_layout *layout) {
   size_t count = 0;
   for (int i = 0; i < sweep->geometry->light_count; i++)
@@ -245,7 +246,8 @@ static read_buffer *lay_out_buffers(const sweep *sweep, hl_layout *layout) {
   return hl_layout_take(layout, count, sizeof(read_buffer));
 }
 
-/* Lays out an array [parts][tiles]: until which slab each part needs each tile of a light's buffer. */
+/* Lays out an array [parts][tiles]. It tells, for each part and each tile of a light's buffer, the last slab
+ * at which the part needs the tile. */
 static int32_t *lay_out_needs(const light_shadow *shadow, hl_layout *layout) {
   return hl_layout_take(layout, (size_t)shadow->setup.exchange->parts * tiles_of(shadow), sizeof(int32_t));
 }
@@ -294,7 +296,7 @@ static bool is_owned_around(const sweep_light *light, int tile, int around) {
 }
 
 /* Finds the tiles that this part owns. The part needs an owned tile as long as anything touches the tile,
- * even if the part's picture no longer needs it. So the parts together know all light. Where there are
+ * even if the part's picture no longer needs it. So the parts together know all light. If the frame has
  * surfaces, the part needs the tiles beside an owned tile, too: the light that surfaces hide in a tile
  * depends on pixels up to a tile beside it (shadow_cascade/cascade_field.h). */
 static hl_status find_owned(sweep *sweep, sweep_light *light, hl_error *error) {

@@ -1,12 +1,12 @@
-/* render/light_reads.h - which tiles of a light's shadow buffer a part of a picture, or the sector of a light
- * within the content, needs, and for how long. */
+/* render/light_reads.h - finds which tiles of a light's shadow buffer are needed, and for how long, by a part
+ * of a shared picture or by a sector of a light within the content. */
 #ifndef HL_RENDER_LIGHT_READS_H
 #define HL_RENDER_LIGHT_READS_H
 
 #include "render/sweep.h"
 
-/* Finds needed_until of each light whose method allows it, where the picture is shared or the light is a
- * sector. Call it after the sweep's views, its lights and the picture's surfaces have begun. Tiles that no
+/* Finds the array needed_until of each light whose method allows it, if the picture is shared or the light is
+ * a sector. Call it after the sweep's views, its lights and the picture's surfaces have begun. Tiles that no
  * part needs are never read, so leaving them out changes no pixel. */
 hl_status hl_light_reads_find(sweep *sweep, hl_error *error);
 

@@ -1,4 +1,5 @@
-/* render/maximum.c - see maximum.h: keeps the greatest values of the picture, and colours them. */
+/* render/maximum.c - makes maximum projections: keeps the greatest values of the picture, and colours them
+ * (maximum.h). */
 #include "render/maximum.h"
 
 #include "core/memory.h"

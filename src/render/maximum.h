@@ -1,5 +1,5 @@
-/* render/maximum.h - maximum projection: a picture of the greatest value along each ray, in place of lit
- * matter.
+/* render/maximum.h - makes maximum projections, pictures of the greatest value along each ray, in place of
+ * pictures of lit matter.
  *
  * There is one sweep, without lights and with sheets parallel to the picture. For each pixel and visible
  * volume it keeps the greatest value that the volume's transfer function shows. Colours are looked up after

@@ -1,5 +1,5 @@
-/* render/maximum_lanes.h - the greatest value of each volume along each ray (maximum projection), a 4x4 block
- * at a time. */
+/* render/maximum_lanes.h - finds the greatest value of each volume along each ray (maximum projection), for a
+ * 4x4 block of pixels at a time. */
 #ifndef HL_RENDER_MAXIMUM_LANES_H
 #define HL_RENDER_MAXIMUM_LANES_H
 
@@ -17,9 +17,9 @@ LANES_INLINE lanes greatest_shown(const float (*shown)[4], lanes low, lanes high
   return lanes_select(value >= low, value, lanes_set(-1.0f));
 }
 
-/* The peak of the parabola through the values p, a, b on three sheets if a is the greatest of them; else the
- * result is a. Derived: with t in sheets, the parabola is a + (b - p) / 2 t + (p + b - 2 a) / 2 t^2; its peak
- * is a + (b - p)^2 / (8 (2 a - p - b)). */
+/* The peak of the parabola through the values p, a, b on three successive sheets, if a is the greatest of the
+ * three; otherwise a. Derived: with t in sheets, the parabola is a + (b - p) / 2 t + (p + b - 2 a) / 2 t^2.
+ * Its peak is a + (b - p)^2 / (8 (2 a - p - b)). */
 LANES_INLINE lanes peak_of_three(lanes p, lanes a, lanes b) {
   lanes bend = lanes_fma(a, lanes_set(2.0f), -(p + b)), slope = b - p;
   lanes rise = slope * slope / lanes_max(bend * 8.0f, lanes_set(1e-20f));

@@ -1,4 +1,5 @@
-/* render/measure_lanes.h - measures depth, normal and object for the layers, a 4x4 block at a time. */
+/* render/measure_lanes.h - measures depth, normal and object for the layers, for a 4x4 block of pixels at a
+ * time. */
 #ifndef HL_RENDER_MEASURE_LANES_H
 #define HL_RENDER_MEASURE_LANES_H
 
@@ -6,8 +7,8 @@
 #include "render/shade_lanes.h"
 #include "render/slab_lanes.h"
 
-/* The mean of the volumes' normals. A normal's weight is the volume's extinction times the fraction by which
- * the volume is a surface. */
+/* The mean of the volumes' normals in a slab. The weight of a normal is the volume's extinction times the
+ * fraction of its matter that counts as a surface. */
 LANES_INLINE lanes3 normal_of_block(const block_slab *slab, const block_density *densities, int count) {
   lanes inverse = 1.0f / lanes_max(slab->total, lanes_set(1e-30f));
   lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
@@ -19,7 +20,7 @@ LANES_INLINE lanes3 normal_of_block(const block_slab *slab, const block_density 
   return sum;
 }
 
-/* Distance along the eye's rays. */
+/* The distance of the slab along the eye's rays. */
 LANES_INLINE lanes depth_of(const shade_job *job, const block_slab *slab, lanes3 position) {
   lanes3 way = add_scaled3(position, set3(job->eye), lanes_set(-1.0f));
   return -dot3(way, slab->geometry.towards_eye);
@@ -38,7 +39,7 @@ LANES_INLINE lanes object_of_block(const block_density *densities, int count) {
 }
 
 /* Stores the depth at which alpha reaches FIRST_OPACITY, and the object there, in the lanes where this
- * happens in this slab. Derived: where A is the alpha before the slab and e the slab's optical depth, a ray
+ * happens in this slab. Derived: let A be the alpha before the slab and e the slab's optical depth. A ray
  * reaches this alpha after the fraction u of e, for which (1 - A) exp(-u e) = 1 - FIRST_OPACITY. */
 LANES_INLINE void mark_first(const shade_job *job, const block_slab *slab, block_density *densities,
                              int count, lanes before, lanes after, float *pixels) {

@@ -1,5 +1,5 @@
-/* render/pack_lanes.h - packs a tile's samples before they are lit. Where only some of a block's pixels may
- * show something, the pixels of several blocks are put into sixteen lanes. */
+/* render/pack_lanes.h - packs a tile's samples before they are lit. If only some of a block's pixels may show
+ * something, the pixels of several blocks are put together into sixteen lanes. */
 #ifndef HL_RENDER_PACK_LANES_H
 #define HL_RENDER_PACK_LANES_H
 
@@ -25,7 +25,7 @@ typedef struct packed_tile {
 _Static_assert((1 + TILE_BLOCKS) * sizeof(block_density) <= SHADE_SCRATCH_BYTES,
                "a volume's scratch holds its slabs");
 
-/* Adds a slab with nothing in any lane; returns its number. */
+/* Adds a packed slab with no pixel in any lane. Returns its number. */
 LANES_INLINE int add_slab(packed_tile *tile, int patch_count, block_density *densities) {
   int s = tile->slab_count++;
   tile->filled[s] = 0;

@@ -1,4 +1,4 @@
-/* render/phase_lanes.h - how much of a light a medium scatters towards the eye. */
+/* render/phase_lanes.h - finds how much of a light a medium scatters towards the eye. */
 #ifndef HL_RENDER_PHASE_LANES_H
 #define HL_RENDER_PHASE_LANES_H
 
@@ -9,7 +9,7 @@ static const float LEAST_LIGHT_DISTANCE = (float)HL_LEAST_LIGHT_DISTANCE;
 
 /* Henyey and Greenstein's phase function, "Diffuse radiation in the galaxy" (1941), times 4 pi, so that even
  * scattering has the value 1. The value is (1 - g^2) / (1 + g^2 - 2 g cos)^(3/2), where cos is the cosine of
- * the angle between the light's directions before and after scattering. turn: -cos. */
+ * the angle between the light's directions before and after scattering. turn: the number -cos. */
 LANES_INLINE lanes phase(float g, lanes turn) {
   lanes squared = lanes_line(turn, 2 * g, 1 + g * g);
   return lanes_set(1 - g * g) / (squared * lanes_sqrt(squared));
@@ -19,7 +19,7 @@ LANES_INLINE lanes phase(float g, lanes turn) {
  * angle. */
 typedef struct phase_angle {
   lanes_int column;
-  lanes fraction; /* from the column to the next one */
+  lanes fraction; /* the fraction of the way from the column to the next column */
   lanes phase;
 } phase_angle;
 
@@ -79,8 +79,8 @@ LANES_INLINE lanes phase_of_cap(const phase_table *table, float g, const light_c
   return mean_in_table(table, row, &angle);
 }
 
-/* The mean of the phase function over a light. towards: unit vector to the light's middle. table: the table
- * for g; null where no light is wide. */
+/* The mean of the phase function over a light. towards: unit vector to the light's middle. table: the phase
+ * table for the anisotropy g; null if no light is wide. */
 LANES_INLINE lanes phase_of_light(const phase_table *table, float g, const shade_light *light, lanes3 towards,
                                   const block_geometry *geometry) {
   lanes turn = dot3(geometry->towards_eye, towards);

@@ -22,8 +22,8 @@ typedef struct picture {
 /* Writes the caller's pixels. */
 void hl_picture_write(const picture *picture, hl_pool *pool);
 
-/* Reorders the caller's pixels where they hold the tiles of the only sweep. This is possible without
- * oversampling, if the picture consists of whole tiles and has no gaps between rows. rows:
+/* Reorders the caller's pixels, which hold the tiles of the only sweep, to rows of pixels. This is possible
+ * without oversampling, if the picture consists of whole tiles and has no gaps between rows. rows:
  * [threads][tiles_x][16][4][16], memory for this call. */
 void hl_picture_reorder(const picture *picture, float *rows, hl_pool *pool);
 

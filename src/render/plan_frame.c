@@ -33,7 +33,8 @@ static bool rays_start_inside(const frame *frame, const grid *grid) {
   return inside;
 }
 
-/* Opens faces where volumes touch (hl_open_faces). It changes only the frame's copies of the grids. */
+/* Opens the faces at which volumes touch each other (hl_open_faces). It changes only the frame's copies of
+ * the grids. */
 static void open_faces(const hl_scene_description *scene, grid *grids) {
   for (size_t i = 0; i < scene->volume_count; i++)
     for (size_t k = 0; k < scene->volume_count; k++)
@@ -63,16 +64,16 @@ static hl_status add_surfaces(hl_renderer *renderer, const framed_scene *framed,
   return HL_OK;
 }
 
-/* The grid of a volume as the frame uses it. A volume that is neither visible nor casts shadows may still
- * give the second number of another volume's transfer function. The grid of such a volume gets no relevant
- * bricks, so that no densities are found for it. */
+/* The grid of a volume as the frame uses it. A volume that is neither visible nor casts shadows may still be
+ * needed, because its values may be the second number of another volume's transfer function. The grid of such
+ * a volume gets no relevant bricks, so that no densities are found for it. */
 static grid grid_of_frame(const hl_scene_volume *volume, const prepared_volume *prepared) {
   grid grid = prepared->grid;
   if (!volume->visible && !volume->casts_shadow) grid.relevant_count = 0;
   return grid;
 }
 
-/* Brings up to date the tree of the surfaces for which the light close behind them is corrected. Call it
+/* Brings up to date the tree of surfaces with which the light close behind surfaces is corrected. Call it
  * after the frame's lights are placed. */
 static hl_status update_contact(hl_renderer *renderer, const frame *frame, hl_error *error) {
   surface_tree *tree = &renderer->cache.contact;
@@ -92,8 +93,8 @@ static hl_status update_contact(hl_renderer *renderer, const frame *frame, hl_er
 
 /* ---- light ---- */
 
-/* The number of channels of light attenuation. It is three where matter absorbs the three colours
- * differently, or where the colours of an emission image come from different places; otherwise it is one. */
+/* The number of channels in which light is attenuated. It is three if matter absorbs the three colours
+ * differently, or if the colours of an emission image come from different places. Otherwise it is one. */
 static int attenuation_channels(const frame_plan *plan) {
   for (int i = 0; i < plan->light_count; i++)
     if (plan->lights[i].has_colored_image) return 3;
@@ -199,7 +200,7 @@ static hl_status place_eye_and_lights(const framed_scene *framed, frame_plan *pl
   frame *frame = &plan->frame;
   hl_status status = hl_frame_set_up_eye(frame, scene, error);
   if (status != HL_OK) return status;
-  /* The spacing is at most the distance by which volumes continue beyond their faces. */
+  /* The spacing is at most the distance by which volumes continue beyond their faces */
   frame->spacing = fmin(scene->render.sheet_spacing,
                         hl_is_maximum(&scene->render) ? MAXIMUM_SPACING : GRID_MARGIN) *
                    frame->content.voxel;

@@ -1,5 +1,5 @@
-/* render/prepare.c - rebuilds a volume's grid when its voxels change, and its tables and relevant bricks
- * when its transfer function changes. */
+/* render/prepare.c - prepares volumes for frames. A volume's grid is made anew when its voxels change. Its
+ * tables and relevant bricks are made anew when its transfer function changes. */
 #include "render/prepare.h"
 
 #include <string.h>
@@ -32,8 +32,7 @@ static bool same_clip(const prepared_volume *prepared, const hl_scene_volume *sc
                              memcmp(prepared->clip + 3, scene->clip_max, sizeof scene->clip_max) == 0);
 }
 
-/* The shape of a cut in the index space of the grid, which may be shifted against the volume's index
- * space. */
+/* The shape of a cut in the grid's index space, which may be shifted against the volume's index space. */
 static cut_shape cut_in_grid(const hl_scene_volume *scene, size_t cut, const grid *grid) {
   cut_shape shape = hl_cut_shape(scene, cut);
   const vec3 shift = mat3_apply(shape.to_shape.linear, vec3_of(grid->shift));
@@ -138,7 +137,7 @@ void hl_prepared_release(hl_context *context, prepared_volume *prepared) {
   *prepared = (prepared_volume){.version = prepared->version, .tables_version = prepared->tables_version};
 }
 
-/* Whether the grid that is kept still fits the scene's volume. */
+/* Returns whether the grid that was kept still fits the scene's volume. */
 static bool has_same_voxels(const prepared_volume *prepared, const hl_scene_volume *scene, hl_kernel kernel) {
   return prepared->volume == scene->volume && prepared->kernel == hl_kernel_of_volume(scene, kernel) &&
          prepared->empty == hl_scene_volume_empty_value(scene) && same_clip(prepared, scene);
@@ -151,13 +150,13 @@ void hl_prepared_release_stale(hl_context *context, const hl_scene_description *
       hl_prepared_release(context, &prepared[i]);
 }
 
-/* The context, the threads and the scene's kernel that volumes are prepared with. */
+/* The context, the threads and the scene's kernel with which volumes are prepared. */
 typedef struct preparation {
   hl_context *context;
   hl_pool *pool;
   const grid_functions *functions;
   hl_kernel kernel;
-  bool projected; /* the picture is a maximum projection */
+  bool projected; /* whether the picture is a maximum projection */
 } preparation;
 
 static void set_up_mask(const preparation *with, prepared_volume *prepared, const hl_scene_volume *scene) {
@@ -166,8 +165,8 @@ static void set_up_mask(const preparation *with, prepared_volume *prepared, cons
 }
 
 /* Keeps the volume's mask; a maximum projection ignores masks. The mask is retained so that no other mask can
- * get its address: the address is part of the keys of kept light. Returns whether it is the mask of the frame
- * before. */
+ * get its address: the address is part of the keys of kept light. Returns whether the mask is the same as in
+ * the frame before. */
 static bool hold_mask(const preparation *with, prepared_volume *prepared, const hl_scene_volume *scene) {
   const mask_lattice before = prepared->classifier.mask;
   hl_volume_retain(scene->mask.volume);
@@ -268,9 +267,9 @@ hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_funct
 
 /* ---- isosurfaces ---- */
 
-/* Finds, among the surfaces of the frame before, the one that has the same value, axes and caps as the wanted
- * surface; null: there is none. If voxels, clip box or cuts have changed, prepare_volume() has already
- * released all surfaces of the frame before. */
+/* Finds the isosurface of the frame before that has the same value, axes and caps as the wanted surface; null
+ * if there is none. If voxels, clip box or cuts have changed, prepare_volume() has already released all
+ * surfaces of the frame before. */
 static const prepared_iso *known_iso(const prepared_volume *prepared, const prepared_iso *wanted) {
   for (size_t i = 0; i < prepared->iso_count; i++) {
     const prepared_iso *known = &prepared->iso[i];
@@ -281,8 +280,8 @@ static const prepared_iso *known_iso(const prepared_volume *prepared, const prep
   return NULL;
 }
 
-/* Prepares the isosurfaces of a volume. grid: the prepared grid, with its faces open where other volumes go
- * on. */
+/* Prepares the isosurfaces of a volume. grid: the prepared grid, whose faces are open where another volume
+ * continues the matter. */
 static hl_status prepare_iso(hl_context *context, hl_pool *pool, const hl_scene_volume *scene,
                              const grid *grid, prepared_volume *prepared, hl_error *error) {
   prepared_iso *made = hl_allocate_zeroed(context, scene->iso_count, sizeof *made);
@@ -308,7 +307,7 @@ static hl_status prepare_iso(hl_context *context, hl_pool *pool, const hl_scene_
   return status;
 }
 
-/* A copy of a volume's grid whose faces are open where another volume goes on. */
+/* Makes a copy of a volume's grid whose faces are open where another volume continues the matter. */
 static grid grid_with_open_faces(const hl_scene_description *scene, const prepared_volume *prepared,
                                  size_t volume) {
   grid grid = prepared[volume].grid;

@@ -22,17 +22,18 @@ typedef struct prepared_iso {
 typedef struct prepared_volume {
   const hl_scene_volume *scene; /* the volume in the frame's scene */
   hl_volume *volume;            /* retained */
-  hl_volume *mask;              /* retained: the mask's lattice; null: none */
-  hl_volume *second;            /* retained: the other volume of a function of two numbers; null: none */
+  hl_volume *mask;              /* retained: the lattice of the volume's mask; null: the volume has no mask */
+  hl_volume *second;            /* retained: the other volume of a transfer function of two numbers; null:
+                                 * there is none */
   double second_empty;          /* the second volume's empty value */
   grid grid;
   classifier classifier;
   double empty;                  /* data value */
-  hl_kernel kernel;              /* the kernel for which the grid's cells are bounded */
+  hl_kernel kernel;              /* the kernel for which bounds of the grid's cells were found */
   hl_transfer_function function; /* the transfer function from which the classifier was made; its points are
                                   * owned */
-  uint64_t plane_mark; /* the mark of a transfer function of two numbers, which identifies its content; 0: the
-                        * function has one number */
+  uint64_t plane_mark; /* a number that identifies the content of a transfer function of two numbers; 0: the
+                        * function depends on the value alone */
   double clip[6];
   int clipped;
   uint64_t version, tables_version; /* versions of the grid's voxels, and of everything that follows from the
@@ -43,8 +44,8 @@ typedef struct prepared_volume {
 } prepared_volume;
 
 /* Brings prepared[0 .. count) up to date with the scene's volumes; what has not changed is reused. scene: in
- * frame space (plan/framed_scene.h). plane_marks: [scene->volume_count]; identify the contents of functions
- * of two numbers. */
+ * frame space (plan/framed_scene.h). plane_marks: [scene->volume_count]; numbers that identify the contents
+ * of functions of two numbers. */
 hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_functions *hot,
                              const hl_scene_description *scene, const uint64_t *plane_marks,
                              prepared_volume *prepared, hl_error *error);

@@ -12,7 +12,7 @@ static sweep_means means_of(hl_renderer *renderer) {
                        .hot = hl_hot_functions(renderer->context->options.instruction_set)};
 }
 
-/* The bytes of the shadow buffers that the renderer keeps from the frame before. */
+/* The number of bytes of the shadow buffers that the renderer has kept from the frame before. */
 static uint64_t kept_buffers(const frame_cache *cache) {
   uint64_t bytes = 0;
   for (size_t i = 0; i < cache->buffer_count; i++) bytes += cache->buffers[i].capacity;

@@ -1,4 +1,4 @@
-/* render/reaching_lanes.h - the light that reaches a slab: look-ups of shadow buffers at samples (step
+/* render/reaching_lanes.h - finds the light that reaches a slab by looking up shadow buffers at samples (step
  * 14). */
 #ifndef HL_RENDER_REACHING_LANES_H
 #define HL_RENDER_REACHING_LANES_H
@@ -18,8 +18,8 @@ LANES_INLINE shadow_taps taps_of_position(const shade_light *light, const shadow
                           lanes_select(ahead, place[2] / safe, outside));
 }
 
-/* The mean over all sub-lights of a light: of the transmittance from the sub-light, or (outside: 1) of the
- * sub-light's light at the outside of surfaces. */
+/* The mean over all sub-lights of a light. It is the mean of the transmittance from the sub-light, or if
+ * `outside` is 1, of the sub-light's light at the outside of surfaces. */
 LANES_INLINE color_lanes mean_of_sublights(const shade_light *light, lanes3 position, uint32_t active,
                                            int outside) {
   color_lanes sum = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
@@ -63,9 +63,9 @@ LANES_INLINE void near_light(const shadow_lookup *lookup, const shadow_taps *tap
 }
 
 /* Near a box's face: finds the optical depths from the face to the slab, from the lengths of the light's
- * ways. found: the transmittance that the buffer holds. own: the transmittance that the box's matter would
- * have if it were even and nothing else were in the way. If `found` is greater, the matter there is thinner,
- * and the depths are scaled by the ratio of the two optical depths. */
+ * ways. found: the transmittance that the buffer holds. own: the transmittance that the matter of the box
+ * would have if it were even and nothing else were in the way. If `found` is greater than `own`, the matter
+ * near the face is thinner, and the depths are scaled by the ratio of the two optical depths. */
 LANES_INLINE void pass_face(light_depths *depths, int channel, lanes found, lanes own) {
   lanes_int some = own < 0.999f;
   lanes ratio = lanes_log2(lanes_clamp(found, 1e-6f, 1)) / lanes_log2(lanes_clamp(own, 1e-36f, 0.999f));
@@ -74,9 +74,9 @@ LANES_INLINE void pass_face(light_depths *depths, int channel, lanes found, lane
   depths->more[channel] = lanes_fma(ratio, depths->before_more[channel], depths->more[channel]);
 }
 
-/* The light that reaches the slab near a box's face. Derived: at each pixel T = O E, where E = exp(-depth) is
- * the transmittance of the box's matter and O the transmittance of everything else; where O is the same at
- * all pixels, the weighted mean of T is O times the weighted mean of E. */
+/* The light that reaches the slab near a box's face. Derived: at each pixel the transmittance is T = O E,
+ * where E = exp(-depth) is the transmittance of the box's matter and O the transmittance of everything else.
+ * If O is the same at all pixels, the weighted mean of T is O times the weighted mean of E. */
 LANES_INLINE lanes reaching_face(const shadow_lookup *lookup, const shadow_taps *taps, light_depths *depths,
                                  int channel) {
   lanes light[NEAR_PIXELS], own[NEAR_PIXELS];
@@ -94,9 +94,9 @@ LANES_INLINE lanes reaching_face(const shadow_lookup *lookup, const shadow_taps 
   return lanes_select(taps->inside, reached, lanes_set(1.0f));
 }
 
-/* Corrects the light near a box's face for sub-lights, as reaching_face() does for one buffer. The pixels
- * of different sub-lights' buffers lie in all positions around the sample. So one correction serves all
- * sub-lights: the mean of the corrections over the near pixels. */
+/* Corrects the light near a box's face for sub-lights, as reaching_face() does for one buffer. The buffers of
+ * different sub-lights have their pixels at different positions around the sample. So one correction serves
+ * all sub-lights: the mean of the corrections over the near pixels. */
 LANES_INLINE void correct_faces(light_depths *depths, int channels, color_lanes *reached) {
   for (int c = 0; c < channels; c++) {
     lanes own = lanes_set(0);
@@ -111,7 +111,7 @@ LANES_INLINE void correct_faces(light_depths *depths, int channels, color_lanes 
  * sheet. */
 typedef struct light_place {
   const shade_light *light;
-  const shadow_lookup *lookup; /* the look-up on this sheet */
+  const shadow_lookup *lookup; /* the position of the look-up on this sheet */
   lanes3 position;             /* position of the samples */
   shadow_taps taps;
   uint32_t active; /* the lanes with samples */
@@ -145,9 +145,9 @@ LANES_INLINE color_lanes reaching(const light_place *place, light_depths *depths
   return reached;
 }
 
-/* The transmittance from one light to the media of a slab. It is the transmittance of everything before the
- * slab, times the transmittance of the slab's own matter; this one is averaged with the weights with which
- * the eye sees the matter. path: length of the light's way through the slab. */
+/* The transmittance from one light to the media of a slab. It is the product of two transmittances: of
+ * everything before the slab, and of the slab's own matter. The second one is averaged with the weights with
+ * which the eye sees the matter. path: length of the light's way through the slab. */
 LANES_INLINE color_lanes passing_to_media(const shade_job *job, const light_place *place,
                                           const block_slab *slab, block_density *densities, int count,
                                           lanes3 towards, lanes path) {
@@ -171,19 +171,20 @@ LANES_INLINE color_lanes passing_to_media(const shade_job *job, const light_plac
   return passing;
 }
 
-/* The begin of the light's way to a volume's sample, at the slab's first sheet. Values are coordinates of the
- * classifier's tables. */
+/* The point on the slab's first sheet at which the light's way to a volume's sample begins. Values are
+ * coordinates of the classifier's tables. */
 typedef struct way_begin {
-  lanes start, change; /* start: the value where the way begins; change: how much the value changes per unit
-                        * of the way */
-  lanes first, foot;   /* first: where the surface begins to which the value `start` belongs; foot: where the
-                        * sample's own surface begins */
-  lanes_int there;     /* lanes in which some of the volume's matter may be visible where the way begins */
+  lanes start, change; /* start: the value at the beginning of the way; change: the change of the value per
+                        * unit of the way */
+  lanes first, foot;   /* first: the value at which the surface begins that `start` belongs to; foot: the
+                        * value at which the sample's own surface begins */
+  lanes_int there;     /* the lanes in which some of the volume's matter may be visible at the beginning of
+                        * the way */
 } way_begin;
 
-/* Finds the value where the light's way begins. If values rise so little from there that they cannot have
- * risen from lower values within the slab, the value belongs to a layer below the sample's surface. way: the
- * length of the light's way within the slab. */
+/* Finds the value at the beginning of the light's way. If values rise only a little from this value on, they
+ * cannot have risen from lower values within the slab. The value then belongs to a layer below the sample's
+ * surface. way: the length of the light's way within the slab. */
 LANES_INLINE way_begin find_begin(const block_density *d, lanes3 towards, lanes way) {
   const classifier *classifier = d->patch->volume->classifier;
   lanes seen = lanes_clamp(coordinate_seen(d), 0, CLASSIFIER_ENTRIES),
@@ -193,7 +194,7 @@ LANES_INLINE way_begin find_begin(const block_density *d, lanes3 towards, lanes 
   lanes side = lanes_select(seen >= foot, lanes_set(1.0f), lanes_set(-1.0f));
   lanes below = lanes_gather(classifier->outside,
                              lanes_truncate(lanes_clamp(foot - side * 0.5f, 0, CLASSIFIER_ENTRIES)));
-  /* matter just below the foot is visible, so it is a layer of its own */
+  /* matter with values just below the foot is visible, so it is a layer of its own */
   lanes_int layer = lanes_abs(below - foot) > 1.0f;
   lanes_int beyond = layer & ((start - below) * side < 0.0f);
   start = lanes_select(beyond, below, start);
@@ -202,8 +203,8 @@ LANES_INLINE way_begin find_begin(const block_density *d, lanes3 towards, lanes 
   return (way_begin){start, change, first, foot, (first != lanes_from_int(entry)) | beyond};
 }
 
-/* How much of the light at the slab's first sheet lights a sample's surface: light that was absorbed before
- * the slab, and light that was not. */
+/* How much of the light at the slab's first sheet lights a sample's surface. It has one fraction for light
+ * that was absorbed before the slab, and one for light that was not. */
 typedef struct own_surface {
   lanes kept;    /* the fraction of the light absorbed before the slab that still lights the sample's
                   * surface */
@@ -211,10 +212,10 @@ typedef struct own_surface {
                   * slab */
 } own_surface;
 
-/* Finds the own_surface of a volume's sample. If the light's way leaves another surface of the volume within
- * the slab, that surface has absorbed the light that is missing before the slab. A sample near a face that
- * cuts matter belongs to the face's surface. light, outside: the transmittance and the light at the outside,
- * at the slab's first sheet. */
+/* Finds which fractions of the light light a sample's own surface (own_surface). If the light's way leaves
+ * another surface of the volume within the slab, that surface has absorbed the light that is missing before
+ * the slab. A sample near a face that cuts matter belongs to the face's surface. light, outside: the
+ * transmittance and the light at the outside, at the slab's first sheet. */
 LANES_INLINE own_surface find_own_surface(const block_density *d, const way_begin *begin, lanes light,
                                           lanes outside) {
   const classifier *classifier = d->patch->volume->classifier;
@@ -230,7 +231,7 @@ LANES_INLINE own_surface find_own_surface(const block_density *d, const way_begi
 }
 
 /* The mean of find_own_surface() over a slab's volumes, weighted by extinction. If a volume has no matter at
- * the slab's first sheet but another volume has, the other volume has absorbed the light. */
+ * the slab's first sheet but another volume has, it is the other volume that has absorbed the light. */
 LANES_INLINE own_surface find_own_surfaces(const block_density *densities, int count, lanes3 towards,
                                            lanes way, lanes light, lanes outside) {
   own_surface sum = {lanes_set(0), lanes_set(0)};

@@ -31,8 +31,8 @@ hl_status hl_renderer_create(hl_context *context, hl_renderer **renderer, hl_err
   return HL_OK;
 }
 
-/* Reserves the renderer for one frame. Returns false if a frame is under way: a callback of that frame, or
- * another thread, has asked for another one. */
+/* Reserves the renderer for one frame. Returns false if another frame is being made: then a callback of that
+ * frame, or another thread, has asked for this one. */
 static bool take(hl_renderer *renderer) { return !atomic_exchange(&renderer->busy, true); }
 
 static hl_status fail_busy(const char *caller, hl_error *error) {

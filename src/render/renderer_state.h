@@ -1,5 +1,5 @@
-/* render/renderer_state.h - hl_renderer: the data that it keeps between frames, and a caller's request for a
- * frame. */
+/* render/renderer_state.h - the struct hl_renderer with the data that a renderer keeps between frames, and a
+ * caller's request for a frame. */
 #ifndef HL_RENDER_RENDERER_STATE_H
 #define HL_RENDER_RENDERER_STATE_H
 
@@ -13,15 +13,14 @@
 #include "scatter/scatter.h"
 #include "shadow/shadow_method.h"
 
-/* Results of a frame that the next frame may use again; all of them are owned. */
+/* Results of a frame that the next frame may use again. The struct owns all of them. */
 typedef struct frame_cache {
   prepared_volume *prepared; /* [prepared_count] */
   size_t prepared_count;
   shadow_buffer *buffers; /* [buffer_count]; LIGHT_SECTORS buffers for each of the scene's lights */
   size_t buffer_count;
   shadow_memory shadow_memory[FRAME_LIGHTS]; /* memory of the lights of a sweep */
-  surfaces surfaces;       /* the surfaces of the last frame's meshes; kept while the meshes stay where they
-                            * are */
+  surfaces surfaces;       /* the surfaces of the last frame's meshes; kept while the meshes do not move */
   surface_tree contact;    /* the tree of these surfaces */
   scatter_field scattered; /* scattered light; kept while the scene's matter and lights stay the same */
   sky_field sky;           /* the light of the scene's sky */
@@ -34,20 +33,20 @@ typedef struct renderer_device {
   struct hl_gpu *gpu; /* owned; null: the processors make the frames */
   char wanted[128];   /* name of the wanted device; empty: the device that the context names is wanted */
   bool tried;         /* the device was looked for */
-  char problem[400];  /* why the device makes no frames */
+  char problem[400];  /* the reason why the device makes no frames */
 } renderer_device;
 
 /* A renderer. renderer.c creates it and releases it. */
 struct hl_renderer {
   hl_context *context;
-  atomic_bool busy;      /* whether a call uses the renderer; other calls are refused meanwhile */
+  atomic_bool busy;      /* whether a call is using the renderer; other calls are refused meanwhile */
   atomic_bool abandoned; /* whether the renderer was destroyed during a frame; if so, it is released at the
                           * end of the frame */
   hl_pool *pool;
   int threads;             /* number of threads that the scene asks for: 0 means one per processor */
   int part, parts;         /* part: number of the part of each picture that this renderer makes; parts: number
                             * of parts */
-  light_exchange exchange; /* exchanges light with the other parts; its `gather` is null where light is not
+  light_exchange exchange; /* exchanges light with the other parts; its member `gather` is null if no light is
                             * exchanged */
   frame_cache cache;
   renderer_device device;

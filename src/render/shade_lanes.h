@@ -14,22 +14,22 @@
 /* The light that arrives from one light source, and its direction (step 14 and the first half of step 15;
  * eqs. 1 and 2). */
 typedef struct arriving_light {
-  int dark;               /* no light arrives, or the light that arrives lights nothing; the other members are
-                           * not set */
+  int dark;               /* lanes in which no light arrives, or the light that arrives lights nothing; the
+                           * other members are not set */
   lanes3 towards;         /* unit */
   color_lanes full;       /* the light without attenuation */
   color_lanes shadowed;   /* the light with attenuation, as media receive it */
   color_lanes on_surface; /* the light with attenuation, as surfaces of volumes receive it */
 } arriving_light;
 
-/* Brightness of a spot light: a smooth step over its cone's edge. */
+/* The brightness of a spot light: a smooth step over the edge of its cone. */
 LANES_INLINE lanes within_cone(const light_cone *cone, lanes3 towards) {
   lanes x = lanes_clamp((-dot3(towards, set3(cone->axis)) - cone->outer) * cone->scale, 0, 1);
   return x * x * lanes_line(x, -2.0f, 3.0f);
 }
 
-/* The fraction of a light's rays at a position that one sector of the light gives (light_source.h); the other
- * sectors give the rest. */
+/* The fraction of a light's rays at a position that belongs to one sector of the light (light_source.h). The
+ * other sectors have the rest. */
 LANES_INLINE lanes fraction_of_sector(const sector_fraction *sector, lanes3 towards) {
   lanes own = lanes_set(0), sum = lanes_set(1e-30f);
   for (int i = 0; i < sector->count; i++) {
@@ -111,7 +111,8 @@ LANES_INLINE void attenuate_light(const shade_job *job, const shade_light *light
   }
 }
 
-/* What the visible volumes of a slab have in some lane: media, and surfaces. */
+/* Facts about the visible volumes of a slab: whether some lane has a medium, and whether some lane has a
+ * surface. */
 typedef struct receivers {
   int media, surfaces;
 } receivers;
@@ -165,12 +166,12 @@ LANES_INLINE lanes power(lanes base, lanes exponent) {
 }
 
 /* Adds light that was scattered more than once. The grid holds a medium that scatters evenly (scatter.h).
- * This medium lets T^(1 - w g) of a light through where the real medium lets T through. The difference is the
- * fraction g of the light that was scattered once, which goes on like the light. The rest, the fraction 1 -
- * g, is in the grid. Light scattered twice follows the phase function p of g^2 (derived: the moments of
- * Henyey and Greenstein's function are powers of g, and the moments of two turns multiply). So the light that
- * goes on is scattered towards the eye by (p - (1 - g)) / g, which makes p together with the grid's even
- * part. */
+ * This medium lets T^(1 - w g) of a light through where the real medium lets T through. The difference
+ * belongs to the fraction g of the light that was scattered once; this light goes on in the same direction.
+ * The rest, the fraction 1 - g, is in the grid. Light scattered twice follows the phase function p of g^2
+ * (derived: the moments of Henyey and Greenstein's function are powers of g, and the moments of two turns
+ * multiply). So the light that goes on is scattered towards the eye by the function (p - (1 - g)) / g.
+ * Together with the even part in the grid, this makes p. */
 LANES_INLINE void add_scattered(const shade_job *job, const block_density *d, const block_geometry *g,
                                 const arriving_light *lights, const color_lanes *color, color_lanes *lit) {
   const shade_volume *volume = d->patch->volume;
@@ -320,9 +321,9 @@ LANES_INLINE int weigh_slabs(const shade_job *job, packed_tile *tile, block_dens
   return left;
 }
 
-/* Lights a tile's slabs. Each step is done for all slabs before the next step is done. The reason is that a
- * slab's sums are long chains of dependent operations: so the processor can work on one slab while another
- * slab's results are pending. lit: 0 where nothing is seen. */
+/* Lights a tile's slabs. Each step is done for all slabs before the next step. A slab's sums are long chains
+ * of dependent operations, and with this order the processor can work on one slab while it waits for results
+ * of another. lit: 0 if nothing is seen. */
 LANES_INLINE void light_slabs(const shade_job *job, packed_tile *tile, block_density *densities,
                               int patch_count, int weighed, color_lanes *lit, uint64_t *samples) {
   arriving_light lights[TILE_BLOCKS][MAXIMUM_SWEEP_LIGHTS];
@@ -368,18 +369,18 @@ LANES_INLINE int composite_packed(const shade_job *job, const packed_block *bloc
   return job->back_to_front || lanes_bits(alpha < PIXEL_OPAQUE) != 0;
 }
 
-/* The order in which a tile's blocks are packed: neighbours follow each other, so that the gradients of a
- * packed slab share voxels. */
+/* The order in which a tile's blocks are packed. Neighbouring blocks follow each other, so that the gradients
+ * of a packed slab share voxels. */
 static const unsigned char NEAR_EACH_OTHER[TILE_BLOCKS] = {0,  1,  4,  5,  2, 3, 6,  7,
                                                            10, 11, 14, 15, 8, 9, 12, 13};
-/* The inverse of NEAR_EACH_OTHER: the place of each block in that order. */
+/* The inverse of NEAR_EACH_OTHER: the position of each block in this order. */
 static const unsigned char RANK_OF_BLOCK[TILE_BLOCKS] = {0,  1,  4, 5, 2,  3,  6,  7,
                                                          12, 13, 8, 9, 14, 15, 10, 11};
 
 /* The blocks among `blocks` in which something may be seen, as bits at the blocks' ranks in the packing
  * order. bits: for each block, the pixels in which something may be seen. All blocks are tested before the
- * first block is shaded. About half of them show nothing, and the processor cannot predict which. So tests
- * between the shading of blocks would stall the processor's loads. */
+ * first block is shaded. About half of the blocks show nothing, and the processor cannot predict which blocks
+ * these are. So it would have to wait if blocks were tested while others are shaded. */
 LANES_INLINE uint32_t visible_blocks(const shade_job *job, const shade_patch *patches, int patch_count,
                                      uint32_t blocks, const float *pixels, uint16_t bits[TILE_BLOCKS]) {
   uint32_t ranks = 0;

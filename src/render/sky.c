@@ -1,5 +1,5 @@
-/* render/sky.c - the sky of a frame. Gives the scene's volumes to the field of the sky's light, and keeps the
- * field while volumes and sky stay the same.
+/* render/sky.c - makes the field of the sky's light for a frame, and keeps the field while volumes and sky do
+ * not change.
  *
  * The key of a field holds the bytes of everything on which the field depends. */
 #include "render/sky.h"
@@ -46,8 +46,8 @@ static field_matter matter_of(const prepared_volume *prepared, const grid *grid)
   return matter;
 }
 
-/* The number of channels of the sky's field. One channel is enough where the sky has one colour and all
- * matter takes the same fraction of red, green and blue light. */
+/* The number of channels of the sky's field. One channel is enough if the sky has one colour, and all matter
+ * absorbs the same fraction of red, green and blue light. */
 static int channels_of(const hl_scene_description *scene) {
   if (scene->sky.type != HL_SKY_UNIFORM) return 3;
   for (size_t v = 0; v < scene->volume_count; v++)

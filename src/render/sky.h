@@ -15,10 +15,10 @@ typedef struct frame_sky {
   const frame *frame;
   uint64_t mark;                  /* identifies the pixels of the sky's image */
   const light_exchange *exchange; /* how light is exchanged with the other parts of the picture; null: this
-                                   * renderer finds all light */
+                                   * renderer finds all light by itself */
 } frame_sky;
 
-/* Checks whether the sky's field fits a frame, and makes it anew where it does not. Without a sky the field
+/* Checks whether the sky's field fits a frame, and makes it anew if it does not fit. Without a sky the field
  * is released. room: a function that is called before memory is taken, and that may refuse the memory. */
 typedef struct sky_room {
   hl_status (*check)(void *data, uint64_t bytes, hl_error *error);

@@ -1,9 +1,9 @@
-/* render/sky_lanes.h - the sky's light that a slab's samples send on.
+/* render/sky_lanes.h - finds the sky's light that a slab's samples send on.
  *
  * A surface is lit by the light that arrives at its outside. A sample belongs to the matter below its
- * surface. So the field is read outside of the matter, at a distance along the normal. On this distance the
- * matter's values fall until nothing is visible. Some cells are added to it, because a cell is thicker than a
- * surface, and is dark where it holds matter. */
+ * surface. So the field is read outside of the matter, at a distance along the normal. Over this distance the
+ * matter's values fall until nothing is visible. A few cells of the field are added to the distance, because
+ * a cell that holds a surface is dark, and is thicker than the surface. */
 #ifndef HL_RENDER_SKY_LANES_H
 #define HL_RENDER_SKY_LANES_H
 
@@ -32,9 +32,9 @@ typedef struct sky_parts {
 } sky_parts;
 
 /* The fraction of the sky's light that a volume sends on, without its colour. For a medium it is the albedo.
- * Where the medium scatters light more than once, the grid of scattered light holds the fraction w of this
- * light (scatter/parts.h); w is the albedo times the colour. A surface is lit by another law; for it the grid
- * holds the fraction w of the sky's mean light. */
+ * If the medium scatters light more than once, the grid of scattered light holds the fraction w of this light
+ * (scatter/parts.h); w is the albedo times the colour. A surface is lit by another law; for it the grid holds
+ * the fraction w of the sky's mean light. */
 LANES_INLINE lanes sent_on(const shade_volume *volume, const sky_parts *parts, lanes surface, int c,
                            lanes color) {
   lanes medium = parts->medium[c], on_surface = parts->surface[c];
@@ -54,7 +54,7 @@ LANES_INLINE void place_sky(const shade_job *job, const block_slab *slab, block_
                             int count) {
   for (int i = 0; i < count; i++) {
     block_density *d = &densities[i];
-    if (!d->there) continue; /* a volume without density in the tile has no patch, so it is left out, too */
+    if (!d->there) continue; /* a volume without density in the tile has no patch, so it is not in the list */
     const shade_volume *volume = d->patch->volume;
     if (!volume->visible || !volume->lit || !volume->receives_shadow) continue;
     d->outside = slab->geometry.position;

@@ -1,7 +1,8 @@
-/* render/sky_phase_lanes.h - the light of the sky that a medium sends to the eye, by its phase function.
+/* render/sky_phase_lanes.h - finds the light of the sky that a medium sends to the eye, by the medium's phase
+ * function.
  *
- * The harmonics give the mean of light times phase function up to the second degree. This is not enough where
- * the phase function points forwards and half of the sky is hidden. So the light is modelled as even light
+ * The harmonics give the mean of light times phase function up to the second degree. This is not enough if
+ * the medium scatters mostly forwards and half of the sky is hidden. So the light is modelled as even light
  * plus a brighter cap. A table gives the mean over the cap (phase_table.h). The harmonics then correct the
  * result up to the second degree. */
 #ifndef HL_RENDER_SKY_PHASE_LANES_H
@@ -12,16 +13,15 @@
 
 /* A model of the sky's light: even light from all directions, plus more light from a cap of directions. */
 typedef struct sky_cap {
-  lanes even, more; /* means over all directions. even: of the even light; more: of the light that the cap
-                     * adds */
+  lanes even, more; /* two means over all directions: of the even light, and of the light that the cap adds */
   lanes cosine;     /* cosine of the angle from the cap's middle to its edge */
   lanes3 middle;    /* unit */
 } sky_cap;
 
-/* The cap whose light has the mean and the flux that the harmonics give, and their second degree along the
- * flux. Derived: where x is the cosine to the cap's middle and c the cosine of its edge, the mean of x over
- * the cap is (1 + c) / 2, and the mean of (3 x^2 - 1) / 2 is c (1 + c) / 2. So c is the ratio of these two
- * means, however much of the light is even. The cap gets at most all of the light. */
+/* Finds the cap whose light has the same mean and the same flux as the harmonics, and the same second degree
+ * along the flux. Derived: let x be the cosine of the angle to the cap's middle, and c the cosine at its
+ * edge. The mean of x over the cap is (1 + c) / 2, and the mean of (3 x^2 - 1) / 2 is c (1 + c) / 2. So c is
+ * the ratio of these two means, however much of the light is even. The cap gets at most all of the light. */
 LANES_INLINE sky_cap cap_of_sky(const lanes *light) {
   sky_cap cap;
   lanes mean = light[0] * (float)HARMONIC_0, least = lanes_set(1e-12f);

@@ -7,8 +7,8 @@
  * over the first part of the slab, up to 2 u of the depth, have the same mean and leave out hidden matter.
  * The depth is proportional to the integral of extinction over density. So the mean colour is (K(f2) - K(f1))
  * / (T(f2) - T(f1)). T is the integral of extinction, and K the integral of extinction times colour. f1 is
- * the density where the slab begins, f2 the density where the part 2 u of its depth is passed. As f2 nears f1
- * this is the colour of f1. */
+ * the density where the slab begins, f2 the density where the part 2 u of its depth is passed. As f2
+ * approaches f1, the mean colour approaches the colour of f1. */
 #ifndef HL_RENDER_SLAB_COLOR_LANES_H
 #define HL_RENDER_SLAB_COLOR_LANES_H
 
@@ -31,9 +31,9 @@ LANES_INLINE lanes_int is_color_bent(const classifier *classifier, const block_d
   return lanes_abs(bent * (d->after - d->before)) > CLASSIFIER_LEAST_BENDING;
 }
 
-/* The visible part of a way's depth, as coordinates in the tables: returns where it ends, and sets *from to
- * where it begins. Where matter is seen from the other side, d->evenly is 1 - u, and the visible part is the
- * last 2 u of the depth. */
+/* Finds the visible part of a way's optical depth, as coordinates in the tables. Returns the coordinate of
+ * its end, and sets *from to the coordinate of its beginning. If matter is seen from the other side,
+ * d->evenly is 1 - u, and the visible part is the last 2 u of the depth. */
 LANES_INLINE lanes end_of_shown(const block_density *d, lanes *from) {
   way_means m = means_of_way(d->before, d->after, &d->sums);
   lanes_int front = d->evenly <= 0.5f;

@@ -20,8 +20,9 @@ typedef struct block_geometry {
   lanes path;         /* length of the eye's ray through the slab; 0 behind the eye */
 } block_geometry;
 
-/* Finds the rays of a block's pixels through a slab. Derived: a ray is E + s W, where s = step / H and H =
- * h.W. From one sheet to the next, the point on the ray moves by W ds / H. */
+/* Finds the rays of a block's pixels through a slab. Derived: a ray is E + s W, with s = step / H and H =
+ * h.W, where h is the sheets' normal. From one sheet to the next, at the distance ds, the point on the ray
+ * moves by W ds / H. */
 LANES_INLINE block_geometry geometry_of_block(const shade_job *job, lanes u, lanes v) {
   const sheet_rays *rays = &job->rays;
   block_geometry g;
@@ -34,7 +35,8 @@ LANES_INLINE block_geometry geometry_of_block(const shade_job *job, lanes u, lan
   }
   lanes3 w = rays_directions(rays, u, v);
   lanes climb = rays_climb(rays, u, v), inverse = 1.0f / climb, length = lanes_sqrt(dot3(w, w));
-  lanes_int ahead = is_ahead(rays, climb, job->spacing * 0.5f); /* the rays end in the slab's middle */
+  lanes_int ahead = is_ahead(rays, climb, job->spacing * 0.5f); /* the rays' points lie in the slab's
+                                                                 * middle */
   g.path = lanes_keep(ahead, length * lanes_abs(inverse) * job->path);
   g.step_sheet = scale3(w, inverse * job->spacing);
   g.towards_eye = scale3(w, -1.0f / length);
@@ -56,26 +58,29 @@ typedef struct block_way {
 
 typedef struct block_density {
   const shade_patch *patch;
-  int there; /* the volume may be visible in some of the pixels */
+  int there; /* the pixels in which the volume may be visible */
   block_way way;
   lanes before, after; /* table coordinates of the densities at the two ends of the slab's covered part */
-  way_sums sums;       /* sums of extinction, from one of these coordinates to the other */
+  way_sums sums;       /* sums of extinction over the table, from one of these two coordinates to the other */
   lanes extinction;    /* the mean extinction over the whole slab; outside of the box the extinction counts as
                         * 0 */
   lanes centre;        /* in joined lanes (block_slab): the centre of gravity of the extinction, as a fraction
                         * of the slab, 0 to 1 */
-  lanes factor;        /* with gradient opacity, a mask or a function of two numbers: the factor by which
-                        * extinction and the sums have been multiplied */
-  lanes row;    /* with a function of two numbers: the table's row for the second number (plane_lanes.h) */
-  lanes seen;   /* where the matter is seen, as a fraction of the way through the slab's covered part */
-  lanes evenly; /* where the matter would be seen if the extinction were the same on the whole way */
+  lanes factor;        /* for volumes with gradient opacity, a mask or a function of two numbers: the factor
+                        * by which extinction and the sums have been multiplied */
+  lanes row;           /* for volumes with a function of two numbers: the table's row for the second number
+                        * (plane_lanes.h) */
+  lanes seen;       /* the place where the matter is seen, as a fraction of the way through the slab's covered
+                     * part */
+  lanes evenly;     /* the place where the matter would be seen if its extinction were the same on the whole
+                     * way */
   lanes_int sloped; /* lanes in which the gradient is known */
-  lanes3 slope;     /* the gradient where the matter is seen; elsewhere 0 */
+  lanes3 slope;     /* the gradient at the place where the matter is seen; 0 in other lanes */
   lanes3 normal;    /* unit, away from the matter */
   lanes surface;    /* how much of the matter counts as a surface: 1 for a surface, falling to 0 for a medium,
                      * which has no normal */
   lanes behind; /* the distance, in voxels, of the matter from the face of a cut that is shaded as a surface,
-                 * along the face's normal; FACE_VOXELS where there is no such face near */
+                 * along the face's normal; FACE_VOXELS if no such face is near */
   lanes3 outside; /* the position at which the sky's light is looked up; set if volumes hide the sky from each
                    * other */
   lanes light_first, light_last; /* lengths of the light's way within the volume's box, to the start and to
@@ -133,14 +138,16 @@ LANES_INLINE lanes seen_part(lanes e, lanes left) {
 /* Sixteen pixels in a slab: their rays, the slab's opacity, and the place where the slab is seen. */
 typedef struct block_slab {
   lanes u, v;              /* coordinates of the pixels */
-  lanes_int open;          /* the pixels that can still show something */
+  lanes_int open;          /* the pixels that are not opaque yet */
   uint32_t starts;         /* the first lane of each block, one bit each */
-  block_geometry geometry; /* the rays, and the position where the slab is seen on average and is lit */
-  covered_span part;       /* the part of the slab from the place where the first visible volume begins to the
-                            * place where the last one ends */
+  block_geometry geometry; /* the rays, and the mean position at which the slab is seen; the slab is lit at
+                            * this position */
+  covered_span part;       /* the part of the slab from the beginning of the first visible volume to the end
+                            * of the last visible volume */
   lanes place;        /* the position of geometry.position between the two sheets, from 0 (first sheet) to
                        * 1 */
-  lanes_int joined;   /* lanes in which there are several volumes, and one of them fills less than `part` */
+  lanes_int joined;   /* lanes in which several volumes are visible, and one of them fills less than the
+                       * member `part` */
   lanes centre;       /* in joined lanes: the centre of gravity of the extinction of all volumes, as a
                        * fraction of the slab, 0 to 1 */
   lanes total, depth; /* total: mean extinction over the slab; depth: optical depth */
@@ -149,9 +156,9 @@ typedef struct block_slab {
   lanes_int seen;
 } block_slab;
 
-/* The fraction of the way after which the fraction u of the optical depth is reached. It is u^(b / a) for
- * rising extinction; for falling extinction the formula is mirrored. from_a, from_b: the distances a and b of
- * the extinction's centre of gravity from the ends of the way. */
+/* The fraction of the way after which the fraction u of the optical depth is reached. If extinction rises
+ * along the way, it is u^(b / a); if extinction falls, the formula is mirrored. from_a, from_b: the distances
+ * a and b of the extinction's centre of gravity from the ends of the way. */
 LANES_INLINE lanes way_of_depth(lanes from_a, lanes from_b, lanes u) {
   lanes_int rising = from_a >= from_b;
   lanes t = lanes_power_of_part(lanes_select(rising, u, 1.0f - u),
@@ -172,11 +179,11 @@ LANES_INLINE lanes place_of_joined(block_density *densities, int count, const bl
   return lanes_select(slab->joined, lanes_fma(slab->part.length, t, slab->part.begin), place);
 }
 
-/* Finds the position at which the fraction u of the slab's optical depth is reached. (In a dense slab all
- * visible matter may lie at one end.) Extinction is taken to rise as t^q along the way. The tables give its
+/* Finds the position at which the fraction u of the slab's optical depth is reached. In a dense slab all
+ * visible matter may lie at one end. Extinction is taken to rise as t^q along the way. The tables give its
  * centre of gravity m = (q + 1) / (q + 2). Then the fraction u of the depth is reached at t = u^((1 - m) / m)
- * (derived; mirrored where extinction falls). Returns the mean of the volumes' positions, 0 to 1 through the
- * slab. */
+ * (derived). If extinction falls, the formula is mirrored. Returns the mean of the volumes' positions, 0 to 1
+ * through the slab. */
 LANES_INLINE lanes place_of_part(block_density *densities, int count, const block_slab *slab, lanes u) {
   lanes sum = lanes_set(0);
   for (int i = 0; i < count; i++) {
@@ -229,10 +236,11 @@ LANES_INLINE void find_slopes(const shade_job *job, const block_slab *slab, bloc
   }
 }
 
-/* Finds a volume's normal. Where a mask hides matter, the matter beside it gets a face. The visible matter is
- * f m, where m is the mask's factor. Its slope is m grad f + f grad m; the first m is taken as 1 (derived).
- * The slope is measured in steps of the transfer function's table, because floats cannot hold the squares of
- * data values of 1e-27 or 1e30. A normal whose components are still below 1e-19 gets a length below 1. */
+/* Finds a volume's normal. If a mask hides matter, the matter beside the hidden matter gets a face. The
+ * visible matter is f m, where m is the mask's factor. Its slope is m grad f + f grad m; the first m is taken
+ * as 1 (derived). The slope is measured in steps of the transfer function's table, because floats cannot hold
+ * the squares of data values of 1e-27 or 1e30. A normal whose components are still below 1e-19 gets a length
+ * below 1. */
 LANES_INLINE void find_normal(const block_slab *slab, block_density *d) {
   const shade_volume *volume = d->patch->volume;
   const float scale = fabsf(volume->classifier->scale);
@@ -254,8 +262,8 @@ LANES_INLINE void find_normal(const block_slab *slab, block_density *d) {
 typedef struct cut_face {
   lanes way;      /* the distance from the point back to the face; frame units */
   lanes3 outward; /* the face's unit normal */
-  lanes_int cuts; /* lanes in which the face cuts matter: no other volume goes on behind it, and at a face of
-                   * a box there is visible matter on the face */
+  lanes_int cuts; /* lanes in which the face cuts matter: no other volume continues the matter behind it, and
+                   * if it is a face of a box, there is visible matter on it */
 } cut_face;
 
 LANES_INLINE void take_nearer(cut_face *nearest, lanes way, lanes3 outward, lanes_int cuts) {
@@ -294,7 +302,7 @@ LANES_INLINE void find_cut(const shade_cut *cut, lanes3 point, lanes3 towards_ey
   take_nearer(nearest, way, scale3(over.gradient, outward), lanes_set_int(-1));
 }
 
-/* Whether matter is visible on a face where the eye's rays cross it. */
+/* Returns whether matter is visible on a face at the points where the eye's rays cross it. */
 LANES_INLINE lanes_int shows_on_face(const shade_volume *volume, lanes3 crossing, uint32_t active,
                                      uint32_t starts) {
   const float(*rows)[4] = volume->to_index;
@@ -320,13 +328,13 @@ LANES_INLINE int is_near_box_face(const shade_volume *volume, lanes3 point, lane
   return lanes_bits(near & seen) != 0;
 }
 
-/* The skin of matter `behind` voxels from a face: how much of it belongs to the face. It is 1 at the face,
- * and 0 two voxels behind it. There the gradient of even matter is only noise of the data, so the face's
- * normal serves in its place. */
+/* The skin of matter that lies `behind` voxels from a face: how much of the matter belongs to the face. It is
+ * 1 at the face, and 0 from two voxels behind the face on. Near the face, the gradient of even matter is only
+ * noise of the data, so the face's normal replaces it. */
 LANES_INLINE lanes skin_of_face(lanes behind) { return lanes_clamp(FACE_VOXELS - behind, 0, 1); }
 
 /* The distance of a slab's matter, in voxels, from the face of a cut, or of the volume's box, through which
- * it is seen; FACE_VOXELS where no such face is near. outward: receives the face's normal. */
+ * it is seen; FACE_VOXELS if no such face is near. outward: receives the face's normal. */
 LANES_INLINE lanes find_face(const block_slab *slab, const block_density *d, lanes3 *outward) {
   const shade_volume *volume = d->patch->volume;
   const lanes3 point = seen_position(slab, d), towards_eye = slab->geometry.towards_eye;
@@ -488,7 +496,8 @@ LANES_INLINE void place_slab(const shade_job *job, block_density *densities, int
   slab->place = seen_at;
 }
 
-/* Whether weigh_slab() has work: whether some volume's extinction depends on more than its value. */
+/* Returns whether weigh_slab() has anything to do: whether the extinction of some volume depends on more than
+ * its value. */
 LANES_INLINE int is_weighed(const tile_slab *tile) {
   for (int i = 0; i < tile->patch_count; i++)
     if (hl_classifier_is_weighed(tile->patches[i].volume->classifier)) return 1;

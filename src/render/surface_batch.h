@@ -1,4 +1,4 @@
-/* render/surface_batch.h - fragments of one mesh that are lit and composited together. */
+/* render/surface_batch.h - lights and composites fragments of one mesh together. */
 #ifndef HL_RENDER_SURFACE_BATCH_H
 #define HL_RENDER_SURFACE_BATCH_H
 

@@ -18,13 +18,14 @@ typedef struct lit_sample {
                  * which it is above 0 need the light */
 } lit_sample;
 
-/* The direction in which a look-up moves away from a surface, at most of length 1: along the normal n, but
- * not to places where the buffer meets the surface earlier than at the sample, because the buffer may hold
- * the surface there already. Derived: let t be the direction to the light, and h the direction in which the
- * heights of sheets grow. A vector e at a right angle to t moves the look-up in the light's view. The ray of
- * this view meets the surface's plane e + t (n.e) / (n.t) farther on, so that the height there grows by e.g,
- * where g = h - a n and a = (h.t) / (n.t); g is at a right angle to t. For e = n - (n.t) t, the growth e.g is
- * h.n - a. Where it is less than 0, the part of e along g is left out. */
+/* The direction in which a look-up moves away from a surface; its length is at most 1. The look-up moves
+ * along the normal n, but not to places where the buffer meets the surface earlier than at the sample,
+ * because the buffer may hold the surface at such places already. Derived: let t be the direction to the
+ * light, and h the direction in which the heights of sheets grow. A vector e at a right angle to t moves the
+ * look-up in the light's view. The ray of this view meets the surface's plane e + t (n.e) / (n.t) farther on,
+ * so that the height there grows by e.g, where g = h - a n and a = (h.t) / (n.t); g is at a right angle to t.
+ * For e = n - (n.t) t, the growth e.g is h.n - a. If this growth is less than 0, the part of e along g is
+ * left out. */
 LANES_INLINE lanes3 way_from_surface(const float h[3], const lit_sample *sample) {
   lanes3 sheets = {lanes_set(h[0]), lanes_set(h[1]), lanes_set(h[2])};
   lanes along = dot3(sheets, sample->normal),
@@ -35,9 +36,9 @@ LANES_INLINE lanes3 way_from_surface(const float h[3], const lit_sample *sample)
   return add_scaled3(sample->normal, g, lanes_set(0) - falls / lanes_max(dot3(g, g), lanes_set(1e-12f)));
 }
 
-/* The position at which a sample's light is looked up: moved away from the surface. Derived: in the buffer,
- * the column of a point p is (r1.p) / (r0.p). A step of length d at a right angle to the light moves the
- * column by about |r1| d / (r0.p). */
+/* The position at which a sample's light is looked up, moved away from the surface. Derived: in the buffer,
+ * the column of a point p is (r1.p) / (r0.p), where r0 and r1 are rows of the buffer's map. A step of length
+ * d at a right angle to the light moves the column by about |r1| d / (r0.p). */
 LANES_INLINE lanes3 moved_away(const shade_job *job, const shade_light *light, const shadow_map *map,
                                const lit_sample *sample) {
   const float *row = map->rows[1];
@@ -48,7 +49,7 @@ LANES_INLINE lanes3 moved_away(const shade_job *job, const shade_light *light, c
   return add_scaled3(sample->position, way_from_surface(job->normal, sample), away);
 }
 
-/* The fraction of the light that passes everything before the slab. */
+/* The fraction of the light that everything before the slab lets pass. */
 LANES_INLINE color_lanes light_before_slab(const shade_job *job, const shade_light *light,
                                            const lit_sample *sample) {
   const shadow_lookup *lookup = &light->lookups[job->plane];
@@ -75,8 +76,8 @@ LANES_INLINE color_lanes light_of_sample(const shade_job *job, const shade_light
   return passing;
 }
 
-/* The fraction of light that passes the surfaces close before the samples. The light's buffer may hold the
- * same surfaces. So the caller takes the lesser of this fraction and the buffer's. */
+/* The fraction of light that the surfaces close before the samples let pass. The light's buffer may hold the
+ * same surfaces. So the caller takes the lesser of this fraction and the buffer's fraction. */
 LANES_INLINE lanes contact_of(const shade_job *job, const shade_light *light, const surface_samples *samples,
                               int channel) {
   if (samples->contact == NULL) return lanes_set(1.0f);

@@ -17,8 +17,8 @@ typedef struct surface_samples {
   float lit[3][SURFACE_SAMPLES];                   /* the result: the light that leaves each sample towards
                                                     * the eye */
   float ambient, diffuse, specular, shininess, emission; /* ka kd ks n ke */
-  float even; /* the fraction of light that the material sends on evenly, from whatever angle the light comes,
-               * as a medium does */
+  float even; /* the fraction of light that the material sends on evenly to all sides, from whatever angle the
+               * light comes, as a medium does */
   float behind[3]; /* R, G, B: the fraction of the part `even` that is sent on if the light comes from behind
                     * the surface */
   int receives_shadow;

@@ -26,7 +26,8 @@ typedef struct sweep_light {
   void *reads;              /* owned; holds the next three arrays (light_reads.h) */
   int32_t *needed_until;    /* [tiles of the buffer]; the last slab that needs each tile; 0: no slab needs it.
                              * Null: all slabs need all tiles */
-  int32_t *sublights_until; /* as needed_until, for the buffers of sub-lights; as in light_shadow */
+  int32_t *sublights_until; /* the same numbers as in needed_until, for the tiles of the sub-lights' buffers;
+                             * see light_shadow.sublights_until */
   unsigned char *owned; /* [tiles of the buffer]; 1 for tiles whose light this part of a shared picture sends
                          * to the other parts; null: this part sends no light */
 } sweep_light;
@@ -38,8 +39,8 @@ static inline bool hl_light_needs(const sweep_light *light, size_t tile, int sla
 /* The sweep advances in stretches of slabs. One thread does the work on all slabs of a stretch in one tile.
  * The lights are a stretch ahead of the picture, and both share the threads (sweep_loop.c). */
 typedef struct slab_stretch {
-  int first, end; /* the stretch has the slabs that end at sheets `first` to `end` - 1; it is empty where the
-                   * two are equal */
+  int first, end; /* the stretch has the slabs that end at the sheets `first` to `end` - 1; it is empty if the
+                   * two numbers are equal */
 } slab_stretch;
 
 /* One thread's counts and times, on cache lines of its own. */
@@ -52,7 +53,7 @@ typedef struct sweep_counts {
                                          * hidden.c */
   double seconds_fill, seconds_shade;   /* of the image stage */
   double seconds_light;                 /* of the light stage */
-  double seconds_composite;             /* of the compositing in the light stage */
+  double seconds_composite;             /* seconds for compositing in the stage of light */
 } sweep_counts;
 
 /* The matter that a pass shades. MATTER_OWN: the scene's own matter. MATTER_EVEN: white matter whose surfaces
@@ -60,7 +61,7 @@ typedef struct sweep_counts {
  * matter that receives no shadow. */
 typedef enum layer_matter { MATTER_OWN, MATTER_EVEN, MATTER_WHITE, MATTER_OPEN } layer_matter;
 
-/* A pass over a sweep: the sweep's tiles are shaded once more, for one of the picture's layers
+/* A pass over the tiles of a sweep, which shades them once more for one of the picture's layers
  * (hl_layers). */
 typedef struct layer_pass {
   shade_tile_function *shade;
@@ -80,10 +81,10 @@ typedef struct sweep_layers {
   shade_light *white_lights;                  /* [light_count of the sweep] */
   shade_volume *even_volumes;                 /* [volume_count]; white volumes whose surfaces send on all
                                                * light that arrives */
-  shade_volume *white_volumes, *open_volumes; /* [volume_count]; white_volumes: white copies of the volumes;
-                                               * open_volumes: white copies that receive no shadow */
-  shade_patch *patches;                       /* [threads][volume_count]; patches whose volumes are a pass's
-                                               * own volumes */
+  shade_volume *white_volumes, *open_volumes; /* [volume_count]; two lists of white copies of the volumes; the
+                                               * copies in open_volumes receive no shadow */
+  shade_patch *patches;                       /* [threads][volume_count]; patches that refer to the volumes of
+                                               * a pass */
   classifier *white;   /* [volume_count]; the volumes' tables with white colours; the tables are borrowed */
   sky_light white_sky; /* the sky without its colour */
   float (*ones)[4];    /* a colour table */
@@ -99,7 +100,7 @@ typedef struct light_points {
   double reach;                                       /* the greatest length of an offset */
 } light_points;
 
-/* Fragments and surfaces of the sweep's views; all zeros where the frame has no surfaces. */
+/* Fragments and surfaces of the sweep's views; all zeros if the frame has no surfaces. */
 typedef struct surface_state {
   fragments image, lights[FRAME_LIGHTS];
   fragments unseen;             /* fragments, in the eye's view, of those meshes that are not visible but cast
@@ -127,8 +128,8 @@ typedef struct loop_arrays {
   uint16_t *open;                    /* [tiles]; blocks not yet opaque */
   uint32_t *tasks;                   /* [tiles of the image and of all lights]; the tiles on which a stretch
                                       * has work */
-  shade_job *slab_shades;            /* [stretch]; jobs for the picture's slabs */
-  attenuate_job *slab_attenuates;    /* [lights][stretch]; jobs for the lights' slabs */
+  shade_job *slab_shades;            /* [stretch]; the jobs for the picture's slabs of a stretch */
+  attenuate_job *slab_attenuates;    /* [lights][stretch]; the jobs for the lights' slabs of a stretch */
   shade_patch *shade_patches;        /* [threads][volumes] */
   unsigned char *scratch;            /* [threads][volumes][SHADE_SCRATCH_BYTES] */
   attenuate_volume *scratch_volumes; /* [threads][volumes] */
@@ -146,16 +147,17 @@ typedef struct sweep_loop {
   int ring; /* number of sheets whose light a buffer keeps; 1: the work on the picture and on the lights
              * alternates, slab by slab */
   slab_stretch picture_stretch, light_stretch;
-  int task_start[FRAME_LIGHTS + 2]; /* indices among the tasks: of the picture's first task, of each light's
-                                     * first task, and one past the last task */
+  int task_start[FRAME_LIGHTS + 2]; /* indices of tasks: of the picture's first task, of each light's first
+                                     * task, and the index that follows the last task */
   sweep_times times;
 } sweep_loop;
 
 /* The pixels that a sweep makes. */
 typedef struct sweep_target {
   float *pixels;                 /* [tiles][16][4][16]; the sweep's own */
-  const int32_t *shown_from;     /* [tiles][16]; first visible slab of each block; null: nothing is hidden */
-  const layer_pixels *layers;    /* pixels of the layers; null: none */
+  const int32_t *shown_from;     /* [tiles][16]; the first visible slab of each block; null: opaque matter
+                                  * hides nothing */
+  const layer_pixels *layers;    /* the pixels of the layers; null: no layers are wanted */
   const maximum_values *maximum; /* values of a maximum projection; null, or a struct whose `values` is null:
                                   * the picture shows lit matter */
 } sweep_target;
@@ -167,7 +169,7 @@ typedef enum sweep_purpose { SWEEP_PICTURE, SWEEP_SEARCH } sweep_purpose;
 /* The purpose of a sweep, and the function that it calls for each tile. */
 typedef struct sweep_act {
   sweep_purpose purpose;
-  tile_action *run; /* the action on a tile: steps 12 to 16, or what replaces these steps */
+  tile_action *run; /* the function for a tile: steps 12 to 16, or other steps in their place */
   void *data;       /* the caller's data for `run` */
 } sweep_act;
 
@@ -191,7 +193,7 @@ struct sweep {
   sweep_loop loop;
 };
 
-/* What a sweep works with: the context, the threads, and memory. */
+/* The context, the threads and the memory that a sweep uses. */
 typedef struct sweep_means {
   hl_context *context;
   hl_pool *pool;
@@ -203,21 +205,21 @@ typedef struct sweep_means {
 void hl_sweep_set_up(sweep *sweep, const sweep_means *means, const frame_plan *frame_plan,
                      const sweep_plan *plan, const sweep_target *target);
 
-/* Finds, before a sweep that goes from back to front, what opaque matter hides from the eye (hidden.c).
- * pixels: the sweep's pixels; they must be zeros, and are zeros again afterwards. *shown_from: receives
- * [tiles][16], which the caller releases; null if the sweep goes from front to back. */
+/* Finds, before a sweep that goes from back to front, which slabs opaque matter hides from the eye
+ * (hidden.c). pixels: the sweep's pixels; they must be zeros, and are zeros again afterwards. *shown_from:
+ * receives [tiles][16], which the caller releases; null if the sweep goes from front to back. */
 hl_status hl_find_hidden(const sweep_means *means, const frame_plan *frame_plan, const sweep_plan *plan,
                          float *pixels, int32_t **shown_from, hl_render_statistics *statistics,
                          hl_error *error);
 
-/* The tile action of a lit picture: steps 12 to 16, and the layers (sweep_stages.c). */
+/* The function that a lit picture calls for each tile: steps 12 to 16, and the layers (sweep_stages.c). */
 uint32_t hl_light_tile(const sweep *sweep, const tile_slab *slab);
 
-/* Does steps 1 to 4, and allocates the memory. The caller keeps both arrays from frame to frame: buffers: one
+/* Does steps 1 to 4, and allocates the memory. The caller keeps two arrays from frame to frame. buffers: one
  * for each light of the frame. memory: [FRAME_LIGHTS]; blocks that the frame's sweeps use one after the
  * other. */
 hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, shadow_memory *memory, hl_error *error);
-/* Seconds of a clock that never runs backwards. */
+/* The time in seconds, by a clock that never runs backwards. */
 double hl_clock_seconds(void);
 
 /* Marks all blocks of the sweep's part of the picture as open. */
@@ -242,7 +244,8 @@ void hl_sweep_count_memory(sweep *sweep, sweeps_memory *memory);
 /* The sheet loop: steps 3 to 18 (sweep_loop.c). */
 hl_status hl_sweep_run(sweep *sweep, hl_error *error);
 
-/* The work on one tile in one slab. The steps that a function does stand beside it (sweep_stages.c). */
+/* The work on one tile in one slab. The comments beside the functions name the steps that they do
+ * (sweep_stages.c). */
 void hl_sweep_shade(sweep *sweep, const shade_job *job, size_t tile, int worker); /* steps 6, 8 to 16 */
 void hl_sweep_attenuate(sweep *sweep, int light, const attenuate_job *job, size_t tile,
                         int worker); /* steps 7 to 11 and 17 */

@@ -1,4 +1,5 @@
-/* render/sweep_begin.c - steps 1 to 4: views, sorting, memory, full light. */
+/* render/sweep_begin.c - begins a sweep (steps 1 to 4): makes its views, sorts voxels, allocates memory and
+ * fills shadow buffers with full light. */
 #define _POSIX_C_SOURCE 200809L /* clock_gettime */
 #include <math.h>
 #include <string.h>
@@ -14,7 +15,8 @@
 #include "render/sweep_layers.h"
 #include "render/sweep_surfaces.h"
 
-/* Blocks outside the picture and blocks of other parts are closed from the start. */
+/* Opens the blocks of the picture that belong to this sweep's part. Blocks outside the picture and blocks of
+ * other parts are closed. */
 void hl_sweep_open(sweep *sweep) {
   for (size_t tile = 0; tile < sweep->frame_plan->picture.tiles; tile++) {
     uint32_t open = 0;
@@ -38,9 +40,9 @@ static void end_light(const sweep *sweep, sweep_light *light) {
 
 /* ---- how long stretches are ---- */
 
-/* A stretch has LONGEST_STRETCH slabs where nothing limits it (measured: docs/laboratory/threads.md). The
- * planes that all lights of a frame keep for a stretch take at most RING_BYTES. With one thread, no thread
- * waits for another, so the work on picture and lights alternates slab by slab. */
+/* A stretch has LONGEST_STRETCH slabs if nothing limits it (measured: docs/laboratory/threads.md). The planes
+ * that all lights of a frame keep for a stretch take at most RING_BYTES. With one thread, no thread waits for
+ * another, so the work on picture and lights alternates slab by slab. */
 enum { LONGEST_STRETCH = 8 };
 static const uint64_t RING_BYTES = 64 << 20;
 
@@ -189,7 +191,8 @@ static void connect_light(sweep *sweep, int index) {
   sweep->constants.attenuate[index].stride = shadow->buffer->stride;
 }
 
-/* A light's rays that rise by less than this fraction of their length count as running along the sheets. */
+/* If a ray of a light rises by less than this fraction of its length, it counts as running along the
+ * sheets. */
 static const double LEAST_CLIMB = 0.05;
 
 /* The least rise, per unit of length, of a light's rays within the content. All directions within some angle
@@ -213,7 +216,7 @@ static double longest_way(const sweep *sweep) {
   return least < LEAST_CLIMB ? INFINITY : sweep->geometry->sheets.spacing / least;
 }
 
-/* The distance within which faces that cut volumes change which matter is a surface for the lights. */
+/* The distance within which faces that cut volumes decide which matter is a surface for the lights. */
 static double reach_of_faces(const sweep *sweep) {
   double greatest = 0;
   for (int g = 0; g < sweep->content.volume_count; g++)

@@ -21,8 +21,8 @@ void hl_sweep_constants_lay_out(const frame_plan *plan, sweep_constants *constan
 
 /* ---- the volumes ---- */
 
-/* Where the colours of a volume's voxels lie in memory. volume: null: there are no colours. 32 bits hold the
- * indices of colours, because a volume with colours has at most 2^29 voxels. */
+/* Sets the place of the colours of a volume's voxels in memory. volume: null: there are no colours. 32 bits
+ * hold the indices of colours, because a volume with colours has at most 2^29 voxels. */
 static voxel_colors colors_of(const hl_volume *volume, const float *decode) {
   voxel_colors colors = {.decode = decode};
   if (volume == NULL || volume->colors == NULL) return colors;
@@ -77,7 +77,7 @@ static void find_box_faces(const grid *grid, shade_volume *shade) {
   }
 }
 
-/* A volume's material, and numbers that follow from the material. */
+/* Sets a volume's material, and the numbers that follow from it. */
 static shade_volume material_of(const frame_volume *volume, const plan_fields *fields) {
   shade_volume shade = {
       .phong = volume->look.shading == HL_SHADING_PHONG,

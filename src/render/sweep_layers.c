@@ -5,8 +5,9 @@
 
 #include "core/memory.h"
 
-/* Sets up white copies of the volumes. There are copies that send on all light that arrives; copies that
- * shade as the volumes do; and such copies without the matter that hides the sky. */
+/* Sets up white copies of the volumes. The copies of the first list send on all light that arrives. The
+ * copies of the second list shade as the volumes do. The copies of the third list shade in the same way, but
+ * receive no shadow. */
 static void set_up_white_volumes(sweep *sweep) {
   sweep_layers *layers = &sweep->layers;
   for (size_t i = 0; i < CLASSIFIER_ENTRIES + 2; i++)
@@ -38,7 +39,7 @@ static void set_up_white_light(const shade_light *from, shade_light *white) {
   for (int c = 0; c < 3; c++) white->color[c] = 1;
 }
 
-/* The greatest number of passes besides those of lights: ambient light, emission, the sky, the sky's two
+/* The greatest number of passes that do not belong to lights: ambient light, emission, the sky, the sky's two
  * pictures of white volumes, and measures. */
 enum { MOST_OTHER_PASSES = 6 };
 
@@ -65,7 +66,7 @@ void hl_sweep_layers_count(sweep *sweep, hl_layout *layout) {
   if (wants_layers(sweep)) lay_out(sweep, layout);
 }
 
-/* Adds a pass that shades the given lights, without ambient light, sky and emission. Returns null where the
+/* Adds a pass that shades the given lights, without ambient light, sky and emission. Returns null if the
  * layer is not wanted. */
 static layer_pass *add_pass(sweep *sweep, float *pixels, const shade_light *lights, int light_count) {
   if (pixels == NULL) return NULL;
@@ -189,7 +190,7 @@ static float dot_of_sample(const float a[3][SURFACE_SAMPLES], int i, const float
   return a[0][i] * b[0] + a[1][i] * b[1] + a[2][i] * b[2];
 }
 
-/* Distance along the eye's ray. */
+/* The distance of a point along the eye's ray. */
 static float depth_of_sample(const shade_job *job, const surface_samples *samples, int i) {
   const float towards_eye[3] = {samples->towards_eye[0][i], samples->towards_eye[1][i],
                                 samples->towards_eye[2][i]};

@@ -1,4 +1,5 @@
-/* render/sweep_loop.c - the loop over the sheets: stretches of slabs, their tiles shared out to the threads.
+/* render/sweep_loop.c - the loop over the sheets: it goes through stretches of slabs, whose tiles are divided
+ * among the threads.
  *
  * Light never depends on the picture. So the lights' stretch r + 1 and the picture's stretch r are one set of
  * tasks. At the end of the set all threads wait for each other. With K slabs in a stretch, the picture's
@@ -8,7 +9,7 @@
  * some methods (cascade), a light's buffer changes as a whole after a stretch, in many short sets of tasks.
  * Threads that have no work in these sets work on the picture.
  *
- * Where some light's method cannot be run in stretches, the work on picture and lights alternates, slab by
+ * If the method of some light cannot be run in stretches, the work on picture and lights alternates, slab by
  * slab. */
 #include "core/context.h"
 #include "render/sweep.h"
@@ -144,8 +145,8 @@ static void prepare_lookups(sweep *sweep, slab_stretch stretch) {
 /* ---- stretches ---- */
 
 /* Takes the picture through one stretch and the lights through another; either stretch may be empty. offers:
- * if set, the picture's tasks are only offered until finish_picture() is called: threads work on them while
- * they would wait for other threads. It is set only where stretches have several slabs. */
+ * if set, the picture's tasks are only offered until finish_picture() is called: threads work on them when
+ * they would otherwise wait for other threads. It is set only if stretches have several slabs. */
 static void run_stretches(sweep *sweep, slab_stretch picture, slab_stretch light, bool offers) {
   hl_pool *pool = sweep->content.pool;
   double start = hl_clock_seconds();
@@ -200,8 +201,8 @@ static slab_stretch stretch_from(const sweep *sweep, int first) {
   return (slab_stretch){first, end};
 }
 
-/* Changes the lights' buffers as a whole at the end of a stretch, where their methods do so (section 5 of the
- * paper). */
+/* Changes the lights' buffers as a whole at the end of a stretch, if the lights' methods do so (section 5 of
+ * the paper). */
 static void advance_lights(sweep *sweep, slab_stretch stretch) {
   double start = hl_clock_seconds();
   int sheet = stretch.end - 1;
@@ -219,7 +220,6 @@ static void advance_lights(sweep *sweep, slab_stretch stretch) {
 
 /* The paper's loop over the sheets (section 3.1, eighteen steps).
  *
- *
  *    1. transform voxels to the half-way vector's frame      hl_sweep_begin
  *    2. bucket sort them by height                           hl_sweep_begin
  *    3. opacity map = 0                                      hl_sweep_begin
@@ -233,9 +233,10 @@ static void advance_lights(sweep *sweep, slab_stretch stretch) {
  *            (soft: convolve for the next sheet)             advance_lights
  *   18. end
  *
- * Here the slab between two sheets is classified, lit and composited, and not the sheet. So no matter that a
- * sharp transfer function shows is lost between sheets. A slab is lit by the light that has passed the slabs
- * before it. The first and the last sheet lie outside the content. */
+ * This loop differs from the paper's in one point: it classifies, lights and composites the slab between two
+ * sheets, and not the sheet. So no matter that a sharp transfer function shows is lost between sheets. A slab
+ * is lit by the light that has passed the slabs before it. The first and the last sheet lie outside the
+ * content. */
 hl_status hl_sweep_run(sweep *sweep, hl_error *error) {
   const int sheets = sweep->geometry->sheets.count;
   const bool ahead = sweep->loop.ring > 1;

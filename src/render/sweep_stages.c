@@ -4,8 +4,8 @@
 #include "render/sweep_layers.h"
 #include "render/sweep_surfaces.h"
 
-/* Whether the clock is read for a tile on a sheet. On each sheet it is read for one tile in 32; which tiles
- * these are differs from sheet to sheet. This is enough to measure how a stage's time divides. */
+/* Returns whether the clock is read for a tile on a sheet. On each sheet it is read for one tile in 32, and
+ * for other tiles on the next sheet. This is enough to measure how the time is divided among the stages. */
 static bool is_timed(size_t tile, int sheet) {
   return ((tile * 11 + (tile >> 5) + (size_t)sheet * 5) & 31) == 0;
 }
@@ -13,7 +13,7 @@ static double read_clock(bool timed) { return timed ? hl_clock_seconds() : 0; }
 
 /* ---- the image ---- */
 
-/* Prefetches a tile's alpha, while the tile's densities are being filled. */
+/* Prefetches the alpha of a tile's pixels, while the tile's densities are being filled. */
 static void fetch_opacities(const float *pixels, uint32_t blocks) {
   for (; blocks != 0; blocks &= blocks - 1)
     __builtin_prefetch(pixels + (__builtin_ctz(blocks) * 4 + 3) * BLOCK_PIXELS, 1);

@@ -213,7 +213,7 @@ static uint32_t shade_piece(const sweep *sweep, const tile_slab *slab, const flo
   return act_behind(sweep, &piece, (slab_piece){from, to});
 }
 
-/* Those of the blocks `blocks` in which some pixel is not opaque. */
+/* Returns those of the blocks `blocks` in which some pixel is not opaque. */
 static uint32_t open_blocks(const sweep *sweep, const tile_slab *slab, uint32_t blocks) {
   const float *pixels = sweep->target.pixels + slab->tile * 4 * TILE_PIXELS;
   uint32_t open = 0;
@@ -257,7 +257,7 @@ uint32_t hl_sweep_surfaces_tile(const sweep *sweep, const tile_slab *slab, uint3
 /* ---- the lights ---- */
 
 /* The transmittance of a pixel behind a surface. passing: the fraction of light that the surface lets
- * through. */
+ * pass. */
 static float behind_surface(const attenuate_job *job, float before, float passing) {
   if (!job->marks || (before >= DARK_AT_START && passing > 0)) return before * passing;
   if (before >= DARK_AT_START) return -LEAST_MARK;

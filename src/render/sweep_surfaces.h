@@ -1,11 +1,12 @@
-/* render/sweep_surfaces.h - surfaces in the sheet loop: slabs cut at the fragments of the eye's view,
- * fragments lit and composited, and fragments of the lights' views taken out of the shadow buffers. */
+/* render/sweep_surfaces.h - handles surfaces in the loop over sheets. It cuts slabs at the fragments of the
+ * eye's view, lights and composites fragments, and attenuates the shadow buffers by fragments of the lights'
+ * views. */
 #ifndef HL_RENDER_SWEEP_SURFACES_H
 #define HL_RENDER_SWEEP_SURFACES_H
 
 #include "render/sweep.h"
 
-/* Whether the frame has meshes that are not visible and shade its volumes. */
+/* Returns whether the frame has meshes that are not visible but shade its volumes. */
 bool hl_sweep_has_unseen(const sweep *sweep);
 
 /* hl_sweep_surfaces_begin() makes the surfaces of the picture. Call it after the sweep's views and lights
@@ -23,7 +24,7 @@ fragment_range hl_sweep_surfaces_reach(const sweep *sweep, size_t tile, int slab
 
 /* Steps 12 to 16 for a tile with fragments: each pixel's slab is cut at its fragments, and its pieces and the
  * fragments are composited in the order of their heights. slab->blocks: the blocks with density. blocks: all
- * blocks that are to be shaded. Returns the blocks that stay open. */
+ * blocks that must be shaded. Returns the blocks that stay open. */
 uint32_t hl_sweep_surfaces_tile(const sweep *sweep, const tile_slab *slab, uint32_t blocks,
                                 fragment_range range);
 

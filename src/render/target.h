@@ -14,7 +14,8 @@ typedef struct frame_target {
   bool in_place;
   float *tile_rows; /* where in_place is true: [threads][tiles_x][16][4][16]; room to reorder rows of tiles */
   layer_pixels layers;
-  maximum_values maximum; /* a struct whose `values` is null means that the picture shows lit matter */
+  maximum_values maximum; /* the values of a maximum projection; if its member `values` is null, the picture
+                           * shows lit matter */
 } frame_target;
 
 /* Makes a frame's target. target: must be zeros before, and must be released after an error, too. */

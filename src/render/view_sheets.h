@@ -1,5 +1,5 @@
-/* render/view_sheets.h - the densities of patches on the last sheets of one view, the eye's or a light's.
- * They are filled on demand, and kept for the next slab. */
+/* render/view_sheets.h - keeps the densities of patches on the last sheets of one view, which is the eye's or
+ * a light's. Densities are filled when they are requested, and are kept for the next slab. */
 #ifndef HL_RENDER_VIEW_SHEETS_H
 #define HL_RENDER_VIEW_SHEETS_H
 
@@ -32,8 +32,8 @@ typedef struct kept_patch {
 
 /* A run of RUN_SLABS slabs in one patch, and the blocks in which the run may show something. */
 typedef struct patch_run {
-  int32_t first;             /* the sheet before the run; -1: no run yet */
-  int32_t end;               /* one past the last sheet of the last requested bundle */
+  int32_t first;             /* the sheet before the run; -1: there is no run yet */
+  int32_t end;               /* the number that follows the last sheet of the last requested bundle */
   uint16_t asked;            /* blocks whose relevance is known */
   uint16_t filled;           /* blocks for which the bundle's densities are filled */
   relevant_blocks relevant;  /* for each slab: of the blocks `asked`, those in which matter may be visible */
@@ -50,8 +50,8 @@ typedef struct view_sheets {
   const sheet_content *content;
   const view *view;
   bool of_light; /* the view of a light; else the eye's */
-  double beside; /* in the eye's view: the length of the light's longest way through a slab, frame units. In a
-                  * light's view: FACE_VOXELS if the light lights surfaces, else 0 */
+  double beside; /* in the eye's view: the length of the longest way of a light through a slab, frame units;
+                  * in a light's view: FACE_VOXELS if the light lights surfaces, else 0 */
   occupancy occupancy;
   voxel_lists *lists; /* owned; [grids]; splat only */
   int bundle;         /* number of sheets in a bundle, which are filled one after the other; a divisor of
@@ -68,8 +68,8 @@ typedef struct view_sheets {
   patch_run *patch_runs; /* [patches] */
   slab_row *rows; /* [patches]; the next row of slabs that touch the patch. No slab between the last requested
                    * slab and this row touches the patch */
-  /* the next two arrays exist only where a box cuts visible matter; else they are null */
-  uint32_t *entry_of; /* [patches]; the number of the patch's row of entries; NO_ENTRY where no row was
+  /* the next two arrays exist only if a box cuts visible matter; else they are null */
+  uint32_t *entry_of; /* [patches]; the number of the patch's row of entries; NO_ENTRY if no row was
                        * requested */
   box_rays *box_rays; /* [grids] */
   float *entries; /* [patches][entry_floats]; rows of entries, of which entry_count are used: the heights at
@@ -111,8 +111,8 @@ typedef struct slab_place {
 } slab_place;
 
 bool hl_patch_reaches(view_sheets *sheets, size_t patch, int slab);
-/* Whether a slab touches a patch. Ask for the slabs in rising order. Where many volumes share a tile, most of
- * the volumes lie before or behind a slab. */
+/* Whether a slab touches a patch. Ask for the slabs in rising order. The test saves time if many volumes
+ * share a tile, because most of these volumes lie before or behind a slab. */
 static inline bool hl_patch_is_touched(view_sheets *sheets, size_t patch, int slab) {
   const slab_row *row = &sheets->rows[patch];
   return slab >= row->first && (slab <= row->last || hl_patch_reaches(sheets, patch, slab));
@@ -127,11 +127,11 @@ typedef struct patch_slab {
   const float *before, *current; /* [256] block-major; valid in blocks */
   const float *enter, *leave;    /* [256], block-major; the heights at which rays enter and leave the box;
                                   * null where the box cuts nothing visible; not set where `uncut` is set */
-  int uncut; /* the box cuts nothing in this slab, nor on the light's ways that lead through the box to the
-              * eye's pixels in this slab */
+  int uncut; /* whether the box cuts nothing in this slab, and cuts none of the light's ways through the box
+              * to the eye's pixels in this slab */
   const slab_run *run; /* run: the run to which the slab belongs; slab: the slab's number in the run */
   int slab;
-  uint32_t blocks; /* blocks in which any density may be visible */
+  uint32_t blocks; /* the blocks in which some density may be visible */
 } patch_slab;
 /* Gives the densities of a patch. Call it after hl_patch_relevant() has found at least one block. need: all
  * blocks that this slab and the next slabs of the bundle may request. *pixels is raised by the number of

@@ -1,4 +1,5 @@
-/* render/voxel_color_lanes.h - the colours of a volume's own voxels, and of its mask, at sixteen samples. */
+/* render/voxel_color_lanes.h - finds the colours of a volume's own voxels, and of its mask, at sixteen
+ * samples. */
 #ifndef HL_RENDER_VOXEL_COLOR_LANES_H
 #define HL_RENDER_VOXEL_COLOR_LANES_H
 
@@ -27,7 +28,7 @@ LANES_INLINE void add_corner(const voxel_colors *colors, lanes_int offset, lanes
 /* The mean of the eight voxels' linear colours, each weighted trilinearly and by its own weight (colors.h).
  * This is the interpolated colour times opacity, divided by the interpolated opacity (Porter and Duff,
  * "Compositing digital images", 1984). Beyond the outermost voxels, the colours of these voxels continue.
- * Returns the mean weight, 0 to 255; where the mean weight is 0, the colour is black. */
+ * Returns the mean weight, 0 to 255; if it is 0, the colour is black. */
 LANES_INLINE lanes voxel_color_at(const voxel_colors *colors, const float to_index[3][4], lanes3 position,
                                   lanes color[3]) {
   lanes_int near[3], far[3]; /* bytes along each axis */
@@ -55,8 +56,9 @@ LANES_INLINE lanes voxel_color_at(const voxel_colors *colors, const float to_ind
   return sums.weight;
 }
 
-/* Mixes matter's colours with a mask's colours, by the mask's weights. position: frame space. Where a brick
- * of the mask has one colour, all positions in it have this colour. The result is set in the active lanes. */
+/* Mixes matter's colours with a mask's colours, by the mask's weights. position: frame space. If a brick of
+ * the mask has a single colour, all positions in the brick have this colour. The result is set in the active
+ * lanes. */
 LANES_INLINE void tint_matter(const voxel_colors *tints, const mask_lattice *mask, lanes3 position,
                               uint32_t active, lanes color[3]) {
   mask_places p = places_in_mask(mask, position);

@@ -1,4 +1,5 @@
-/* scene/drawn_scene.h - the form of a scene that frames draw; it is made when the first frame asks for it.
+/* scene/drawn_scene.h - converts a scene to the form that frames draw. It is made when the first frame asks
+ * for it.
  *
  * Label maps and masks are drawn by smooth fields, which take long to make for large maps. Many scenes never
  * need these fields, because they are only composed, written or described, or are shown at a coarser
@@ -29,8 +30,8 @@ typedef struct drawn_scene {
   uint64_t *plane_marks;
 } drawn_scene;
 
-/* Makes an empty drawn scene, which hl_drawn_scene_make() fills; owned by the caller
- * (hl_drawn_scene_destroy); null if memory is short. */
+/* Makes an empty drawn scene, which hl_drawn_scene_make() fills. The caller owns it (hl_drawn_scene_destroy).
+ * Returns null if memory is short. */
 drawn_scene *hl_drawn_scene_create(hl_context *context);
 void hl_drawn_scene_destroy(hl_context *context, drawn_scene *drawn); /* `drawn` may be null */
 

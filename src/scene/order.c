@@ -1,5 +1,5 @@
-/* scene/order.c - see order.h. Each light, volume or mesh has a key, which contains its settings. Keys are
- * compared byte by byte. */
+/* scene/order.c - finds the order in which frames use lights, volumes and meshes (order.h). Each of them has
+ * a key, which contains its settings. Keys are compared byte by byte. */
 #include "scene/order.h"
 
 #include <string.h>
@@ -23,9 +23,9 @@ static void add_pixels(hl_key *key, const float *pixels, int width, int height) 
     hl_key_add_whole(key, (int64_t)hl_key_mark(pixels, 3 * (size_t)width * (size_t)height * sizeof *pixels));
 }
 
-/* Writes the key by which a light is ordered. The key begins with the light's type and place, so that the
- * order stays while colours and intensities change. Among lights of one type, lights that shine from above
- * come first, because sheets suit the first light best, and the main light of a scene mostly stands above. */
+/* Writes the key by which a light is ordered. The key begins with the light's type and place. So the order
+ * does not change when colours and intensities change. Among lights of one type, lights that shine from above
+ * come first: sheets suit the first light best, and the main light of a scene mostly stands above. */
 static void write_light(const void *data, hl_key *key) {
   const hl_light *light = data;
   hl_key_add_whole(key, light->type);
@@ -77,7 +77,7 @@ static void add_mask(hl_key *key, const hl_mask *mask) {
 }
 
 /* Writes the key by which a volume is ordered. The key begins with the volume's place and voxels, so that the
- * order stays while the volume's look is changed. */
+ * order does not change when the volume's look changes. */
 static void write_volume(const void *data, hl_key *key) {
   const hl_scene_volume *volume = data;
   affine3 place = hl_scene_volume_index_to_world(volume);
@@ -102,8 +102,8 @@ static int compare_bytes(const void *a, const void *b, size_t count) {
 }
 
 /* Compares the voxels of volumes with equal size and storage. Voxels that are not in memory count as equal,
- * because their histograms are equal here. So do voxels of sparse pages if there is no memory for two rows.
- */
+ * because their histograms have been found equal before. Voxels of sparse pages count as equal, too, if there
+ * is no memory for two rows. */
 static int compare_voxels(const hl_volume *a, const hl_volume *b) {
   if (a == b || a == NULL || b == NULL || !hl_volume_is_in_memory(a) || !hl_volume_is_in_memory(b)) return 0;
   const size_t row = a->dimension[0] * hl_storage_bytes(a->storage);
@@ -147,7 +147,8 @@ typedef struct sort_kind {
   const void *items;
   size_t count, size;
   hl_key_write *write;
-  /* compares things whose keys are equal; null: the keys contain everything that matters */
+  /* a function that compares two objects whose keys are equal; null: the keys contain everything that
+   * matters */
   int (*compare)(const void *a, const void *b);
 } sort_kind;
 
@@ -161,7 +162,8 @@ static int compare(const sort_kind *kind, const hl_key *keys, int a, int b) {
   return kind->compare(items + (size_t)a * kind->size, items + (size_t)b * kind->size);
 }
 
-/* Sorts the first `kind->count` numbers of an order by the keys of the things that they name. */
+/* Sorts the first `kind->count` numbers of an order by the keys of the objects to which the numbers
+ * belong. */
 static hl_status sort(hl_context *context, const sort_kind *kind, int *order, hl_error *error) {
   if (kind->count < 2) return HL_OK;
   hl_key *keys = hl_allocate_zeroed(context, kind->count, sizeof *keys);

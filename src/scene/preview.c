@@ -1,6 +1,6 @@
-/* scene/preview.c - see halflight/preview.h: a scene's volumes at coarser resolutions, and which of them suit
- * its sheets. Copies for a use that comes up later, as labels or as values, are made when a scene needs them.
- */
+/* scene/preview.c - makes copies of a scene's volumes at coarser resolutions, and chooses the copies that
+ * suit the scene's sheets (halflight/preview.h). If a scene later uses a volume in another way, as labels or
+ * as values, copies for this use are made when the scene needs them. */
 #include <halflight/preview.h>
 #include <math.h>
 #include <pthread.h>
@@ -25,8 +25,8 @@ typedef struct levels {
   size_t count;
 } levels;
 
-/* Two numbers of which the product is the number of lists of copies that a scene's volume may have. MAPS: the
- * volume and its mask. KINDS: each may be used as values and as labels. */
+/* Two numbers whose product is the greatest number of lists of copies for a scene's volume. MAPS: there are
+ * lists for the volume and for its mask. KINDS: each of the two may be used as values and as labels. */
 enum { MAPS = 2, KINDS = 2 };
 
 struct hl_preview {
@@ -79,8 +79,8 @@ static bool is_known(const hl_preview *preview, const hl_volume *volume) {
          levels_of(preview, volume, HL_COARSER_LABELS) != NULL;
 }
 
-/* Makes the copies of a volume for a use, if it can have copies and has none yet. Where memory is short, the
- * copies that were made are kept, and no others are tried again. */
+/* Makes the copies of a volume for a use, if it can have copies and has none yet. If memory is short, the
+ * copies that were made are kept, and no further copies are tried later. */
 static hl_status add_levels(hl_preview *preview, hl_volume *volume, hl_coarser_kind kind, hl_error *error) {
   if (volume == NULL || levels_of(preview, volume, kind) != NULL) return HL_OK;
   levels *l = &preview->volumes[preview->count];
@@ -129,7 +129,8 @@ hl_status hl_preview_create(hl_context *context, const hl_scene *scene, hl_previ
   return status;
 }
 
-/* The smallest voxel edge, in the scene's world, of a map that is placed as the scene's volume is. */
+/* The shortest edge, in the scene's world, of a voxel of a map (a volume or a mask) that is placed like the
+ * scene's volume. */
 static double edge_of(const hl_scene_volume *volume, hl_volume *map) {
   hl_scene_volume placed = *volume;
   hl_scene_description alone;

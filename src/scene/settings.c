@@ -1,4 +1,4 @@
-/* scene/settings.c - sets defaults and checks values by the rows of the tables of settings. */
+/* scene/settings.c - sets default values, and checks values, by the rows of the tables of settings. */
 #include "scene/settings.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* scene/settings.h - defaults and checks by the rows of the tables of settings. */
+/* scene/settings.h - sets default values, and checks values, by the rows of the tables of settings. */
 #ifndef HL_SCENE_SETTINGS_H
 #define HL_SCENE_SETTINGS_H
 
@@ -9,18 +9,18 @@
 #include "core/error.h"
 #include "core/key.h"
 
-/* The field that a row of a table of settings describes, in an object. */
+/* Returns the address of the field, in an object, that a row of a table of settings describes. */
 void *hl_setting_field(const hl_setting *setting, void *object);
 const void *hl_setting_field_const(const hl_setting *setting, const void *object);
 
 /* The value of a setting's field whose type is FLAG, WHOLE or CHOICE. */
 int hl_setting_whole(const hl_setting *setting, const void *object);
 
-/* Whether objects of a type (of lights or cameras) have the setting of a row. type: 0 for kinds of objects
- * without types. */
+/* Returns whether objects of a given type (lights or cameras) have the setting of a row. type: 0 for kinds of
+ * objects without types. */
 bool hl_setting_is_for(const hl_setting *setting, int type);
 
-/* Whether the field of a setting has the setting's default. */
+/* Returns whether the field of a setting has its default value. */
 bool hl_setting_is_standard(const hl_setting *setting, const void *object);
 
 /* Sets the fields of all settings of an object to their defaults. */

@@ -12,7 +12,7 @@
 #include "scene/settings.h"
 #include "scene/soft_methods.h"
 
-/* A row of the tables takes a few lines. */
+/* The rows of the tables are laid out by hand, in a few lines each. */
 /* clang-format off */
 
 static const hl_setting_choice camera_types[] = {
@@ -65,7 +65,7 @@ static const hl_setting_choice automatic_resolution[] = {{"auto", 0}, {NULL, 0}}
 
 #define ONE(type) (1u << (type))
 #define SHINING   (ONE(HL_SKY_UNIFORM) | ONE(HL_SKY_GRADIENT) | ONE(HL_SKY_IMAGE))
-/* Bits for the types of light that have a setting (light_kinds.h). */
+/* Sets of types of light, as bits: the types that have a setting (light_kinds.h). */
 #define ONE_IF(with, value, name, settings) | ((settings) & (with) ? ONE(value) : 0)
 #define LIGHTS_WITH(setting)                (0u HL_LIGHT_KINDS(ONE_IF, setting))
 

@@ -11,7 +11,7 @@
 
 /* Bounds the distance at which surfaces count as close. A buffer is late with surfaces by at most CLOSE times
  * the sum of the edge of its pixels and the distance of sheets. The edge of its pixels is at most three
- * quarters of a voxel's. The factor of two is for slanted rays. */
+ * quarters of a voxel's edge. The factor of two allows for slanted rays. */
 double hl_contact_distance(const frame *frame) {
   return 2 * CLOSE * (0.75 * frame->content.voxel + frame->spacing);
 }
@@ -37,7 +37,7 @@ typedef struct contact_ray {
   const surfaces *all;
   const surface_mesh *mesh; /* the sample's mesh */
   uint32_t primitive;       /* the sample's primitive */
-  vec3 point, normal;       /* the sample's place, and the primitive's normal towards the eye */
+  vec3 point, normal;       /* the sample's position, and the normal of its primitive on the eye's side */
   vec3 plane;               /* a point of the primitive's plane */
   vec3 smooth;              /* the sample's normal */
   double close; /* a surface counts as close if the distance of its plane from the sample is less than this;
@@ -118,7 +118,8 @@ static bool may_find(const sweep *sweep, const contact_light *light, const conta
     double facing = vec3_dot(way, rays[i].smooth), pixel = pixel_at(light, rays[i].point);
     /* Whether the sample's normal and its triangle disagree: one faces the light, and the other does not. */
     if (vec3_dot(way, rays[i].normal) * facing <= 0) continue;
-    if (facing < 0 && sweep->layers.pass_count == 0) continue; /* the sample faces away, and no layer asks */
+    /* The sample faces away from the light, and no layer needs the light there. */
+    if (facing < 0 && sweep->layers.pass_count == 0) continue;
     least = fmin(least, RAY_START * pixel);
     balls[balls_count++] = (hull_ball){rays[i].point, 0};
     balls[balls_count++] = ends_of_rays(light, rays[i].point, pixel + sweep->geometry->sheets.spacing);
@@ -188,7 +189,7 @@ static double hollow_bend(const surfaces *all, const surface_batch *batch, int s
 typedef struct hollow {
   vec3 point, normal;
   double bend; /* hollow_bend() */
-  double late; /* how late a buffer takes surfaces into account, as a length; frame units */
+  double late; /* the length by which a buffer is late with surfaces; frame units */
 } hollow;
 
 static vec3 vector_of(const float v[3][SURFACE_SAMPLES], int i) { return (vec3){v[0][i], v[1][i], v[2][i]}; }
@@ -320,10 +321,10 @@ static uint32_t samples_within(const sweep *sweep, const surface_batch *batch) {
 typedef struct contact_search {
   const sweep *sweep;
   float (*passing)[SURFACE_SAMPLES]; /* [lights][channels] */
-  bool found;                        /* some surface absorbs light, and `passing` is set */
+  bool found;                        /* whether some surface absorbs light, so that `passing` is set */
 } contact_search;
 
-/* Lowers the fraction of one light that passes to a sample. parts: the factors for each channel. */
+/* Lowers the fraction of one light that reaches a sample. parts: the factor for each channel. */
 static void set_passing(contact_search *search, int light, int sample, const double parts[HL_CHANNELS]) {
   const int channels = search->sweep->frame_plan->channels;
   for (int row = 0; row < search->sweep->geometry->light_count * channels && !search->found; row++)

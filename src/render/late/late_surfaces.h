@@ -29,7 +29,7 @@ double hl_surface_delay(const light_shadow *shadow);
  * bound that can be found without buffers and sheets. */
 double hl_contact_distance(const frame *frame);
 
-/* Finds the points of a light to which the rays of this room are cast. */
+/* Finds the points of a light to which the rays of the folder late are cast. */
 void hl_contact_points(const light_source *source, light_points *points);
 
 /* Finds the fraction of each light that passes the surfaces close before the batch's samples, whose positions

@@ -13,14 +13,14 @@ double hl_surface_delay(const light_shadow *shadow) {
   return shadow->plan.cubic ? CUBIC_DELAY : shadow->method->surface_delay;
 }
 
-/* A sample of a volume, close to a surface that the eye sees in the same pixel. */
+/* A sample of a volume that is close to a surface which the eye sees in the same pixel. */
 typedef struct near_sample {
   const fragment *fragment;
   vec3 point, met;  /* point: the position of the sample; met: the position where the eye's ray meets the
                      * surface */
   double low, high; /* heights at which the pixel's piece of the slab begins and ends; the sample is its
                      * middle */
-  bool cut;         /* the piece ends at the surface */
+  bool cut;         /* whether the piece ends at the surface */
 } near_sample;
 
 /* Sets the heights at which a pixel's piece of the slab begins and ends. Returns false if the piece is
@@ -56,8 +56,8 @@ static double part_missed(const sweep *sweep, int light, const near_sample *samp
   return height + delay > (slab - 1 - LEAST_DELAY) * sheets->spacing ? fmin(part, 1) : 0;
 }
 
-/* Lowers a sample's light by what a fragment absorbs. part: the fraction of the sample's piece of the slab
- * that lies behind the fragment. */
+/* Lowers a sample's light by the light that a fragment absorbs. part: the fraction of the sample's piece of
+ * the slab that lies behind the fragment. */
 static void take(const sweep *sweep, const near_sample *sample, int light, double part,
                  float (*passing)[TILE_PIXELS]) {
   const fragment *f = sample->fragment;
@@ -67,7 +67,7 @@ static void take(const sweep *sweep, const near_sample *sample, int light, doubl
     passing[light * sweep->frame_plan->channels + c][at] *= 1 - f->opacity * (float)(color[c] * part);
 }
 
-/* Whether some volume may show something in a pixel's slab. */
+/* Returns whether some volume may show something in a pixel's slab. */
 static bool shows_matter(const tile_slab *slab, int pixel) {
   for (int p = 0; p < slab->patch_count; p++) {
     const shade_patch *patch = &slab->patches[p];

@@ -1,8 +1,8 @@
 /* scene/check/check.c - checks whether a description of a scene is possible.
  *
  * In: a description that was not checked yet. Out: HL_OK, or the first fault as one line: the JSON pointer of
- * the field, the bad value, and how to mend it. hl_scene_create() checks before it copies anything, so that
- * renderers never get a NaN, a zero direction or an unknown enumerator. */
+ * the field, the bad value, and how to mend it. hl_scene_create() checks a description before it copies
+ * anything. So renderers never get a NaN, a zero direction or an unknown enumerator. */
 #include "scene/check/check.h"
 
 #include <math.h>

@@ -1,4 +1,5 @@
-/* scene/check/checker.c - the checks of single values, whose errors begin with a JSON pointer. */
+/* scene/check/checker.c - checks single values of a description. Errors begin with the JSON pointer of the
+ * value. */
 #include "scene/check/checker.h"
 
 #include <math.h>

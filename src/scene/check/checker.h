@@ -1,5 +1,5 @@
-/* scene/check/checker.h - the checks of single values of a description; their errors begin with a JSON
- * pointer. */
+/* scene/check/checker.h - checks single values of a description. Errors begin with the JSON pointer of the
+ * value. */
 #ifndef HL_SCENE_CHECK_CHECKER_H
 #define HL_SCENE_CHECK_CHECKER_H
 

@@ -154,8 +154,8 @@ static double farthest_corner(const hl_scene_volume *volume, affine3 placement) 
   return farthest;
 }
 
-/* Checks the placement as a whole, because factors that are possible one by one may have a product that is
- * zero or infinite. */
+/* checks the placement as a whole, because the product of factors may be zero or infinite although each
+ * factor is possible */
 static hl_status check_placement(const hl_checker *check, const hl_scene_volume *volume) {
   affine3 placement = hl_scene_volume_index_to_world(volume), inverse;
   for (int a = 0; a < 3; a++) {

@@ -37,7 +37,8 @@ static double gaussian_along(const hl_function_box *box, int axis, double from, 
   return (gaussian_up_to(middle, deviation, end) - gaussian_up_to(middle, deviation, begin)) / (to - from);
 }
 
-/* The mean weight of a box along one axis, over the part from `from` to `to`. */
+/* The mean weight of a box along one axis, over the part from `from` to `to`. The whole weight of the box is
+ * the product of the weights along both axes. */
 static double weight_along(const hl_function_box *box, int axis, double from, double to) {
   if (box->sigma > 0) return gaussian_along(box, axis, from, to);
   double low = box->low[axis], high = box->high[axis], edge = fmin(box->edge[axis], (high - low) / 2);
@@ -177,8 +178,8 @@ bool hl_plane_bounds(const hl_function_plane *plane, plane_box *bounds) {
 
 enum { OUTLINE_COLUMNS = 257 };
 
-/* A column of the outline: the greatest opacity of a shape in it; the sum over shapes of opacity, and of
- * colour times opacity. */
+/* A column of the outline, for one value: the greatest opacity of a shape in the column, the sum of all
+ * shapes' opacities, and the sum of colour times opacity. */
 typedef struct column {
   double greatest, opacity, color[3];
 } column;

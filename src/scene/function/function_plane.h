@@ -1,4 +1,4 @@
-/* scene/function/function_plane.h - evaluating transfer functions of two numbers. */
+/* scene/function/function_plane.h - evaluates transfer functions of two numbers. */
 #ifndef HL_SCENE_FUNCTION_FUNCTION_PLANE_H
 #define HL_SCENE_FUNCTION_FUNCTION_PLANE_H
 

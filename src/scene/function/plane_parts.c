@@ -1,5 +1,5 @@
-/* scene/function/plane_parts.c - the description of a transfer function of two numbers: checked, copied and
- * marked. */
+/* scene/function/plane_parts.c - checks and copies the description of a transfer function of two numbers, and
+ * finds the mark that identifies its content. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

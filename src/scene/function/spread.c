@@ -1,9 +1,9 @@
 /* scene/function/spread.c - moves a transfer function's points to another range of values, evenly or by
  * logarithms.
  *
- * With t from 0 to 1 over the old range, a point moves to low + t (high - low), or to low (high / low)^t. The
- * latter makes curves of the straight lines between points. So each line is then divided at the multiples of
- * 1/PIECES of t. */
+ * Let t go from 0 to 1 over the old range. Evenly, a point moves to low + t (high - low); by logarithms, it
+ * moves to low (high / low)^t. Logarithms make curves of the straight lines between points. So for logarithms
+ * each line is divided at the multiples of 1/PIECES of t. */
 #include <math.h>
 #include <string.h>
 
@@ -30,7 +30,7 @@ hl_status hl_transfer_function_visible_range(const hl_volume *volume, const hl_t
   size_t count = function->opacity_count, first = 0, last = count;
   while (first < count && points[first].opacity <= 0) first++;
   while (last > first && points[last - 1].opacity <= 0) last--;
-  if (first == last) return HL_OK; /* nothing is visible in an empty range */
+  if (first == last) return HL_OK; /* in an empty range nothing is visible */
   double low = first > 0 ? points[first - 1].value : range[0];
   double high = last < count ? points[last].value : range[1];
   if (low > range[0] && low < range[1]) range[0] = low;
@@ -56,8 +56,8 @@ typedef struct rows {
   size_t made;
 } rows;
 
-/* Appends the row a + f (b - a), which lies between the rows a and b. In place of a value, the new row begins
- * with t, a place in the old range. */
+/* Appends the row a + f (b - a), which lies between the rows a and b. The new row begins with t, a position
+ * in the old range, in place of a value. */
 static void add_row(rows *r, const double *a, const double *b, double f, double t) {
   double *row = r->to + r->made++ * r->width;
   row[0] = t;

@@ -67,8 +67,8 @@ int hl_transfer_function_visible(const hl_transfer_function *function, double lo
   if (!(low <= high)) return 0;
   if (hl_transfer_function_opacity(function, low) > 0 || hl_transfer_function_opacity(function, high) > 0)
     return 1;
-  /* Both ends of the range are transparent, and the function is linear between points. So the opacity can be
-   * above 0 only at a point between the ends; at a step, both points count. */
+  /* both ends of the range are transparent, and the function is linear between points. So only points between
+   * the ends need to be tested; both points of a step are tested */
   for (size_t p = count_not_above(points, function->opacity_count, sizeof *points, low);
        p < function->opacity_count && points[p].value <= high; p++)
     if (points[p].opacity > 0) return 1;

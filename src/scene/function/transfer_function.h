@@ -1,4 +1,4 @@
-/* scene/function/transfer_function.h - evaluating transfer functions. */
+/* scene/function/transfer_function.h - evaluates transfer functions. */
 #ifndef HL_SCENE_FUNCTION_TRANSFER_FUNCTION_H
 #define HL_SCENE_FUNCTION_TRANSFER_FUNCTION_H
 
@@ -12,8 +12,8 @@
 /* Two functions that give the opacity (per unit_distance) or the linear colour of a data value. Both are
  * piecewise linear between points, and constant beyond the ends. */
 double hl_transfer_function_opacity(const hl_transfer_function *function, double value);
-/* The factor by which gradient opacity multiplies extinction where the gradient has a given length. It is 1
- * if the function has no gradient opacity. */
+/* The factor by which gradient opacity multiplies the extinction of matter whose gradient has a given length.
+ * It is 1 if the function has no gradient opacity. */
 double hl_transfer_function_gradient_opacity(const hl_transfer_function *function, double gradient);
 void hl_transfer_function_color(const hl_transfer_function *function, double value, double color[3]);
 
@@ -25,10 +25,10 @@ int hl_transfer_function_visible(const hl_transfer_function *function, double lo
 bool hl_transfer_function_transparent(const hl_transfer_function *function, double low, double high,
                                       double target, double *nearest);
 
-/* Finds the range of values over which a transfer function grades what it shows. The key "range" of a scene
+/* Finds the range of values over which the look of a transfer function changes. The key "range" of a scene
  * moves this range. In pictures with light, it is the visible range. In a maximum projection, where opacity
- * only says whether a value counts, it goes from the value of the first colour to the value of the last one;
- * if these are the same, it is the visible range. */
+ * only says whether a value counts, it goes from the value of the first colour to the value of the last
+ * colour; if these two values are the same, it is the visible range. */
 hl_status hl_transfer_function_graded_range(const hl_volume *volume, const hl_transfer_function *function,
                                             bool projected, double range[2], hl_error *error);
 

@@ -1,5 +1,5 @@
-/* scene/geometry/camera.c - the camera's axes, views, turning a camera to a view, joining cameras, and
- * directions of lights relative to a camera. */
+/* scene/geometry/camera.c - computes a camera's axes and views, turns a camera to a view, joins cameras, and
+ * finds directions of lights relative to a camera. */
 #include "scene/geometry/camera.h"
 
 #include <string.h>
@@ -7,12 +7,12 @@
 #include "core/door.h"
 #include "volume/volume.h"
 
-/* In degrees. At a steeper elevation, the direction that is up in a view is too close to the line of sight to
- * be the camera's up. */
+/* In degrees. If a view's elevation is steeper than this angle, the direction that is up in the view is too
+ * close to the line of sight to serve as the camera's up. */
 #define STEEP 89.5
 #define LEVEL 1e-6 /* a horizon counts as level if the sine of its angle is at most this */
-/* Angles that follow from a camera's rounded coordinates are rounded to multiples of a degree divided by this
- * number. */
+/* angles that follow from a camera's rounded coordinates are rounded to multiples of one degree divided by
+ * this number */
 #define ANGLE_STEPS 1e9
 /* The greatest cosine of the angle between `up` and an axis that may be the front of a view. */
 #define OBLIQUE 0.9
@@ -94,7 +94,7 @@ void hl_view_about(const hl_scene_description *description, vec3 given_up, hl_vi
                     .elevation_deg = HL_VIEW_ELEVATION};
 }
 
-/* The direction to the right for an eye that is in front of the volumes (azimuth 0). */
+/* The direction to the right, as seen by an eye in front of the volumes (azimuth 0). */
 static vec3 right_of_front(const hl_view *view) {
   return vec3_cross(vec3_of(view->up), vec3_of(view->front));
 }
@@ -143,9 +143,9 @@ hl_status hl_camera_turn(const hl_view *view, hl_camera *camera) {
   return HL_OK;
 }
 
-/* The direction that is up for a camera. It is the camera's up vector, unless this vector is perpendicular to
- * the line of sight and the picture is level for an axis of the world. Then the direction is this axis: the
- * first one of z, y, x and their opposites. */
+/* Finds the direction that is up for a camera. Usually it is the camera's up vector. If this vector is
+ * perpendicular to the line of sight and the picture is level for an axis of the world, it is this axis
+ * instead: the first such axis of z, y, x and their opposites. */
 static vec3 upright_of(const hl_camera *camera) {
   static const vec3 axes[] = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0, 0, -1}, {0, -1, 0}, {-1, 0, 0}};
   vec3 right, up, forward, given = vec3_normalise(vec3_of(camera->up));
@@ -176,7 +176,7 @@ hl_status hl_view_of_camera(const hl_scene_description *description, hl_view *vi
 
 /* ---- joining cameras ---- */
 
-/* The two borders of pictures along one axis of the picture, at depth 0 of the world. */
+/* The two borders of a picture along one of the picture's axes, at the depth 0 of the world. */
 typedef struct borders {
   double low, high;
 } borders;
@@ -188,9 +188,10 @@ static void widen(borders *all, borders one) {
 
 static bool are_equal(borders a, borders b) { return a.low == b.low && a.high == b.high; }
 
-/* Finds the two borders of a picture along one axis. Derived: at a depth z a picture reaches t (z - f) to
- * both sides of the eye, whose depth is f, where t is the tangent of half the angle of view. At depth 0 that
- * is half = -t f, which may be negative. In parallel projection half is the same at all depths. */
+/* Finds the two borders of a picture along one axis. Derived: let f be the depth of the eye, and t the
+ * tangent of half the angle of view. At a depth z the picture reaches t (z - f) to both sides of the eye. At
+ * the depth 0 this is half = -t f, which may be negative. In parallel projection half is the same at all
+ * depths. */
 static borders borders_of(double eye, double half) { return (borders){eye - half, eye + half}; }
 
 static bool look_alike(const hl_camera *a, const hl_camera *b) {

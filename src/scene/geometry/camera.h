@@ -1,4 +1,4 @@
-/* scene/geometry/camera.h - the camera's axes, and directions of view (hl_view). */
+/* scene/geometry/camera.h - finds a camera's axes, and the axes and cameras of views (hl_view). */
 #ifndef HL_SCENE_GEOMETRY_CAMERA_H
 #define HL_SCENE_GEOMETRY_CAMERA_H
 
@@ -25,14 +25,14 @@ bool hl_view_is_possible(const hl_view *view);
 /* Places a camera at a distance from the target, in the direction from which a view looks. */
 void hl_camera_place(const hl_view *view, vec3 target, double distance, hl_camera *camera);
 
-/* The three-quarter view in which a direction (of any length) is up. If a volume tells the anatomy, the front
- * of the view is the patient's front. */
+/* Makes the three-quarter view in which a direction (of any length) is up. If a volume tells the anatomy, the
+ * front of the view is the patient's front. */
 void hl_view_about(const hl_scene_description *description, vec3 up, hl_view *view);
 
 /* The anatomical space of the first volume that tells its space and is not rotated in the scene. */
 hl_space hl_scene_space(const hl_scene_description *description);
-/* Whether the space of hl_scene_space() really tells the anatomy, as in files of DICOM and NIfTI. Bodies then
- * stand upright along z. */
+/* Returns whether the space of hl_scene_space() surely tells the anatomy, as in files of DICOM and NIfTI.
+ * Bodies then stand upright along z. */
 bool hl_scene_is_anatomical(const hl_scene_description *description);
 
 #endif

@@ -10,8 +10,8 @@ static affine3 plane_space(const hl_cut *cut) {
   return (affine3){.linear = {.row = {normal}}, .offset = {-vec3_dot(normal, vec3_of(cut->point)), 0, 0}};
 }
 
-/* The map from a space to another one, in which the box with a given middle and half size goes from -1 to 1
- * along each axis. */
+/* Makes the map from a space to another space, in which the box with the given middle and half size goes from
+ * -1 to 1 along each axis. */
 static affine3 box_space(vec3 middle, vec3 half) {
   vec3 s = {1 / half.x, 1 / half.y, 1 / half.z};
   return (affine3){.linear = {.row = {{s.x, 0, 0}, {0, s.y, 0}, {0, 0, s.z}}},
@@ -74,7 +74,7 @@ bool hl_cuts_leave(const cut_shape *cuts, size_t count, vec3 point) {
   return true;
 }
 
-/* A region that is tested against a shape, as a box in the shape's own space: its middle, and half of its
+/* A region, as a box in a shape's own space, that is tested against the shape: its middle, and half of its
  * length along each axis. */
 typedef struct extent {
   double middle[3], half[3];

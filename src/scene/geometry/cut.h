@@ -1,4 +1,5 @@
-/* scene/geometry/cut.h - the shapes that cut a volume, in its index space, and meshes, in their world. */
+/* scene/geometry/cut.h - handles the shapes that cut a volume, in the volume's index space, or a mesh, in the
+ * mesh's world. */
 #ifndef HL_SCENE_GEOMETRY_CUT_H
 #define HL_SCENE_GEOMETRY_CUT_H
 
@@ -51,11 +52,11 @@ void hl_cuts_key_add(hl_key *key, const cut_shape *cuts, size_t count);
 /* Whether two shapes are the same. */
 bool hl_cut_same(const cut_shape *a, const cut_shape *b);
 
-/* Whether all cuts leave a point of the space on which the shapes' maps act. */
+/* Returns whether no cut removes a point of the space on which the shapes' maps act. */
 bool hl_cuts_leave(const cut_shape *cuts, size_t count, vec3 point);
 
-/* Whether a box along the axes of the space on which the shapes' maps act is surely cut away, because one cut
- * removes all of it. */
+/* Returns whether a box along the axes of the space on which the shapes' maps act is surely removed, because
+ * one single cut removes all of it. */
 bool hl_cuts_remove_box(const cut_shape *cuts, size_t count, const double low[3], const double high[3]);
 
 /* Whether a box along the axes of the space on which the shapes' maps act is surely left, because no cut

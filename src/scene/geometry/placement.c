@@ -1,5 +1,5 @@
-/* scene/geometry/placement.c - where a scene's volumes lie in the world, which parts of them remain after
- * clipping, and the empty value around them. */
+/* scene/geometry/placement.c - finds where a scene's volumes lie in the world, which parts of them remain
+ * after clipping, and the value of the empty space around them. */
 #include "scene/geometry/placement.h"
 
 #include <string.h>
@@ -82,8 +82,8 @@ void hl_scene_volume_box(const hl_scene_volume *volume, double low[3], double hi
   }
 }
 
-/* A value that represents a bin of the histogram, and that voxels can have: a whole number for integers; in
- * the outermost bins, the extreme value. */
+/* Finds a value that stands for a bin of the histogram, and that voxels can have. For integers it is a whole
+ * number. In the outermost bins it is the least or the greatest value. */
 static double typical_value(const hl_volume *volume, int bin) {
   double width = (volume->maximum - volume->minimum) / HL_HISTOGRAM_BINS;
   if (bin == 0) return volume->minimum;
@@ -241,7 +241,7 @@ hl_status hl_lights_place(hl_context *context, const hl_scene_description *from,
   }
   for (int i = 0; i < suns->count; i++)
     *(hl_light *)&to->lights[to->light_count++] = hl_sun_light(&from->sky, &suns->suns[i]);
-  to->sky.suns = suns->count > 0; /* if the sky has suns, their light was taken out of its image */
+  to->sky.suns = suns->count > 0; /* if the sky has suns, the image without the suns' light is used */
   if (suns->count > 0) to->sky.pixels = suns->rest;
   return HL_OK;
 }

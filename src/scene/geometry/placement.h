@@ -30,8 +30,8 @@ affine3 hl_scene_mesh_to_world(const hl_scene_mesh *mesh);
  * bounds of the clip box in index space are used. */
 void hl_scene_volume_box(const hl_scene_volume *volume, double low[3], double high[3]);
 
-/* The shortest edge of all voxels. In a scene without volumes it is a 200th of the longest side of the box
- * around all meshes. */
+/* The shortest edge of any voxel of the scene's volumes. In a scene without volumes it is a 200th of the
+ * longest side of the box around all meshes. */
 double hl_scene_smallest_edge(const hl_scene_description *scene);
 
 /* Finds the box, in the world, around all volumes of a scene, cut down to their clip boxes. In a scene
@@ -46,15 +46,15 @@ typedef struct hl_frame_space {
   double unit;
 } hl_frame_space;
 
-/* The distance, in frame units, below which a light with falloff gets no brighter. */
+/* A light with falloff gets no brighter at distances below this one; frame units. */
 #define HL_LEAST_LIGHT_DISTANCE 1e-3
 
 /* Finds the frame space of a scene. The description must have at least one volume or mesh. */
 hl_frame_space hl_scene_frame_space(const hl_scene_description *scene);
 
-/* The empty value: the value of the volume's surroundings, and of voxels that are not finite. It is the most
- * frequent transparent value. If no value is transparent, it is a value below the volume's range, which is
- * then treated as transparent. */
+/* Finds the empty value of a volume: the value of the volume's surroundings, and of voxels that are not
+ * finite. It is the most frequent transparent value of the voxels. If no value is transparent, it is a value
+ * below the volume's range, which is then treated as transparent. */
 double hl_scene_volume_empty_value(const hl_scene_volume *volume);
 
 /* The direction, in the world, in which the light of a directional or spot light travels. */

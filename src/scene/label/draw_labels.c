@@ -30,13 +30,14 @@ hl_status hl_labels_function(hl_context *context, const hl_scene_volume *volume,
     hl_transfer_function_release(context, function);
     return hl_fail_memory(error, OPACITY_A_LABEL * labels * sizeof *opacity, "a transfer function");
   }
-  /* The value at which the points of the previous label end, and the opacity there. */
+  /* The value at which the points of the label before end, and the opacity at this value. */
   double end = -INFINITY, last = 0;
   if (labels > 0) opacity[opacity_count++] = (hl_opacity_point){(double)volume->labels[0].value - 1, 0};
   for (size_t n = 0; n < labels; n++) {
     const hl_label *label = &volume->labels[n];
     const double value = (double)label->value;
-    /* a voxel is a float, which rounds large labels: it differs from its label by less than this */
+    /* a label is a float in the voxels, which rounds large labels. A voxel's float differs from its label by
+     * less than this */
     const double around = fmax(0.5, fabs(value) * 0x1p-24);
     double begin = fmax(value - around, end), shown = label->visible ? label->opacity : 0;
     if (begin > end && last > 0) opacity[opacity_count++] = (hl_opacity_point){end, last};
@@ -63,8 +64,8 @@ hl_status hl_labels_function(hl_context *context, const hl_scene_volume *volume,
 enum { POINTS = 4 };
 
 /* The matter of a solid label begins at the first of these occupancies, and is whole at the second, a sixth
- * of a voxel deeper. If a ray just touches a ball of a few voxels at the occupancy 1/2, it is half covered,
- * so that outlines are those of the label. */
+ * of a voxel deeper. If a ray just touches a ball of a few voxels at the occupancy 1/2, its pixel is half
+ * covered. So the outlines in the picture are the outlines of the label. */
 static const double SOLID_FROM = 0.48, SOLID_TO = 0.51, SOLID_OPACITY = 0.9999;
 /* A translucent label is a skin between these occupancies, inside the label's surface. A label that is only
  * one voxel thick has a skin on both sides. */
@@ -76,9 +77,9 @@ typedef struct drawn_points {
   hl_color_point color;
 } drawn_points;
 
-/* Gives a volume of occupancy its transfer function. A skin absorbs the fraction `opacity` of light that
- * crosses it at a right angle: a homogeneous layer whose opacity is o per unit distance u has the opacity o
- * if it is u thick. */
+/* Gives a volume of occupancy its transfer function. A skin absorbs the fraction `opacity` of the light that
+ * crosses it at a right angle. Derived: a homogeneous layer whose opacity is o per unit distance u has the
+ * opacity o if it is u thick. */
 static void set_function(const hl_label *label, hl_scene_volume *drawn, drawn_points *points) {
   mat3 placed = hl_scene_volume_index_to_world(drawn).linear;
   hl_transfer_function *function = &drawn->transfer_function;

@@ -8,9 +8,9 @@
 #include "core/error.h"
 #include "volume/volume.h"
 
-/* The kernel for a volume, in a scene whose kernel is `of_scene`. The voxels of an occupancy, and the bricks
- * of a field, are coefficients of the B-spline already. So the interpolating kernel, which would make
- * coefficients of them, is replaced by the B-spline. */
+/* Chooses the kernel for a volume. of_scene: the scene's kernel. The voxels of an occupancy, and the bricks
+ * of a field, are coefficients of the B-spline already. The interpolating kernel would make coefficients of
+ * them once more, so the B-spline replaces it. */
 static inline hl_kernel hl_kernel_of_volume(const hl_scene_volume *volume, hl_kernel of_scene) {
   bool has_coefficients = volume->volume->surface_slope > 0 || volume->volume->bricks != NULL;
   return has_coefficients && of_scene == HL_KERNEL_INTERPOLATING ? HL_KERNEL_BSPLINE : of_scene;

@@ -1,5 +1,5 @@
-/* scene/label/label_list.c - the labels of a label map: lists the labels that its voxels have, with the names
- * and colours that its file or a table gives them. */
+/* scene/label/label_list.c - lists the labels that the voxels of a label map have. Their names and colours
+ * come from a table or from the map's file. */
 #include <math.h>
 #include <string.h>
 
@@ -13,7 +13,7 @@
 #include "scene/scene.h"
 #include "volume/store/gathered.h"
 
-/* The labels that were found in a map so far, rising. */
+/* The labels that were found in a map so far, in rising order. */
 typedef struct found_labels {
   int64_t *values; /* owned; [HL_MOST_LABELS]; the numbers of the labels */
   size_t count;

@@ -149,7 +149,7 @@ static bool read_row(const word *words, int count, const columns *at, hl_label *
 static int by_value(const void *a, const void *b) {
   const hl_label *x = a, *y = b;
   if (x->value != y->value) return x->value < y->value ? -1 : 1;
-  /* of two names of one label, the later name stands in the later line */
+  /* if a label has two names, the name in the later line counts */
   return x->name < y->name ? -1 : x->name > y->name;
 }
 
@@ -257,7 +257,8 @@ void hl_label_distinct_color(int64_t value, double linear[3]) {
   double hue = 6 * (double)((uint64_t)value * GOLDEN >> 11) * 0x1p-53;
   double strength = strengths[(value < 0 ? 0 - (uint64_t)value : (uint64_t)value) % 3];
   for (int c = 0; c < 3; c++) {
-    /* the distance of the hue from the opposite of this channel's hue; it is 3 at this channel's own hue */
+    /* the distance of the label's hue from the opposite of this channel's hue; at this channel's own hue it
+     * is 3 */
     double away = fabs(fmod(hue + 6 - 2 * c, 6) - 3);
     double pure = fmin(fmax(away - 1, 0), 1);
     linear[c] = hl_srgb_decode(0.92 * (1 - strength * (1 - pure)));

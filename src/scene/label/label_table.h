@@ -1,5 +1,5 @@
-/* scene/label/label_table.h - names and colours of labels, from a file: FreeSurfer's and Slicer's colour
- * tables, ITK-SNAP's label descriptions, CSV. */
+/* scene/label/label_table.h - reads names and colours of labels from a file: FreeSurfer's and Slicer's colour
+ * tables, ITK-SNAP's label descriptions, or CSV. */
 #ifndef HL_SCENE_LABEL_LABEL_TABLE_H
 #define HL_SCENE_LABEL_LABEL_TABLE_H
 

@@ -2,12 +2,12 @@
  *
  * Each type of light is a table, in a file of its own: the rules for its settings, and its shape as geometry.
  * light_kinds.h lists the types. Checks, the reading and writing of scene files, and renderers use this
- * table, and name no type. (Only the reference names types, because it shares no code with the renderers that
- * it judges.)
+ * table, and name no type. Only the reference names types, because it shares no code with the renderers whose
+ * pictures are compared with its own.
  *
- * `facing` is a unit vector: the direction from the light to the scene's content, or the direction of
- * parallel light. Offsets are relative to the light's centre. For parallel light, points are directions at
- * distance 1, and offsets are relative to the light's direction. */
+ * Arguments named `facing` are unit vectors: the direction from the light to the scene's content, or the
+ * direction of parallel light. Offsets are relative to the light's centre. For parallel light, points are
+ * directions at distance 1, and offsets are relative to the light's direction. */
 #ifndef HL_SCENE_LIGHT_LIGHT_KIND_H
 #define HL_SCENE_LIGHT_LIGHT_KIND_H
 
@@ -25,7 +25,7 @@ struct light_kind {
   /* whether points of the light are taken from a unit square, and edge1 and edge2 are the sides of this
    * square on the light */
   bool parallelogram;
-  double deviations; /* the light's extent is this many times the standard deviation of its points */
+  double deviations; /* the extent of the light divided by the standard deviation of its points */
 
   /* ---- checks; settings are in their ranges already ---- */
   hl_status (*check)(const hl_checker *check,
@@ -46,9 +46,8 @@ struct light_kind {
   vec3 (*point)(const light_shape *shape, vec3 facing, double a, double b);
   /* The plane of the emission image on the light's surface. */
   emission_plane (*plane)(const light_shape *shape, vec3 facing);
-  /* The lengths that the two sides of the unit square on the light seem to have when seen along a unit
-   * vector, in units of length. A length that is not known is infinite. The function is null for parallel
-   * types. */
+  /* Finds the apparent lengths of the unit square's two sides on the light, as seen along a unit vector. A
+   * length that is not known is infinite. The function is null for parallel types. */
   void (*apparent_lengths)(const light_shape *shape, vec3 along, double length[2]);
 };
 

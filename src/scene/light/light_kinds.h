@@ -1,6 +1,6 @@
 /* scene/light/light_kinds.h - the list of the types of light: the enumerator, the name in scene files, and
- * the settings that lights of this type have in addition to those of all lights. The file of a type "rect" is
- * light/rect.c, its table hl_light_kind_rect (light_kind.h). The build reads the names here. */
+ * the settings that only lights of this type have. The file of a type "rect" is light/rect.c, its table
+ * hl_light_kind_rect (light_kind.h). The build reads the names here. */
 #ifndef HL_SCENE_LIGHT_LIGHT_KINDS_H
 #define HL_SCENE_LIGHT_LIGHT_KINDS_H
 

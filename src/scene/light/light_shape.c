@@ -1,5 +1,5 @@
-/* scene/light/light_shape.c - polygons and disks: their points, and the first and second moments of their
- * points. */
+/* scene/light/light_shape.c - finds the points of polygons and disks, and the first and second moments of
+ * these points. */
 #include "scene/light/light_shape.h"
 
 /* the outer product a b' of two vectors, a matrix */
@@ -24,9 +24,10 @@ static double greatest_side(const double (*vertices)[3], size_t count) {
 }
 
 /* Finds the moments of a polygon. The polygon is treated as a fan of triangles around the first vertex, with
- * signed areas, so that parts outside the polygon cancel. Over a triangle a, b, c the mean of x is s / 3, and
- * the mean of x x' is (a a' + b b' + c c' + s s') / 12, s = a + b + c, because the mean of the square of a
- * barycentric coordinate is 1/6, and the mean of the product of two of them is 1/12 (derived). */
+ * signed areas, so that parts outside the polygon cancel. Derived: let a, b, c be the corners of a triangle,
+ * and s = a + b + c. Over the triangle the mean of x is s / 3, and the mean of x x' is (a a' + b b' + c c' +
+ * s s') / 12. The reason is that the mean of the square of a barycentric coordinate is 1/6, and the mean of
+ * the product of two of them is 1/12. */
 polygon_shape hl_polygon_shape(const double (*vertices)[3], size_t count) {
   polygon_shape shape = {.diameter = greatest_side(vertices, count)};
   vec3 first = vec3_of(vertices[0]), twice_area = {0, 0, 0}, sum = {0, 0, 0};
@@ -130,8 +131,8 @@ void hl_upright(vec3 normal, vec3 wanted_up, vec3 *right, vec3 *up) {
   *up = vec3_cross(normal, *right);
 }
 
-/* Finds the image coordinates of a point on a light: solves offset = middle + s right + t up for s and t,
- * also if right and up are not perpendicular (derived, by cross products). */
+/* Finds the image coordinates of a point on a light: solves offset = middle + s right + t up for s and t. The
+ * solution (derived by cross products) also holds if right and up are not perpendicular. */
 void hl_emission_place(const emission_plane *plane, vec3 offset, double *s, double *t) {
   vec3 on_plane = vec3_subtract(offset, plane->middle), normal = vec3_cross(plane->right, plane->up);
   double area = vec3_dot(normal, normal);

@@ -13,8 +13,8 @@ typedef struct light_kind light_kind; /* see light_kind.h */
 typedef struct light_shape {
   const light_kind *kind;
   vec3 centre;       /* the light's centre; not used for parallel lights */
-  vec3 direction;    /* for parallel lights and lights with a cone: the way that the light travels, of any
-                      * length */
+  vec3 direction;    /* for parallel lights and lights with a cone: the direction in which the light travels,
+                      * of any length */
   vec3 normal;       /* for a disk: its unit normal */
   vec3 edge1, edge2; /* for a parallelogram: its two edges, in full length */
   double radius;     /* for a sphere or a disk: its radius; for parallel light: the radius of the disk of
@@ -24,13 +24,13 @@ typedef struct light_shape {
   /* for a polygon: [vertex_count]; its vertices, borrowed from the settings */
   const double (*vertices)[3];
   size_t vertex_count;
-  vec3 image_up;    /* for an image on the light's surface: the direction in which its top lies */
+  vec3 image_up;    /* for an image on the light's surface: the direction of the image's top */
   bool is_wide;     /* whether the light has more than one point, or more than one direction */
   bool has_surface; /* whether the light has a surface that can carry an image */
 } light_shape;
 
 typedef struct polygon_shape {
-  vec3 normal; /* unit normal; zero where the polygon has no area */
+  vec3 normal; /* unit normal; zero if the polygon has no area */
   double area;
   double diameter; /* the greatest side of the box around the vertices */
   vec3 centre;     /* the centre of the polygon's area */

@@ -5,8 +5,8 @@
 
 /* ---- checks ---- */
 
-/* Limits of a polygon's shape, as fractions of its diameter. FLAT: the greatest distance of its vertices from
- * its plane. THIN: its least width. */
+/* Limits of a polygon's shape, as fractions of its diameter. FLAT: the greatest allowed distance of its
+ * vertices from its plane. THIN: the least allowed width. */
 static const double FLAT = 1e-3, THIN = 1e-6;
 
 static hl_status check_outline(const hl_checker *check, const hl_light *light) {
@@ -70,9 +70,9 @@ static flat_polygon flatten(const light_shape *shape) {
   return polygon;
 }
 
-/* The polygon's area left of x: the integral of y dx along the part of the outline left of x (derived:
- * Green's theorem; the cut at x runs along y and adds nothing). The sign is reversed, because the outline
- * runs counter-clockwise about the normal. */
+/* The area of the part of the polygon left of x. Derived by Green's theorem: it is the integral of y dx along
+ * the part of the outline left of x. The cut at x runs along y and adds nothing. The sign is reversed,
+ * because the outline runs counter-clockwise about the normal. */
 static double area_left_of(const flat_polygon *polygon, double x) {
   double area = 0;
   for (size_t i = 0; i < polygon->shape->vertex_count; i++) {

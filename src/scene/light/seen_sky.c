@@ -1,6 +1,6 @@
-/* scene/light/seen_sky.c - the sky as the eye sees it behind a picture.
+/* scene/light/seen_sky.c - puts the sky, as the eye sees it, behind a picture.
  *
- * In:  linear premultiplied pixels of everything before the sky. Out: these pixels over the sky, with alpha
+ * In: linear premultiplied pixels of everything before the sky. Out: these pixels over the sky, with alpha
  * 1. */
 #include <halflight/render.h>
 #include <math.h>

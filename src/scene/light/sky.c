@@ -11,8 +11,8 @@ hl_status hl_sky_check(const hl_sky *sky, hl_error *error) {
   return hl_check_pixels(&check, sky->pixels, sky->width, sky->height);
 }
 
-/* If the world's x axis is within 8 degrees of up, it cannot serve as the direction from which angles are
- * measured. */
+/* If the angle between up and the world's x axis is below 8 degrees, x cannot serve as the direction from
+ * which angles are measured. */
 static const double ALONG_X = 0.99;
 
 sky_axes hl_sky_axes(const hl_sky *sky) {
@@ -27,7 +27,7 @@ sky_axes hl_sky_axes(const hl_sky *sky) {
 }
 
 /* Finds the two pixels of the sky's image around a position along one axis, and returns the fraction of the
- * way from the first to the second. around: whether the first pixel follows the last one; if not, positions
+ * way from the first to the second. around: whether the first pixel follows the last pixel; if not, positions
  * beyond the ends count as the ends. */
 static double neighbours(double position, int count, bool around, size_t pixel[2]) {
   double at = position - 0.5;

@@ -1,4 +1,4 @@
-/* scene/light/sky.h - the radiance of a sky from a direction. */
+/* scene/light/sky.h - finds the radiance of a sky in a direction. */
 #ifndef HL_SCENE_LIGHT_SKY_H
 #define HL_SCENE_LIGHT_SKY_H
 

@@ -81,7 +81,7 @@ typedef struct cap {
 } cap;
 
 typedef struct brightest {
-  float brightness; /* the sum of the pixel's channels; 0: there is no pixel */
+  float brightness; /* the sum of the pixel's channels; 0: the row has no pixel left */
   int column;
 } brightest;
 
@@ -95,8 +95,7 @@ typedef struct search {
                          * cosine of the angle from the column's middle */
   cap left_out[TRIES];  /* caps in which no sun begins any more */
   int left_out_count;
-  double mean, total; /* brightness of the whole image. mean: its mean; total: its integral over all
-                       * directions */
+  double mean, total; /* brightness of the whole image: its mean, and its integral over all directions */
 } search;
 
 static float brightness_of(const float *pixel) { return pixel[0] + pixel[1] + pixel[2]; }
@@ -266,11 +265,11 @@ static spot spot_of_radius(const search *all, int row, int column, double radius
   return measure_spot(all, find_middle(all, row, column, radius), radius);
 }
 
-/* Finds the spot around a pixel. The spot's radius is the radius for which the light in the cap, divided by
- * the power 3/4 of the radius, is greatest. For a uniform disk this is the least radius that holds all of the
- * disk, for a Gaussian spot a radius that holds nine tenths of its light. With this power, a small sun counts
- * more than a glow around it that sends as much light, and two suns side by side stay two. If the next wider
- * radius holds more light, it is taken instead, because a disk may cover a part of the pixels at the rim. */
+/* Finds the spot around a pixel. The spot's radius maximises the light in the cap divided by the power 3/4 of
+ * the radius. For a uniform disk, this is the least radius that holds the whole disk. For a Gaussian spot, it
+ * is a radius that holds nine tenths of the spot's light. With this power, a small sun counts more than a
+ * glow around it that sends as much light, and two suns side by side stay two. If the next wider radius holds
+ * more light, it is taken instead, because a disk may cover a part of the pixels at the rim. */
 static spot find_spot(const search *all, int row, int column) {
   spot best = {.cap = {direction_of(all, row, column), FARTHEST}}, wider = best;
   double score = 0, least = 0.5 * HL_PI / all->sky->height;
@@ -403,8 +402,8 @@ void hl_suns_release(hl_context *context, sky_suns *found) {
  * direction gives a surface E / pi times the dot product of its normal with the mean of the sky's directions,
  * and a medium E / (4 pi) times its phase function (halflight/light.h). A light of colour I gives a surface I
  * times the cosine to the light's middle, and a medium I times the phase function. So for surfaces, I is E /
- * pi times the length of that mean. For media, I would have to be E / (4 pi), so that a medium takes only the
- * fraction 1 / (4 length) of the light (hl_sun_part_of_media). */
+ * pi times the length of the mean of the sky's directions. For media, I would have to be E / (4 pi), so that
+ * a medium takes only the fraction 1 / (4 length) of the light (hl_sun_part_of_media). */
 hl_light hl_sun_light(const hl_sky *sky, const sky_sun *sun) {
   const sky_axes axes = hl_sky_axes(sky);
   hl_light light;

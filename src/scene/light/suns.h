@@ -1,4 +1,5 @@
-/* scene/light/suns.h - the suns of a sky's image: compact bright spots, which become lights of their own.
+/* scene/light/suns.h - finds the suns of a sky's image: compact bright spots, which become lights of their
+ * own.
  *
  * A sun gets the light of its spot that exceeds the brightest pixel of the surroundings; this light is taken
  * out of the image. The rest of the image and the suns together send the same light as the image, in each
