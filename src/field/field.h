@@ -1,5 +1,5 @@
-/* field/field.h - the absorption and the light in a lattice of cells over the whole content. Neither depends
- * on the eye.
+/* field/field.h - fields of absorption and of light in a lattice of cells over the whole content. Neither
+ * field depends on the eye.
  *
  * In: the grids and classifiers of a frame's volumes, its meshes, its sky. Out: how much light each cell
  * absorbs along each axis (opacity.c), and the sky's light that reaches each cell (sky_field.c). Samples look
@@ -21,7 +21,7 @@
 enum {
   FIELD_LANES = 16,
   FIELD_DIRECTIONS = 36, /* number of directions of light that come from one end of an axis */
-  FIELD_SAMPLES = 4      /* the most samples along an edge of a cell */
+  FIELD_SAMPLES = 4      /* the greatest number of samples along an edge of a cell */
 };
 
 typedef struct field_lattice {
@@ -49,7 +49,7 @@ static inline size_t hl_field_cells(const field_lattice *lattice) {
   return (size_t)lattice->count[0] * (size_t)lattice->count[1] * (size_t)lattice->count[2];
 }
 
-/* The matter of one volume, in the form in which this room samples it. */
+/* The matter of one volume, in the form in which the folder field samples it. */
 typedef struct field_matter {
   const grid *grid;
   const classifier *classifier;
@@ -91,8 +91,8 @@ typedef struct field_block {
   float corner[3]; /* the low corner of the first cell; frame space */
   float cell;
   int samples; /* number of samples along an edge of a cell */
-  /* whether only four of the 2 x 2 x 2 samples of a cell are taken: those of which no two lie in one row.
-   * Each of them counts twice, so that each row along each axis has its depth */
+  /* whether only four of the 2 x 2 x 2 samples of a cell are taken, of which no two lie in one row. Each of
+   * these samples counts twice, so that each row along each axis has its depth */
   int every_other;
   const uint32_t *cells; /* [count]; the cells that a volume's bricks reach, one bit each */
 } field_block;
@@ -138,9 +138,9 @@ typedef struct sky_slice {
   float *field;        /* the first float of the slice's first cell */
   size_t across, down; /* numbers of floats from a cell to the next cell in its row, and to the cell in the
                         * next row */
-  int passing; /* index, among a cell's floats, of the mean of the cell's transmittances along three axes, to
-                * which the sweep adds a third of the transmittance along the slices' axis; 0: the sweep adds
-                * nothing */
+  int passing; /* index, among a cell's floats, of the mean of the cell's transmittances along three axes. The
+                * sweep adds a third of the transmittance along the slices' axis to this mean; 0: the sweep
+                * adds nothing */
   /* [rows][stride / FIELD_LANES]; for each block of cells, whether surfaces cut its links: LINKS_BEFORE and
    * LINKS_AFTER; null: there are no surfaces */
   const unsigned char *cut;

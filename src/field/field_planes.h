@@ -1,4 +1,4 @@
-/* field/field_planes.h - planes that hold one number for each cell of a slice, with a border around the
+/* field/field_planes.h - planes: arrays with one number for each cell of a slice, and a border around the
  * cells. */
 #ifndef HL_FIELD_FIELD_PLANES_H
 #define HL_FIELD_FIELD_PLANES_H
@@ -6,7 +6,7 @@
 #include "field/field.h"
 
 typedef struct field_planes {
-  int32_t stride; /* number of numbers from one row of a plane to the next */
+  int32_t stride; /* the distance, in numbers, from one row of a plane to the next */
   size_t plane;   /* number of numbers in a plane */
 } field_planes;
 

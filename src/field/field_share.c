@@ -21,7 +21,7 @@ void hl_field_share_lay_out(const light_exchange *with, size_t slabs, field_shar
 void hl_field_share_ranges(field_share *share, int32_t slabs) {
   uint64_t all = 0, before = 0, parts = (uint64_t)share->with->parts, part = 0;
   for (int32_t z = 0; z < slabs; z++) all += share->weights[z];
-  for (int32_t z = 0; z < slabs; z++) { /* a slab belongs to the range in which its middle lies */
+  for (int32_t z = 0; z < slabs; z++) { /* a slab belongs to the range that holds its middle */
     uint64_t middle = 2 * before + share->weights[z];
     while (part < parts && part * 2 * all <= middle * parts) share->first[part++] = z;
     before += share->weights[z];

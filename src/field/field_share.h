@@ -29,14 +29,15 @@ void hl_field_share_lay_out(const light_exchange *with, size_t slabs, field_shar
  * All processes must have the same weights. */
 void hl_field_share_ranges(field_share *share, int32_t slabs);
 
-/* Whether this process finds a given slab (all cells of one z), where processes take slabs in turn. */
+/* Returns whether this process finds a given slab (all cells of one z), if the processes take slabs in
+ * turn. */
 static inline bool hl_field_share_turn(const field_share *share, int32_t slab) {
   return share->with == NULL || slab % share->with->parts == share->with->part;
 }
 
-/* Completes an array of which each process has found its own slabs: afterwards all processes have all
- * slabs. array: [slabs][slab_bytes]. ranges: true where a process's own slabs are its range, false where
- * processes take slabs in turn. */
+/* Completes an array of which each process has found its own slabs: afterwards all processes have all slabs.
+ * array: [slabs][slab_bytes]. ranges: true: a process's own slabs are its range; false: the processes take
+ * slabs in turn. */
 void hl_field_share_complete(const field_share *share, bool ranges, void *array, int32_t slabs,
                              size_t slab_bytes);
 

@@ -1,8 +1,8 @@
-/* field/lookup_lanes.h - the sky's light at samples, interpolated between the cells of the sky's field.
+/* field/lookup_lanes.h - finds the sky's light at samples, interpolated between the cells of the sky's field.
  *
  * A cell's harmonics are numbers of 16 bits, and fill one cache line (sky_field.h). Two neighbouring cells
  * along x are multiplied by their weights and added at once. The sums of four such pairs are the harmonics at
- * a sample. They are sums of whole numbers, and so the same on every processor. */
+ * a sample. All sums are of whole numbers, and so are the same on every processor. */
 #ifndef HL_FIELD_LOOKUP_LANES_H
 #define HL_FIELD_LOOKUP_LANES_H
 
@@ -222,8 +222,8 @@ LANES_INLINE void add_cells(const sky_light *sky, const sky_cells *cells, const 
 }
 
 /* Looks up the light between the eight cells around the position of each active lane. surface: 1 on surfaces
- * of a volume's matter, 0 in media and on meshes. whole: false where only the mean over all directions is
- * asked for. */
+ * of a volume's matter, 0 in media and on meshes. whole: false: only the mean over all directions is
+ * needed. */
 LANES_INLINE void look_up_sky(const sky_light *sky, lanes3 position, lanes surface, uint32_t active,
                               bool whole, sky_rows *found) {
   const sky_steps steps = steps_of_sky(sky);
@@ -315,8 +315,8 @@ LANES_INLINE void light_of_surface(const sky_light *sky, const sky_rows *rows, l
     light[c] = lanes_max(lanes_load(sums[c]) * (rows->unit * sky->stored_unit[c]), lanes_set(0));
 }
 
-/* The light that a surface receives where nothing hides the sky: 1 / pi times the integral of light and
- * cosine, in each channel of the field. */
+/* The light that a surface receives from the sky if nothing hides the sky: 1 / pi times the integral of light
+ * and cosine, in each channel of the field. */
 LANES_INLINE void open_light_of_surface(const sky_light *sky, lanes3 normal, lanes light[3]) {
   lanes factors[FIELD_HARMONICS];
   factors_of_surface(normal, factors);

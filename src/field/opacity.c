@@ -5,8 +5,8 @@
 
 #include "field/surface_links.h"
 
-/* NEAR_CELLS: cells within this distance of something visible receive light. A look-up is moved off a surface
- * by up to FIELD_LIFT cells, and then reads the eight cells around its position. */
+/* NEAR_CELLS: cells within this distance, in cells, from something visible receive light. A look-up is moved
+ * off a surface by up to FIELD_LIFT cells, and then reads the eight cells around its position. */
 enum { NEAR_CELLS = 3, MOST_CELLS_ALONG = 512, MOST_MATTER = 256 };
 
 field_lattice hl_field_lattice(const vec3 *points, int count, double voxel, double most_cells) {
@@ -51,7 +51,7 @@ typedef struct opacity_job {
   opacity_field *field;
   const field_content *content;
   const field_functions *functions;
-  int samples, every_other; /* the members of field_block with the same names */
+  int samples, every_other; /* these members have the same meaning as in field_block */
   const float (*reach)[3];  /* [count]; for each volume, half the extent of the box around a cell along each
                              * axis of the volume's index space */
   field_share *share;
@@ -193,8 +193,8 @@ static void spread_depths(void *data, size_t index, int worker) {
     }
 }
 
-/* Samples the volumes in all slabs of cells, or, where processes share a picture, in the slabs of this
- * process; then the processes exchange their slabs. */
+/* Samples the volumes in all slabs of cells. If processes share a picture, each process samples the volumes
+ * only in its own slabs, and the processes then exchange their slabs. */
 static void find_slabs(opacity_job *job, hl_pool *pool) {
   opacity_field *field = job->field;
   field_share *share = job->share;

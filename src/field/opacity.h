@@ -1,4 +1,4 @@
-/* field/opacity.h - how much light the volumes absorb in each cell of a lattice. */
+/* field/opacity.h - finds how much light the volumes absorb in each cell of a lattice. */
 #ifndef HL_FIELD_OPACITY_H
 #define HL_FIELD_OPACITY_H
 
@@ -29,8 +29,8 @@ typedef struct opacity_scratch {
 /* Lays out the arrays of a field and of its scratch memory. The field's lattice must have been set. */
 void hl_opacity_lay_out(opacity_field *field, opacity_scratch *scratch, hl_layout *layout);
 
-/* Fills the arrays of an opacity field. Where processes share a picture, each of them samples the volumes in
- * some slabs. */
+/* Fills the arrays of an opacity field. If processes share a picture, each of them samples the volumes in
+ * some of the slabs. */
 void hl_opacity_find(const field_content *content, const field_functions *functions,
                      const opacity_scratch *scratch, field_share *share, opacity_field *field, hl_pool *pool);
 

@@ -1,4 +1,4 @@
-/* field/opacity_lanes.h - how much light sixteen cells absorb along the axes.
+/* field/opacity_lanes.h - finds how much light sixteen cells absorb along the axes.
  *
  * A cell is sampled on a small lattice within the cell. The cell's transmittance along an axis is the mean of
  * the transmittances of its rows of samples, so that a cell that is half filled with dense matter lets half
@@ -175,8 +175,8 @@ LANES_INLINE int cuts_leave_position(const grid *grid, const float at[3]) {
 }
 
 /* The extinction of a volume at a position `at` of its index space, which is `point` in frame space. Samples
- * on the low faces of a volume's box lie in the box, and samples on its high faces lie outside of it. A box
- * therefore keeps its thickness where samples lie on both faces. */
+ * on the low faces of a volume's box lie in the box, and samples on its high faces lie outside of it. So a
+ * box keeps its thickness even if samples lie on both of its faces. */
 LANES_INLINE float extinction_at_position(const field_matter *matter, hl_storage storage,
                                           const voxel_window *window, const float at[3],
                                           const float point[3]) {

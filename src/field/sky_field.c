@@ -180,8 +180,8 @@ static void open_light(const moving_light *moving, const field_slices *s, int di
   }
 }
 
-/* How much of the work is done: the number of slices whose light has been moved, over all ends of axes and
- * all passes. */
+/* The progress of the work: the number of slices whose light has been moved, over all ends of axes and all
+ * passes. */
 typedef struct sky_progress {
   const hl_context *context;
   double done, whole; /* done: number of slices whose light has been moved; whole: number of all slices */
@@ -192,7 +192,8 @@ static void tell_progress(sky_progress *progress, int32_t slices) {
   hl_progress(progress->context, "sky", progress->done / progress->whole);
 }
 
-/* Where the field's light is added: the cells, and the harmonics that are kept of each cell. */
+/* The memory to which the field's light is added: the cells, and the harmonics that are kept for each
+ * cell. */
 typedef struct sky_target {
   float *field;   /* the float of the first cell's first harmonic */
   size_t step[3]; /* numbers of floats from one cell to the next along x, y and z */
@@ -421,7 +422,8 @@ static void store_row(void *data, size_t row, int worker) {
   const size_t size = rows->cell_floats;
   float *cells = rows->field + row * rows->row_floats;
   int16_t *at = (int16_t *)cells;
-  size_t written = 0; /* the end of the floats of the last cell with light, counted in numbers of 16 bits */
+  size_t written = 0; /* the number of the 16-bit numbers before the end of the floats of the last cell with
+                       * light */
   (void)worker;
   for (size_t x = 0; x < rows->columns; x++, at += SKY_CELL) {
     const float *cell = cells + x * size;

@@ -1,4 +1,5 @@
-/* field/sky_field.h - the sky's light in the cells of a lattice, kept from frame to frame. */
+/* field/sky_field.h - makes the field of the sky's light in the cells of a lattice. The field is kept from
+ * frame to frame. */
 #ifndef HL_FIELD_SKY_FIELD_H
 #define HL_FIELD_SKY_FIELD_H
 
@@ -27,8 +28,8 @@ typedef struct sky_light {
   float stored_unit[3];           /* [channels]; the amount of light for which the number 1 in a cell
                                    * stands */
   float color[3];                 /* a factor on the field's light */
-  float open[3][FIELD_HARMONICS]; /* [channels]; harmonics of the light that arrives where nothing hides the
-                                   * sky; they are not in units of stored_unit */
+  float open[3][FIELD_HARMONICS]; /* [channels]; harmonics of the light that arrives if nothing hides the sky;
+                                   * they are not in units of stored_unit */
 } sky_light;
 
 typedef struct sky_field {
@@ -45,8 +46,8 @@ typedef struct sky_content {
   /* [number of matters]; for each volume, the relative extinction of red, green and blue light */
   const double (*colors)[3];
   field_lattice lattice;
-  int channels; /* number of channels: 3 where the light of the channels comes from different directions, or
-                 * where matter attenuates the channels differently; else 1 */
+  int channels; /* number of channels: 3 if the light of the channels comes from different directions, or if
+                 * matter attenuates the channels differently; else 1 */
   const light_exchange
       *exchange; /* exchange with processes that each find a part of the field; null: there are none */
 } sky_content;

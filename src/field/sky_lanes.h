@@ -1,4 +1,4 @@
-/* field/sky_lanes.h - the sky's light moved from slice to slice (derived).
+/* field/sky_lanes.h - moves the sky's light from slice to slice of a lattice (derived).
  *
  * The light of one direction that reaches a cell's middle is interpolated between four cells of the slice
  * before. The cell's own matter attenuates only the light that goes on to the next slice. Surfaces absorb a
@@ -11,8 +11,8 @@
 #include "field/field.h"
 #include "simd/lanes.h"
 
-/* Where the light of a direction is below this fraction of its unhidden light in all sixteen cells of a
- * block, it counts as 0. Samples look up sums over the directions, whose steps are 1 / SKY_MOST (sky_field.h)
+/* If the light of a direction is below this fraction of its unhidden light in all sixteen cells of a block,
+ * the light counts as 0. Samples look up sums over the directions, whose steps are 1 / SKY_MOST (sky_field.h)
  * of the unhidden light or more. */
 static const float SKY_FAINT = 1.0f / 65536;
 
@@ -87,8 +87,8 @@ LANES_INLINE lanes light_from(const float *from, int32_t stride, const sky_direc
   return lanes_add_scaled(light, lanes_load(from + stride + 1), direction->weight[3]);
 }
 
-/* The light of a direction that reaches sixteen cells where surfaces cut links. from: as in light_from().
- * open: the fraction of light that passes each link. */
+/* The light of a direction that reaches sixteen cells if surfaces cut links to these cells. from: as in
+ * light_from(). open: the fraction of light that passes each link. */
 LANES_INLINE lanes light_past_surfaces(const float *from, int32_t stride, const sky_direction *direction,
                                        const lanes open[FIELD_LINKS]) {
   const lanes *link = open + direction->link;

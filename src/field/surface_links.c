@@ -1,4 +1,4 @@
-/* field/surface_links.c - the links of a lattice that meshes cut.
+/* field/surface_links.c - finds the links between cells of a lattice that meshes cut (surface_links.h).
  *
  * Links of one kind join cells with the same neighbour of the slice before. They follow each other along
  * straight lines, whose slopes are the columns and rows from a cell to this neighbour. The kinds of

@@ -1,4 +1,4 @@
-/* field/surface_links.h - which links between the cells of a lattice the surfaces of meshes cut.
+/* field/surface_links.h - finds the links between the cells of a lattice that the surfaces of meshes cut.
  *
  * A link is the straight line between the middles of two cells in slices that follow each other: a cell has
  * nine links to the slice before. Light moves from cell to cell along links. A surface absorbs a part of the
@@ -25,7 +25,7 @@ typedef struct surface_links {
 /* Lays out the arrays of links; they have room for the links along any axis of the lattice. */
 void hl_surface_links_lay_out(const field_lattice *lattice, surface_links *links, hl_layout *layout);
 
-/* The places where links that join neighbours along an axis are cut. */
+/* The places at which surfaces cut the links between neighbours along an axis. */
 typedef struct link_places {
   float *first;   /* the float of the first cell that receives a place */
   size_t step[3]; /* numbers of floats from one cell to the next along x, y and z */

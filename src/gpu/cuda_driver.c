@@ -1,5 +1,5 @@
-/* gpu/cuda_driver.c - CUDA: the driver, libcuda.so.1, and the runtime compiler nvrtc. The few types, numbers
- * and functions that are used are declared here, so that building needs no headers. */
+/* gpu/cuda_driver.c - uses GPUs by CUDA: by the driver, libcuda.so.1, and the runtime compiler nvrtc. The few
+ * types, numbers and functions that are used are declared here, so that building needs no headers. */
 #include <dlfcn.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -297,7 +297,8 @@ static void release_cuda(gpu_device *device, gpu_buffer *buffer) {
   *buffer = (gpu_buffer){0};
 }
 
-/* Before CUDA returns, it copies memory that is not pinned to a buffer of its own. */
+/* memory that is not pinned may be changed afterwards: CUDA copies it to a buffer of its own before it
+ * returns */
 static bool upload_cuda(gpu_device *device, const gpu_buffer *buffer, size_t offset, const void *from,
                         size_t bytes) {
   const cuda_device *state = device->state;

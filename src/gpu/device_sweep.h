@@ -1,9 +1,9 @@
-/* gpu/device_sweep.h - one sweep of a frame as plain data. It is everything that a device needs, except
- * voxels and tables.
+/* gpu/device_sweep.h - one sweep of a frame as plain data. Together with voxels and tables, these data are
+ * all that a device needs.
  *
  * The structs have only members of 32 bits, and no pointers. The host fills them (render/device_plan.c), and
- * the kernels include this same header: its text is valid C17, OpenCL C 1.2 and CUDA C++. Lengths are in
- * frame units, positions in frame space, where no comment says otherwise. */
+ * the kernels include this same header: its text is valid C17, OpenCL C 1.2 and CUDA C++. Unless a comment
+ * says otherwise, lengths are in frame units, and positions in frame space. */
 #ifndef HL_GPU_FRAME_PLAN_H
 #define HL_GPU_FRAME_PLAN_H
 
@@ -23,10 +23,10 @@ typedef struct plan_rays {
   float h0, hu, hv;
   float step;
   float height;
-  /* Only of the rays of a light that is `soft`, in frame space: */
-  float position; /* where in its chunk the slab before the sheet lies */
-  float young;    /* how far the slab's samples have faded to the light of its chunk, 0 to 1 */
-  int chunk;      /* number of the slab's chunk, from 1 on */
+  /* The next members are set only for the rays, in frame space, of a light that is `soft`: */
+  float position; /* the position, in its chunk, of the slab before the sheet */
+  float young;    /* how far the samples of this slab have faded to the light of its chunk, 0 to 1 */
+  int chunk;      /* number of the chunk that holds this slab, from 1 on */
 } plan_rays;
 
 /* Rays in the volume's index space: the members of box_rays (view/view.h). */
@@ -42,13 +42,13 @@ typedef struct plan_box {
 
 /* A cut of the volume, as it applies to the eye's view or to a light's view. */
 typedef struct plan_cut {
-  int shape; /* CUT_BOX and so on, as hl_cut_type */
+  int shape; /* the type of the shape: CUT_BOX and so on, with the numbers of hl_cut_type */
   int keep_inside;
-  float rows[3][4];     /* frame space to the shape's own space (scene/geometry/cut.h) */
-  float in_index[3][4]; /* index space to the shape's own space */
-  float scale[3];       /* voxels per unit of each axis of the shape's own space */
-  float margin[3];      /* only in a light's view: the distances that `margin` of plan_light gives, here along
-                         * the axes of the shape's own space and in its units */
+  float rows[3][4];     /* maps frame space to the shape's own space (scene/geometry/cut.h) */
+  float in_index[3][4]; /* maps index space to the shape's own space */
+  float scale[3];       /* the number of voxels per unit of each axis of the shape's own space */
+  float margin[3];      /* only in a light's view: distances like plan_light's `margin`, but along the axes of
+                         * the shape's own space and in its units */
   plan_box rays;        /* rays in the shape */
 } plan_cut;
 
@@ -62,10 +62,10 @@ typedef struct plan_light {
   float towards[3];  /* parallel: unit direction to the light */
   float position[3]; /* not parallel: the light's centre */
   float color[3];    /* colour times intensity */
-  float of_sky;      /* where the light is a sun of the sky: the fraction of its light that lights media; for
+  float of_sky;      /* if the light is a sun of the sky: the fraction of its light that lights media; for
                       * other lights 0 */
-  float path;        /* as in shade_light (render/slab.h) */
-  float through[3];  /* as in attenuate_job (shadow/attenuate.h) */
+  float path;        /* the members of these names in shade_light (render/slab.h) */
+  float through[3];  /* the members of these names in attenuate_job (shadow/attenuate.h) */
   float cone_axis[3], cone_outer, cone_scale;
   int sector_count, sector;
   float sector_axis[PLAN_SECTORS][3], sector_least;
@@ -74,20 +74,21 @@ typedef struct plan_light {
   int tiles_x, tiles; /* number of its tiles */
   int first_tile;     /* index of this light's first tile among the tiles of all lights */
   int first_slab;     /* the first slab that the light reaches */
-  int stride;         /* floats from row to row of a plane */
+  int stride;         /* number of floats from one row of a plane to the next */
   int plane, origin;  /* number of floats of a plane, and the place of pixel (0, 0) in it */
-  int soft;           /* its shadows are blurred by chunks of slabs (shadow_cascade/cascade.h) */
-  /* Where the light's planes begin, in units of 16 floats: [ring][1 to 3][channels][plane]. The first planes
-   * of a sheet are the transmittance. The light at the outside of surfaces follows, where the variant has it,
-   * and the light from which samples of soft lights fade. */
+  int soft;           /* whether the light's shadows are blurred, by chunks of slabs
+                       * (shadow_cascade/cascade.h) */
+  /* The beginning of the light's planes, in units of 16 floats. The planes are [ring][1 to
+   * 3][channels][plane]. The first planes of a sheet are the transmittance. The next ones are the light at
+   * the outside of surfaces, if the variant has it, and the light from which samples of soft lights fade. */
   unsigned planes;
-  float map[3][4]; /* frame space to (w, w u, w v) of the buffer */
-  float slab_path; /* as path in attenuate_job (shadow/attenuate.h) */
+  float map[3][4]; /* maps frame space to (w, w u, w v), where (u, v) is the position in the buffer */
+  float slab_path; /* the member `path` of attenuate_job (shadow/attenuate.h) */
   plan_box box, content;
-  float margin[3]; /* in voxels, along each axis. If a sample is farther than this from the faces of the box,
-                    * light that passes beside the faces does not reach the buffer's pixels around the
-                    * sample */
-  int first_cut, cut_count; /* the cuts that count for the light: their range among the sweep's cuts */
+  float margin[3]; /* a distance along each axis, in voxels. If a sample is farther than this from the faces
+                    * of the box, light that passes beside the faces does not reach the buffer's pixels around
+                    * the sample */
+  int first_cut, cut_count; /* the range, among the sweep's cuts, of the cuts that count for the light */
 } plan_light;
 
 /* The brick of a field that covers a block of cells of level 0: the members of hl_brick_entry
@@ -106,7 +107,7 @@ typedef struct plan_mask {
   int faces;                       /* normals are turned to the faces that the mask makes */
   int tints;                       /* the mask has colours */
   float decode[PLAN_CODES];        /* the linear values of the colours' codes */
-  unsigned begin[PLAN_MASK_PARTS]; /* where each part begins on the device, in units of 16 bytes */
+  unsigned begin[PLAN_MASK_PARTS]; /* the beginning of each part on the device, in units of 16 bytes */
 } plan_mask;
 
 /* The parts of a mask on the device. */
@@ -115,7 +116,7 @@ typedef struct plan_mask {
 #define MASK_SLOPES  2
 #define MASK_COLORS  3
 
-/* As the constants of these names in label/mask.h. */
+/* These constants equal the constants of the same names in label/mask.h. */
 #define MASK_BRICK_SHIFT 2
 #define MASK_EVEN        0x10000u
 #define MASK_EVEN_COLOR  0x20000u
@@ -125,7 +126,7 @@ typedef struct plan_volume {
   /* The layout of the device's voxels, or of the coefficients of bricks: the bytes from row to row, and the
    * number of rows of a slice. The number of slices of a brick equals its number of rows. */
   unsigned row_bytes, slice_rows;
-  int brick_shift, directory_size[3]; /* of a field in bricks (hl_bricks) */
+  int brick_shift, directory_size[3]; /* members of hl_bricks, for a field in bricks */
   float empty;                        /* stored units */
   int has_cell_bits;
   float inner[PLAN_KERNEL_POWERS], outer[PLAN_KERNEL_POWERS]; /* the kernel's polynomials */
@@ -139,12 +140,12 @@ typedef struct plan_volume {
   /* the voxels' colours (voxel_colors in render/slab.h) */
   int color_last[3];
   float color_decode[PLAN_CODES];
-  int bends; /* there is a table of bent colours */
+  int bends; /* whether there is a table of bent colours */
   int several_surfaces;
   float only_beginning;
-  /* surfaces at the faces of the volume's box and of cuts (shade_volume in render/slab.h) */
-  int any_face;   /* the eye may see faces at which the box or a cut cuts visible matter */
-  int faces_take; /* faces that cut visible matter are surfaces for the light, too */
+  /* members of shade_volume (render/slab.h) about surfaces at the faces of the volume's box and of cuts */
+  int any_face;   /* whether the eye may see faces at which the box or a cut cuts visible matter */
+  int faces_take; /* whether faces that cut visible matter are surfaces for the light, too */
   int cut_shading, cut_count;
   int face_cuts[6]; /* [axis][low, high] */
   /* the material (shade_volume in render/slab.h) */
@@ -155,12 +156,12 @@ typedef struct plan_volume {
   float cast[3];   /* the extinction for lights divided by the extinction for the eye */
   float weight[3]; /* the extinction in shadow buffers divided by the extinction for the eye */
   float voxel;
-  plan_mask mask; /* set where the variant has a mask */
-  /* of a function of value and gradient (plane_table in grid/plane_table.h) */
+  plan_mask mask; /* set if the variant has a mask */
+  /* members of plane_table (grid/plane_table.h), for a function of value and gradient */
   float column_scale, column_offset, row_scale, row_offset;
 } plan_volume;
 
-/* The field of the sky's light: the members of sky_light (field/sky_field.h), but for the cells. */
+/* The field of the sky's light: the members of sky_light (field/sky_field.h) without the cells. */
 typedef struct plan_sky {
   int count[3], channels, cut;
   unsigned row_numbers;
@@ -178,7 +179,7 @@ typedef struct device_sweep {
   float through[3], towards_eye[3], normal[3];
   float ambient[3], emission;
   plan_volume volume;
-  plan_sky sky;          /* set where the variant has a sky */
+  plan_sky sky;          /* set if the variant has a sky */
   plan_box box, content; /* box: the rays in the volume's box; content: the rays in the box around the bricks
                           * that show something */
   plan_light lights[PLAN_LIGHTS];
@@ -188,8 +189,8 @@ typedef struct device_sweep {
 
 /* The sum a + (1 - thin) b of fields of one level. */
 #define PASS_ADD    0
-#define PASS_HALF   1 /* the same, of fields that are twice as fine */
-#define PASS_DOUBLE 2 /* the same, where b is twice as coarse */
+#define PASS_HALF   1 /* the same sum, of fields that are twice as fine as the output */
+#define PASS_DOUBLE 2 /* the same sum, with a field b that is twice as coarse as the output */
 #define PASS_BLUR   3 /* the same, where b is blurred */
 #define PASS_SPLIT  4
 #define PASS_ABSORB 5
@@ -198,7 +199,8 @@ typedef struct device_sweep {
 /* Stands for a field of zeros. */
 #define PASS_NOTHING 0xffffffffu
 
-/* Pixels of zeros around a field (CASCADE_MARGIN), and the value of a whole. */
+/* The number of pixels of zeros around a field (CASCADE_MARGIN), and the number that stands for 1 in a
+ * field. */
 #define PASS_MARGIN 48
 #define PASS_WHOLE  32768
 
@@ -206,19 +208,20 @@ typedef struct device_sweep {
 typedef struct plan_pass {
   int kind;
   int tiles_x, tiles_y;         /* of the output */
-  int stride, stride_in;        /* numbers of pixels from row to row: of the level, and of inputs of another
+  int stride, stride_in;        /* numbers of pixels from row to row: in the level, and in inputs of another
                                  * level */
   unsigned a, b, thin;          /* inputs */
-  unsigned to, to_thin;         /* outputs. PASS_SPLIT reads a and thin, and writes the first part here.
-                                 * PASS_ABSORB adds the matter at the chunk's beginning here */
-  unsigned second, second_thin; /* outputs of PASS_SPLIT and PASS_ABSORB: the second part */
-  unsigned boxes;            /* PASS_BLUR: the first of the boxes of the columns of tiles; those of the rows
-                              * follow */
-  float late;                /* PASS_SPLIT: the part that the second gets */
+  unsigned to, to_thin;         /* outputs. PASS_SPLIT reads a and thin, and writes their first part to these
+                                 * fields. PASS_ABSORB adds the matter at the chunk's beginning to these
+                                 * fields */
+  unsigned second, second_thin; /* outputs of PASS_SPLIT and PASS_ABSORB for the second part */
+  unsigned boxes;            /* PASS_BLUR: the number of the first box of the columns of tiles; the boxes of
+                              * the rows of tiles follow */
+  float late;                /* PASS_SPLIT: the fraction of the matter that the second output gets */
   float length;              /* PASS_ABSORB: of the chunk */
   int light, channel, chunk; /* PASS_ABSORB, PASS_REFILL: chunk: number of the chunk that ends */
-  int sheet;                 /* PASS_REFILL: at which the chunk ends */
-  unsigned marks;            /* PASS_REFILL: the first of the tiles' marks */
+  int sheet;                 /* PASS_REFILL: the sheet at which the chunk ends */
+  unsigned marks;            /* PASS_REFILL: the number of the first mark of the tiles */
 } plan_pass;
 
 /* As blur_box (shadow/blur.h). */
@@ -228,7 +231,7 @@ typedef struct plan_blur {
 } plan_blur;
 
 /* Marks of a light's tiles. MARK_READ: the next chunk's slabs read the tile, so it is refilled. MARK_AGAIN:
- * it was refilled at the chunk's beginning, too. */
+ * the tile was refilled at the chunk's beginning, too. */
 #define MARK_READ  1
 #define MARK_AGAIN 2
 
@@ -236,19 +239,19 @@ typedef struct plan_blur {
  * capitals. */
 typedef struct plan_variant {
   int storage; /* 0: u8, 1: u16, 2: f32 */
-  int bricks;  /* the volume is a field in bricks, of f32 */
+  int bricks;  /* whether the volume is a field in bricks, of f32 */
   int bspline; /* 1: the kernel is the cubic B-spline; else it is any polynomial of degree 5 */
   int eye_perspective;
   int phong, lit, shadowed;
-  int outside; /* the lights' buffers also keep the light at the outside of surfaces */
-  int boxed;   /* the volume's box or a cut cuts visible matter */
+  int outside; /* whether the lights' buffers also keep the light at the outside of surfaces */
+  int boxed;   /* whether the volume's box or a cut cuts visible matter */
   int cuts;    /* the volume has cuts */
   int steep;   /* the volume has gradient opacity */
   int masked;  /* the volume has a mask */
-  int plane;   /* the transfer function is one of value and gradient */
-  int colored; /* the voxels have colours of their own */
+  int plane;   /* whether the transfer function depends on value and gradient */
+  int colored; /* whether the voxels have colours of their own */
   int soft;    /* some lights are soft */
-  int sky;     /* the sky's light is added in this sweep */
+  int sky;     /* whether the sky's light is added in this sweep */
   int back_to_front;
   int channels; /* number of channels of light attenuation: 1 or 3 */
 } plan_variant;

@@ -1,4 +1,4 @@
-/* gpu/devices.c - the list of devices (halflight/device.h). */
+/* gpu/devices.c - lists the machine's devices (halflight/device.h). */
 #include <halflight/device.h>
 
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* gpu/driver.h - the interface by which a back end uses a system's GPUs. A driver is CUDA (cuda_driver.c) or
  * OpenCL (opencl_driver.c). Its library is loaded when a device is asked for.
  *
- * Functions that can fail return false and leave a line in the device's `problem`. */
+ * A function that fails returns false, and leaves a line of text in the device's `problem`. */
 #ifndef HL_GPU_DRIVER_H
 #define HL_GPU_DRIVER_H
 
@@ -18,7 +18,7 @@ typedef struct gpu_device_info {
   char name[GPU_NAME_BYTES];    /* for example "NVIDIA H100 80GB HBM3" */
   char version[GPU_NAME_BYTES]; /* version of the driver and the compiler */
   uint64_t memory_bytes;
-  bool processor; /* the device is the machine's own processors (PoCL) */
+  bool processor; /* whether the device is the machine's own processors (PoCL) */
 } gpu_device_info;
 
 typedef struct gpu_driver gpu_driver;
@@ -58,7 +58,7 @@ typedef struct gpu_argument {
 
 struct gpu_driver {
   const char *name; /* "cuda" or "opencl" */
-  /* Loads the driver's library once. Returns false where the system has none. */
+  /* Loads the driver's library, at the first call only. Returns false if the system has no such library. */
   bool (*load)(void **library, char *problem);
   void (*unload)(void *library);
   /* The number of devices. */
@@ -77,7 +77,7 @@ struct gpu_driver {
   bool (*allocate)(gpu_device *device, size_t bytes, gpu_buffer *buffer);
   void (*release)(gpu_device *device, gpu_buffer *buffer);
   /* Starts a copy to a buffer. The copy may still be going on when the function returns. The caller may
-   * change `from` then, because the driver has made its own copy of it. */
+   * change `from` afterwards, because the driver has made a copy of it. */
   bool (*upload)(gpu_device *device, const gpu_buffer *buffer, size_t offset, const void *from, size_t bytes);
   /* Waits for all earlier work, and copies a buffer to `to`. */
   bool (*download)(gpu_device *device, const gpu_buffer *buffer, size_t offset, void *to, size_t bytes);

@@ -2,9 +2,9 @@
  * pixels.
  *
  * The steps of a frame are: hl_gpu_prepare() copies the volume and its tables to the device, unless the
- * device has them already; hl_gpu_run() starts one sweep; hl_gpu_read() waits for the sweep's pixels.
- * Functions that can fail return false and leave a line in hl_gpu_problem(). After a failure the device is
- * closed, and the processors make the frame. */
+ * device has them already; hl_gpu_run() starts one sweep; hl_gpu_read() waits for the sweep's pixels. A
+ * function that fails returns false, and leaves a line of text that hl_gpu_problem() returns. After a failure
+ * the device is closed, and the processors make the frame. */
 #ifndef HL_GPU_GPU_H
 #define HL_GPU_GPU_H
 
@@ -37,7 +37,7 @@ typedef struct gpu_mask {
   size_t bytes[PLAN_MASK_PARTS];
 } gpu_mask;
 
-/* Where a part of a mask begins on the device, in bytes from the first part; a multiple of 16. */
+/* The beginning of a part of a mask on the device, in bytes from the first part; a multiple of 16. */
 size_t hl_gpu_mask_begin(const gpu_mask *mask, int part);
 
 /* A volume as the renderer has prepared it; borrowed. */
@@ -46,10 +46,12 @@ typedef struct gpu_volume {
                                      * transfer function */
   const void *voxels;               /* [z][y][x], rows packed; or, for a field in bricks, the coefficients
                                      * [slots][z][y][x] */
-  /* Copies a row of `pages`; set for a volume whose voxels are not in memory, else null. */
+  /* A function that copies a row of `pages`. It is set for a volume whose voxels are not in memory, else
+   * null. */
   void (*load_row)(const void *pages, size_t y, size_t z, void *row);
   const void *pages;
-  const plan_brick *directory;  /* [z][y][x]; null: the volume is no field in bricks */
+  const plan_brick *directory;  /* [z][y][x]; the directory of the field in bricks; null: the volume is not a
+                                 * field in bricks */
   const size_t *directory_size; /* number of entries along x, y, z */
   const unsigned char *colors;  /* [z][y][x][4]; null: the voxels have no colours */
   size_t color_bytes;
@@ -94,16 +96,17 @@ struct gpu_sweep {
   const plan_rays *rays; /* [2 + 2 lights][sheets] (gpu/kernels/sweep.h) */
   const plan_cut *cuts;  /* [cut_count]; the cuts of all views, the eye's first; null: none */
   size_t cut_count;
-  const int32_t *shown_from; /* [tiles][16 blocks]; where slabs are composited from back to front: the first
-                              * visible slab of each block; null: slab 1 for all blocks */
+  const int32_t *shown_from; /* [tiles][16 blocks]; the first visible slab of each block, if slabs are
+                              * composited from back to front; null: slab 1 for all blocks */
   gpu_sky sky;
-  size_t plane_floats; /* floats of the planes of all lights together */
-  int slabs;           /* number of slabs of a run, at most */
-  /* Soft lights; zeros where there are none: */
+  size_t plane_floats; /* number of floats of the planes of all lights together */
+  int slabs;           /* the greatest number of slabs of a run */
+  /* The next members are for soft lights; they are zeros if there are no soft lights: */
   const unsigned char *ends;       /* [sheets]; not 0 for sheets at which a chunk of some light ends */
-  size_t field_pixels, row_floats; /* of the fields of all soft lights; of the rows of a blur */
-  /* Is called after the slabs before such a sheet: it makes the passes (hl_gpu_pass()) that bring the lights'
-   * buffers to the next chunk. data: of_chunks. */
+  size_t field_pixels, row_floats; /* number of pixels of the fields of all soft lights; number of pixels of
+                                    * the rows of a blur */
+  /* The function that is called at such a sheet, after the slabs before it. It makes the passes
+   * (hl_gpu_pass()) that bring the lights' buffers to the next chunk. data: of_chunks. */
   bool (*end_chunks)(void *data, hl_gpu *gpu, const gpu_sweep *sweep, int sheet);
   void *of_chunks;
 };
@@ -118,8 +121,8 @@ typedef struct gpu_passes {
   size_t mark_count;
 } gpu_passes;
 bool hl_gpu_pass(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_passes *passes);
-/* Waits for the slabs so far, and tells for each tile of a light the last chunk whose slabs absorbed light
- * there; 0: none. chunks: [light->tiles]. */
+/* Waits for the slabs that were started so far. Finds, for each tile of a light, the last chunk whose slabs
+ * absorbed light in the tile; 0: no chunk. chunks: [light->tiles]. */
 bool hl_gpu_touched(hl_gpu *gpu, const plan_light *light, int32_t *chunks);
 
 /* The time and the work that one sweep took on a device. */
@@ -131,7 +134,7 @@ typedef struct gpu_times {
 
 bool hl_gpu_run(hl_gpu *gpu, const gpu_sweep *sweep);
 /* Waits for the sweep's pixels, and copies them to `pixels`, [tiles][16 blocks][R G B A][16] floats. times:
- * raised by the times of the sweep. */
+ * receives the times of the sweep in addition to the times before. */
 bool hl_gpu_read(hl_gpu *gpu, const gpu_sweep *sweep, float *pixels, gpu_times *times);
 
 #endif

@@ -31,7 +31,7 @@ static bool find_of_driver(const gpu_driver *driver, gpu_found *found, void *dat
   bool goes_on = true;
   for (int i = 0; i < driver->count(library) && goes_on; i++)
     if (driver->describe(library, i, &info)) goes_on = found(data, driver, library, i, &info);
-  if (goes_on) driver->unload(library); /* otherwise the caller keeps the library open */
+  if (goes_on) driver->unload(library); /* if the device was not opened, the caller keeps the library open */
   return goes_on;
 }
 
@@ -57,7 +57,7 @@ typedef struct gpu_search {
   bool met;
 } gpu_search;
 
-/* Turns an ASCII letter into a small letter, whatever the locale. */
+/* Converts an ASCII letter to a small letter, independently of the locale. */
 static char small_letter(char c) { return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c; }
 
 static bool has_word(const char *text, const char *word) {

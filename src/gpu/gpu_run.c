@@ -1,4 +1,4 @@
-/* gpu/gpu_run.c - brings volumes to an open device, and runs sweeps there. */
+/* gpu/gpu_run.c - copies volumes to an open device, and runs sweeps on it. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +16,7 @@ enum {
   KERNEL_FIND,
   KERNEL_SHADE,
   KERNEL_COMPOSITE,
-  KERNEL_ROWS, /* this one and the next ones: only of variants with soft lights */
+  KERNEL_ROWS, /* this kernel and the next ones exist only in variants with soft lights */
   KERNEL_FIELDS,
   KERNEL_ABSORBED,
   KERNEL_REFILL,
@@ -61,7 +61,7 @@ size_t hl_gpu_row_bytes(const gpu_volume *volume) {
   return ((size_t)volume->dimension[0] * storage_bytes(volume->storage) + 15) / 16 * 16 | 16;
 }
 
-/* READ_BEHIND: the number of bytes that kernels may read behind the last voxel. */
+/* READ_BEHIND: the number of bytes after the last voxel that kernels may read. */
 enum { READ_BEHIND = 16, STAGE_BYTES = 1 << 20 };
 
 /* Copies a row of the volume's voxels. number: the index of the row among the rows of all slices. */

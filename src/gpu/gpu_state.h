@@ -12,15 +12,15 @@ enum buffer_use {
   BUFFER_RAYS,
   BUFFER_VOXELS,
   BUFFER_DISTANCES,
-  BUFFER_DISTANCES_MADE, /* distances of bricks after the first and after the third pass; kernels read the
-                          * latter */
+  BUFFER_DISTANCES_MADE, /* distances of bricks after the first pass, and after the third pass; kernels read
+                          * the distances after the third pass */
   BUFFER_CELL_BITS,
   BUFFER_TABLES,
   BUFFER_DIRECTORY,
   BUFFER_COLORS,
   BUFFER_MASK,
   BUFFER_SKY,
-  BUFFER_PIXELS, /* this one and the next ones change with the camera */
+  BUFFER_PIXELS, /* the content of this buffer and of the next ones depends on the camera */
   BUFFER_PLANES,
   BUFFER_LIGHT,
   BUFFER_CHANGED,
@@ -56,8 +56,8 @@ struct hl_gpu {
   known_program programs[MOST_VARIANTS];
   int program_count, launches;
   int32_t brick_count[3];
-  bool has_distances; /* the distances of bricks are made; else BUFFER_DISTANCES holds which bricks are
-                       * relevant */
+  bool has_distances; /* whether the distances of bricks have been found; if not, BUFFER_DISTANCES tells which
+                       * bricks are relevant */
 };
 
 #endif

@@ -1,5 +1,5 @@
-/* gpu/opencl_driver.c - OpenCL 1.2, by its loader libOpenCL.so.1. The few types, numbers and functions that
- * are used are declared here, so that building needs no headers. */
+/* gpu/opencl_driver.c - uses devices by OpenCL 1.2, by its loader libOpenCL.so.1. The few types, numbers and
+ * functions that are used are declared here, so that building needs no headers. */
 #include <dlfcn.h>
 #include <stdio.h>
 #include <stdlib.h>

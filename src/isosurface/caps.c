@@ -1,6 +1,6 @@
-/* isosurface/caps.c - see caps.h. Each face is covered with triangles that are a voxel wide. The triangles
- * are then cut: first where the field has the surface's value, and afterwards at the other faces and at the
- * box. */
+/* isosurface/caps.c - makes the caps of an isosurface (caps.h). Each face is covered with triangles that are
+ * a voxel wide. The triangles are then cut along the line on which the field has the surface's value, and
+ * afterwards at the other faces and at the box. */
 #include "isosurface/caps.h"
 
 #include <math.h>
@@ -264,8 +264,8 @@ static hl_status cap_face_of(hl_pool *pool, const lattice *lattice, const cap_fa
 
 /* ---- all faces ---- */
 
-/* Whether face n of the box ends the volume. Faces 2 a and 2 a + 1 are the lower and the upper face of axis
- * a. */
+/* Returns whether the volume ends at face n of the box, because no other volume continues it. Faces 2 a and 2
+ * a + 1 are the lower and the upper face of axis a. */
 static bool ends_volume(const grid *grid, int n) {
   return fabsf(n % 2 ? grid->face_high[n / 2] : grid->face_low[n / 2]) < FACE_FAR_OUT;
 }

@@ -5,16 +5,17 @@
 
 #include "core/memory.h"
 
-/* The state of one cut at one face. The side that is kept is the half space of the points p with normal . p +
- * offset >= 0, or the inside of a sphere, |q|^2 <= 1 in the sphere's own coordinates q. Each triangle gets
- * vertices of its own on the edges that are cut, because the mesh is open there anyway. */
+/* The state of one cut at one face. The kept side is the half space of the points p with normal . p + offset
+ * >= 0, or the inside of a sphere, |q|^2 <= 1 in the sphere's own coordinates q. Each triangle gets vertices
+ * of its own on the edges that are cut, because the mesh is open along the cut anyway. */
 typedef struct cutting {
   hl_context *context;
   iso_triangles *made;
   double normal[3], offset;
   const affine3 *sphere; /* maps index space to the coordinates q of a sphere; null: the kept side is a
                           * half space */
-  bool both;             /* whether both sides of the face are kept, cut apart */
+  bool both;             /* whether the triangles on both sides of the face are kept, cut apart from each
+                          * other */
 } cutting;
 
 static vec3 position_of(const cutting *cut, uint32_t vertex) {
@@ -29,9 +30,9 @@ static double height(const cutting *cut, uint32_t vertex) {
   return 1 - vec3_dot(q, q);
 }
 
-/* Where the edge from vertex a to vertex b crosses a sphere, as a fraction of the edge: the root t between 0
- * and 1 of |q + t d|^2 = 1, where q is the edge's beginning and d its direction in the sphere's
- * coordinates. */
+/* The place at which the edge from vertex a to vertex b crosses a sphere, as a fraction of the edge. It is
+ * the root t between 0 and 1 of |q + t d|^2 = 1, where q is the edge's beginning and d its direction in the
+ * sphere's coordinates. */
 static double crossing_of_sphere(const cutting *cut, uint32_t a, uint32_t b) {
   vec3 q = affine3_apply(*cut->sphere, position_of(cut, a));
   vec3 d = vec3_subtract(affine3_apply(*cut->sphere, position_of(cut, b)), q);
@@ -89,8 +90,8 @@ static size_t count_cut(const cutting *cut) {
   return count;
 }
 
-/* Makes room for the results of a cut. Each triangle that is cut adds at most one triangle and two vertices;
- * where both sides are kept, it adds at most twice as many. */
+/* Makes room for the results of a cut. Each triangle that is cut adds at most one triangle and two vertices.
+ * If both sides are kept, it adds at most two triangles and four vertices. */
 static hl_status make_room(cutting *cut, size_t more, uint32_t (**triangles)[3], hl_error *error) {
   iso_triangles *made = cut->made;
   void *positions = hl_reallocate(cut->context, made->positions, made->vertex_count + 4 * more,

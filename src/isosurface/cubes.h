@@ -1,8 +1,8 @@
-/* isosurface/cubes.h - how a surface cuts a cube, given which corners of the cube lie inside the surface
- * (Lorensen and Cline, "Marching Cubes", 1987).
+/* isosurface/cubes.h - finds how a surface cuts a cube, for each set of corners of the cube that lie inside
+ * the surface (Lorensen and Cline, "Marching Cubes", 1987).
  *
- * Corner i of a cube lies at (i & 1, i >> 1 & 1, i >> 2). Edge 4 a + n runs along axis a; the bits
- * of n are its coordinates along the two other axes, the lower axis in bit 0. */
+ * Corner i of a cube lies at (i & 1, i >> 1 & 1, i >> 2). Edge 4 a + n runs along axis a; the bits of n are
+ * its coordinates along the two other axes, the lower axis in bit 0. */
 #ifndef HL_ISOSURFACE_CUBES_H
 #define HL_ISOSURFACE_CUBES_H
 
@@ -20,7 +20,7 @@ typedef struct cube_triangles {
   uint8_t edge[CUBE_TRIANGLES][3];
 } cube_triangles;
 
-/* Fills the table of patterns, [CUBE_PATTERNS]. Bit i of a pattern's index is set where corner i of the cube
+/* Fills the table of patterns, [CUBE_PATTERNS]. Bit i of a pattern's index is set if corner i of the cube
  * lies inside. */
 void hl_cube_patterns(cube_triangles *patterns);
 

@@ -143,7 +143,7 @@ static bool is_cell(const lattice *lattice, const lattice_brick *brick, const in
   return true;
 }
 
-/* The pattern of a cell: which of its corners lie inside the surface, one bit each. It is 0 where the lattice
+/* The pattern of a cell: which of its corners lie inside the surface, one bit each. It is 0 if the lattice
  * has no such cell. */
 static int pattern_of_cell(const lattice *lattice, const lattice_brick *const around[8], const int cell[3]) {
   int pattern = 0;

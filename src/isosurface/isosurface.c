@@ -1,6 +1,7 @@
-/* isosurface/isosurface.c - see isosurface.h. The steps are: the cells of a lattice are cut into triangles;
- * edges of triangles are halved where the surface bends; the triangles are cut at the volume's box and at
- * cuts; caps are added at the faces of the box and of cuts; all triangles are moved to the world. */
+/* isosurface/isosurface.c - makes an isosurface (isosurface.h) in these steps: the cells of a lattice are cut
+ * into triangles; edges of triangles are halved where the surface bends; the triangles are cut at the
+ * volume's box and at cuts; caps are added at the faces of the box and of cuts; all triangles are moved to
+ * the world. */
 #include "isosurface/isosurface.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-/* isosurface/isosurface.h - a surface on which the kernel's field has one value, as a mesh. */
+/* isosurface/isosurface.h - makes a mesh of the surface on which the kernel's field has one value. */
 #ifndef HL_ISOSURFACE_ISOSURFACE_H
 #define HL_ISOSURFACE_ISOSURFACE_H
 
@@ -9,7 +9,7 @@
 /* Makes the surface on which a volume's field has a value, within the volume's box. The mesh's positions are
  * in the world of the volume's file, scaled by the volume's axis_scale. The mesh of the scene that uses this
  * mesh gets the rest of the volume's transform. grid: the volume's grid, made for the kernel. *mesh: owned by
- * the caller; null where the surface is empty. */
+ * the caller; null if the surface is empty. */
 hl_status hl_isosurface_create(hl_pool *pool, const hl_scene_volume *volume, const grid *grid,
                                const kernel *kernel, double value, hl_mesh **mesh, hl_error *error);
 

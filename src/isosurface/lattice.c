@@ -35,8 +35,8 @@ static bool brick_crossed(const lattice *lattice, const int32_t at[3]) {
   return bounds[0] <= lattice->value && bounds[1] >= lattice->value;
 }
 
-/* Marks bricks to be kept: a brick that the surface crosses, and the bricks beside it that hold points of its
- * cells. */
+/* Marks the bricks that the lattice keeps: a brick that the surface crosses, and the bricks beside it that
+ * hold points of its cells. */
 static void keep_around(const lattice *lattice, const int32_t at[3], unsigned char *marks) {
   for (int corner = 0; corner < 8; corner++) {
     const int32_t beside[3] = {at[0] + (corner & 1), at[1] + (corner >> 1 & 1), at[2] + (corner >> 2)};

@@ -1,9 +1,8 @@
-/* isosurface/lattice.h - a lattice of points; for each point it tells whether the point lies inside the
- * surface.
+/* isosurface/lattice.h - a lattice of points that tells for each point whether it lies inside the surface.
  *
  * The points stand at the voxels, and on the faces of the grid: along an axis of n voxels, point 0 lies at
- * -0.5, point i at i - 1, point n + 1 at n - 0.5. A cell lies between 2x2x2 points, and has the number of
- * its lowest point. A lattice keeps the bricks of 4x4x4 points around which the field crosses the surface's
+ * -0.5, point i at i - 1, point n + 1 at n - 0.5. A cell lies between 2x2x2 points, and has the number of its
+ * lowest point. A lattice keeps the bricks of 4x4x4 points around which the field crosses the surface's
  * value. */
 #ifndef HL_ISOSURFACE_LATTICE_H
 #define HL_ISOSURFACE_LATTICE_H
@@ -46,7 +45,7 @@ hl_status hl_lattice_create(hl_context *context, hl_pool *pool, const grid *grid
                             double value, lattice *made, hl_error *error);
 void hl_lattice_release(lattice *made);
 
-/* Runs function(data, index, worker) for each index below `count`. Fails where the run was cancelled; the
+/* Runs function(data, index, worker) for each index below `count`. Fails if the run was cancelled; the
  * results are then incomplete, and must not be read. */
 hl_status hl_lattice_run(hl_pool *pool, size_t count, void (*function)(void *, size_t, int), void *data,
                          hl_error *error);

@@ -15,9 +15,8 @@
  * middle of an equilateral triangle as above its edges. */
 static const double MOST_RISE = 0.014;
 
-/* An edge of this length or less is left whole however much the surface bends. Otherwise noise, whose
- * surfaces bend within a voxel, would be cut into countless triangles. A surface of radius 5 rises by 0.014
- * above an edge of this length. */
+/* An edge of at most this length is never halved. Otherwise noise, whose surfaces bend within a voxel, would
+ * be cut into countless triangles. A surface of radius 5 rises by 0.014 above an edge of this length. */
 static const double LEAST_EDGE = 0.75;
 
 typedef struct halving {
@@ -226,8 +225,8 @@ static hl_status halve(hl_pool *pool, halving *job, size_t listed, hl_error *err
   return status;
 }
 
-/* Halves once all edges that lie too far from the surface. *any: set to false where there is no such edge, or
- * no room for more triangles. */
+/* Halves once all edges that lie too far from the surface. *any: set to false if there is no such edge, or if
+ * there is no room for more triangles. */
 static hl_status halve_edges(hl_pool *pool, const lattice *lattice, iso_triangles *triangles, bool *any,
                              hl_error *error) {
   halving job = {.lattice = lattice, .made = triangles};

@@ -21,7 +21,8 @@ hl_status hl_iso_refine(hl_pool *pool, const lattice *lattice, iso_triangles *tr
 
 void hl_iso_triangles_release(hl_context *context, iso_triangles *triangles);
 
-/* The unit normal that points away from the inside where the field has the gradient `slope`. */
+/* The unit normal, pointing away from the inside, of a surface at a point where the field has the gradient
+ * `slope`. */
 static inline vec3 hl_iso_normal(const lattice *lattice, vec3 slope) {
   return vec3_scale(vec3_normalise(slope), -lattice->sign);
 }

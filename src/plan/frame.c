@@ -123,8 +123,8 @@ int hl_frame_visible_points(const frame *frame, vec3 *points) {
 
 /* ---- the eye ---- */
 
-/* The edge of the eye's pixel at the depth where the content is nearest to the eye, but not nearer than a
- * third of the depth of the content's middle: closer voxels are larger than pixels anyway. */
+/* The edge of the eye's pixel, projected to the nearest depth of the content. This depth counts as at least a
+ * third of the depth of the content's middle, because closer voxels are larger than pixels anyway. */
 static double pixel_at_content(const frame *frame, double middle_depth) {
   const view *eye = &frame->eye;
   double edge = fmax(vec3_length(eye->du), vec3_length(eye->dv));
@@ -137,7 +137,7 @@ static double pixel_at_content(const frame *frame, double middle_depth) {
   return edge * fmax(nearest, middle_depth / 3);
 }
 
-/* The volume of a box whose corners hl_frame_content() found. It is above 0 even where the box is flat. */
+/* The volume of a box whose corners hl_frame_content() found. It is above 0 even if the box is flat. */
 static double box_volume(const vec3 corners[8]) {
   vec3 x = vec3_subtract(corners[1], corners[0]), y = vec3_subtract(corners[2], corners[0]),
        z = vec3_subtract(corners[4], corners[0]);
@@ -145,10 +145,10 @@ static double box_volume(const vec3 corners[8]) {
 }
 
 /* The mean of the centres of the content's boxes, each weighted by the volume of its box. Derived: let a box
- * have the volume V and the centre c. Where a box is cut into parts, the sum of V c over the parts is V c of
- * the whole box. So a volume that is cut into parts keeps its middle, if the boxes around the relevant bricks
- * of the parts fill the box around all relevant bricks. The directions of near lights, and so the directions
- * of sheets, follow from the middle. */
+ * have the volume V and the centre c. If a box is cut into parts, the sum of V c over the parts is V c of the
+ * whole box. So a volume that is cut into parts keeps its middle, if the boxes around the relevant bricks of
+ * the parts fill the box around all relevant bricks. The directions of near lights, and so the directions of
+ * sheets, follow from the middle. */
 static vec3 content_middle(const frame *frame) {
   vec3 sum = {0, 0, 0};
   double volumes = 0;
@@ -161,9 +161,9 @@ static vec3 content_middle(const frame *frame) {
   return frame->content.point_count == 0 ? sum : vec3_scale(sum, 1 / volumes);
 }
 
-/* Sets eye_direction and the sizes of pixels at the content. Where the eye is outside the content,
- * eye_direction is half way between the direction straight ahead and the direction to the content's middle;
- * elsewhere it is straight ahead. */
+/* Sets eye_direction and the sizes of pixels at the content. If the eye is outside the content, eye_direction
+ * is half way between the direction straight ahead and the direction to the content's middle. Otherwise it is
+ * straight ahead. */
 static void look(frame *frame) {
   vec3 start, forward;
   hl_view_ray(&frame->eye, frame->eye.width / 2.0, frame->eye.height / 2.0, &start, &forward);

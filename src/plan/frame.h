@@ -1,5 +1,5 @@
-/* plan/frame.h - the geometry of one frame: where the eye, the lights and the content are, in frame space
- * (framed_scene.h). */
+/* plan/frame.h - the geometry of one frame in frame space (framed_scene.h): the positions of the eye, the
+ * lights and the content. */
 #ifndef HL_PLAN_FRAME_H
 #define HL_PLAN_FRAME_H
 
@@ -12,7 +12,7 @@
 
 enum { FRAME_LIGHTS = MAXIMUM_SWEEP_LIGHTS, CONTENT_POINTS = 64 };
 
-/* What the picture shows: volumes and meshes. */
+/* The content of the picture: volumes and meshes. */
 typedef struct frame_content {
   vec3 *points; /* corners of the boxes around the volumes' visible bricks and around the meshes; owned by
                  * the plan; [point_count], eight for each box */
@@ -27,16 +27,16 @@ typedef struct frame {
                       * frame */
   view eye;
   vec3 eye_direction;  /* the direction e: a unit vector from the eye towards the content */
-  double pixel;        /* edge of a picture's pixel at the place where the content is nearest, frame units */
+  double pixel;        /* the edge of a picture's pixel, projected to the nearest content; frame units */
   double middle_pixel; /* edge of a picture's pixel at the content's middle, frame units */
-  double spacing;      /* the distance ds of neighbouring sheets, frame units */
+  double spacing;      /* the distance ds between neighbouring sheets, frame units */
   frame_content content;
   light_sectors sectors; /* the directions of the sectors into which lights within the content are divided */
   light_source *lights;  /* [light_count]; owned by the caller; the sectors of one light follow each other */
   int light_count;
   const surfaces *surfaces;    /* surfaces of the scene's meshes; null: the scene has no meshes */
-  const surface_tree *contact; /* the tree of those surfaces for which the light close behind them is
-                                * corrected (render/late/) */
+  const surface_tree *contact; /* the tree of the surfaces close behind which the light is corrected
+                                * (render/late/) */
 } frame;
 
 /* Makes the eye's view of width x height pixels. */

@@ -10,7 +10,7 @@
 #include "plan/framed_scene.h"
 #include "surface/surfaces.h"
 
-/* How a volume's matter looks, and how much light it absorbs. */
+/* The look of a volume's matter, and the amount of light that it absorbs. */
 typedef struct volume_look {
   hl_shading shading;
   hl_cut_shading cut_shading;
@@ -36,13 +36,13 @@ typedef struct frame_volume {
   volume_look look;
 } frame_volume;
 
-/* A light of the frame, as a whole. Its light_source, or the light_source of each of its sectors, says where
- * its rays run. */
+/* A light of the frame, as a whole. The light_source of the light, or of each of its sectors, describes the
+ * rays. */
 typedef struct frame_light {
   int index;       /* the light's number in the scene's list of lights; suns of a sky follow the
                     * lights of the list */
-  double sun_part; /* where the light is a sun of the sky: the fraction of the light that a medium
-                    * takes; for other lights 0 */
+  double sun_part; /* if the light is a sun of the sky: the fraction of its light that a medium takes; for
+                    * other lights 0 */
   bool is_wide;    /* whether the light has an extent, or its rays have several directions at a
                     * point */
   /* whether the light that a sample receives is the intensity divided by the square of the sample's
@@ -52,7 +52,8 @@ typedef struct frame_light {
   /* whether the light shows a picture of several colours on its surface, so that its colours come from
    * different places */
   bool has_colored_image;
-  double color[HL_CHANNELS], intensity; /* linear RGB, and the intensity in units of frame space */
+  double color[HL_CHANNELS], intensity; /* the light's linear RGB, and its intensity in units of frame
+                                         * space */
 } frame_light;
 
 /* A mesh of the frame, or an isosurface of a volume. Its primitives are those of the mesh with the same index
@@ -64,9 +65,9 @@ typedef struct frame_mesh {
   surface_look look;
 } frame_mesh;
 
-/* Three functions, each of which describes one thing of the scene for the frame: a volume, a light or a mesh.
- * framed: the scene in frame space, which must live until the frame ends. The caller sets the volume's
- * classifier, its value beyond the volume, and its versions. */
+/* Three functions that describe a volume, a light and a mesh of the scene for the frame. framed: the scene in
+ * frame space, which must live until the frame ends. The caller sets the volume's classifier, its value
+ * beyond the volume, and its versions. */
 frame_volume hl_frame_volume(const framed_scene *framed, size_t index);
 frame_light hl_frame_light(const framed_scene *framed, size_t index);
 frame_mesh hl_frame_mesh(const framed_scene *framed, size_t index);

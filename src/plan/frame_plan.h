@@ -42,7 +42,8 @@ typedef struct plan_volumes {
 /* Light that does not travel from sheet to sheet, because it is found on grids of its own. */
 typedef struct plan_fields {
   bool scatters;                  /* whether media scatter light more than once */
-  const scatter_field *scattered; /* borrowed; the light that media scatter more than once; null: none */
+  const scatter_field *scattered; /* borrowed; the light that media scatter more than once; null: the frame
+                                   * has no such light */
   const sky_light *sky;           /* borrowed; the light of the sky; null: there is no sky */
   const phase_tables *phases;     /* borrowed; the means of phase functions over wide lights */
 } plan_fields;
@@ -53,7 +54,7 @@ typedef struct light_plan {
   light_emission *emission; /* owned; the picture on the light's own surface; null: none */
   light_shadow shadow;      /* the shadow as it was planned; a back end works on a copy of it
                              * (hl_light_shadow_begin) */
-  shadow_layouts memory;    /* how much memory the shadow's method takes */
+  shadow_layouts memory;    /* the memory that the shadow's method takes */
 } light_plan;
 
 /* One pass over the sheets. */
@@ -107,7 +108,8 @@ hl_status hl_plan_sweeps(hl_context *context, frame_plan *plan, hl_error *error)
  * to back. */
 bool hl_layers_measure(const hl_layers *wanted);
 
-/* The last step of planning, after the picture is shared out: plans the shadows of all lights. */
+/* Plans the shadows of all lights. This is the last step of planning; the picture must have been divided into
+ * parts before. */
 hl_status hl_plan_lights(hl_context *context, frame_plan *plan, hl_error *error);
 
 /* ---- what light reaches ---- */
@@ -117,7 +119,7 @@ static inline bool hl_is_beyond(const sheet_stack *sheets, const light_source *s
   return source->parallel || hl_sheet_height(sheets, sheet - 1) >= vec3_dot(sheets->normal, source->position);
 }
 
-/* Whether a light's shadows reach a slab. */
+/* Returns whether a light's shadows reach a slab. */
 static inline bool hl_is_reached(const sheet_stack *sheets, const light_shadow *shadow, int sheet) {
   return hl_is_beyond(sheets, shadow->setup.source, sheet + 1 - shadow->method->first_slab);
 }

@@ -24,8 +24,8 @@ static void move_camera(const hl_frame_space *space, hl_camera *camera) {
   camera->height /= space->unit;
 }
 
-/* Moves a light to frame space. Derived: where light falls off with the square of the distance d, I / d^2 is
- * (I / unit^2) / (d / unit)^2, so the intensity I is divided by unit^2. */
+/* Moves a light to frame space. Derived: if light falls off with the square of the distance d, I / d^2 is (I
+ * / unit^2) / (d / unit)^2. So the intensity I is divided by unit^2. */
 static void move_light(const hl_frame_space *space, hl_light *light, double (*vertices)[3]) {
   move_point(space, light->position);
   light->radius /= space->unit;

@@ -1,5 +1,5 @@
-/* plan/framed_scene.h - a scene in frame space: moved to the middle of its volumes, and measured in units of
- * about their smallest voxel edge. */
+/* plan/framed_scene.h - converts a scene to frame space. Its origin is the middle of the scene's volumes, and
+ * its unit of length is about the volumes' smallest voxel edge. */
 #ifndef HL_PLAN_FRAMED_SCENE_H
 #define HL_PLAN_FRAMED_SCENE_H
 

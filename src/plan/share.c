@@ -13,7 +13,7 @@
  * sorted. */
 typedef struct share_cell {
   double key;    /* the key by which cells are sorted; it rises from band to band */
-  double weight; /* a measure of the matter that lies under the cell */
+  double weight; /* a measure of the amount of matter under the cell */
   int32_t index;
 } share_cell;
 
@@ -113,8 +113,8 @@ static double turn_of(const double way[2]) {
 
 /* Sets the cells' keys. Let m be the direction of the line through the picture's middle c, and m' = (-m_y,
  * m_x) the direction across it. Derived: the line through p along d crosses the line through c along m' at c
- * + t m', where t = cross(p - c, d) / cross(m', d). The key is t. Where the light's image lies in the picture
- * or near it, the lines do not all run along m; then the key is the angle of the line. */
+ * + t m', where t = cross(p - c, d) / cross(m', d). The key is t. If the light's image lies in the picture or
+ * near it, the lines do not all run along m. The key is then the angle of the line. */
 static void set_keys(const share_content *content, const picture_share *share, share_cell *cells) {
   const frame *frame = content->frame;
   const light_image image = image_of(&frame->eye, brightest(content, share));
@@ -141,8 +141,8 @@ static void set_keys(const share_content *content, const picture_share *share, s
 /* ---- how much lies under a cell ---- */
 
 /* About SHARE_BRICKS bricks of the volumes are sampled. A cell's weight is the square root of the number of
- * its bricks: where there are many bricks, most of them are hidden (measured: docs/laboratory/ranks.md). A
- * cell without bricks has LEAST_WEIGHT times the mean weight. */
+ * its bricks, because most bricks of a cell with many bricks are hidden (measured: docs/laboratory/ranks.md).
+ * A cell without bricks has LEAST_WEIGHT times the mean weight. */
 enum { SHARE_BRICKS = 1 << 18 };
 static const double LEAST_WEIGHT = 0.1;
 
@@ -304,18 +304,18 @@ static bool lies_over_ranks(const share_content *content) {
   return false;
 }
 
-/* Whether parts wait for each other at each depth, and should therefore have several bands. Where volumes lie
- * over ranks, parts of one band are better, because they need the fewest pages. */
+/* Returns whether parts wait for each other at each depth, and should therefore have several bands. If
+ * volumes lie over ranks, parts of one band are better, because they need the fewest pages. */
 static bool waits_at_depths(const share_content *content, const picture_share *share) {
   const light_source *light = brightest(content, share);
   const shadow_method *method = light != NULL ? hl_shadow_method(light) : NULL;
   return method != NULL && method->exchanges && share->exchange != NULL && !lies_over_ranks(content);
 }
 
-/* Whether parts are bands, and not rows of cells in turn. Rows in turn divide the work more equally. But
- * where shadows are divided, a band needs less light. And where no shadows are cast, a band needs fewer
- * voxels, which matters if the voxels lie over ranks. It must not matter whether voxels lie in a scratch
- * file, because each process decides that for itself. */
+/* Returns whether parts are bands, and not rows of cells in turn. Rows in turn divide the work more equally.
+ * But if shadows are divided among the parts, a band needs less light. If no shadows are cast, a band needs
+ * fewer voxels, which matters if the voxels lie over ranks. It must not matter whether voxels lie in a
+ * scratch file, because each process decides that for itself. */
 static bool is_cut_in_bands(const share_content *content, const picture_share *share) {
   const frame *frame = content->frame;
   bool soft = false;

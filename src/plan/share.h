@@ -1,8 +1,8 @@
-/* plan/share.h - divides a picture among several renderers: says which pixels each of them makes.
+/* plan/share.h - divides a picture among several renderers: finds the pixels that each renderer makes.
  *
  * An eye's ray and a light's ray that meet lie in one plane with the eye and the light. In the picture these
- * planes are lines through the light's image, or parallel lines where the image is infinitely far away. So a
- * band of the picture along such lines looks up only a band of the light's shadow buffer, over all sheets.
+ * planes are lines through the light's image. If the image is infinitely far away, the lines are parallel. So
+ * a band of the picture along such lines looks up only a band of the light's shadow buffer, over all sheets.
  * Each part of a picture is such a band, for the brightest light whose method lets parts work through their
  * own light. Bands consist of whole cells, and each band has about the same amount of matter under it. Where
  * parts wait for each other at each depth, a part may have two or three bands, so that the parts have more
@@ -28,7 +28,7 @@ typedef struct picture_share {
   int32_t *part_of;               /* [cells_y][cells_x]; the part to which each cell belongs */
 } picture_share;
 
-/* What the picture shows, as far as its division into parts depends on it. */
+/* The facts about a picture's content on which the division into parts depends. */
 typedef struct share_content {
   const frame *frame;        /* the frame, whose eye and lights must be set up */
   const frame_light *lights; /* the frame's lights; a light source names its light by `row` */

@@ -17,8 +17,8 @@ enum { BISECTIONS = 30 };
  * tables to data values. */
 typedef struct shown_values {
   const hl_transfer_function *function; /* the volume's transfer function; borrowed */
-  double low, step; /* low: the data value of coordinate 0; step: the difference of data values from one
-                     * coordinate to the next */
+  double low, step; /* low: the data value of the coordinate 0; step: the difference between the data values
+                     * of neighbouring coordinates */
   double nothing;   /* the data value below which there is no matter */
   double end;       /* the distance, in entries of the table, by which the ends of ranges are moved */
 } shown_values;
@@ -29,8 +29,8 @@ static bool shows(const shown_values *values, double from, double to) {
   return low <= high && hl_transfer_function_visible(values->function, low, high);
 }
 
-/* The greatest value that is shown between an entry and the next one (`greatest` is set), or the least one,
- * as a coordinate of the table. */
+/* Finds the greatest value (if `greatest` is set) or the least value that is shown between an entry and the
+ * next one, as a coordinate of the table. */
 static double end_of_step(const shown_values *values, int entry, bool greatest) {
   double inside = entry, outside = entry + 1;
   /* if the greatest value is searched for: something is shown between `inside` and entry + 1 */

@@ -1,4 +1,4 @@
-/* plan/shown_values.h - the values that a volume's transfer function shows, as a table, for maximum
+/* plan/shown_values.h - makes a table of the values that a volume's transfer function shows, for maximum
  * projections.
  *
  * In:  a transfer function, and the volume's classifier, whose tables give values their coordinates. Out: for

@@ -1,4 +1,5 @@
-/* plan/slicing.c - chooses the direction of the sheets (section 3.1), and which lights share a sweep. */
+/* plan/slicing.c - chooses the direction of the sheets (section 3.1 of the paper), and the lights that share
+ * a sweep. */
 #include "plan/slicing.h"
 
 #include "scene/light/light_kind.h"
@@ -7,8 +8,9 @@
  * are within this angle of the slicing axis. */
 static const double STEEPEST = 0.5;
 
-/* The least |cos| of angles to the slicing axis; a frame with a smaller |cos| is refused. FLATTEST_EYE_RAY:
- * for the picture's outermost rays (87 degrees). FLATTEST_LIGHT: for a light's direction (80 degrees). */
+/* The least allowed |cos| of the angle between a ray and the slicing axis; a frame with a smaller |cos| is
+ * refused. FLATTEST_EYE_RAY: for the picture's outermost rays (87 degrees). FLATTEST_LIGHT: for a light's
+ * direction (80 degrees). */
 static const double FLATTEST_EYE_RAY = 0.05, FLATTEST_LIGHT = 0.17;
 
 /* The least |cos| of the angle between a slicing axis h and the eye's rays through the picture's corners. It
@@ -99,7 +101,7 @@ static bool eye_crosses(const frame *frame, vec3 h, bool back_to_front) {
 /* The slicing axis of one light. Some rays of a near light, or of a wide parallel light, may not cross the
  * sheets of the half-way vector. Then the axis leans towards the middle of the light's rays, but no farther
  * than needed. So the axis moves without a jump as the light moves. For a parallel light it leans no farther
- * than the eye allows. Returns false where no sheets suit both a near light and the eye. */
+ * than the eye allows. Returns false if no sheets suit both a near light and the eye. */
 static bool axis_of_light(const frame *frame, const hl_render_settings *settings, const light_source *source,
                           vec3 *h, bool *back_to_front) {
   const bool wide = source->parallel;

@@ -1,5 +1,5 @@
-/* plan/slicing.h - the sweeps of a frame: the direction of each sweep's sheets, and the lights that share the
- * sweep. */
+/* plan/slicing.h - divides a frame into sweeps: chooses the direction of each sweep's sheets, and the lights
+ * that share the sweep. */
 #ifndef HL_PLAN_SLICING_H
 #define HL_PLAN_SLICING_H
 

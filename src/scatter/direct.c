@@ -1,4 +1,4 @@
-/* scatter/direct.c - the lights' unscattered light at the nodes.
+/* scatter/direct.c - finds the lights' unscattered light at the nodes of the grid.
  *
  * The light that reaches a node is found for a few points of each light: extinction is summed on the way from
  * the node to the point, in steps as long as the distance of the nodes. A node holds the mean of the light
@@ -89,7 +89,8 @@ static float within_cone(const light_cone *cone, vec3 towards) {
   return (float)(x * x * (3 - 2 * x));
 }
 
-/* Multiplies the light of a ray by the fraction that a mesh lets through where the ray meets the mesh. */
+/* Multiplies the light of a ray by the fraction that a mesh lets pass at the point where the ray meets the
+ * mesh. */
 static void meet_mesh(void *data, const surface_hit *hit) {
   float *passing = data;
   const double *color = hit->mesh->look.attenuation_color;

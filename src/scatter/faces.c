@@ -3,18 +3,18 @@
  *
  * Samples are lit by the light of nodes, interpolated linearly in the distance. The light itself is linear in
  * the optical depth. Consider a line that crosses the matter's face between two nodes. Let e and f be the
- * extinctions of the two nodes, and f the lesser one. Let each extinction hold for half of the way, and let u
- * and v be the light at the nodes. In the middle of the way the light is then u + (v - u) e / (e + f). Linear
- * interpolation gives this value if the node of extinction f holds v + (v - u) (e - f) / (e + f) in place of
- * v (derived). Lines along the face are another case. Beside the matter, the light v along such a line comes
- * from the sky, or is none. Within the matter, the light u along the line is scattered there. Each line
- * stands for all directions that are nearly along the face. At the face, one half of these directions brings
- * v and the other half u; a little deeper all of them bring u. So in the middle v has the weight 1/4. For
- * this the node of less matter must hold v + (u - v) / 2 (e - f) / (e + f).
+ * extinctions of the two nodes, and f the lesser one. Each extinction is taken to hold for half of the way.
+ * Let u and v be the light at the nodes. In the middle of the way the light is then u + (v - u) e / (e + f).
+ * Linear interpolation gives this value if the node of extinction f holds v + (v - u) (e - f) / (e + f) in
+ * place of v (derived). Lines along the face are another case. Beside the matter, the light v along such a
+ * line comes from the sky, or is 0. Within the matter, the light u along the line is scattered there. Each
+ * line stands for all directions that are nearly along the face. At the face, one half of these directions
+ * brings v and the other half u; a little deeper all of them bring u. So in the middle v has the weight 1/4.
+ * For this the node of less matter must hold v + (u - v) / 2 (e - f) / (e + f).
  *
  * So an empty node beside matter holds the light at the matter's face. It continues the light of the matter,
- * and light that is even stays even. Where a node has several neighbours with more matter, it gets the mean
- * of their changes, weighted by how much more matter they have. */
+ * and light that is even stays even. If a node has several neighbours with more matter, it gets the mean of
+ * the changes for all of them. The weight of a neighbour is the difference of matter. */
 #include "scatter/parts.h"
 
 typedef struct faces {

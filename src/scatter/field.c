@@ -1,5 +1,5 @@
-/* scatter/field.c - makes a field of scattered light from volumes and lights, and keeps it while these stay
- * the same. */
+/* scatter/field.c - makes a field of scattered light from volumes and lights, and keeps the field while they
+ * do not change. */
 #include "scatter/scatter.h"
 
 #include <math.h>
@@ -180,7 +180,7 @@ typedef struct channel {
   float *light, *flux;
 } channel;
 
-/* The albedo of all matter together: of the light that meets matter, the fraction that is scattered. */
+/* The albedo of all matter together: the fraction of the light that meets matter which is scattered. */
 static float mean_albedo(const channel *of, size_t count) {
   double met = 0, kept = 0;
   for (size_t n = 0; n < count; n++) met += of->own[n], kept += of->extinction[n] - of->scattering[n];

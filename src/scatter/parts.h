@@ -1,4 +1,4 @@
-/* scatter/parts.h - the data and functions that the files of this room share. */
+/* scatter/parts.h - the data and functions that the files of the folder scatter share. */
 #ifndef HL_SCATTER_PARTS_H
 #define HL_SCATTER_PARTS_H
 
@@ -56,14 +56,13 @@ float hl_scatter_line_weight(int line);
  * multiplied by one factor, so that their weighted sum is the light of the whole sky. */
 void hl_scatter_sky_inflow(const hl_sky *sky, scatter_inflow inflow[3]);
 
-/* How the sky's light is divided. The sky's field (field/sky_field.h) is finer than the nodes. It lights
- * samples with the fraction 1 - w of the sky's unscattered light, where w is the albedo. The grid holds the
- * rest:
- *
+/* The division of the sky's light between two fields. The sky's field (field/sky_field.h) is finer than the
+ * nodes. It lights samples with the fraction 1 - w of the sky's unscattered light, where w is the albedo. The
+ * grid of nodes holds the rest:
  *
  *     all light of the grid - (1 - w) of its unscattered light.
  *
- * So where matter scatters all light, details of the sky's shadow vanish. This is right, because a fold of
+ * So in matter that scatters all light, details of the sky's shadow vanish. This is right, because a fold of
  * the matter that gets less of the sky's light gets more scattered light. Under an even sky a medium of
  * albedo 1 is lit by 1 everywhere, exactly. */
 
@@ -88,9 +87,10 @@ typedef struct scatter_work {
   float *along[SCATTER_LINES];                        /* [nodes]; for each line, the light along the line
                                                        * at each node, and intermediate results */
   float *vectors[5];                                  /* [nodes]; vectors of the conjugate gradients */
-  float *flux[SCATTER_LINES], *before[SCATTER_LINES]; /* [nodes]; null where no flux is wanted */
+  float *flux[SCATTER_LINES], *before[SCATTER_LINES]; /* [nodes]; memory for finding the flux; null if no flux
+                                                       * is wanted */
   float *sky;          /* [nodes]; the sky's light that was not scattered; null if there is no sky */
-  float *sky_flux;     /* [3][nodes]; null where no flux is wanted */
+  float *sky_flux;     /* [3][nodes]; the flux; null if no flux is wanted */
   scatter_walls walls; /* the meshes on the lines; without meshes the arrays are null */
 } scatter_work;
 

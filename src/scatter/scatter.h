@@ -1,4 +1,5 @@
-/* scatter/scatter.h - light that media scatter more than once, on a coarse grid over the scene.
+/* scatter/scatter.h - finds the light that media scatter more than once, at the nodes of a coarse grid over
+ * the scene.
  *
  * The grid does not depend on the camera. Its light is found once, while volumes and lights stay the same:
  *
@@ -24,7 +25,7 @@
 #include "light/light_source.h"
 #include "surface/surfaces.h"
 
-/* A volume of the scene, in the form in which this room reads it. */
+/* A volume of the scene, in the form in which the folder scatter reads it. */
 typedef struct scatter_volume {
   const hl_scene_volume *scene; /* the volume in frame space */
   uint64_t plane_mark; /* the mark of the volume's function of two numbers, which identifies the function's
@@ -63,13 +64,13 @@ typedef struct scatter_field {
   hl_key key;   /* the key of the field's input */
 } scatter_field;
 
-/* Whether some volume asks for multiple scattering and can show it. */
+/* Returns whether some volume asks for multiple scattering and can show it. */
 bool hl_scatter_wanted(const hl_scene_description *scene);
 
 /* Counts the memory that hl_scatter_update() takes where it has to make the field anew. */
 void hl_scatter_count(const scatter_scene *scene, hl_layout *layout);
 
-/* Brings the field up to date. It does nothing if the field's input has stayed the same. */
+/* Brings the field up to date. Does nothing if the field's input has not changed. */
 hl_status hl_scatter_update(const scatter_scene *scene, scatter_field *field, hl_error *error);
 void hl_scatter_release(hl_context *context, scatter_field *field);
 

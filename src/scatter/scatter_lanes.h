@@ -1,4 +1,4 @@
-/* scatter/scatter_lanes.h - scattered light between the nodes, linear along each axis. */
+/* scatter/scatter_lanes.h - interpolates scattered light between the nodes, linearly along each axis. */
 #ifndef HL_SCATTER_SCATTER_LANES_H
 #define HL_SCATTER_SCATTER_LANES_H
 

@@ -1,4 +1,4 @@
-/* scatter/sky.c - the sky's light that enters the grid at both ends of each of its lines. */
+/* scatter/sky.c - finds the sky's light that enters the grid at both ends of each of its lines. */
 #include "scene/light/sky.h"
 
 #include <math.h>

@@ -1,11 +1,10 @@
-/* scatter/transport.c - how scattered light spreads from node to node.
+/* scatter/transport.c - computes how scattered light spreads from node to node.
  *
  * Along a line through the nodes, let u be the mean of the light that travels onwards and of the light that
  * travels back. With even scattering, u obeys u'' = u - S, where u'' is the second derivative by the optical
  * depth, and S is the light that is scattered into each of the two ways (Feautrier, "Sur la resolution
- * numerique de l'equation de transfert", 1964). Where nodes i and i + 1 have the optical distance d_{i+1/2},
- * and t_i is the optical depth of a node's own box,
- *
+ * numerique de l'equation de transfert", 1964). Let d_{i+1/2} be the optical distance of the nodes i and i +
+ * 1, and t_i the optical depth of a node's own box:
  *
  *     t_i (u_i - S_i) = (u_{i+1} - u_i) / d_{i+1/2} - (u_i - u_{i-1}) / d_{i-1/2}
  *
@@ -14,7 +13,6 @@
  * space (derived; after Rybicki and Hummer, "An accelerated lambda iteration method for multilevel radiative
  * transfer", 1991, appendix A):
  *
- *
  *     f_i = t_i + f_{i-1} g_{i-1},  y_i = t_i S_i + y_{i-1} g_{i-1},  g_i = 1 / (1 + f_i d_{i+1/2}),  f = 1
  *     and y = I before the first, u_i = (u_{i+1} + y_i d_{i+1/2}) g_i,  at the last node u = (y + I) / (1 +
  *     f)
@@ -22,8 +20,8 @@
  * The mean over all directions is the weighted sum over the 13 lines between a node and its 26 neighbours, by
  * the weights of the cubature of degree 7 of Lebedev ("Values of the nodes and weights of ninth to
  * seventeenth order Gauss-Markov quadrature formulae invariant under the octahedron group with inversion",
- * 1975). The scheme conserves energy. Where many mean free paths lie between nodes it becomes the diffusion
- * equation.
+ * 1975). The scheme conserves energy. If many mean free paths lie between neighbouring nodes, it becomes the
+ * diffusion equation.
  *
  * From node i to the next one, the light that travels onwards exceeds the mean of both ways by v_{i+1/2} =
  * y_i - f_i u_i (derived: the first of these equations for (u_i - u_{i+1}) / d). The sum of v times the
@@ -138,7 +136,7 @@ static float entering_last(const lines_job *job, int line) {
 /* Sets the number y (see the head of the file) at each node before light goes along the line: the energy that
  * the node sends out, plus the light that enters the line. Without meshes every node gets the entering light,
  * and go_forward() subtracts it again from all nodes but the first. With meshes only the first node gets the
- * entering light, as far as walls let it in. */
+ * entering light, reduced by the walls before it. */
 static void begin_sums(const lines_job *job, int line, float *sums) {
   const scatter_walls *walls = walls_of(job);
   float length = length_of(line) * job->nodes->spacing, entered = entering(job, line);

@@ -1,19 +1,17 @@
-/* scatter/walls.c - meshes on the lines of the grid.
+/* scatter/walls.c - finds how meshes attenuate the light along the lines of the grid.
  *
  * A few rays beside each line are tested for meshes. The mean of the fractions of light that pass along these
- * rays is taken as the fraction that meshes let through between two nodes. Beyond the ends of the line the
- * rays spread over the part of the sky for which the line stands. For each channel of extinction, the
- * fractions are turned into optical depths (derived). A wall lets the fraction T of light through and sends
- * none back. With t = (1 - T) / (1 + T), the mean u of both ways, and the excess v of the light that travels
- * onwards, obey on its two sides
- *
+ * rays serves as the fraction that meshes let pass between two nodes. Beyond the ends of the line the rays
+ * spread over the part of the sky for which the line stands. For each channel of extinction, the fractions
+ * are turned into optical depths (derived). A wall lets the fraction T of light through and sends none back.
+ * With t = (1 - T) / (1 + T), the mean u of both ways, and the excess v of the light that travels onwards,
+ * obey on its two sides
  *
  *     v_1 = t u_1 + (u_1 - u_2) / d,  v_2 = (u_1 - u_2) / d - t u_2,  d = 2 t / (1 - t^2)
  *
  * So a wall adds t to the depths of the nodes on both sides, and the depth d between them. Let matter of the
  * depth r lie between each node and the wall. Then even light on both sides (u_1 = u_2) meets 1 / t + r
  * instead of 1 / t, and opposite light (u_1 = -u_2) meets t + r instead of t. So t and d become
- *
  *
  *     t' = t / (1 + r t),  d' = 2 (t + r) (1 + r t) / (1 - t^2) */
 #include <math.h>
@@ -26,7 +24,7 @@ enum { RAYS = 2 /* number of rays through a node's box, along each side */ };
  * sqrt(4 pi / 26). The rays leave the grid in different directions within this square. */
 static const double CELL_OF_SKY = 0.695;
 
-/* The least fraction of light that a wall is taken to let through, so that depths are finite. */
+/* A wall counts as letting at least this fraction of light pass, so that optical depths are finite. */
 static const float LEAST_PASSING = 1.0f / 16384;
 
 typedef struct wall_job {
@@ -39,8 +37,8 @@ typedef struct wall_job {
  * after its last node. */
 typedef struct wall_ray {
   vec3 origin, step; /* position of the first node, and step from node to node */
-  vec3 tilt;         /* added to the unit vector from an end of the ray towards the sky, so that rays spread
-                      * over the sky */
+  vec3 tilt;         /* a vector that is added to the unit vector from an end of the ray towards the sky, so
+                      * that rays spread over the sky */
   double passing[SCATTER_MOST_NODES + 1];
   int count; /* number of nodes */
 } wall_ray;

@@ -1,7 +1,7 @@
-/* simd/gathers.h - sixteen lanes of numbers from sixteen positions in a table.
+/* simd/gathers.h - loads sixteen lanes of numbers from sixteen positions in a table.
  *
- * The functions gather words, floats, rows, pairs and squares, by as few loads as an instruction set allows.
- * The results are the same with all instruction sets. */
+ * The functions gather words, floats, rows, pairs and squares, with the least number of loads that an
+ * instruction set allows. The results are the same with all instruction sets. */
 #ifndef HL_SIMD_GATHERS_H
 #define HL_SIMD_GATHERS_H
 
@@ -26,9 +26,9 @@ LANES_INLINE void lanes_store_offsets(lanes_offsets *offsets, lanes_int value) {
   __asm__ volatile("" : : "r"(offsets) : "memory");
 }
 
-/* Sixteen 4-byte loads at base + offset (bytes). These are plain loads, because gather instructions were four
- * times slower on processors with the mitigations against data sampling (measured). clang 19 nevertheless
- * generates some gather instructions for AVX-512. */
+/* Loads four bytes for each of sixteen lanes, at base + offset (bytes). These are plain loads, because gather
+ * instructions were four times slower on processors with the mitigations against data sampling (measured).
+ * clang 19 nevertheless generates some gather instructions for AVX-512. */
 LANES_CALL lanes_int lanes_load_words(const unsigned char *base, const lanes_offsets *offsets) {
 #define LANES_WORD(lane) lanes_word(base + offsets->at[lane])
   return (lanes_int){LANES_WORD(0),  LANES_WORD(1),  LANES_WORD(2),  LANES_WORD(3),
@@ -251,8 +251,8 @@ LANES_INLINE __m512i four_rows(const uint16_t *from, size_t stride) {
   return _mm512_inserti32x4(rows, _mm_loadu_si128((const __m128i *)(const void *)(from + 3 * stride)), 3);
 }
 
-/* Takes the squares of all active lanes from one window of eight rows of eight numbers. Returns false where
- * the squares are too far apart for one window. At least one lane must be active. */
+/* Takes the squares of all active lanes from one window of eight rows of eight numbers. Returns false if the
+ * squares are too far apart for one window. At least one lane must be active. */
 LANES_INLINE int squares_in_window(const uint16_t *table, size_t stride, lanes_squares squares,
                                    uint32_t active, __m512i pair[2]) {
   __m512i corners = _mm512_or_si512((__m512i)squares.column, _mm512_slli_epi32((__m512i)squares.row, 16));

@@ -1,10 +1,9 @@
-/* simd/lanes.h - sixteen floats at a time, in one source for every instruction set.
+/* simd/lanes.h - operations on sixteen floats at a time, in one source for every instruction set.
  *
- * The compiler's vector extensions turn each line below into one 512-bit, two 256-bit or four 128-bit
- * operations. These are always the same IEEE operations in the same order, so the bytes of a picture do not
+ * The compiler's vector extensions translate each operation to one 512-bit, two 256-bit or four 128-bit
+ * instructions. These are always the same IEEE operations in the same order, so the bytes of a picture do not
  * depend on the processor. Intrinsics are used only for operations that the extensions lack (minimum, gather,
- * fused multiply-add). Products and sums are fused where lanes_fma() says so and nowhere else
- * (-ffp-contract=off). */
+ * fused multiply-add). A product and a sum are fused only by lanes_fma() (-ffp-contract=off). */
 #ifndef HL_SIMD_LANES_H
 #define HL_SIMD_LANES_H
 
@@ -105,8 +104,8 @@ LANES_CALL lanes_int lanes_from_bits(uint32_t bits) {
   return (lanes_set_int((int32_t)bits) & one_bit) != 0;
 }
 
-/* Two functions: the lesser number, a < b ? a : b, and the greater number, a > b ? a : b. Where either number
- * is NaN, the result is b, as with the processor's instructions. */
+/* Two functions: the lesser number, a < b ? a : b, and the greater number, a > b ? a : b. If either number is
+ * NaN, the result is b, as with the processor's instructions. */
 LANES_CALL lanes lanes_min(lanes a, lanes b) {
 #if defined(__AVX512F__)
   return (lanes)_mm512_min_ps((__m512)a, (__m512)b);
@@ -336,8 +335,9 @@ LANES_CALL lanes_int lanes_floor(lanes x) {
 }
 
 /* Computes 2^x for |x| < 126, with a relative error below 2e-7. x is divided into n + f, with f in [-1/2,
- * 1/2]. 2^n is made by the exponent bits. 2^f is a polynomial of degree 5 with the value 1 at 0; of these, it
- * has the least greatest relative error (derived: 9.2e-8 by Remez' exchange, 1.7e-7 in floats). */
+ * 1/2]. 2^n is made by the exponent bits. 2^f is a polynomial of degree 5 with the value 1 at 0; among these
+ * polynomials, it has the smallest maximum of the relative error (derived: 9.2e-8 by Remez' exchange, 1.7e-7
+ * in floats). */
 LANES_CALL lanes lanes_exp2(lanes x) {
   lanes_int n = lanes_floor(x + 0.5f);
   lanes f = x - lanes_from_int(n);

@@ -1,5 +1,6 @@
-/* gpu/kernels/cascade.h - passes over the fields of soft lights (shadow_cascade/cascade.h). The functions do
- * for one pixel what shadow_cascade/cascade_lanes.h does for sixteen pixels, where no mesh leaves marks. */
+/* gpu/kernels/cascade.h - passes over the fields of soft lights (shadow_cascade/cascade.h). The functions
+ * compute for one pixel the same numbers as shadow_cascade/cascade_lanes.h for sixteen pixels, if no mesh
+ * leaves marks. */
 #ifndef HL_GPU_CASCADE_H
 #define HL_GPU_CASCADE_H
 
@@ -12,7 +13,7 @@
 /* lanes_store_short() */
 DEVICE word16 rounded_pixel(float x) { return (word16)(int)(lesser(x, 65535.0f) + 0.5f); }
 
-/* A pixel's place in a field, from the field's pixel (0, 0). */
+/* The index of a pixel in a field, counted from the field's pixel (0, 0). */
 DEVICE wide place_in_field(unsigned field, int stride, int x, int y) {
   return (wide)field + (wide)(unsigned)(y * stride + x);
 }
@@ -20,7 +21,7 @@ DEVICE wide place_in_field(unsigned field, int stride, int x, int y) {
 /* 1 - thin */
 DEVICE float left_by(word16 thin) { return fused((float)thin, -1.0f / PASS_WHOLE, 1.0f); }
 
-/* a + (1 - thin) b, at a place in the fields of a and thin. */
+/* Computes a + (1 - thin) b at a pixel of the fields a and thin. */
 DEVICE float left_and_a(float b, GLOBAL const plan_pass *pass, GLOBAL const word16 *fields, wide at) {
   if (pass->a == PASS_NOTHING) return pass->thin == PASS_NOTHING ? b : b * left_by(fields[pass->thin + at]);
   const float more = (float)fields[pass->a + at];
@@ -33,7 +34,7 @@ DEVICE float a_and_b(GLOBAL const plan_pass *pass, GLOBAL const word16 *fields, 
   return left_and_a((float)fields[pass->b + at], pass, fields, at);
 }
 
-/* b, which is twice as coarse, at a pixel (double_row()). */
+/* The value at a pixel of the field b, which is twice as coarse and is interpolated as in double_row(). */
 DEVICE float doubled(GLOBAL const plan_pass *pass, GLOBAL const word16 *fields, int x, int y) {
   const int stride = pass->stride_in, other = x & 1 ? 1 : -1;
   GLOBAL const word16 *close = fields + place_in_field(pass->b, stride, x / 2, y / 2);
@@ -135,8 +136,8 @@ DEVICE void split_pixel(GLOBAL const plan_pass *pass, GLOBAL word16 *fields, int
 /* A pixel of a light's buffer. The members of a tile take its pixels row by row, so that block_any() votes
  * on the sixteen pixels of a row, as the processors do. */
 typedef struct light_place {
-  int tile, member; /* tile: among the tiles of all lights; member: the pixel's number in the tile, block by
-                     * block */
+  int tile, member; /* tile: the tile's number among the tiles of all lights; member: the pixel's number in
+                     * the tile, block by block */
   int x, y;
   wide at; /* in a field of level 0 */
 } light_place;
@@ -155,8 +156,9 @@ DEVICE light_place place_of_member(GLOBAL const device_sweep *plan, GLOBAL const
 }
 
 /* Adds the light that a chunk's slabs absorbed in a pixel to the groups at the chunk's two ends (absorbed_job
- * in shadow_cascade/cascade_field.h). before: the light at the chunk's beginning; taken: what the slabs
- * absorbed of it. moment: cleared. counts: the slabs absorbed light in the pixel's row of its tile. */
+ * in shadow_cascade/cascade_field.h). before: the light at the chunk's beginning. taken: the part of this
+ * light that the slabs absorbed. moment: the function clears it. counts: whether the slabs absorbed light in
+ * the pixel's row of its tile. */
 DEVICE void absorb_pixel(GLOBAL const plan_pass *pass, GLOBAL word16 *fields, wide at, float before,
                          float taken, GLOBAL float *moment, int counts) {
   if (!counts) {

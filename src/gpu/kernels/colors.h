@@ -1,5 +1,6 @@
-/* gpu/kernels/colors.h - colours that voxels carry, at a position. The function does for one pixel what
- * voxel_color_at() in render/voxel_color_lanes.h does for sixteen. */
+/* gpu/kernels/colors.h - finds the colour of voxels that have colours of their own, at a position. The
+ * function computes for one pixel the same numbers as voxel_color_at() in render/voxel_color_lanes.h for
+ * sixteen. */
 #ifndef HL_GPU_COLORS_H
 #define HL_GPU_COLORS_H
 
@@ -7,8 +8,8 @@
 #include "gpu/kernels/numbers.h"
 
 /* Finds the mean colour of the eight voxels around a position of frame space. codes: [z][y][x][4]. decode:
- * the linear values of the codes. last: the greatest index along x, y, z. to_index: frame space to index
- * space. Returns the mean weight, 0 to 255; where it is 0, the colour is black. */
+ * the linear values of the codes. last: the greatest index along x, y, z. to_index: maps frame space to index
+ * space. Returns the mean weight, 0 to 255; if it is 0, the colour is black. */
 DEVICE float color_between_voxels(GLOBAL const byte *codes, GLOBAL const float *decode,
                                   GLOBAL const int *last, GLOBAL const float (*to_index)[4], vector position,
                                   float color[3]) {

@@ -1,6 +1,6 @@
 /* gpu/kernels/cuts.h - the cuts of a volume: the part of a ray that cuts leave, and where rays cross the
- * cuts' faces. The functions do for one pixel what render/view_sheets.c, render/cut_lanes.h and
- * fill/face_skin_lanes.h do for many. */
+ * cuts' faces. The functions compute for one pixel the same numbers as render/view_sheets.c,
+ * render/cut_lanes.h and fill/face_skin_lanes.h for many pixels. */
 #ifndef HL_GPU_CUTS_H
 #define HL_GPU_CUTS_H
 
@@ -53,15 +53,15 @@ DEVICE float row_size(GLOBAL const float *row) {
   return root(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
 }
 
-/* The speed, or 1e-12 where its magnitude is less. */
+/* Returns the speed, or 1e-12 if the speed's magnitude is less. */
 DEVICE float some_speed(float speed) { return magnitude(speed) < 1e-12f ? 1e-12f : speed; }
 
 DEVICE vector point_in_shape(GLOBAL const float rows[3][4], vector p) {
   return vector_of(row_of_point(rows[0], p), row_of_point(rows[1], p), row_of_point(rows[2], p));
 }
 
-/* Finds the section of a ray within a cut's shape, as distances along the ray; first > last where the ray
- * misses the shape. */
+/* Finds the section of a ray within a cut's shape, as two distances along the ray. The first distance is
+ * greater than the last one if the ray misses the shape. */
 DEVICE ray_section cross_cut(GLOBAL const plan_cut *cut, vector from, vector along) {
   const vector at = point_in_shape(cut->rows, from);
   const vector speed = vector_of(row_of_vector(cut->rows[0], along), row_of_vector(cut->rows[1], along),
@@ -110,13 +110,13 @@ DEVICE vector gradient_over_cut(GLOBAL const plan_cut *cut, vector point) {
 
 /* ---- the light's ways ---- */
 
-/* The part of a way towards a light in which box and cuts leave matter: its begin and its end, as lengths
- * along the way. */
+/* The part of a way towards a light in which the box and the cuts leave matter: the beginning and the end of
+ * the part, as lengths along the way. */
 typedef struct way_left {
   float enter, leave;
 } way_left;
 
-/* Shortens a way from a point towards the light: keeps the part that begins at the point and that no cut
+/* Shortens a way from a point towards the light to the part that begins at the point and that no cut
  * removes. */
 DEVICE void shorten_way(GLOBAL const plan_cut *cuts, int count, vector from, vector towards, way_left *left) {
   for (int i = 0; i < count; i++) {
@@ -150,8 +150,8 @@ DEVICE float length_left(GLOBAL const plan_cut *cuts, int count, vector from, ve
 
 /* Whether a sample is so far from the faces of all cuts that no face changes the light's ways to it and to
  * the pixels around it. Only planes, and boxes whose inside is left, are tested, because behind them the
- * nearest face is also the first face on the light's way. With any other cut the result is 0. step: the eye's
- * ray through the slab. */
+ * nearest face is also the first face on the light's way. If there is any other cut, the result is 0. step:
+ * the step along the eye's ray through the slab. */
 DEVICE int is_far_from_cuts(GLOBAL const plan_cut *cuts, int count, vector position, vector step) {
   int far = 1;
   for (int i = 0; i < count && far; i++) {

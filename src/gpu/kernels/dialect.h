@@ -1,8 +1,8 @@
 /* gpu/kernels/dialect.h - the dialect of the kernels: macros that hide the differences between OpenCL C 1.2,
  * CUDA C++ and C17.
  *
- * Every float operation is one IEEE operation, rounded to nearest. Products and sums are fused only where
- * fused() says so. So the kernels give the same bytes as the processor's functions (simd/lanes.h), which do
+ * Every float operation is one IEEE operation, rounded to nearest. A product and a sum are fused only by the
+ * function fused(). So the kernels give the same bytes as the processor's functions (simd/lanes.h), which do
  * the same operations in the same order. */
 #ifndef HL_GPU_DIALECT_H
 #define HL_GPU_DIALECT_H
@@ -15,7 +15,7 @@
 
 #pragma OPENCL FP_CONTRACT OFF
 #define GLOBAL __global
-/* Marks a pointer to memory to which no other pointer of the kernel leads. */
+/* Marks a pointer to memory that the kernel accesses through no other pointer. */
 #define APART       restrict
 #define DEVICE      static
 #define DEVICE_CALL static
@@ -35,16 +35,16 @@ typedef ulong wide;
 #define member_number() ((int)get_local_id(0))
 #define work_number()   ((int)get_global_id(0))
 #define work_count()    ((unsigned)get_global_size(0))
-/* A pack is the members that step together. least_of_pack() gives the least of the members' numbers, and
+/* A pack is a set of members that step together. least_of_pack() gives the least of the members' numbers, and
  * any_of_pack() tells whether a condition holds for any of its members. In OpenCL a pack is a single member.
- * Where all members of a group must take the same steps, the steps are of length one. */
+ * If all members of a group must take the same steps, the steps have the length one. */
 #define least_of_pack(value)   (value)
 #define any_of_pack(condition) (condition)
 #define least_of_group(value)  1
 #define SHARED_VOTES           __local int votes[GROUP / 16]
 #define UNROLLED
-/* Whether a condition holds for any of the sixteen pixels of the member's block. All members must call it.
- * votes: shared by the group, one for each block. */
+/* Returns whether a condition holds for any of the sixteen pixels of the member's block. All members of the
+ * group must call it. votes: memory that the group shares, with one vote for each block. */
 #define block_any(votes, condition)                                                               \
   (barrier(CLK_LOCAL_MEM_FENCE),                                                                  \
    (get_local_id(0) & 15) == 0 ? (void)(votes[get_local_id(0) >> 4] = 0) : (void)0,               \

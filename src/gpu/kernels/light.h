@@ -1,7 +1,7 @@
 /* gpu/kernels/light.h - the light that reaches a sample. The shadow buffer is read at the sample's position,
  * and the slab's own matter absorbs a part of the light. The functions serve one pixel and one volume that is
- * a medium. They do what render/reaching_lanes.h, render/light_depth_lanes.h, render/before_slab_lanes.h and
- * shadow/shadow_lookup_lanes.h do for sixteen pixels and several volumes. */
+ * a medium. They compute the same numbers as render/reaching_lanes.h, render/light_depth_lanes.h,
+ * render/before_slab_lanes.h and shadow/shadow_lookup_lanes.h for sixteen pixels and several volumes. */
 #ifndef HL_GPU_LIGHT_H
 #define HL_GPU_LIGHT_H
 
@@ -29,7 +29,7 @@ typedef struct slab_sample {
   float row;    /* as in matter_factor */
   float surface;
   float behind; /* the distance, in voxels, of the matter from a face that cuts it and is shaded as a surface;
-                 * FACE_VOXELS where no such face is near */
+                 * FACE_VOXELS if no such face is near */
 } slab_sample;
 
 /* ---- the buffer's pixels around a sample ---- */
@@ -109,12 +109,13 @@ DEVICE float interpolated(GLOBAL const plan_light *light, const shadow_taps *tap
   return cubic ? look_up_cubic(light, taps, plane) : look_up(light, taps, plane);
 }
 
-/* As between_chunks() in render/reaching_lanes.h. */
+/* Interpolates between the light of two chunks, as between_chunks() in render/reaching_lanes.h does. */
 DEVICE float between_chunks(float older, float younger, float young) {
   return fused(younger - older, young, older);
 }
 
-/* The transmittance as samples see it. plane: of the transmittance. young: as in plan_rays. */
+/* The transmittance that a sample gets from a light's buffer. plane: the plane of the transmittance. young:
+ * as in plan_rays. */
 DEVICE float faded(GLOBAL const plan_light *light, const shadow_taps *taps, int cubic,
                    GLOBAL const float *plane, float young) {
   const float younger = interpolated(light, taps, cubic, plane);
@@ -157,7 +158,7 @@ typedef struct light_ways {
   float first, last;
 } light_ways;
 
-/* The lengths of the light's ways from the slab's first sheet to the begin and to the end of the slab's
+/* The lengths of the light's ways from the slab's first sheet to the beginning and to the end of the slab's
  * covered part. Only those parts of the ways count that the volume's box and cuts leave. path: the lengths of
  * the complete ways. */
 DEVICE light_ways ways_in_box(const volume_data *data, GLOBAL const plan_light *light, vector start,
@@ -224,7 +225,7 @@ typedef struct light_depths {
 #if BOXED
   float close[CHANNELS][NEAR_PIXELS]; /* the optical depths from the face to each of the pixels around the
                                        * sample */
-  int face;                           /* the sample is near a face of the box */
+  int face;                           /* whether the sample is near a face of the box */
   float beside;                       /* the face's weight in the light at the sample, 0 to 1 */
   float before_enter[CHANNELS], before_more[CHANNELS];
 #endif
@@ -265,8 +266,8 @@ typedef struct faces_of_axis {
   float ahead, behind, u, v, along;
 } faces_of_axis;
 
-/* Does for a face of a cut what find_faces() does for the faces of the box. The cut's face counts as flat: as
- * the plane that touches it where the light's ray meets it. */
+/* Finds the distances of a face of a cut, as find_faces() does for the faces of the box. The cut's face
+ * counts as flat: as the plane that touches it where the light's ray meets it. */
 DEVICE float face_of_cut(GLOBAL const plan_cut *cut, vector position, vector towards,
                          const near_pixels *close_pixels, float through) {
   const ray_section way = cross_cut(cut, position, towards);

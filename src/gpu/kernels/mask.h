@@ -1,6 +1,6 @@
-/* gpu/kernels/mask.h - a volume's mask at a point: the factor of extinction, its slope, and the colour to
- * which the mask moves the matter's colour. The functions do for one pixel what fill/mask_lanes.h and
- * tint_matter() in render/voxel_color_lanes.h do for sixteen. */
+/* gpu/kernels/mask.h - evaluates a volume's mask at a point: finds the factor of extinction, its slope, and
+ * the colour to which the mask moves the matter's colour. The functions compute for one pixel the same
+ * numbers as fill/mask_lanes.h and tint_matter() in render/voxel_color_lanes.h for sixteen. */
 #ifndef HL_GPU_MASK_H
 #define HL_GPU_MASK_H
 

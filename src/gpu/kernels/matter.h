@@ -1,5 +1,6 @@
-/* gpu/kernels/matter.h - the transfer function along a pixel's way through a slab. The functions do for one
- * pixel what grid/classifier_lanes.h and parts of render/slab_lanes.h do for sixteen. */
+/* gpu/kernels/matter.h - evaluates the transfer function along a pixel's way through a slab. The functions
+ * compute for one pixel the same numbers as grid/classifier_lanes.h and parts of render/slab_lanes.h for
+ * sixteen. */
 #ifndef HL_GPU_MATTER_H
 #define HL_GPU_MATTER_H
 
@@ -121,7 +122,7 @@ DEVICE plane_data plane_of_volume(const volume_data *volume) {
 /* The factor by which gradient opacity, a mask and a function of value and gradient multiply extinction. */
 typedef struct matter_factor {
   float factor;
-  vector slope; /* the gradient, where the factor depends on it, else 0 */
+  vector slope; /* the gradient, if the factor depends on it, else 0 */
   float row;    /* the gradient's row in the tables of a function of value and gradient */
 } matter_factor;
 

@@ -1,11 +1,11 @@
-/* gpu/kernels/numbers.h - the numbers, functions and vectors of simd/lanes.h and view/rays_lanes.h, here for
- * one pixel. */
+/* gpu/kernels/numbers.h - numbers, functions and vectors like those in simd/lanes.h and view/rays_lanes.h,
+ * but for one pixel instead of sixteen. */
 #ifndef HL_GPU_NUMBERS_H
 #define HL_GPU_NUMBERS_H
 
 #include "gpu/kernels/dialect.h"
 
-/* Both functions return the second number where either number is NaN. */
+/* Two functions that return the second number if either number is NaN. */
 DEVICE float lesser(float a, float b) { return a < b ? a : b; }
 DEVICE float greater(float a, float b) { return a > b ? a : b; }
 DEVICE float limited(float x, float low, float high) { return lesser(greater(x, low), high); }
@@ -44,7 +44,7 @@ DEVICE float log_of_two(float x) {
   return fused(t * series, 2.88539008178f, (float)n);
 }
 
-/* as power() in render/shade_lanes.h */
+/* computes the same number as power() in render/shade_lanes.h */
 DEVICE float power_of(float base, float exponent) {
   float safe = greater(base, 1e-12f);
   return base > 1e-12f ? power_of_two(greater(log_of_two(safe) * exponent, -100.0f)) : 0.0f;

@@ -1,5 +1,5 @@
-/* gpu/kernels/plane.h - a transfer function of value and gradient along a row of its tables. The functions do
- * for one pixel what fill/plane_lanes.h does for sixteen. */
+/* gpu/kernels/plane.h - evaluates a transfer function of value and gradient along a row of its tables. The
+ * functions compute for one pixel the same numbers as fill/plane_lanes.h for sixteen. */
 #ifndef HL_GPU_PLANE_H
 #define HL_GPU_PLANE_H
 
@@ -13,7 +13,7 @@ typedef struct plane_data {
   float column_scale, column_offset;
 } plane_data;
 
-/* The row of a gradient. slope: in stored units per frame unit. */
+/* The row of the tables for a gradient. slope: the gradient, in stored units per frame unit. */
 DEVICE float row_of_slope(vector slope, float scale, float offset) {
   const vector steps = scaled(slope, scale);
   return limited(root(dot3(steps, steps)) + offset, 0.0f, PLAN_PLANE_ROWS - 1);
@@ -62,7 +62,7 @@ DEVICE void colors_at_column(const plane_data *plane, float row, float column, f
   }
 }
 
-/* The sums between two columns and one more on either side. */
+/* The sums over the columns between two columns and one further column on either side. */
 DEVICE void colors_between(const plane_data *plane, float row, float a, float b, float sums[4]) {
   float low[4], high[4];
   colors_at_column(plane, row, limited_column(lesser(a, b) - 1.0f), low);
@@ -70,8 +70,8 @@ DEVICE void colors_between(const plane_data *plane, float row, float a, float b,
   for (int i = 0; i < 4; i++) sums[i] = high[i] - low[i];
 }
 
-/* The colour in a row where matter is visible, between the coordinates from and to; where the function shows
- * nothing there, the mean colour between the coordinates before and after. */
+/* The colour in a row where matter is visible, between the coordinates from and to; if the function shows
+ * nothing there, it is the mean colour between the coordinates before and after. */
 DEVICE vector color_in_row(const plane_data *plane, float row, float from, float to, float before,
                            float after) {
   float sums[4];

@@ -1,5 +1,5 @@
-/* gpu/kernels/rays.h - where a pixel's ray meets a sheet, and where it enters and leaves the volume's box.
- * The functions do for one pixel what view/rays_lanes.h does for sixteen. */
+/* gpu/kernels/rays.h - finds where a pixel's ray meets a sheet, and where it enters and leaves the volume's
+ * box. The functions compute for one pixel the same numbers as view/rays_lanes.h for sixteen. */
 #ifndef HL_GPU_RAYS_H
 #define HL_GPU_RAYS_H
 
@@ -24,7 +24,7 @@ DEVICE int is_ahead(GLOBAL const plan_rays *rays, float climb, float reach) {
   return fused(magnitude(climb), reach, climb * rays->step) > 0.0f;
 }
 
-/* The length of the ray's way through one sheet; 0 behind the view's origin. */
+/* The length of the ray's way from one sheet to the next; 0 behind the view's origin. */
 DEVICE float path_through_sheet(GLOBAL const plan_rays *rays, int perspective, float path, float u, float v) {
   if (!perspective) return path;
   vector w = direction_of(rays, u, v);

@@ -1,6 +1,6 @@
-/* gpu/kernels/sample.h - the density at a point and its gradient, and whether the point's cell may show
- * anything. The functions do for one pixel what fill/gather_lanes.h, fill/gradient_lanes.h and
- * fill/block_lanes.h do for sixteen. */
+/* gpu/kernels/sample.h - finds the density at a point and its gradient, and whether the point's cell may show
+ * anything. The functions compute for one pixel the same numbers as fill/gather_lanes.h,
+ * fill/gradient_lanes.h and fill/block_lanes.h for sixteen. */
 #ifndef HL_GPU_SAMPLE_H
 #define HL_GPU_SAMPLE_H
 
@@ -16,21 +16,21 @@ typedef struct volume_data {
   GLOBAL const plan_volume *plan;
   GLOBAL const byte *voxels;          /* the volume's voxels, or the coefficients of bricks, one brick after
                                        * the other */
-  GLOBAL const plan_brick *directory; /* [z][y][x] blocks of cells; read only where the volume is in bricks */
+  GLOBAL const plan_brick *directory; /* [z][y][x] blocks of cells; read only if the volume is in bricks */
   GLOBAL const byte *distances;       /* [bricks z][y][x]; distance, in bricks, to the nearest brick that may
                                        * show anything: the greatest of the distances along the three axes,
                                        * and at most FARTHEST_BRICK */
   GLOBAL const wide *cell_bits;       /* [bricks z][y][x]; read only where plan->has_cell_bits */
   GLOBAL const float *tables;
-  GLOBAL const byte *colors;   /* [z][y][x][4]; read only where the voxels have colours */
-  GLOBAL const byte *mask;     /* the mask's parts (kernels/mask.h); read only where there is a mask */
+  GLOBAL const byte *colors;   /* [z][y][x][4]; read only if the voxels have colours */
+  GLOBAL const byte *mask;     /* the mask's parts (kernels/mask.h); read only if there is a mask */
   GLOBAL const plan_cut *cuts; /* [views][cut_count]; the eye's view comes first, then the lights' views */
 } volume_data;
 
 /* The position of a point in the grid; index space, clamped to [-1, n). */
 typedef struct grid_point {
   float at[3];
-  int inside; /* the point lies in the grid or at most GRID_MARGIN outside */
+  int inside; /* whether the point lies in the grid or at most GRID_MARGIN outside */
 } grid_point;
 
 DEVICE grid_point point_in_grid(GLOBAL const plan_volume *volume, vector p) {
@@ -49,7 +49,7 @@ DEVICE grid_point point_in_grid(GLOBAL const plan_volume *volume, vector p) {
 }
 
 /* Whether the point's cell may show something (grid/relevant.h). *voxels: a distance, in voxels along each
- * axis, within which no cell shows anything; 0 where the point's own brick may show something. */
+ * axis, within which no cell shows anything; 0 if the point's own brick may show something. */
 DEVICE int cell_may_show(const volume_data *volume, const grid_point *point, float *voxels) {
   GLOBAL const plan_volume *plan = volume->plan;
   *voxels = 0.0f;
@@ -75,8 +75,8 @@ typedef struct tap_place {
   int even;
 } tap_place;
 
-/* Finds the taps around a point of index space. For a field in bricks it works as lanes_in_brick() in
- * fill/gather_lanes.h; there the third coordinate of the cell counts the slices of the coefficients of all
+/* Finds the taps around a point of index space. For a field in bricks, it finds them as lanes_in_brick() in
+ * fill/gather_lanes.h does; the third coordinate of the cell counts the slices of the coefficients of all
  * bricks. */
 DEVICE tap_place place_of_taps(const volume_data *volume, const float at[3]) {
   tap_place place;

@@ -1,6 +1,6 @@
-/* gpu/kernels/shade.h - steps 12 to 16 for one pixel: where a slab is seen, its gradient and its colour, and
- * the light that it sends to the eye. The functions do for one pixel and one volume what render/slab_lanes.h
- * and render/shade_lanes.h do. */
+/* gpu/kernels/shade.h - does steps 12 to 16 for one pixel: finds the place where a slab is seen, its gradient
+ * and its colour, and the light that it sends to the eye. The functions compute the same numbers as
+ * render/slab_lanes.h and render/shade_lanes.h, but for one pixel and one volume. */
 #ifndef HL_GPU_SHADE_H
 #define HL_GPU_SHADE_H
 
@@ -116,8 +116,8 @@ DEVICE void shown_below(GLOBAL const float *tables, float x, float sums[4]) {
   table_values(shown_table(tables), split_coordinate(x), 4, sums);
 }
 
-/* The visible part of a way's depth, as coordinates in the tables: returns where it ends. *from: receives
- * where it begins. */
+/* Finds the visible part of a way's optical depth, as coordinates in the tables. Returns the coordinate of
+ * its end. *from: receives the coordinate of its beginning. */
 DEVICE float end_of_shown(const slab_sample *s, float *from) {
   way_means means = means_of_way(s->before, s->after, &s->sums);
   int front = s->evenly <= 0.5f;

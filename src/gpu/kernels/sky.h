@@ -1,5 +1,5 @@
-/* gpu/kernels/sky.h - the sky's light that a sample sends on. The functions do for one pixel and one volume
- * what field/lookup_lanes.h and render/sky_lanes.h do for sixteen pixels. */
+/* gpu/kernels/sky.h - finds the sky's light that a sample sends on. The functions compute for one pixel and
+ * one volume the same numbers as field/lookup_lanes.h and render/sky_lanes.h for sixteen pixels. */
 #ifndef HL_GPU_SKY_H
 #define HL_GPU_SKY_H
 
@@ -8,7 +8,7 @@
 
 #if SKY
 
-/* The cells of the sky's field (field/sky_field.h), and what is known of them. */
+/* The cells of the sky's field (field/sky_field.h), and the field's constants. */
 typedef struct sky_data {
   GLOBAL const plan_sky *plan;
   GLOBAL const short *cells;
@@ -16,11 +16,12 @@ typedef struct sky_data {
 
 /* ---- the cells around a position ---- */
 
-/* The eight cells around a position. Cell `corner` is at the far end of the x axis where bit 0 of `corner` is
- * set, of the y axis where bit 1 is set, and of the z axis where bit 2 is set. */
+/* The eight cells around a position. Cell `corner` is at the far end of the x axis if bit 0 of `corner` is
+ * set, of the y axis if bit 1 is set, and of the z axis if bit 2 is set. */
 typedef struct sky_cells {
   GLOBAL const short *first; /* the cell with corner 0 */
-  wide row, slice;   /* numbers of 16 bits from a row to the next one, and from a slice to the next one */
+  wide row, slice;   /* the distance, in numbers of 16 bits, from a row to the next row, and from a slice to
+                      * the next slice */
   float fraction[3]; /* fraction of the way to the next cell along each axis */
 } sky_cells;
 
@@ -49,7 +50,7 @@ DEVICE sky_cells cells_around(const sky_data *sky, vector position) {
 
 /* ---- the cells' weights ---- */
 
-/* As cell_on_side() in field/lookup_lanes.h. */
+/* Finds a cell on the position's side of surfaces, as cell_on_side() in field/lookup_lanes.h does. */
 DEVICE int cell_on_side(const sky_cells *cells) {
   const float *fraction = cells->fraction;
   int corner = (fraction[0] >= 0.5f ? 1 : 0) + (fraction[1] >= 0.5f ? 2 : 0) + (fraction[2] >= 0.5f ? 4 : 0);
@@ -152,7 +153,7 @@ DEVICE sky_place place_in_sky(const sky_data *sky, vector position, float surfac
 }
 
 /* One harmonic of the light in one channel, as a sum over the cells. The caller multiplies it by `unit` and
- * by the number's unit. The sum is one of whole numbers. */
+ * by the number's unit. The sum is a sum of whole numbers. */
 DEVICE float sum_of_harmonic(const sky_data *sky, const sky_place *place, int channel, int k) {
   const int at = SKY_PLACE(k * sky->plan->channels + channel);
   int sum = 0;
@@ -161,7 +162,7 @@ DEVICE float sum_of_harmonic(const sky_data *sky, const sky_place *place, int ch
   return (float)sum;
 }
 
-/* As factors_of_surface() in field/lookup_lanes.h. */
+/* Finds the factors of the harmonics for a surface, as factors_of_surface() in field/lookup_lanes.h does. */
 DEVICE void factors_of_surface(vector normal, float factors[FIELD_HARMONICS]) {
   const float first = (float)HARMONIC_1 * (2.0f / 3), second = (float)HARMONIC_2 * 0.25f;
   factors[0] = (float)HARMONIC_0;
@@ -187,7 +188,8 @@ DEVICE float light_of_surface(const sky_data *sky, const sky_place *place, int h
   return greater(hidden ? sum * (place->unit * sky->plan->stored_unit[channel]) : sum, 0.0f);
 }
 
-/* The light that an evenly scattering medium receives from the sky. hidden: as above. */
+/* The light that an evenly scattering medium receives from the sky. hidden: whether matter may hide the sky;
+ * then `place` is set. */
 DEVICE float light_of_medium(const sky_data *sky, const sky_place *place, int hidden, int channel) {
   const float mean = hidden ? sum_of_harmonic(sky, place, channel, 0) *
                                   (place->unit * sky->plan->stored_unit[channel])
@@ -210,8 +212,8 @@ DEVICE float way_to_outside(const volume_data *volume, const slab_sample *s) {
   return fused(way, 1.0f - skin, s->behind * skin * volume->plan->voxel);
 }
 
-/* The light of the sky that a sample sends to the eye, as a factor for each channel of its colour: what
- * sky_of_volume() in render/sky_lanes.h finds. */
+/* The light of the sky that a sample sends to the eye, as a factor for each channel of its colour. It is the
+ * same number that sky_of_volume() in render/sky_lanes.h finds. */
 DEVICE vector sky_of_sample(const sky_data *sky, const volume_data *volume, const slab_sample *s) {
   GLOBAL const plan_volume *matter = volume->plan;
   const int hidden = matter->receives_shadow;

@@ -1,8 +1,8 @@
-/* gpu/kernels/surface.h - surfaces of a volume: how much of a sample belongs to a face at which the box or a
- * cut cuts matter, and the light at the outside of surfaces (Y in shadow/attenuate.h).
+/* gpu/kernels/surface.h - handles surfaces of a volume: finds how much of a sample belongs to a face at which
+ * the box or a cut cuts matter, and the light at the outside of surfaces (Y in shadow/attenuate.h).
  *
- * The functions here do for one pixel and one volume what render/slab_lanes.h, render/reaching_lanes.h,
- * grid/classifier_lanes.h and shadow/attenuate_lanes.h do for sixteen pixels. */
+ * The functions compute for one pixel and one volume the same numbers as render/slab_lanes.h,
+ * render/reaching_lanes.h, grid/classifier_lanes.h and shadow/attenuate_lanes.h for sixteen pixels. */
 #ifndef HL_GPU_SURFACE_H
 #define HL_GPU_SURFACE_H
 
@@ -14,7 +14,7 @@
 #define CUT_SHADING_FACE 0 /* as HL_CUT_SHADING_FACE */
 #define FACES_OF_AXIS    2
 
-/* The density where a ray crosses a face. crossing: in frame space. */
+/* The density at the point where a ray crosses a face. crossing: this point, in frame space. */
 DEVICE_CALL float density_on_face(const volume_data volume, vector crossing) {
   GLOBAL const plan_volume *plan = volume.plan;
   float at[3];
@@ -40,7 +40,7 @@ DEVICE int is_near_face(GLOBAL const plan_volume *volume, vector point) {
 
 /* The face through which the eye's ray comes last before it meets a sample. */
 typedef struct cut_face {
-  float way;      /* from the sample back to the face; frame units */
+  float way;      /* the distance from the sample back to the face; frame units */
   vector outward; /* the face's unit normal */
   int cuts;       /* the face cuts matter */
 } cut_face;
@@ -61,7 +61,7 @@ DEVICE void find_cut(GLOBAL const plan_cut *cut, const slab_sample *s, float lea
 }
 
 /* The distance of a sample, in voxels, from the face that cuts matter and through which the eye's ray comes
- * last before it meets the sample; FACE_VOXELS where no such face is near. */
+ * last before it meets the sample; FACE_VOXELS if no such face is near. */
 DEVICE float find_face(const volume_data *volume, const slab_sample *s, vector *outward) {
   GLOBAL const plan_volume *plan = volume->plan;
   cut_face nearest;
@@ -139,8 +139,8 @@ DEVICE second_surface kept_at_foot(GLOBAL const float *tables, float first, floa
 
 /* The fractions of light at the outside of surfaces that a slab lets pass: k and k' of shadow/attenuate.h. */
 typedef struct kept_light {
-  float before; /* k: of the light that matter before the slab has taken */
-  float within; /* k': of the light that the slab takes */
+  float before; /* k: the fraction that is kept of the light that matter before the slab has absorbed */
+  float within; /* k': the fraction that is kept of the light that the slab absorbs */
 } kept_light;
 
 DEVICE float power_of_depth(float h1, float h2) {
@@ -232,8 +232,8 @@ DEVICE float pass_outside(float outside, float before, float after, kept_light k
 
 /* ---- the light that lights a sample's surface ---- */
 
-/* Where a light's way to a sample begins: on the slab's first sheet. The members are those of way_begin in
- * render/reaching_lanes.h. */
+/* The beginning of a light's way to a sample, on the slab's first sheet. The members are those of way_begin
+ * in render/reaching_lanes.h. */
 typedef struct way_begin {
   float start, change, first, foot;
   int there;

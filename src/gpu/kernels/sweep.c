@@ -3,7 +3,7 @@
 #include "gpu/kernels/cascade.h"
 #include "gpu/kernels/trial.h"
 
-/* Sets floats to a value; each member sets four floats. */
+/* Sets all floats of a buffer to a value. Each member of the kernel sets four floats. */
 KERNEL(16) fill_floats(GLOBAL float *at, unsigned fours, float value) {
   unsigned number = (unsigned)work_number();
   if (number >= fours) return;
@@ -21,7 +21,8 @@ KERNEL(8) try_arithmetic(GLOBAL const float *from, GLOBAL float *to, unsigned co
 
 /* Finds, for each brick, the distance in bricks to the nearest brick that may show something. This takes
  * three passes, one along each axis; a call makes one pass. x, y, z: the numbers of bricks. relevant: not 0
- * in the first pass; there `from` holds 1 for each brick that may show something, and no distances yet. */
+ * in the first pass. In this pass `from` holds 1 for each brick that may show something, and no distances
+ * yet. */
 KERNEL(16)
 spread_distances(GLOBAL const byte *from, GLOBAL byte *to, unsigned x, unsigned y, unsigned z, unsigned axis,
                  unsigned relevant) {
@@ -188,7 +189,8 @@ KERNEL(12) run_light(SWEEP_ARGUMENTS) {
 
 /* ---- passes over the fields of soft lights ---- */
 
-/* The arguments of these kernels. number: of the pass. */
+/* The arguments of the kernels that make one pass over fields of soft lights. number: the number of the
+ * pass. */
 #define PASS_ARGUMENTS                                                                            \
   GLOBAL const device_sweep *APART plan, GLOBAL const plan_pass *APART passes,                    \
       GLOBAL const plan_blur *APART boxes, GLOBAL const byte *APART marks, GLOBAL word16 *fields, \

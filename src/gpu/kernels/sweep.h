@@ -1,10 +1,10 @@
-/* gpu/kernels/sweep.h - the work of the kernels on a run of slabs.
+/* gpu/kernels/sweep.h - does the work of the kernels on a run of a few successive slabs.
  *
  * In a light's buffer, a member composites all slabs of the run into its pixel. The picture takes three
  * steps. First each pixel lists the slabs in which it may see something. Then each listed slab is lit, by any
  * member. Last, each pixel composites its own slabs, in order. The list gives all members equal work:
- * lighting a slab takes long, and some pixels see many slabs and others none. Where a ray can see nothing on
- * either of a slab's two sheets, the densities on these sheets are not computed. */
+ * lighting a slab takes long, and some pixels see many slabs and others none. If a ray can see nothing on
+ * both sheets of a slab, the densities on these sheets are not computed. */
 #ifndef HL_GPU_SWEEP_H
 #define HL_GPU_SWEEP_H
 
@@ -15,8 +15,8 @@
  * they are known. */
 typedef struct sheet_way {
   int before_known, after_known;
-  int before_shows, after_shows; /* the density on the sheet is known, and greater than all densities that
-                                  * come before the first visible density */
+  int before_shows, after_shows; /* whether the density on the sheet is known, and greater than all densities
+                                  * before the first visible density */
   float before, after;
 } sheet_way;
 
@@ -27,15 +27,14 @@ DEVICE sheet_way no_sheets(void) {
   return way;
 }
 
-/* Finds the densities of a pixel on a sheet and on the sheet before, where they are needed. The density on
- * this sheet is needed where the point's cell may show something. Where one of the two densities shows
- * something, the other one is needed, too. If one member of a pack needs a density, all members of the pack
- * compute theirs. When the function is called, way->after must be the density on the sheet before. starts:
- * whether the ray starts at this sheet: nothing is known of the sheet before, and only this sheet's density
- * is wanted. rays: the rays at the sheet. speed: the number of voxels by which the ray advances from sheet to
- * sheet, along the axis where it is fastest. Returns the number of sheets from this sheet to the next sheet
- * at which the ray may meet anything. The sums are computed in a loop of two passes, so that their code
- * exists once. */
+/* Finds the densities of a pixel on a sheet and on the sheet before, if they are needed. The density on this
+ * sheet is needed if the point's cell may show something. If one of the two densities shows something, the
+ * other one is needed, too. If one member of a pack needs a density, all members of the pack compute theirs.
+ * When the function is called, way->after must be the density on the sheet before. starts: whether the ray
+ * starts at this sheet: nothing is known of the sheet before, and only this sheet's density is wanted. rays:
+ * the rays at the sheet. speed: the number of voxels by which the ray advances from sheet to sheet, along the
+ * axis where it is fastest. Returns the number of sheets from this sheet to the next sheet at which the ray
+ * may meet anything. The sums are computed in a loop of two passes, so that their code exists once. */
 DEVICE int fill_way(const volume_data *volume, GLOBAL const plan_rays *rays, int perspective, float u,
                     float v, float speed, int starts, sheet_way *way) {
   GLOBAL const plan_volume *plan = volume->plan;
@@ -110,7 +109,7 @@ typedef struct sweep_data {
                        * chunk's slabs absorbed, each times the slab's position, and 1 - the light at the
                        * chunk's beginning */
   GLOBAL int *touched;     /* [light tiles]; the last chunk whose slabs absorbed light there */
-  GLOBAL const short *sky; /* the cells of the sky's field; read only where the variant has a sky */
+  GLOBAL const short *sky; /* the cells of the sky's field; read only if the variant has a sky */
   GLOBAL int *changed;     /* [light tiles][256 pixels]; the last sheet at which the pixel's light changed */
   GLOBAL const int *shown_from; /* [tiles][16] */
   GLOBAL unsigned *counts;      /* [256], then [runs]. The first 256 numbers count composited samples; tile t
@@ -118,8 +117,8 @@ typedef struct sweep_data {
                                  * lists */
   /* [slabs of a run][256 * tiles pixels][4]; a slot for each pixel and slab. At first a slot holds the
    * densities on the slab's two sheets. Later it holds the light that the slab sends to the eye (R, G, B),
-   * and the slab's opacity, which is -1 where nothing is seen. Of this array and of the next two there are
-   * two copies: one for even runs, one for odd runs. */
+   * and the slab's opacity, which is -1 if nothing is seen. Of this array and of the next two there are two
+   * copies: one for even runs, one for odd runs. */
   GLOBAL float *slots;
   GLOBAL unsigned *list;  /* [slabs of a run * 256 * tiles]; the numbers of those slots that are in use */
   GLOBAL unsigned *masks; /* [256 * tiles]; bit k of a pixel's mask is set if the pixel uses its slot for the
@@ -172,7 +171,7 @@ DEVICE covered_span part_of_slab(const ray_left *ray, float height, float spacin
 
 /* A member's pixel. */
 typedef struct tile_pixel {
-  int tile, member, inside; /* inside: some pixel of this pixel's block lies in the picture */
+  int tile, member, inside; /* inside: whether some pixel of this pixel's block lies in the picture */
   float u, v;
 } tile_pixel;
 
@@ -295,8 +294,8 @@ DEVICE void composite_slabs(const sweep_data *sweep, int number) {
 
 /* ---- the lights ---- */
 
-/* A light's pixel: T, followed by Y where surfaces have it (shadow/attenuate.h), and by the light from which
- * samples of soft lights fade. */
+/* A pixel of a light's buffer: T, then Y (shadow/attenuate.h) if there are surfaces, then the light from
+ * which samples of soft lights fade. */
 typedef struct light_pixel {
   float passing[PLANES_OF_SHEET];
 #if SOFT
@@ -371,7 +370,7 @@ DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *ligh
 }
 
 /* Ends the surface in a light's pixel: sets the light at the surface's outside to the transmittance. This is
- * done where a slab absorbs no light in this pixel, but affects the light of another pixel of the block. */
+ * done if a slab absorbs no light in this pixel, but affects the light of another pixel of the block. */
 DEVICE void leave_surface(light_pixel *pixel) {
   for (int c = 0; c < CHANNELS * OUTSIDE; c++)
     pixel->passing[CHANNELS + c] = greater(pixel->passing[c], 0.0f);

@@ -1,6 +1,6 @@
-/* gpu/kernels/taps.h - the kernel's weights, and the weighted sum of four neighbouring voxels along x. The
- * functions do for one pixel what grid/kernel_lanes.h and fill/row_lanes.h do for sixteen. STORAGE and
- * BSPLINE come from the variant (gpu/device_sweep.h). */
+/* gpu/kernels/taps.h - finds the kernel's weights, and the weighted sum of four neighbouring voxels along x.
+ * The functions compute for one pixel the same numbers as grid/kernel_lanes.h and fill/row_lanes.h for
+ * sixteen. STORAGE and BSPLINE come from the variant (gpu/device_sweep.h). */
 #ifndef HL_GPU_TAPS_H
 #define HL_GPU_TAPS_H
 
@@ -81,8 +81,8 @@ DEVICE int taps_inside(int cell, int count) { return cell >= 1 && cell < count -
 DEVICE int round_to_units(float x, int units) {
   return bits_of(fused(x, (float)units, 12582912.0f)) - bits_of(12582912.0f); /* 3 * 2^22 */
 }
-/* Rounds weights to whole units, as round_weights() in fill/row_lanes.h: rounds the sums of weights from the
- * first tap on, and not each weight. total: the sum of all four weights. */
+/* Rounds weights to whole units, as round_weights() in fill/row_lanes.h: the running sums of the weights are
+ * rounded, and not each weight. total: the sum of all four weights. */
 DEVICE void round_weights(const float weight[4], int units, int total, int rounded[4]) {
   int first = round_to_units(weight[0], units), two = round_to_units(weight[0] + weight[1], units);
   int last = round_to_units(weight[3], units);
@@ -156,8 +156,8 @@ DEVICE int dot_signed_high(unsigned a, unsigned b, int c) {
 DEVICE unsigned word_between(unsigned low, unsigned high, unsigned shift) {
   return __funnelshift_r(low, high, shift);
 }
-/* Both functions join bytes of four numbers in one word: first_bytes() the lowest bytes, second_bytes() the
- * next higher bytes. */
+/* Two functions that join bytes of four numbers in one word: first_bytes() the lowest bytes, second_bytes()
+ * the next higher bytes. */
 DEVICE unsigned first_bytes(const int x[4]) {
   return __byte_perm(__byte_perm(x[0], x[1], 0x0040), __byte_perm(x[2], x[3], 0x0040), 0x5410);
 }
